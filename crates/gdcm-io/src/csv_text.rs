@@ -11,7 +11,7 @@ use gdcm_words::table::Table;
 use crate::file_error::FileError;
 use crate::output_set::OutputSet;
 
-/// Writes equally long records, a line for each; the cells are [`plain`].
+/// Writes records of equal length, one on each line; the cells pass through [`plain`].
 pub(crate) fn write_records<R>(
     file: &mut dyn Write,
     records: impl Iterator<Item = R>,
@@ -37,7 +37,7 @@ fn io_error(error: csv::Error) -> io::Error {
     }
 }
 
-/// Returns a cell that no spreadsheet takes for a formula, and no terminal for a command.
+/// Returns a cell that no spreadsheet interprets as a formula, and no terminal as a command.
 ///
 /// A text that begins with `=`, `+`, `-` or `@` and is not a number is preceded by an apostrophe;
 /// control and invisible characters are spelled out. Numbers have the ASCII minus, and zero has no

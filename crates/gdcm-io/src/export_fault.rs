@@ -9,7 +9,7 @@ use crate::reading_budget::VariableFault;
 /// Reason why an export is impossible.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ExportFault {
-    /// A curve cannot be computed.
+    /// A curve contains a value that is not finite.
     #[error(
         "the {curve} of {channel} has a number that is not finite; correct it before it is exported"
     )]
@@ -21,7 +21,7 @@ pub enum ExportFault {
     /// The requested airspeeds do not form a table.
     #[error("the airspeeds of the table must be finite, increase, and be at least one")]
     Breakpoints,
-    /// A MATLAB file has a name that no function can have.
+    /// The name of a MATLAB file is not a valid function name.
     #[error(
         "MATLAB calls a function by the name of its file: a letter, then letters, digits and _, 63 at most, and neither a \
          keyword nor a name that the file uses itself; found {}",
@@ -56,7 +56,7 @@ pub enum ExportFault {
         condition: ConditionId,
         model: String,
     },
-    /// A model is known only by its response.
+    /// A model is a measured response and has no matrices.
     #[error(
         "condition {condition}, model \"{model}\": it is a measured response and has no matrices to be exported"
     )]
@@ -69,14 +69,15 @@ pub enum ExportFault {
     Model {
         condition: ConditionId,
         model: String,
-        /// For the reasons see
+        /// Reason, see
         /// [`CorrectedModelError`](gdcm_method::correction::corrected_model::CorrectedModelError).
         words: String,
     },
 }
 
 impl ExportFault {
-    /// Whether the analysis lacks the requested content; otherwise the request must change.
+    /// Whether the analysis did not produce the requested content; any other fault is in the
+    /// request.
     pub fn is_of_analysis(&self) -> bool {
         matches!(
             self,

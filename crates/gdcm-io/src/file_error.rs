@@ -115,14 +115,14 @@ pub enum FileError {
         place: Box<Location>,
         /// Fault at that place.
         fault: Box<ContentFault>,
-        /// Line at which the condition or the model begins, counted from 1; `None` if the fault has
-        /// its own.
+        /// Line at which the condition or the model begins, counted from 1; `None` if the fault
+        /// gives a line.
         line: Option<usize>,
     },
     /// Variables cannot be read or written.
     #[error("{}: {}", sanitized_path(path), sanitized(&.fault.to_string()))]
     Variables { path: PathBuf, fault: VariableFault },
-    /// Folders are nested more deeply than the search for models goes.
+    /// Folders are nested more deeply than the search limit.
     #[error(
         "{}: folders are nested too deeply; give a folder farther down",
         sanitized_path(path)
@@ -132,7 +132,7 @@ pub enum FileError {
     #[error("{}: {}", sanitized_path(path), no_record_words(record.as_deref(), *held))]
     NoRecord {
         path: PathBuf,
-        /// The record; `None` for the only one.
+        /// Requested record; `None` if the file should hold a single record.
         record: Option<String>,
         /// Record count in the file.
         held: usize,
@@ -152,7 +152,7 @@ pub enum FileError {
         /// The reason, with the dataset's path.
         dataset: Box<FileError>,
     },
-    /// A file has the path for a new directory.
+    /// A file exists at the path of a new directory.
     #[error(
         "{}: cannot be written: a file has the name of this directory",
         sanitized_path(path)
@@ -167,13 +167,13 @@ pub enum FileError {
         sanitized_path(path)
     )]
     Input { path: PathBuf },
-    /// The extension is no figure format.
+    /// The file extension belongs to no figure format.
     #[error(
         "{}: a figure is written to a name that ends in .svg, .png, .pdf or .csv",
         sanitized_path(path)
     )]
     FigureFormat { path: PathBuf },
-    /// Numbers were requested from a figure that has none.
+    /// A figure that shows no values was to be written as values.
     #[error(
         "{}: \"{}\" shows no numbers that could be written: none of the requested responses or channels has a result; request others, or \
          .svg",
@@ -216,7 +216,7 @@ impl FileError {
         }
     }
 
-    /// Creates the error for unreadable variables in a file; a remedy names the file.
+    /// Creates the error for unreadable variables in a file; inserts the file name into a remedy.
     pub(super) fn variables(path: &Path, mut fault: VariableFault) -> Self {
         if let VariableFault::Unsupported { remedy, .. } = &mut fault {
             *remedy = remedy
@@ -229,7 +229,8 @@ impl FileError {
         }
     }
 
-    /// Returns the stable code by which scripts distinguish an error; `None` if it has none yet.
+    /// Returns the stable code by which scripts distinguish an error; `None` if no code is
+    /// assigned.
     pub fn code(&self) -> Option<&'static str> {
         match self {
             Self::NotAFile { .. } => Some("input-not-a-file"),
@@ -336,7 +337,7 @@ pub enum ContentFault {
         /// Column in bytes, counted from 1.
         column: usize,
     },
-    /// A number is NaN, infinite, or too large for a 64-bit number.
+    /// A number is NaN, infinite, or too large for a 64-bit float.
     #[error("expected a finite number, found {found} (line {line}, column {column})")]
     NotFinite {
         found: String,

@@ -11,7 +11,7 @@ use gdcm_model::units::number;
 
 use crate::file_error::{ContentError, ContentFault, FileError};
 
-/// Position in a text, counted from 1; the column in bytes.
+/// Line and column in a text, counted from 1; the column in bytes.
 #[derive(Clone, Copy)]
 struct Position {
     line: usize,
@@ -71,7 +71,8 @@ fn syntax_error(
         };
         return FileError::content(path, ContentError::new(place, fault));
     }
-    // serde_json also classifies a value as a syntax error if it is not among the known words.
+    // serde_json also reports a syntax error in valid JSON if a value is not a text where one of
+    // several words is expected.
     if is_json_so_far(text) {
         let fault = ContentFault::Type {
             expected: "a text in quotation marks".to_owned(),
@@ -196,7 +197,7 @@ fn expected_words(expected: &str) -> String {
 
 /// Returns the bare word around a position: `NaN`, `1e999`.
 fn token_at(text: &[u8], position: Position) -> Option<String> {
-    /// Longest word returned \[bytes\], longer than any number that a program writes.
+    /// Maximum length of the returned word \[bytes\], longer than any number that a program writes.
     const LONGEST: usize = 60;
     let line = text
         .split(|byte| *byte == b'\n')

@@ -16,8 +16,8 @@ use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_FREQUENCIES, MOST_STATES};
 /// the shape 2 x 2.
 ///
 /// Read flat, so that a file with empty lists cannot take more memory than its own length. The
-/// largest number of states limits a matrix; the largest numbers of channels and frequencies limit a
-/// response table.
+/// dimensions of a matrix are limited by the maximum number of states, those of a response table by
+/// the maximum numbers of channels and frequencies.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Nested<const DEPTH: usize> {
     /// Entries along each dimension; 0 if a previous dimension is empty.
@@ -26,7 +26,7 @@ pub(super) struct Nested<const DEPTH: usize> {
 }
 
 impl<const DEPTH: usize> Nested<DEPTH> {
-    /// Returns the largest number of entries in a list at a depth, 0 being the outermost.
+    /// Returns the maximum number of entries in a list at a depth, 0 being the outermost.
     const fn most(depth: usize) -> usize {
         match (DEPTH, depth) {
             (2, _) => MOST_STATES,
@@ -67,7 +67,7 @@ impl<'de, const DEPTH: usize> Deserialize<'de> for Nested<DEPTH> {
 
 /// An array being read.
 struct Filling<const DEPTH: usize> {
-    /// List length at each depth, known once the first list has ended.
+    /// List length at each depth; `None` until the first list at this depth has ended.
     lengths: [Option<usize>; DEPTH],
     values: Vec<f64>,
 }
@@ -256,7 +256,7 @@ where
     }
 }
 
-/// Numbers by name, at most `MOST`; among numbers with the same name the last counts.
+/// Numbers by name, at most `MOST`; of numbers with the same name, the last is kept.
 pub(super) struct Numbers<const MOST: usize>(pub(super) BTreeMap<String, f64>);
 
 impl<'de, const MOST: usize> Deserialize<'de> for Numbers<MOST> {

@@ -170,7 +170,7 @@ mod tests {
             .chars()
             .filter(|letter| is_unprintable(*letter))
             .collect();
-        // Line ends of its own, and a code without effect on a terminal.
+        // The line ends of the JSON layout, and DEL, which has no effect on a terminal.
         assert_eq!(left, ['\n', '\u{7f}', '\n'], "{text:?}");
         assert!(
             text.contains("\\u009b31m")

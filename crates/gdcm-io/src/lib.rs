@@ -1,4 +1,5 @@
-//! Bytes into models and records, results into files: the only crate that touches the file system.
+//! Reads models and records from files and writes results to files; no other crate accesses the
+//! file system.
 //!
 //! `formats` reads single file formats into variables and columns; `import` recognises models and
 //! flight records in them. `files` holds the program's own formats (dataset, study, corrections),

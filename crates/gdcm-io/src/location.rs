@@ -113,10 +113,10 @@ fn is_response_table(key: &str) -> bool {
     )
 }
 
-/// Largest number of labelled conditions and models, so that an outline takes no more memory than a
+/// Maximum number of labelled conditions and models, so that an outline takes no more memory than a
 /// dataset.
 const MOST_LABELS: usize = 50_000;
-/// Deepest nesting of lists and objects; labels are far less deep.
+/// Maximum nesting depth of lists and objects; labels are nested far less deeply.
 const DEEPEST: usize = 100;
 
 /// Labels in a file, for naming places in it; labels after an error in the text are missing.
@@ -151,7 +151,7 @@ impl Outline {
         })
     }
 
-    /// Returns the format in the file; reads no further than that, and stops when the budget does.
+    /// Returns the format in the file; reads no further, and stops when the budget is exhausted.
     pub(super) fn format_of(text: &[u8], budget: &ReadingBudget<'_>) -> Option<String> {
         let outline = Self::read_until(text, |outline| {
             outline.format.is_some() || budget.work(0, "").is_err()
@@ -186,7 +186,8 @@ impl Outline {
         self.names.get(&index).cloned()
     }
 
-    /// Reads until `is_enough`; an error ends the outline, and the actual reader reports it.
+    /// Reads until `is_enough`; an error ends the outline, and is reported when the content is
+    /// read.
     fn read_until(text: &[u8], is_enough: impl Fn(&Self) -> bool) -> Self {
         let mut outline = Self::default();
         let mut parser = SliceJsonParser::new(text);
@@ -283,11 +284,11 @@ fn words(value: &JsonEvent<'_>) -> String {
     }
 }
 
-/// Largest number of keys reported individually; a file with more comes from another program, or
+/// Maximum number of keys reported individually; a file with more comes from another program, or
 /// was made to fill the memory.
 const MOST_KEYS: usize = 50;
 
-/// Keys unknown to the program; the same key in the same kind of place is counted.
+/// Keys unknown to the program; keys whose paths differ only in indices are counted together.
 #[derive(Debug, Default)]
 pub(super) struct UnknownKeys {
     /// By the keys on the path, without the indices.
@@ -324,7 +325,7 @@ impl UnknownKeys {
         }
     }
 
-    /// Returns a caution for each, with its place in the text.
+    /// Returns a caution for each unknown key, with its place in the text.
     pub(super) fn cautions(&self, text: &[u8]) -> Vec<String> {
         if self.found.is_empty() {
             return Vec::new();

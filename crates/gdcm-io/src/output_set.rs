@@ -13,25 +13,26 @@ use tempfile::NamedTempFile;
 use super::file_error::FileError;
 use super::source::kind_of;
 
-/// Treatment of existing files where new files should go.
+/// Treatment of existing files at the paths of new files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Existing {
-    /// They are kept, and nothing is written.
+    /// Existing files are kept, and nothing is written.
     Keep,
-    /// The new files replace them.
+    /// The new files replace existing files.
     Replace,
 }
 
-/// A set of files that take their places together.
+/// A set of files that are put in their places together, or not at all.
 ///
 /// ```text
-/// check    reject places that must not be written to                   (before any work)
-/// add      write each beside its place, to the disk                    (a full disk shows here)
-/// persist  wait for other sets in the same directory; keep what each replaces aside; rename, in the order in which they were added;
-///          on an error rename back what was kept aside
+/// check    reject paths that must not be written to      (before any work)
+/// add      write each file beside its path, to the disk  (a full disk shows here)
+/// persist  wait for other sets in the same directory; keep the existing files under second names;
+///          rename the new files, in the order in which they were added;
+///          on an error restore the existing files
 /// ```
 ///
-/// No file system renames several files at once. A process killed between two of them leaves new
+/// No file system renames several files at once. A process killed between two renames leaves new
 /// files beside old ones; checksums, added last, reveal this.
 ///
 /// A set dropped before it is persisted changes nothing. Leftovers of a killed run are removed by
@@ -48,7 +49,7 @@ pub struct OutputSet {
 struct Staged {
     /// The requested place.
     path: PathBuf,
-    /// The file to which a link there leads, or the place itself.
+    /// The file to which a link at `path` leads, or `path` itself.
     target: PathBuf,
     temporary: NamedTempFile,
 }
@@ -173,7 +174,7 @@ impl OutputSet {
         if self.staged.len() <= 1 {
             return Vec::new();
         }
-        // Each directory once, whatever the path to it: a set must not wait for its own lock.
+        // Each directory once, even if it has several paths: a set must not wait for its own lock.
         let mut directories = BTreeSet::new();
         for staged in &self.staged {
             let directory = directory_of(&staged.target);
@@ -371,7 +372,7 @@ fn temporary_file(target: &Path, directory: &Path) -> io::Result<NamedTempFile> 
             }),
     );
     loop {
-        // Its own message would name the temporary file.
+        // The builder's error message would name the temporary file.
         let temporary = builder
             .tempfile_in(directory)
             .map_err(|error| io::Error::from(error.kind()))?;

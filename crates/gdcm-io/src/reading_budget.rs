@@ -49,7 +49,7 @@ pub enum VariableFault {
     Unsupported {
         variable: String,
         what: String,
-        /// How to obtain the data all the same; `{file}` and `{stem}` represent the file's name
+        /// How to export the data in another format; `{file}` and `{stem}` represent the file name
         /// with and without its extension.
         remedy: String,
     },
@@ -63,7 +63,7 @@ pub enum VariableFault {
         /// The limit \[MiB\].
         most_mib: u64,
     },
-    /// Reading the file would take longer than for any data file.
+    /// Reading the file would take more steps of work than the limit.
     #[error(
         "{}this would take more than {most_millions} million steps of work, the limit for a file; split the file",
         at(variable)
@@ -149,7 +149,7 @@ impl VariableFault {
         }
     }
 
-    /// Adds the affected value, unless the error names one already.
+    /// Adds the name of the affected value, unless the error names one already.
     #[must_use]
     pub(crate) fn of(mut self, name: impl FnOnce() -> String) -> Self {
         match &mut self {
@@ -188,7 +188,7 @@ fn at(variable: &str) -> String {
     }
 }
 
-/// Memory limit for one file \[bytes\].
+/// Maximum memory for reading one file \[bytes\].
 pub(crate) const MOST_MEMORY: u64 = 1 << 30;
 
 /// Maximum work for reading one file \[steps\]: text bytes, array elements, values, and name
@@ -281,7 +281,7 @@ impl<'p> ReadingBudget<'p> {
     /// Stops a cancelled reader among elements that are already counted; called for each element,
     /// it checks now and then.
     pub fn go_on(&self, element: usize) -> Result<(), VariableFault> {
-        /// Elements that take less than a hundredth of a second.
+        /// Number of elements between two checks; they take less than a hundredth of a second.
         const BETWEEN: usize = 1 << 14;
         if element.is_multiple_of(BETWEEN) && self.stop.load(Ordering::Relaxed) {
             return Err(VariableFault::Stopped);

@@ -201,7 +201,7 @@ fn unpack_chunk(
     })
 }
 
-/// Refuses content with more than `most` bytes.
+/// Rejects content with more than `most` bytes.
 fn check_length(length: u64, most: u64, path: &Path) -> Result<(), FileError> {
     if length > most {
         return Err(FileError::TooLarge {

@@ -1,4 +1,4 @@
-//! Files in folders, in the order in which people count.
+//! Files in folders, sorted by name, with numbers in names in numerical order.
 
 use std::fs;
 use std::io::Read;
@@ -11,9 +11,9 @@ use crate::formats::text::TEXT;
 use crate::formats::{ending_of, importer_of, is_known};
 use crate::source::kind_of;
 
-/// Largest number of files examined.
+/// Maximum number of listed files.
 pub(crate) const MOST_FILES: usize = 20_000;
-/// Deepest nesting of folders.
+/// Maximum nesting depth of folders.
 pub(crate) const DEEPEST: usize = 16;
 
 /// A file to be read.
@@ -40,8 +40,8 @@ pub fn sources_folder(sources: &[PathBuf]) -> &Path {
     }
 }
 
-/// Lists the requested files, and the files with known endings in folders, sorted by name. Pipes,
-/// sockets and devices are skipped with a message.
+/// Lists the requested files, and the files with supported endings in folders, sorted by name.
+/// Pipes, sockets and devices in folders are skipped with a message.
 pub(super) fn list_files(
     paths: &[PathBuf],
     skipped: &mut Vec<String>,
@@ -75,12 +75,12 @@ struct Listing<'p> {
     root: &'p Path,
     /// All files so far, also from other requested paths.
     files: Vec<ListedFile>,
-    /// Messages about entries that are no files.
+    /// Messages about skipped pipes, sockets and devices.
     skipped: &'p mut Vec<String>,
 }
 
 impl Listing<'_> {
-    /// Adds the files in a folder; up to `deeper` folders may be nested in it.
+    /// Adds the files in a folder and in its subfolders, which may be nested up to `deeper` levels.
     fn add_folder(&mut self, folder: &Path, deeper: usize) -> Result<(), FileError> {
         let failed = |error: std::io::Error| FileError::reading(folder, &error);
         let mut entries = fs::read_dir(folder)
@@ -135,7 +135,7 @@ impl Listing<'_> {
 
 /// Whether a file with a widely used ending (`.log`, `.bin`) has no supported format.
 fn is_other_log(path: &Path) -> bool {
-    /// Formats with these endings are recognised by their first bytes.
+    /// Number of leading bytes by which formats with these endings are recognised.
     const FIRST: usize = 64;
     if !["bin", "log"].contains(&ending_of(path).as_str()) || !path.is_file() {
         return false;
@@ -151,7 +151,7 @@ type TextAndNumber = (String, u64);
 
 /// Returns a sort key that puts "c2" before "c10".
 fn natural_key(name: &str) -> Vec<TextAndNumber> {
-    /// Longest number that fits in 64 bits \[digits\].
+    /// Maximum number of digits read as one number, so that it fits in 64 bits.
     const LONGEST: usize = 18;
     let mut parts = Vec::new();
     let mut text = String::new();

@@ -9,8 +9,8 @@ struct Foreign {
     /// Possible first bytes.
     signatures: &'static [&'static [u8]],
     name: &'static str,
-    /// How to obtain the numbers; `{file}` and `{stem}` represent the file name with and without
-    /// its extension.
+    /// How to export the data; `{file}` and `{stem}` represent the file name with and without its
+    /// extension.
     remedy: &'static str,
 }
 
@@ -92,7 +92,7 @@ const FOREIGN: [Foreign; 13] = [
     },
 ];
 
-/// Recognises unsupported formats.
+/// Importer that recognises unsupported formats and rejects them with export instructions.
 pub(super) const FOREIGN_FORMAT: Importer = Importer {
     name: "a file of a format that is not read",
     endings: &["parquet", "feather", "pkl"],

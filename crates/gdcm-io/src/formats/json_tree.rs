@@ -18,7 +18,7 @@ pub(super) enum Tree {
     Number(f64),
     Text(String),
     List(Vec<Tree>),
-    /// Sorted by name; among members with the same name only the last.
+    /// Sorted by name; of members with the same name, only the last is kept.
     Object(Vec<(String, Tree)>),
 }
 
@@ -26,7 +26,7 @@ impl Tree {
     /// Reads a JSON text.
     ///
     /// # Errors
-    /// The text is not JSON, or the budget ends the reading.
+    /// The text is not JSON, or the budget is exhausted.
     pub(super) fn read(text: &[u8], budget: &ReadingBudget<'_>) -> Result<Self, VariableFault> {
         let refused = RefCell::new(None);
         let mut json = serde_json::Deserializer::from_slice(text);
@@ -49,14 +49,14 @@ impl Tree {
 #[derive(Clone, Copy)]
 struct TreeReader<'r> {
     budget: &'r ReadingBudget<'r>,
-    /// Set if the budget ended the reading.
+    /// Fault of the budget, if it ended the reading.
     refused: &'r RefCell<Option<VariableFault>>,
 }
 
 impl TreeReader<'_> {
-    /// Takes memory for a value \[bytes\].
+    /// Takes the memory of a value from the budget \[bytes\].
     fn take<E: Error>(self, size: usize) -> Result<(), E> {
-        // Lists grow by doubling; a step of work is a value.
+        // Lists grow by doubling, hence the factor 2; each value is one step of work.
         self.budget.take(1, 2 * size as u64, "").map_err(|fault| {
             *self.refused.borrow_mut() = Some(fault);
             E::custom("refused")

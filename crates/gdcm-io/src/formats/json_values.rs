@@ -16,11 +16,11 @@ use crate::location::Outline;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::source::{GZIP_MAGIC, Source, text_of, without_mark};
 
-/// Overhead for shape, name and number \[bytes\].
+/// Overhead of shape, name and number \[bytes\].
 const OVERHEAD: u64 = 3 * 64;
-/// Memory for a value with its shape and a number, or for null \[bytes\].
+/// Memory of a value with its shape and a number, or of null \[bytes\].
 const VALUE: u64 = size_of::<Value>() as u64 + OVERHEAD;
-/// Largest number of array dimensions.
+/// Maximum number of array dimensions.
 const MOST_DIMENSIONS: usize = 3;
 
 /// JSON, and any gzip-packed file.
@@ -48,7 +48,7 @@ fn read_json(bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Co
         .map_err(|fault| FileError::variables(path, fault))?;
     match format.as_deref() {
         Some("\"gdcm-dataset\"") => {
-            // The packed text is unpacked once more here.
+            // `Source::of` decompresses the file a second time.
             let source = Source::of(bytes, path, budget)?;
             let loaded = dataset_from(&source, DatasetOrigin::File(path.to_owned()), budget)?;
             let dataset = loaded.dataset.as_ref().clone();
@@ -64,7 +64,7 @@ fn read_json(bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Co
     Contents::row_major(read_variables(text, budget), path)
 }
 
-/// Reads an unpacked text that does not begin like JSON, by its name without ".gz".
+/// Reads decompressed content that does not begin like JSON as a file whose name lacks ".gz".
 fn read_unpacked(
     text: &[u8],
     path: &Path,
@@ -170,7 +170,7 @@ fn number_array(list: &[Tree], budget: &ReadingBudget<'_>) -> Result<Option<Arra
     }))
 }
 
-/// Returns the length along each dimension: the list, its first entry, and so on.
+/// Returns the length of each dimension: of the list, of its first entry, and so on.
 fn shape_of(list: &[Tree]) -> Vec<usize> {
     let mut shape = vec![list.len()];
     let mut inner = list;
@@ -181,7 +181,7 @@ fn shape_of(list: &[Tree]) -> Vec<usize> {
     shape
 }
 
-/// Appends the numbers in a rectangular list; returns whether the list has the shape.
+/// Appends the numbers in nested lists; returns whether the lists have this shape.
 fn append_numbers(
     list: &[Tree],
     shape: &[usize],

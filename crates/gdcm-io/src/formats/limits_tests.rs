@@ -1,4 +1,4 @@
-//! Limits in `docs/limits.md` against those of the program.
+//! Compares the limits in `docs/limits.md` with those of the program.
 
 use gdcm_model::dataset::limits;
 use gdcm_model::dataset::limits::{
@@ -98,7 +98,7 @@ fn setting_row(setting: &Setting) -> Option<String> {
     ))
 }
 
-/// Returns the leading lines of a table.
+/// Returns the table rows at the beginning of `part`.
 fn table_rows(part: &str) -> &str {
     let mut end = 0;
     for line in part.split_inclusive('\n') {

@@ -1,9 +1,9 @@
 //! Number files from other programs: the format interface, the list of formats, and reading.
 //!
 //! ```text
-//! bytes -> format, by the first bytes                   (the name ending decides only between texts)
-//!       -> variables, a text, or the files in an archive    (the formats, which know nothing of models and records)
-//!       -> models or records                                (recognise)
+//! bytes -> format, by the first bytes         (the ending decides only between text formats)
+//!       -> variables, text or archived files  (the formats, independent of models and records)
+//!       -> models or records                  (recognise)
 //! ```
 //!
 //! A new format is an `Importer` in a file of its own in this folder, and an entry in `FORMATS`.
@@ -54,7 +54,7 @@ pub use folders::sources_folder;
 #[cfg(test)]
 pub(crate) use folders::{DEEPEST, MOST_FILES};
 
-/// Largest file \[bytes\].
+/// Maximum file size \[bytes\].
 pub(crate) const LARGEST_FILE: u64 = 512 << 20;
 
 /// A file format.
@@ -94,22 +94,22 @@ pub(crate) enum Contents {
         variables: Vec<Variable>,
         /// Remarks on non-obvious readings.
         notes: Vec<String>,
-        /// Whether the first index of an array of more than two dimensions counts its matrices, as
-        /// in NumPy.
+        /// Whether the first index of an array of more than two dimensions selects a matrix, as in
+        /// NumPy.
         pages_first: bool,
     },
     /// Lines of numbers, whose meaning depends on the kind of data sought.
     Text(String),
-    /// A dataset of this program, with remarks on unknown keys.
+    /// A dataset in this program's JSON format, with remarks on unknown keys.
     Dataset(Box<Dataset>, Vec<String>),
-    /// Models of this program, with remarks on unknown keys.
+    /// Models in this program's JSON format, with remarks on unknown keys.
     Models(Vec<FoundModel>, Vec<String>),
     /// Aircraft logs: records whose columns may have different clocks.
     Logs(Vec<Columns>),
     Archive {
-        /// Its arrays, which belong together.
+        /// Arrays in the archive, which belong together.
         variables: Vec<Variable>,
-        /// Its other files by path, each with its contents.
+        /// Other files in the archive by path, each with its contents.
         files: Vec<(String, Result<Contents, FileError>)>,
         /// Descriptions of files with an unknown format.
         ignored: Vec<String>,
@@ -153,8 +153,8 @@ pub(crate) fn importer_of(bytes: &[u8], path: &Path) -> &'static Importer {
         .unwrap_or(&TEXT)
 }
 
-/// Whether a file name has the ending of a known format; studies are no sources of models or
-/// records.
+/// Whether a file name has the ending of a known format, except that of studies, which hold neither
+/// models nor records.
 pub(crate) fn is_known(path: &Path) -> bool {
     if path.to_string_lossy().ends_with(".gdcm-study.json") {
         return false;
@@ -179,7 +179,7 @@ pub trait FolderProgress {
     fn reading(&self, number: usize, count: usize, name: &str);
     /// Called when memory is taken for the contents of a file \[bytes\].
     fn taken(&self, _bytes: u64) {}
-    /// Returns the flag that ends the reading once it is set.
+    /// Returns the flag that ends the reading when set.
     fn stop(&self) -> Arc<AtomicBool> {
         Arc::default()
     }
@@ -275,7 +275,7 @@ mod tests {
         assert_eq!(format(b" {\"A\": 1}", "a.txt"), JSON.name);
         assert_eq!(format(b"A = [1 2];", "a.m"), LITERALS.name);
         assert_eq!(format(b"1,2\n3,4\n", "a.csv"), TEXT.name);
-        // The ending does not affect how the same text is read.
+        // These texts are recognised by their content, whatever the ending.
         assert_eq!(
             format(b"% a model\nA = [1 2\n 3 4];", "a.txt"),
             LITERALS.name

@@ -1,11 +1,11 @@
-//! Flight record columns as a format reads them, before their file is known.
+//! Flight record columns as a format reads them, without the name and the hash of their file.
 
 use gdcm_sysid::records::{ModeSpan, RecordColumn, RecordSource, RecordTable};
 
-/// Largest number of records in a file.
+/// Maximum number of records in a file.
 pub(crate) const MOST_RECORDS: usize = 1000;
 
-/// Columns that belong together, before their file is known.
+/// Columns of one record, without the name and the hash of their file.
 pub(crate) struct Columns {
     /// Place in the file ("rec(2)"); empty for the whole file.
     pub(crate) variable: String,

@@ -67,14 +67,14 @@ pub(crate) struct CompressedColumns {
     pub(crate) rows: Vec<usize>,
     /// For each column the index at which its numbers begin, then the end of the last column.
     pub(crate) starts: Vec<usize>,
-    /// Real parts; there may be room for further numbers after the last.
+    /// Real parts; there may be unused entries at the end.
     pub(crate) re: Vec<f64>,
     /// Imaginary parts if the numbers are complex.
     pub(crate) im: Option<Vec<f64>>,
 }
 
 impl CompressedColumns {
-    /// Returns the entries; `None` if the columns do not fit the numbers.
+    /// Returns the entries; `None` if column starts, rows and numbers are inconsistent.
     pub(crate) fn into_entries(self) -> Option<SparseEntries> {
         let stored = *self.starts.last()?;
         let [_, width] = self.shape;

@@ -6,7 +6,7 @@ use crate::formats::variables::ElementKind;
 /// running fastest.
 pub(crate) struct Places {
     shape: Vec<usize>,
-    /// Distance in the file between neighbours along each dimension.
+    /// Distance in the file between neighbours along each dimension \[elements\].
     strides: Vec<usize>,
     /// Index of the next element.
     index: Vec<usize>,
@@ -52,8 +52,8 @@ impl Places {
 
 /// Counts the elements; `None` on overflow.
 ///
-/// The sides beside a zero are multiplied all the same: an empty array whose other sides overflow
-/// is rejected too.
+/// The nonzero dimensions are multiplied even if another is zero: an empty array is rejected too if
+/// their product overflows.
 pub(crate) fn count(shape: &[usize]) -> Option<usize> {
     let mut product = 1_usize;
     for &side in shape {

@@ -17,7 +17,7 @@ pub enum ElementKind {
 /// Numbers in an array, the first index running fastest (column by column).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Array {
-    /// Side lengths, at least two (a scalar is 1 x 1).
+    /// Length of each dimension; there are at least two dimensions (a scalar is 1 x 1).
     pub shape: Vec<usize>,
     pub kind: ElementKind,
     /// The numbers, or their real parts. NaN and infinities are kept: code that uses the numbers
@@ -80,7 +80,7 @@ pub enum Value {
 /// Texts: the rows of a character array, or an array of strings.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextArray {
-    /// Side lengths.
+    /// Length of each dimension.
     pub shape: Vec<usize>,
     /// The texts, the first index running fastest. Rows of characters keep their padding blanks.
     pub texts: Vec<String>,
@@ -89,7 +89,7 @@ pub struct TextArray {
 /// Values of any kind, the first index running fastest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CellArray {
-    /// Side lengths.
+    /// Length of each dimension.
     pub shape: Vec<usize>,
     pub values: Vec<Value>,
 }
@@ -97,7 +97,7 @@ pub struct CellArray {
 /// Records with the same fields, the first index running fastest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StructArray {
-    /// Side lengths.
+    /// Length of each dimension.
     pub shape: Vec<usize>,
     /// The fields in order: name, and a value for each record.
     pub fields: Vec<(String, Vec<Value>)>,
@@ -230,7 +230,7 @@ fn text_memory(text: &str) -> usize {
     size_of::<String>() + text.len()
 }
 
-/// Formats side lengths: "3 x 4".
+/// Formats dimensions: "3 x 4".
 fn dimensions(shape: &[usize]) -> String {
     let sides: Vec<String> = shape.iter().map(usize::to_string).collect();
     sides.join(" x ")

@@ -13,7 +13,7 @@ use crate::formats::variables::Variable;
 use crate::formats::{Contents, Importer, importer_of, is_known};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Largest ratio of unpacked to packed bytes in deflate (RFC 1951).
+/// Maximum ratio of unpacked to packed bytes in deflate (RFC 1951).
 const LARGEST_RATIO: u64 = 1032;
 
 /// Number of bytes unpacked between two queries to the budget.

@@ -7,8 +7,8 @@
 //! I, P, S, G, H, E            frames: intra, predicted, slow, GPS, GPS home, event
 //! ```
 //!
-//! A frame counts if another frame begins where it ends. After a damaged frame, all frames
-//! predicted from it are left out up to the next intra frame, which leaves a gap.
+//! A frame is accepted if another frame begins where it ends. After a damaged frame, all frames
+//! predicted from it are omitted up to the next intra frame, which leaves a gap.
 
 use std::collections::BTreeMap;
 
@@ -25,9 +25,9 @@ use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 const MARK: &[u8] = b"H Product:Blackbox";
-/// A larger time step is damage \[µs\].
+/// Longest plausible time step between frames \[µs\]; a longer step marks a damaged log.
 const LONGEST_STEP_US: i64 = 10_000_000;
-/// A flight with fewer frames is ignored.
+/// Minimum number of frames; a flight with fewer is ignored.
 const FEWEST_FRAMES: usize = 50;
 /// 1.0 as an IEEE 754 bit pattern, in the notation of the header.
 const ONE: &str = "0x3f800000";
@@ -144,7 +144,7 @@ impl Heading {
         }
     }
 
-    /// Returns the value for a key; empty if it is missing.
+    /// Returns the value of a key; empty if the key is missing.
     fn value(&self, key: &str) -> &str {
         self.lines.get(key).map_or("", String::as_str)
     }
@@ -175,14 +175,14 @@ impl Heading {
             .filter(|cell| !cell.is_empty())
     }
 
-    /// Returns the numbers in a line such as "Field I signed"; 255 for anything else.
+    /// Returns the numbers in a line such as "Field I signed"; 255 for a cell that is not a number.
     fn field_numbers(&self, kind: char, property: &str) -> Vec<u8> {
         self.field_cells(kind, property)
             .map(|cell| cell.parse().unwrap_or(u8::MAX))
             .collect()
     }
 
-    /// Returns the fields for a frame letter, if all are known.
+    /// Returns the fields of the frames with a letter, if all of them can be decoded.
     fn frame(&self, kind: u8) -> Option<&FrameFields> {
         let fields = self.frames.get(&kind)?;
         if fields.is_whole() {
@@ -220,7 +220,7 @@ enum Frame {
     End,
 }
 
-/// Parses an event, whose number decides its length.
+/// Parses an event, whose type determines its length.
 fn event(bytes: &mut PackedBytes<'_>) -> Option<Frame> {
     match bytes.byte()? {
         // Beep, disarming, inertial unit failure.
@@ -260,7 +260,7 @@ struct Flight {
     heading: Heading,
     /// Index of the field "time".
     time: Option<usize>,
-    /// Numbers in the main frames, by field.
+    /// Values in the main frames, by field.
     values: Vec<Vec<f64>>,
     modes: Vec<ModeSample>,
     damaged: usize,
@@ -293,7 +293,7 @@ impl Flight {
     /// Creates a flight without frames.
     ///
     /// # Errors
-    /// Another data version, or unknown encodings in intra frames.
+    /// The data version or an encoding in the intra frames is not supported.
     fn begin(heading: Heading, name: &str) -> Result<Self, VariableFault> {
         let version = heading.value("Data version");
         match heading.frame(b'I') {
@@ -366,7 +366,8 @@ impl Flight {
         Ok(())
     }
 
-    /// Whether a main frame follows its predecessor in time.
+    /// Returns whether a main frame is no earlier than its predecessor and at most
+    /// `LONGEST_STEP_US` later; true for frames without a time or a predecessor.
     fn continues(&self, frame: &[i64], before: &Predecessors) -> bool {
         if let Some(time) = self.time
             && let Some(last) = &before.last
@@ -376,7 +377,7 @@ impl Flight {
         true
     }
 
-    /// Takes the mode flags in a slow frame after a main frame.
+    /// Stores the mode flags of a slow frame with the time of the preceding main frame.
     fn take_modes(
         &mut self,
         slow: &[i64],
@@ -449,7 +450,7 @@ impl Flight {
     }
 }
 
-/// Adds up the controller terms for an axis, if there are any.
+/// Adds up the controller terms of an axis, if there are any.
 fn controller_sum(
     columns: &[RecordColumn],
     axis: usize,
@@ -488,8 +489,7 @@ fn mode_name(flags: f64) -> &'static str {
 mod tests {
     use super::*;
 
-    /// A flight of `frames` frames, every tenth of them an intra frame; each frame adds a
-    /// millisecond.
+    /// A flight of `frames` frames at intervals of one millisecond; every tenth is an intra frame.
     fn flight(frames: u32) -> Vec<u8> {
         let mut bytes = b"H Product:Blackbox flight data recorder by Nicholas Sherlock\nH Data version:2\n\
             H Field I name:loopIteration,time,axisP[0],axisI[0],gyroADC[0]\nH Field I signed:0,0,1,1,1\n\
@@ -507,8 +507,8 @@ mod tests {
             bytes
         };
         let signed = |value: i32| packed((value << 1 ^ value >> 31).cast_unsigned());
-        // The roll rate is 0, 1, 2, …; the predicted mean of the two frames before is 1 or 2
-        // behind.
+        // The roll rate is 0, 1, 2, …; the mean of the two preceding frames, which predicts it, is
+        // lower by 1 or 2.
         for frame in 0..frames {
             if frame % 10 == 0 {
                 bytes.push(b'I');

@@ -4,7 +4,7 @@
 //! (<https://betaflight.com/docs/development/Blackbox-Internals>). The file holds the difference
 //! from the prediction.
 
-/// Largest number of fields in a frame.
+/// Maximum number of fields in a frame.
 const MOST_FIELDS: usize = 256;
 
 /// Fields in frames with the same letter.
@@ -16,7 +16,7 @@ pub(super) struct FrameFields {
     pub(super) encodings: Vec<u8>,
 }
 
-/// Header numbers used by the predictors.
+/// Header values used by the predictors.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct HeaderNumbers {
     pub(super) least_throttle: i64,
@@ -51,7 +51,7 @@ impl<'b> PackedBytes<'b> {
         Some(byte)
     }
 
-    /// Reads a variable-length number: seven bits a byte, lowest first; the eighth bit announces
+    /// Reads a variable-length integer: seven bits a byte, lowest first; the eighth bit announces
     /// another byte.
     pub(super) fn unsigned(&mut self) -> Option<u32> {
         let mut value = 0_u32;
@@ -65,13 +65,13 @@ impl<'b> PackedBytes<'b> {
         None
     }
 
-    /// Reads a variable-length number with the sign in the lowest bit.
+    /// Reads a variable-length integer with the sign in the lowest bit.
     pub(super) fn signed(&mut self) -> Option<i32> {
         let value = self.unsigned()?;
         Some((value >> 1).cast_signed() ^ -((value & 1).cast_signed()))
     }
 
-    /// Reads a signed 14-bit number, which is stored with the opposite sign.
+    /// Reads a signed 14-bit integer, which is stored with the opposite sign.
     fn negative_14(&mut self) -> Option<i32> {
         Some(-extended(self.unsigned()? & 0x3fff, 14))
     }
@@ -147,7 +147,7 @@ impl FrameFields {
             && self.encodings.iter().all(|encoding| is_known(*encoding))
     }
 
-    /// Reads the stored differences for a frame; returns nothing if they are damaged.
+    /// Reads the stored differences of a frame; returns nothing if they are damaged.
     pub(super) fn differences(&self, bytes: &mut PackedBytes<'_>) -> Option<Vec<i64>> {
         let count = self.names.len();
         let mut values: Vec<i64> = Vec::with_capacity(count);
@@ -189,7 +189,7 @@ impl FrameFields {
         Some(())
     }
 
-    /// Computes the numbers in a frame from its differences and the two frames before.
+    /// Computes the field values of a frame from its differences and the two preceding frames.
     pub(super) fn values(
         &self,
         mut values: Vec<i64>,
@@ -227,12 +227,12 @@ impl FrameFields {
     }
 }
 
-/// Whether this reader knows an encoding.
+/// Whether an encoding is supported.
 fn is_known(encoding: u8) -> bool {
     matches!(encoding, 0 | 1 | 3 | 6 | 7 | 8 | 9)
 }
 
-/// Returns a field, if there is such a frame.
+/// Returns the value of a field; `None` if there is no frame or no such field.
 fn field_of(frame: &Option<Vec<i64>>, field: usize) -> Option<i64> {
     frame.as_ref()?.get(field).copied()
 }

@@ -21,9 +21,9 @@ use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 const MARK: [u8; 2] = [0xa3, 0x95];
-/// Length of mark and type \[bytes\].
+/// Length of a message header, two mark bytes and the type \[bytes\].
 const HEADER: usize = 3;
-/// Type and length \[bytes\] for messages that describe other messages.
+/// Type and length \[bytes\] of the FMT messages, which describe other messages.
 const FORMAT: u8 = 128;
 const FORMAT_LENGTH: usize = 89;
 
@@ -82,7 +82,7 @@ struct Message<'b> {
 }
 
 impl Message<'_> {
-    /// Returns the number in a field; `None` for other fields.
+    /// Returns the value of a numeric field; `None` for other fields.
     fn number(self, layout: &MessageLayout, index: usize) -> Option<f64> {
         let field = layout.fields.get(index)?;
         match field.kind {
@@ -124,8 +124,7 @@ impl<'b, 'm> Messages<'b, 'm> {
         }
     }
 
-    /// Returns the next message with a known length, which may describe the lengths of later
-    /// messages.
+    /// Returns the next message of a type whose length is in `lengths`; skips any other bytes.
     fn next(&mut self, lengths: &Lengths) -> Result<Option<Message<'b>>, VariableFault> {
         while let Some([first, second, kind]) = array::<HEADER>(self.bytes, self.at) {
             self.budget.work(1, "")?;
@@ -163,7 +162,7 @@ impl Descriptions {
         }
     }
 
-    /// Takes the description of other messages.
+    /// Stores the content of a message that describes others; ignores any other message.
     fn take(&mut self, message: Message<'_>) {
         if message.kind == FORMAT {
             self.take_format(message.content);
@@ -202,7 +201,7 @@ impl Descriptions {
         }
     }
 
-    /// Takes layout and length for a message type.
+    /// Stores the layout and the length of a message type.
     fn take_format(&mut self, content: &[u8]) {
         let Some([kind, length]) = array::<2>(content, 0) else {
             return;

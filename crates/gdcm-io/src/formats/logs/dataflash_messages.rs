@@ -1,4 +1,4 @@
-//! Messages in DataFlash logs, in binary and in text form: their layouts, and their samples by topic.
+//! Messages in binary and text DataFlash logs: their layouts, and their samples by topic.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -12,7 +12,7 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Messages that describe the log and hold no samples.
 const DESCRIPTIONS: [&str; 5] = ["FMT", "FMTU", "UNIT", "MULT", "PARM"];
-/// Unit letter of the field that numbers message instances.
+/// Unit letter of the field that holds the message instance.
 const INSTANCE: char = '#';
 
 /// Kind of a message field, given by its letter.
@@ -136,7 +136,7 @@ pub(super) struct Layouts {
 }
 
 impl Layouts {
-    /// Sets the unit and multiplier letters for a message type.
+    /// Sets the unit and multiplier letters of a message type.
     pub(super) fn set_units(&mut self, kind: u8, units: &str, multipliers: &str) {
         if let Some(layout) = self.by_type.get_mut(&kind) {
             layout.units = units.chars().collect();
@@ -155,7 +155,7 @@ impl Layouts {
         }
     }
 
-    /// Returns the multiplier of a field; 1 unless it is known, finite and not 0.
+    /// Returns the multiplier of a field; 1 if it is missing, not finite, or 0.
     fn multiplier(&self, layout: &MessageLayout, field: usize) -> f64 {
         let letter = layout.multipliers.get(field);
         match letter.and_then(|letter| self.multipliers.get(letter)) {
@@ -165,7 +165,7 @@ impl Layouts {
     }
 }
 
-/// The fields that are used from a message.
+/// Fields of a message that are used.
 pub(super) struct SampleFields<'l> {
     pub(super) layout: &'l MessageLayout,
     stamp: Stamp,
@@ -182,7 +182,7 @@ struct Stamp {
     unit_s: f64,
 }
 
-/// A number in a message.
+/// A numeric field of a message.
 struct SampleNumber {
     field: usize,
     multiplier: f64,
@@ -190,8 +190,8 @@ struct SampleNumber {
 }
 
 impl<'l> SampleFields<'l> {
-    /// Finds time stamp, instance and numbers in a layout; returns nothing without a stamp or
-    /// numbers.
+    /// Finds the time stamp, the instance and the numeric fields of a layout; returns nothing
+    /// without a stamp or numeric fields.
     pub(super) fn find(layout: &'l MessageLayout, layouts: &Layouts) -> Option<Self> {
         if DESCRIPTIONS.contains(&layout.name.as_str()) {
             return None;
@@ -219,7 +219,7 @@ impl<'l> SampleFields<'l> {
             if index == stamp.field || Some(index) == instance {
                 continue;
             }
-            // Format letters for hundredths repeat the factor in the multiplier.
+            // Format letters for hundredths include the factor that the multiplier repeats.
             let multiplier = if factor == 1.0 {
                 layouts.multiplier(layout, index)
             } else {
@@ -250,7 +250,7 @@ pub(super) struct Topics {
 }
 
 impl Topics {
-    /// Takes a message; `value` returns the field at an index.
+    /// Adds the sample in a message; `value` returns its field at an index.
     pub(super) fn take(
         &mut self,
         fields: &SampleFields<'_>,

@@ -1,6 +1,6 @@
 //! DataFlash logs from ArduPilot as text: a line for each message, `NAME, value, value`.
 //!
-//! FMT, FMTU, UNIT and MULT lines describe the messages. The values are already multiplied.
+//! FMT, FMTU, UNIT and MULT lines describe the messages. The values include the multipliers.
 
 use std::collections::BTreeMap;
 
@@ -89,7 +89,7 @@ fn read_layouts(text: &str) -> Layouts {
                     layouts.units.insert(letter, (*label).to_owned());
                 }
             }
-            // Values in text logs are already multiplied: MULT is not needed.
+            // Values in text logs include the multipliers: MULT is not needed.
             _ => {}
         }
     }

@@ -22,11 +22,11 @@ const fn documented(
     }
 }
 
-/// Documented columns in the logs from a system. A channel is its first column here that is present
-/// and varies.
+/// Documented columns in the logs of a system. A channel is read from the first of its columns in
+/// this list that is present and varies.
 pub(super) struct Meanings {
     columns: &'static [DocumentedColumn],
-    /// Remark on the signs.
+    /// Remark on the sign conventions.
     signs: &'static str,
 }
 

@@ -1,8 +1,8 @@
 //! Aircraft logs: topics, each with its own clock.
 //!
 //! ```text
-//! bytes -> messages -> topics: stamps, and a column for each field      (ulog, dataflash, blackbox)
-//!       -> documented units and channels                               (meanings)
+//! bytes -> messages -> topics: stamps, and a column for each field  (ulog, dataflash, blackbox)
+//!       -> documented units and channels                            (meanings)
 //! ```
 
 mod blackbox;

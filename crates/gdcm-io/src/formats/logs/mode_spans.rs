@@ -1,13 +1,13 @@
-//! Modes over time in a logging system.
+//! Modes of a logging system over time.
 
 use gdcm_sysid::records::ModeSpan;
 
-/// Largest number of spans kept for a log.
+/// Maximum number of spans kept for a log.
 const MOST_SPANS: usize = 1000;
-/// Largest number of spans listed in a note.
+/// Maximum number of spans listed in a note.
 const SHOWN: usize = 8;
 
-/// Returns the time spans in which a state keeps a value that has a name.
+/// Returns the time spans in which a state has a constant, named value.
 pub(super) fn mode_spans(
     time_s: &[f64],
     values: impl IntoIterator<Item = f64>,
@@ -16,7 +16,7 @@ pub(super) fn mode_spans(
     let mut spans: Vec<ModeSpan> = Vec::new();
     let mut last: Option<f64> = None;
     for (&time, value) in time_s.iter().zip(values) {
-        // A state lasts until the next state is logged, also while it repeats.
+        // A state lasts until the time of the next sample, whether or not that sample repeats it.
         if let Some(open) = spans.last_mut()
             && last.is_some_and(|last| name(last).is_some())
         {

@@ -7,7 +7,7 @@ use gdcm_sysid::records::record_table::TopicClock;
 
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// A topic with fewer samples is ignored.
+/// Minimum number of samples; a topic with fewer is ignored.
 const FEWEST_SAMPLES: usize = 3;
 
 /// A topic with its samples.

@@ -3,12 +3,12 @@
 //! ```text
 //! header: 16 bytes
 //! messages: length (16 bits), type (a letter), content
-//!   B  flags, offsets of appended data       F  topic layout           A  topic and instance for a number
-//!   D  number, data for its topic            O  dropout [ms]           others: parameters, texts, marks
+//!   B  flags, offsets of appended data   F  topic layout    A  topic, instance and message id
+//!   D  message id, data of its topic     O  dropout [ms]    others: parameters, texts, marks
 //! ```
 //!
-//! Stamps are microseconds since the autopilot was started. A log cut off by a crash is read up to
-//! its end.
+//! Stamps are microseconds since the autopilot was started. A log truncated by a crash is read up
+//! to its last complete message.
 
 use std::collections::BTreeMap;
 
@@ -29,7 +29,7 @@ const MAGIC: &[u8] = b"ULog\x01\x12\x35";
 const HEADER: usize = 16;
 /// Length of a message header \[bytes\].
 const MESSAGE_HEADER: usize = 3;
-/// Flag for appended data, the only flag that a reader must know.
+/// Flag of appended data; a log with any other incompatible flag is rejected.
 const APPENDED: u8 = 1;
 /// `ARMING_STATE_ARMED` in `VehicleStatus.msg`, PX4 1.14 to 1.16.
 const ARMED: f64 = 2.0;
@@ -46,24 +46,24 @@ pub(crate) const ULOG: Importer = Importer {
     },
 };
 
-/// A subscribed topic and the positions in its messages.
+/// A subscribed topic and the field positions in its messages.
 struct Subscription {
     samples: TopicSamples,
     stamp: Place,
     /// Position of each field.
     places: Vec<Place>,
-    /// Shortest possible data in a message \[bytes\].
+    /// Minimum data length of a message \[bytes\].
     least: usize,
 }
 
-/// Messages that have been read.
+/// Content of the messages read so far.
 #[derive(Default)]
 struct Messages<'b> {
     formats: Formats<'b>,
     subscriptions: BTreeMap<u16, Subscription>,
     dropouts: usize,
     lost_ms: u64,
-    /// Number of data messages without a topic, or too short.
+    /// Number of data messages that have no topic or are too short.
     unread: usize,
 }
 
@@ -104,7 +104,7 @@ fn read_ulog(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, Variab
 /// Reads the offsets of appended data \[bytes\] from the flags.
 ///
 /// # Errors
-/// A flag from a later version.
+/// A flag of a later version is set.
 fn appended_offsets(flags: &[u8]) -> Result<Vec<usize>, VariableFault> {
     for (index, flag) in flags.get(8..16).unwrap_or_default().iter().enumerate() {
         let known = if index == 0 { APPENDED } else { 0 };
@@ -148,7 +148,7 @@ impl<'b> Messages<'b> {
         Ok(())
     }
 
-    /// Takes the layout for a topic; later layouts for the same topic are ignored.
+    /// Stores the layout of a topic; later layouts of the same topic are ignored.
     fn take_format(
         &mut self,
         content: &'b [u8],
@@ -184,8 +184,8 @@ impl<'b> Messages<'b> {
         Ok(())
     }
 
-    /// Registers a topic and its instance under a number; skips a layout that is damaged or lacks a
-    /// time stamp.
+    /// Registers a topic and its instance under a message id; skips a layout that is damaged or
+    /// lacks a time stamp.
     fn subscribe(
         &mut self,
         content: &'b [u8],

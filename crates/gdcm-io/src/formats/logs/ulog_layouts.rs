@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use crate::formats::strides::{NumberClass, StoredNumber};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Largest message, limited by its 16-bit length \[bytes\].
+/// Maximum message length, given by the 16-bit length field \[bytes\].
 const LARGEST: usize = 65_535;
-/// Deepest nesting of layouts.
+/// Maximum nesting depth of layouts.
 const DEEPEST: usize = 8;
 
 /// A number in the data part of a message.
@@ -84,7 +84,7 @@ impl Flattening<'_> {
         VariableFault::damaged(self.message, what, 0)
     }
 
-    /// Adds the numbers in a layout; up to `deeper` layouts may be nested from here.
+    /// Adds the numbers in a layout, in which layouts may be nested up to `deeper` levels.
     fn add_layout(&mut self, name: &str, prefix: &str, deeper: usize) -> Result<(), VariableFault> {
         if deeper == 0 {
             return Err(VariableFault::too_deep(self.message));
@@ -155,7 +155,7 @@ impl Flattening<'_> {
         Ok(())
     }
 
-    /// Adds a number, unless its field only fills space.
+    /// Adds a number, unless its field is padding.
     fn add_number(
         &mut self,
         label: String,
@@ -176,7 +176,7 @@ impl Flattening<'_> {
     }
 }
 
-/// Returns the number with a C type name, or nothing if the type is unknown.
+/// Returns the number type with a C type name, or nothing if the name is unknown.
 fn number_type(name: &str) -> Option<StoredNumber> {
     use NumberClass::{Float, Signed, Unsigned};
     let (class, size) = match name {

@@ -9,11 +9,11 @@ use crate::formats::strides;
 use crate::formats::variables::ElementKind;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Flag for logical numbers.
+/// Flag of logical arrays.
 const LOGICAL: u32 = 0x0200;
-/// Flag for complex numbers.
+/// Flag of complex arrays.
 const COMPLEX: u32 = 0x0800;
-/// Class number for unsigned 64-bit integers.
+/// Class number of unsigned 64-bit integers.
 const UINT64: u32 = 15;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,7 +36,7 @@ pub(super) struct ArrayHeader {
     pub(super) has_long_words: bool,
     pub(super) is_logical: bool,
     pub(super) is_complex: bool,
-    /// Side lengths, at least two; 1 x 1 for an opaque array.
+    /// Length of each dimension; at least two dimensions, 1 x 1 for an opaque array.
     pub(super) shape: Vec<usize>,
     /// Element count.
     pub(super) count: usize,
@@ -66,7 +66,7 @@ impl ArrayHeader {
         } else {
             read_shape(contents, budget)?
         };
-        // The product of all nonzero sides must not overflow.
+        // The product of all nonzero dimensions must not overflow.
         if strides::count(&shape).is_none() {
             budget.take(u64::MAX, 1, "")?;
         }
@@ -109,7 +109,7 @@ impl ArrayClass {
     }
 }
 
-/// Counts the elements in an array with these sides; saturates at the largest integer.
+/// Counts the elements in an array with these dimensions; saturates at the largest integer.
 pub(super) fn saturating_count(shape: &[usize]) -> usize {
     if shape.contains(&0) {
         return 0;
@@ -121,7 +121,7 @@ pub(super) fn saturating_count(shape: &[usize]) -> usize {
     count
 }
 
-/// Reads the side lengths, with ones for missing sides up to two.
+/// Reads the dimensions, with ones for missing dimensions up to two.
 fn read_shape(
     contents: &mut Cursor<'_>,
     budget: &ReadingBudget<'_>,

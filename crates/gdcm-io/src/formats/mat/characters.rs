@@ -28,7 +28,7 @@ pub(super) fn read_text(
     text_rows(&codes, shape, "", budget)
 }
 
-/// Reads the character codes of an element; the shape asks for `wanted` codes.
+/// Reads the character codes of an element; the shape requires `wanted` codes.
 fn character_codes(
     element: &Element<'_>,
     wanted: usize,
@@ -92,7 +92,7 @@ pub(crate) fn text_rows(
     Ok(TextArray { shape, texts })
 }
 
-/// Decodes character codes; a character beyond 16 bits is a single number or a UTF-16 pair.
+/// Decodes character codes; a character beyond 16 bits is a single code or a UTF-16 pair.
 fn decode_codes(codes: impl Iterator<Item = u32>) -> String {
     let mut units = Vec::new();
     for code in codes {

@@ -39,14 +39,14 @@ pub(super) struct Cursor<'b> {
     section: Section,
 }
 
-/// Origin of a section, which decides the fault if it ends too early.
+/// Origin of a section, which determines the fault if the section ends too early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Section {
-    /// The whole file: it is cut off.
+    /// The whole file; if it ends too early, the file is truncated.
     File,
-    /// An element of the file: its size is wrong.
+    /// An element of the file; if it ends too early, its size is wrong.
     Element,
-    /// Unpacked or embedded bytes: every position is reported as the start of the packed element.
+    /// Unpacked or embedded bytes; faults in them are reported at the start of the packed element.
     Unpacked,
 }
 

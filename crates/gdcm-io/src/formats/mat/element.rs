@@ -147,7 +147,7 @@ impl<'b> Element<'b> {
         }
     }
 
-    /// Returns the contents; refuses elements that are no arrays.
+    /// Returns the contents of an array; rejects other elements.
     pub(super) fn array_contents(self) -> Result<Cursor<'b>, VariableFault> {
         match self.kind {
             DataKind::Matrix => Ok(self.data),
@@ -162,7 +162,7 @@ fn known_kind(number: u32, tag: Cursor<'_>) -> Result<DataKind, VariableFault> {
         .ok_or_else(|| tag.damaged(format!("an element with the unknown data type {number}")))
 }
 
-/// An array that was read, for finding the element after it.
+/// Positions in an array that was read, to find the element after it.
 #[derive(Clone, Copy)]
 pub(super) struct ReadArray<'b> {
     /// Position before the tag.

@@ -9,11 +9,11 @@ use flate2::read::ZlibDecoder;
 use crate::formats::mat::cursor::Cursor;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Largest ratio between unpacked and packed bytes, rounded up (RFC 1951: 258 bytes from two bits).
+/// Maximum ratio of unpacked to packed bytes, rounded up (RFC 1951: 258 bytes from two bits).
 const MOST_EXPANSION: u64 = 1040;
-/// Unpacked data between two checks against the budget \[bytes\].
+/// Number of bytes unpacked between two checks against the budget.
 const CHUNK: u64 = 1 << 20;
-/// Tag before the unpacked data \[bytes\].
+/// Length of the tag before the unpacked data \[bytes\].
 const TAG_BYTES: u64 = 8;
 
 /// Unpacks an element: its tag, and the bytes announced by the tag.
@@ -70,7 +70,7 @@ impl Inflater<'_> {
         Ok(())
     }
 
-    /// Reads the length in the unpacked tag and refuses it if no packed data could reach it.
+    /// Reads the length in the unpacked tag and rejects it if the packed data cannot be that long.
     fn announced_length(&self) -> Result<u64, VariableFault> {
         let packed = self.packed;
         let mut tag = Cursor::unpacked(&self.bytes, packed.order, packed.offset);

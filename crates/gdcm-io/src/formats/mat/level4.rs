@@ -147,7 +147,8 @@ impl MatrixHeader {
     }
 
     /// Interprets stored columns as row indices, column indices, real parts and imaginary parts;
-    /// their last row gives the size of the matrix. Returns `None` if they do not fit.
+    /// their last row gives the size of the matrix. Returns `None` for other column counts and for
+    /// invalid sizes or indices.
     fn sparse_entries(&self, stored: &[f64]) -> Option<SparseEntries> {
         let columns: Vec<&[f64]> = stored.chunks_exact(self.rows.max(1)).collect();
         let (rows, columns, re, im) = match *columns.as_slice() {

@@ -15,7 +15,7 @@ use crate::formats::mat::value_path::ValuePath;
 use crate::formats::variables::Variable;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Length, including text and numbers \[bytes\].
+/// Length of the file header \[bytes\].
 const HEADER_BYTES: usize = 128;
 /// Offset of the version in the header.
 const VERSION_AT: usize = 124;

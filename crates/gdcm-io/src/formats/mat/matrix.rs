@@ -273,7 +273,7 @@ impl ArrayReader<'_> {
     }
 }
 
-/// Reads the field names, which precede the records; all take the same length in the file.
+/// Reads the field names, which precede the records; all have the same length in the file.
 pub(super) fn read_field_names(
     contents: &mut Cursor<'_>,
     budget: &ReadingBudget<'_>,

@@ -3,7 +3,7 @@
 use crate::formats::mat::element::{DataKind, Element};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Reads all numbers of an element; refuses any other count than `count`.
+/// Reads all numbers of an element, which must be `count` numbers.
 ///
 /// MATLAB stores numbers in the smallest type that holds them, so the stored type may differ from
 /// the array's type.
@@ -25,7 +25,7 @@ pub(super) fn read_numbers(
     Ok(number_type.decode_all(element.data.rest()))
 }
 
-/// Reads integers that are sizes or indices; refuses negative values.
+/// Reads integers that are sizes or indices; rejects negative values.
 pub(super) fn read_sizes(
     element: &Element<'_>,
     budget: &ReadingBudget<'_>,

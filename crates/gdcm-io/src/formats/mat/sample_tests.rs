@@ -166,11 +166,11 @@ pub(super) struct Directory<'d> {
     pub(super) version: u32,
     /// Names of properties and classes, counted from 1.
     pub(super) names: &'d [&'d str],
-    /// For each class the numbers of its package name and its own name.
+    /// Indices of the package name and the class name, for each class.
     pub(super) classes: &'d [[u32; 2]],
-    /// Properties that classes create when saving their objects: number of the name, kind, value.
+    /// Properties that classes create when saving their objects: index of the name, kind, value.
     pub(super) made: &'d [&'d [[u32; 3]]],
-    /// For each object the numbers of its class, its created and its plain properties.
+    /// Class number and indices of the created and the plain properties, for each object.
     pub(super) objects: &'d [[u32; 3]],
     /// Properties of other objects.
     pub(super) plain: &'d [&'d [[u32; 3]]],

@@ -3,7 +3,7 @@
 use crate::formats::mat::value_path::ValuePath;
 use crate::formats::variables::Value;
 
-/// Returns the value for a class that this program does not read.
+/// Returns the unreadable value for an object of an unsupported class.
 pub(super) fn unread_class(class: &str, path: &ValuePath<'_>) -> Value {
     unreadable(class, "values of this class are not read", &path.text())
 }

@@ -2,7 +2,7 @@
 
 use crate::reading_budget::VariableFault;
 
-/// Deepest nesting of values.
+/// Maximum nesting depth of values.
 const DEEPEST: usize = 64;
 
 /// Path from a variable to a value inside it, a linked list from the value outwards.
@@ -34,7 +34,7 @@ impl<'p> ValuePath<'p> {
         }
     }
 
-    /// Appends a step; refuses paths that are too deep.
+    /// Appends a step; rejects paths beyond the maximum depth.
     pub(super) fn step(&'p self, step: Step<'p>) -> Result<ValuePath<'p>, VariableFault> {
         if self.depth >= DEEPEST {
             return Err(VariableFault::too_deep(&self.text()));

@@ -17,7 +17,7 @@ use crate::reading_budget::VariableFault;
 const HEADER_TEXT: &str = "MATLAB 5.0 MAT-file, written by gdcm";
 /// Length to which the header text is padded \[bytes\].
 const HEADER_TEXT_BYTES: usize = 116;
-/// Largest variable \[bytes\].
+/// Maximum size of a variable \[bytes\].
 const MOST_BYTES: u64 = u32::MAX as u64;
 
 /// Writes a file with these variables.
@@ -92,7 +92,7 @@ fn pack(plain: Vec<u8>) -> Vec<u8> {
 /// Appends an element, padded to eight bytes. Up to four bytes go into the tag itself, which MATLAB
 /// requires for some names.
 fn append_element(bytes: &mut Vec<u8>, kind: DataKind, data: &[u8]) {
-    // A variable whose length does not fit is refused; its elements are shorter.
+    // A variable whose length exceeds 32 bits is rejected; its elements are shorter.
     let length = data.len() as u32;
     if (1..=4).contains(&length) && kind != DataKind::Packed {
         bytes.extend((length << 16 | kind as u32).to_le_bytes());
@@ -120,11 +120,11 @@ enum Class {
     I64 = 14,
 }
 
-/// Flag for complex numbers.
+/// Flag of complex arrays.
 const COMPLEX: u32 = 0x0800;
-/// Flag for logical numbers.
+/// Flag of logical arrays.
 const LOGICAL: u32 = 0x0200;
-/// Lengths of field names in MATLAB, including the zero at the end.
+/// Lengths to which MATLAB pads field names, including the terminating zero \[bytes\].
 const FIELD_NAME_LENGTHS: [usize; 2] = [32, 64];
 
 /// Returns the contents of an array element; the name is empty within another array.
@@ -144,8 +144,8 @@ fn begin_contents(class: Class, flags: u32, shape: &[usize], name: &str) -> Vec<
     let mut bytes = Vec::new();
     let words = [(class as u32 | flags).to_le_bytes(), [0; 4]];
     append_element(&mut bytes, DataKind::U32, words.as_flattened());
-    // A side that does not fit belongs to an array that is refused for its size, or to an empty
-    // array.
+    // A dimension beyond 32 bits occurs only in an array that is rejected for its size, or in an
+    // empty array.
     let sides: Vec<u8> = shape
         .iter()
         .flat_map(|&side| i32::try_from(side).unwrap_or(i32::MAX).to_le_bytes())
@@ -164,7 +164,7 @@ struct NumberForm {
 }
 
 impl NumberForm {
-    /// Chooses the form of the array's kind if all numbers fit, otherwise `double`.
+    /// Returns the form that matches the kind of the array, or `double` if a number does not fit.
     fn for_array(array: &Array) -> Self {
         match array.kind {
             ElementKind::Logical if all_numbers(array, is_truth_value) => Self {
@@ -191,7 +191,7 @@ impl NumberForm {
     }
 }
 
-/// Whether all numbers, real and imaginary parts, fit.
+/// Whether `fits` accepts the real and imaginary parts of all numbers.
 fn all_numbers(array: &Array, fits: impl Fn(f64) -> bool) -> bool {
     let numbers = array.re.iter().chain(array.im.iter().flatten());
     numbers.copied().all(fits)
@@ -275,8 +275,8 @@ fn text_contents(texts: &TextArray, name: &str) -> Vec<u8> {
 
 /// Appends the element with UTF-16 characters.
 ///
-/// SciPy and Octave read UTF-8 most reliably. But rows with surrogate pairs could not be separated
-/// again: they stay in UTF-16.
+/// UTF-8 is written where possible, because SciPy and Octave read it most reliably. Characters with
+/// surrogate pairs stay in UTF-16: in UTF-8 their rows could not be separated.
 fn append_characters(bytes: &mut Vec<u8>, characters: &[u16]) {
     match String::from_utf16(characters) {
         Ok(letters) if letters.chars().count() == characters.len() => {
@@ -331,7 +331,7 @@ fn record_contents(records: &StructArray, name: &str) -> Vec<u8> {
     bytes
 }
 
-/// Appends the field names, padded with zeros to the same length, after an element with this
+/// Appends the field names, padded with zeros to the same length, after an element that gives this
 /// length.
 fn append_field_names(bytes: &mut Vec<u8>, records: &StructArray) {
     let longest = records

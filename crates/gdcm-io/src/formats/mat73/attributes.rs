@@ -30,7 +30,7 @@ pub(super) struct MatlabAttributes {
 }
 
 impl MatlabAttributes {
-    /// Selects MATLAB's attributes; `path` is the variable in faults.
+    /// Selects MATLAB's attributes; `path` names the variable in faults.
     pub(super) fn read(
         attributes: Result<HashMap<String, AttrValue>, Error>,
         path: &str,

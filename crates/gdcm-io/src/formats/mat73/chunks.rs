@@ -7,14 +7,14 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Memory that the library takes for each chunk while it reads \[bytes\].
 const CHUNK: u64 = 128;
-/// Largest growth of a chunk by filters, beyond twice its length \[bytes\].
+/// Maximum length that filters add to a chunk, beyond twice its length \[bytes\].
 const OVERHEAD: u64 = 4096;
 
 /// Takes the memory for reading a dataset in chunks (an unpacked chunk, and the bookkeeping for
 /// each chunk) and checks that the claimed chunks are possible: the library allocates memory for
 /// the claimed sizes and adds up their offsets unchecked.
 ///
-/// `sides` are the dataset's side lengths; `size` is the element size \[bytes\].
+/// `sides` are the dimensions of the dataset; `size` is the element size \[bytes\].
 pub(super) fn check_chunks(
     dataset: &Dataset,
     sides: &[usize],

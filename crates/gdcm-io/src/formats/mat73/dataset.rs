@@ -19,7 +19,8 @@ pub(super) enum Order {
 }
 
 impl Order {
-    /// Returns the shape of the array, with at least two dimensions, for the sides in the file.
+    /// Returns the shape of the array, with at least two dimensions, from the dimensions in the
+    /// file.
     fn shape(self, sides: &[usize]) -> Vec<usize> {
         match self {
             Order::Rows => matrix_shape(sides),

@@ -4,7 +4,7 @@ use hdf5_pure::{Error, FormatError};
 
 use crate::reading_budget::VariableFault;
 
-/// Converts an error of the library to a fault; `path` is the variable.
+/// Converts an error of the library to a fault; `path` names the variable.
 ///
 /// The library does not report the position in the file.
 pub(super) fn library_fault(error: &Error, path: &str) -> VariableFault {

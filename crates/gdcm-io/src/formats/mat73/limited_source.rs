@@ -5,12 +5,12 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use hdf5_pure::{FormatError, Source};
 
-/// How many times a file may be read: headers and indices are read several times, once for each
-/// query.
+/// Maximum number of bytes read, as a multiple of the file size: headers and indices are read
+/// several times, once for each query.
 const TIMES: u64 = 16;
-/// Additional reading, which small files need \[bytes\].
+/// Additional bytes that may be read from any file; small files need them.
 const ADDITIONAL: u64 = 16 << 20;
-/// Smallest charge for a read \[bytes\].
+/// Minimum number of bytes counted for a read.
 const LEAST: u64 = 16;
 
 /// Bytes in memory with a limit on how much is read.
@@ -19,7 +19,7 @@ const LEAST: u64 = 16;
 /// ever be visited; the library follows them all. The limit ends such reading.
 pub(super) struct LimitedSource {
     bytes: Vec<u8>,
-    /// Remaining reading \[bytes\].
+    /// Number of bytes that may still be read.
     left: AtomicU64,
     stop: Arc<AtomicBool>,
 }

@@ -27,7 +27,7 @@ pub(super) struct NumberType {
 }
 
 impl NumberType {
-    /// Returns the numeric type; `None` if the elements are no numbers.
+    /// Returns the numeric type; `None` if the elements are not numbers.
     pub(super) fn from_datatype(datatype: &Datatype) -> Option<Self> {
         let Datatype::Compound { members, size } = datatype else {
             return Some(Self {
@@ -87,7 +87,7 @@ fn offset_within(part: &CompoundMember, number: StoredNumber, size: usize) -> Op
     }
 }
 
-/// Returns the number type; `None` if the elements are no real numbers.
+/// Returns the number type; `None` if the elements are not real numbers.
 fn stored_number(datatype: &Datatype) -> Option<StoredNumber> {
     match datatype {
         Datatype::FixedPoint {

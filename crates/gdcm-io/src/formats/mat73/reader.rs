@@ -14,7 +14,7 @@ use crate::formats::variables::{
 };
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Deepest nesting of values.
+/// Maximum nesting depth of values.
 const DEEPEST: usize = 64;
 /// Memory of a value while it is read, without its elements: the library's view of its header, and
 /// the value itself \[bytes\].
@@ -24,8 +24,7 @@ const MEMBER: u64 = 256;
 
 /// Reads values within a budget.
 ///
-/// Its methods name a value in faults by its `path`, such as "sys.A"; `depth` counts the values
-/// that contain it.
+/// In the methods, `path` names a value in faults, such as "sys.A"; `depth` is its nesting depth.
 pub(super) struct Reader<'r> {
     pub(super) budget: &'r ReadingBudget<'r>,
     pub(super) objects: &'r Objects,
@@ -336,8 +335,9 @@ fn is_struct_array(
     Ok(true)
 }
 
-/// Turns an array of sides, among them a zero, into an empty array with this shape: Octave stores
-/// the sides of an empty array in its place and marks this at the group that contains it.
+/// Converts an array of dimensions, one of which is zero, to an empty array with this shape: Octave
+/// stores the dimensions of an empty array instead of its elements, and marks the group that
+/// contains it.
 fn restore_octave_empty(value: &mut Value) {
     if let Value::Array(sides) = value
         && sides.re.contains(&0.0)

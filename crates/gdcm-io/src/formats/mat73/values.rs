@@ -140,7 +140,8 @@ pub(super) fn empty_value(
     })
 }
 
-/// Returns the elements as side lengths; `None` if they are no 64-bit integers or too long.
+/// Returns the elements as dimensions; `None` if they are not 64-bit integers or exceed the address
+/// range.
 fn stored_shape(
     elements: &Elements,
     path: &str,

@@ -51,7 +51,7 @@ impl Element {
         }
     }
 
-    /// Parses the value of `descr`: a short text such as "<f8", or a list of fields.
+    /// Parses the value of `descr`: a type code such as "<f8", or a list of fields.
     pub(super) fn parse(descr: &Json) -> Result<Self, VariableFault> {
         match descr {
             Json::String(code) => Self::parse_code(code),
@@ -127,7 +127,7 @@ impl Element {
     }
 }
 
-/// Refuses the classes that are not read, with instructions.
+/// Rejects unsupported element classes, with export instructions.
 fn refuse_class(class: &str, code: &str) -> Result<(), VariableFault> {
     match class {
         "O" => Err(VariableFault::unsupported(
@@ -174,7 +174,7 @@ impl Field {
     }
 }
 
-/// Returns the name of a field: a text, or the second text of a pair with a title.
+/// Returns the field name: the string itself, or the second string of a (title, name) pair.
 fn field_name(name: &Json) -> Option<&str> {
     match name {
         Json::String(name) => Some(name),
@@ -186,7 +186,7 @@ fn field_name(name: &Json) -> Option<&str> {
     }
 }
 
-/// Parses the lengths along each dimension.
+/// Parses the length of each dimension.
 pub(super) fn parse_sides(shape: &Json) -> Option<Vec<usize>> {
     let Json::Array(sides) = shape else {
         return None;

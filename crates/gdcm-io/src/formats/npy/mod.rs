@@ -96,7 +96,7 @@ impl<'a> StoredArray<'a> {
     }
 }
 
-/// Reads values within a budget; `name` is the variable in faults.
+/// Reads values within a budget; `name` is the variable name in faults.
 struct ArrayReader<'r> {
     name: &'r str,
     budget: &'r ReadingBudget<'r>,

@@ -15,7 +15,7 @@ use crate::reading_budget::VariableFault;
 const ALIGNMENT: usize = 64;
 /// Bytes before the header text: signature, version and length.
 const BEFORE_TEXT: usize = 10;
-/// Largest integer up to which all integers are exact floats.
+/// All integers up to this value are exact as floats.
 const LARGEST_EXACT_INTEGER: f64 = 9_007_199_254_740_992.0;
 
 /// Writes arrays and texts as an `.npz` archive that `numpy.load` opens without pickles.
@@ -74,7 +74,7 @@ fn write_entry(
     Ok(())
 }
 
-/// Encodes numbers as a `.npy` file; integers that are not exact stay floats.
+/// Encodes numbers as a `.npy` file; integers beyond the exact range stay floats.
 fn encode_numbers(array: &Array) -> Vec<u8> {
     let re = &array.re;
     let shape = &array.shape;

@@ -6,10 +6,10 @@ use crate::formats::strides::{Places, count};
 use crate::formats::variables::{Array, CellArray, Object, StructArray, TextArray, Value};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Deepest nesting of values.
+/// Maximum nesting depth of values.
 const DEEPEST: usize = 64;
 
-/// Side lengths, and whether numbers are stored by rows.
+/// Length of each dimension, and whether numbers are stored by rows.
 pub(super) struct Sides {
     pub(super) shape: Vec<usize>,
     pub(super) by_rows: bool,
@@ -37,7 +37,7 @@ pub(super) trait Parts {
     ) -> Result<Vec<f64>, VariableFault>;
     fn sparse(&mut self, element: Element, variable: &str) -> Result<SparseEntries, VariableFault>;
     fn text(&mut self, variable: &str) -> Result<TextArray, VariableFault>;
-    /// Reads how many fields a record has.
+    /// Reads the field count of a record.
     fn field_count(&mut self, form: Form, variable: &str) -> Result<usize, VariableFault>;
     fn class(&mut self, variable: &str) -> Result<String, VariableFault>;
     /// Returns a fault at this position.
@@ -53,7 +53,7 @@ pub(super) fn read_value(
     Assembler { parts }.value(type_name, variable, 0)
 }
 
-/// Assembles values; `depth` counts the values that contain a value.
+/// Assembles values; `depth` is the nesting depth of a value.
 struct Assembler<'p> {
     parts: &'p mut dyn Parts,
 }
@@ -178,8 +178,8 @@ impl Assembler<'_> {
         Ok(CellArray { shape, values })
     }
 
-    /// Reads the records in a struct or an object. Fields that can have several records are cells
-    /// with a value for each record.
+    /// Reads the records in a struct or an object. In a struct array or an object, a field is a
+    /// cell array with a value for each record.
     fn records(
         &mut self,
         form: Form,
@@ -208,7 +208,7 @@ impl Assembler<'_> {
     }
 }
 
-/// Numbers from a first number up to a limit, in steps.
+/// Equally spaced numbers from a first number up to a limit.
 #[derive(Clone, Copy)]
 pub(super) struct Range {
     pub(super) first: f64,
@@ -223,7 +223,7 @@ impl Range {
         variable: &str,
         budget: &ReadingBudget<'_>,
     ) -> Result<Array, VariableFault> {
-        // As in Octave: a limit missed by rounding alone is reached.
+        // As in Octave, the limit is reached even if rounding makes the last step fall short of it.
         let steps = ((self.limit - self.first) / self.step * (1.0 + f64::EPSILON)).floor();
         let length = if steps >= 0.0 {
             (steps as usize).saturating_add(1)

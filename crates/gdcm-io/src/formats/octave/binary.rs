@@ -158,7 +158,8 @@ impl Parts for BinaryReader<'_> {
     }
 
     fn sides(&mut self, variable: &str) -> Result<Sides, VariableFault> {
-        // A negative dimension count precedes the sides; some matrices store two sides without it.
+        // A negative dimension count precedes the dimensions; some matrices store two dimensions
+        // without it.
         let first = self.int(variable)?;
         let shape = match usize::try_from(first) {
             Ok(rows) => vec![rows, self.length(variable)?],

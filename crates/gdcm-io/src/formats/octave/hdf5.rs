@@ -1,7 +1,7 @@
 //! GNU Octave's `save -hdf5`: each value is a group with its type and parts.
 //!
 //! The container is read as any HDF5 file, with groups as structs; here they are converted to the
-//! values they represent. Arrays are stored by columns, with their sides reversed.
+//! values they represent. Arrays are stored by columns, with their dimensions reversed.
 
 use crate::formats::octave::assembly::{Range, text_rows};
 use crate::formats::octave::form::Form;
@@ -115,7 +115,7 @@ fn damaged(variable: &str, what: &str) -> VariableFault {
     VariableFault::damaged(variable, what, 0)
 }
 
-/// Returns the array with its sides reversed.
+/// Returns the array with its dimensions reversed.
 fn with_reversed_sides(
     array: &Array,
     variable: &str,
@@ -174,7 +174,7 @@ impl<'v> GroupParts<'v> {
         }
     }
 
-    /// Converts a cell array: its sides `dims`, and a member with an underscore for each value.
+    /// Converts a cell array: its dimensions `dims`, and a member such as `_0` for each value.
     fn cell(&self) -> Result<CellArray, VariableFault> {
         let shape: Vec<usize> = self
             .numbers("dims")
@@ -217,8 +217,8 @@ impl<'v> GroupParts<'v> {
         })
     }
 
-    /// Converts struct fields; `in_cells` is set if they can have several records: then a cell
-    /// holds a value for each record.
+    /// Converts struct fields; with `in_cells`, a field may be a cell array with a value for each
+    /// record.
     fn records(&self, in_cells: bool) -> Result<StructArray, VariableFault> {
         let mut records = StructArray::one(Vec::new());
         for (name, values) in &self.parts.fields {

@@ -9,7 +9,7 @@ use crate::formats::variables::{TextArray, Value, Variable};
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Largest offset of the first variable \[bytes\].
+/// Maximum offset of the first variable \[bytes\].
 const HEAD: usize = 2000;
 
 /// Files written by `save -text`.
@@ -261,7 +261,7 @@ impl Parts for TextReader<'_> {
         let mut columns = Vec::new();
         let mut numbers = Vec::new();
         for _ in 0..count {
-            // Octave counts from 1; a zero wraps to a place outside the matrix.
+            // Octave counts from 1; an index of 0 wraps to a place outside the matrix.
             let row = self.index(variable)?.wrapping_sub(1);
             let column = self.index(variable)?.wrapping_sub(1);
             if row >= height || column >= width {

@@ -18,7 +18,7 @@ const MISSING: [&str; 14] = [
     ".",
 ];
 
-/// Longest number with a decimal comma or a Fortran exponent \[bytes\].
+/// Maximum length of a number with a decimal comma or a Fortran exponent \[bytes\].
 const LONGEST: usize = 400;
 
 /// Parses the number in a cell: NaN for a missing number, `None` for anything else.
@@ -45,7 +45,7 @@ pub(super) fn is_number(cell: &str) -> bool {
     cell_number(cell, false).is_some() || cell_number(cell, true).is_some()
 }
 
-/// Whether a cell is a number that is not missing.
+/// Returns whether a cell holds a number other than NaN.
 pub(super) fn has_number(cell: &str, decimal_comma: bool) -> bool {
     cell_number(cell, decimal_comma).is_some_and(|number| !number.is_nan())
 }

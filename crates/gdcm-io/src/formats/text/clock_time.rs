@@ -30,7 +30,7 @@ pub(super) fn clock_s(text: &str) -> Option<f64> {
         Some(date) => DAY_S * days(date)?,
         None => 0.0,
     };
-    // A leap second has the number 60.
+    // During a leap second, the seconds read 60.
     if !(0.0..61.0).contains(&seconds) {
         return None;
     }

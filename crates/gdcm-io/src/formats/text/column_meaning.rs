@@ -16,7 +16,7 @@ pub(super) enum Quantity {
     Frequency,
 }
 
-/// A unit that decides how a column is read.
+/// A unit that determines how a column is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum KnownUnit {
     RadianPerSecond,
@@ -45,7 +45,8 @@ pub(super) struct ColumnMeaning {
     pub(super) reason: String,
 }
 
-/// Words in column names. The first kind with a matching word applies: "phase error" is an error.
+/// Words in column names. The first quantity with a matching word applies: "phase error" is an
+/// error.
 const WORDS: [(Quantity, &[&str]); 7] = [
     (
         Quantity::Error,
@@ -182,7 +183,7 @@ impl ColumnMeaning {
         Self::from_unit_or_signs(name, unit)
     }
 
-    /// Interprets a name without a known word by its unit, or by the signs |…| and ∠.
+    /// Interprets a name without any word in `WORDS` by its unit, or by the signs |…| and ∠.
     fn from_unit_or_signs(name: &str, unit: Option<KnownUnit>) -> Self {
         let bare = name.trim();
         let has_strokes = bare.len() > 2 && bare.starts_with('|') && bare.ends_with('|');
@@ -210,7 +211,7 @@ impl ColumnMeaning {
 }
 
 impl Word<'_> {
-    /// Whether the word is known, with or without digits after it: "re1".
+    /// Whether the word, with or without its final digits, is in the list `known`: "re1".
     fn is_known(&self, known: &[&str]) -> bool {
         let lower = self.text.to_lowercase();
         known.contains(&lower.as_str()) || known.contains(&without_digits(&lower))
@@ -290,7 +291,7 @@ fn without_ending<'n>(name: &'n str, ending: &str) -> Option<&'n str> {
     }
 }
 
-/// Whether a name ends with a known word that has at least two bytes, as the front of "freqHz" does.
+/// Whether a name ends with a word in `WORDS` of at least two bytes, as "freq" before "Hz" does.
 fn ends_with_known_word(name: &str) -> bool {
     let name = name.to_lowercase();
     WORDS
@@ -326,7 +327,7 @@ fn words_of(name: &str) -> Vec<Word<'_>> {
     words
 }
 
-/// Returns a name without the known words; digits after such a word are kept, as in "re1".
+/// Returns a name without the words in `known`; digits after such a word are kept, as in "re1".
 fn without_words(name: &str, words: &[Word<'_>], known: &[&str]) -> String {
     let mut label = String::with_capacity(name.len());
     let mut from = 0;

@@ -22,8 +22,8 @@ pub struct TextTable {
     pub names: Option<Vec<String>>,
     /// Unit for each column, if the text gives it.
     pub units: Vec<Option<String>>,
-    /// The numbers, column by column. Missing numbers are NaN, which users of the table refuse with
-    /// their position.
+    /// The numbers, column by column. Missing numbers are NaN, which code that needs the numbers
+    /// rejects with their position.
     pub columns: Vec<Vec<f64>>,
     /// Line number by row, from 1.
     pub lines: Vec<usize>,
@@ -158,7 +158,7 @@ impl<'m> Reading<'m> {
     fn line_before_rows(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
         match self.layout.row_shape(line) {
             Some(shape) if self.layout.fits(shape) => self.row(number, line),
-            // A row count or a date: a single number is not a table row.
+            // A single number is not a table row; it may be a row count or a date.
             Some(RowShape { width: 1, .. }) => {
                 let columns = self.layout.columns;
                 self.notes.push(format!(
@@ -249,7 +249,7 @@ impl<'m> Reading<'m> {
 
     /// Describes a cell that is no number, or a line without any number.
     fn no_number(&self, index: usize, cell: &str, line: &str) -> String {
-        /// Number of cells examined.
+        /// Maximum number of examined cells.
         const EXAMINED: usize = 20;
         let decimal_comma = self.layout.decimal_comma;
         let mut cells = self.layout.cells(line).take(EXAMINED);
@@ -315,8 +315,8 @@ impl<'m> Reading<'m> {
         })
     }
 
-    /// Whether the table could also be a single column with decimal commas: two columns with whole
-    /// numbers between commas.
+    /// Whether the table could also be a single column with decimal commas: it has two columns of
+    /// whole numbers separated by commas.
     fn may_have_decimal_commas(&self) -> bool {
         self.layout.separator == Separator::Comma
             && self.layout.columns == 2

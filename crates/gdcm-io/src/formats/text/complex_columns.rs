@@ -92,7 +92,7 @@ impl ComplexColumns {
         Some(self.separator.line(split.into_iter()))
     }
 
-    /// Returns both parts of a number, or two headings for a heading.
+    /// Returns the real and imaginary part of a number, or the two headings made from a heading.
     fn parts_or_headings(&self, cell: &str) -> ComplexText {
         if let Some(parts) = ComplexText::parse(cell) {
             return parts;

@@ -53,7 +53,7 @@ fn utf16(
         .collect())
 }
 
-/// Refuses binary data: a text with numbers contains no zero byte.
+/// Rejects binary data: a text with numbers contains no zero byte.
 pub(super) fn refuse_binary(text: &str, expected: &'static str) -> Result<(), VariableFault> {
     match text.find('\0') {
         Some(at) => Err(no_text(expected, at)),

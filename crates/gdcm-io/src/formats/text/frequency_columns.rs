@@ -48,7 +48,8 @@ impl FrequencyColumns {
     /// Returns the points for every response, in rad/s and as complex numbers.
     ///
     /// Decreasing frequencies are reversed. A frequency that is missing, negative, or not above the
-    /// frequency before it is refused with its line, and so is half a complex number.
+    /// preceding frequency is rejected with its line, and so is a row with only one part of a
+    /// complex number.
     pub(crate) fn values(&self, table: &TextTable) -> Result<Vec<ResponsePoints>, VariableFault> {
         if self.is_decreasing(table) {
             self.increasing_values(&reversed(table))

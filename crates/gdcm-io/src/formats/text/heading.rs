@@ -148,7 +148,7 @@ fn heading_cells(line: &str, layout: Layout) -> Option<Vec<String>> {
 }
 
 /// Returns the cells if there is one for each column, some contain letters, and the line is not a
-/// row with an error. An additional empty cell at the end is removed.
+/// number row with an error. An additional empty cell at the end is removed.
 fn fitted(mut cells: Vec<String>, layout: Layout) -> Option<Vec<String>> {
     let ends_empty = cells.last().is_some_and(|cell| cell.trim().is_empty());
     if cells.len() == layout.columns + 1 && ends_empty {
@@ -164,8 +164,8 @@ fn has_letters(cell: &str) -> bool {
     cell.chars().any(char::is_alphabetic)
 }
 
-/// Splits a line at a separator, up to two cells more than there are columns: one additional cell
-/// that is not empty rejects the separator.
+/// Splits a line at a separator into at most two cells more than there are columns, enough to
+/// detect that a line has too many.
 fn trimmed_cells(line: &str, separator: Separator, columns: usize) -> Vec<String> {
     separator
         .cells(line)
@@ -201,7 +201,7 @@ fn cells_at_wide_blanks(line: &str, columns: usize) -> Vec<String> {
         .collect()
 }
 
-/// Splits at blanks; text in brackets belongs to the cell before.
+/// Splits at blanks; text in brackets belongs to the preceding cell.
 fn cells_with_brackets_joined(line: &str, columns: usize) -> Vec<String> {
     const OPENING: [char; 3] = ['[', '(', '{'];
     const CLOSING: [char; 3] = [']', ')', '}'];
@@ -241,7 +241,7 @@ pub(super) fn names_one_more_column(above: &[NumberedLine], layout: Layout) -> b
     })
 }
 
-/// Returns the unit in a cell, without its brackets; `None` if there is nothing else.
+/// Returns the unit in a cell, without its brackets; `None` if it is empty.
 fn unit_of(cell: &str) -> Option<String> {
     let unit = cell
         .trim()

@@ -20,7 +20,7 @@ pub(super) fn is_unit(text: &str) -> bool {
     }
     let mut has_word = false;
     for word in text.split(['/', '*', '^', '·', ' ', '.', '-', '(', ')', '²', '³']) {
-        // Also passes empty words between two signs.
+        // Also true of empty words, between two signs.
         if word.bytes().all(|byte| byte.is_ascii_digit()) {
             continue;
         }
@@ -35,7 +35,7 @@ pub(super) fn is_unit(text: &str) -> bool {
 /// Splits a heading into name and unit: "omega \[rad/s\]", "P (deg/s)", "_Vind,_kias".
 ///
 /// Square brackets hold a unit unless they contain an integer; round brackets and text after a
-/// comma only if all words are known, as "re(LAT->P)" names a response.
+/// comma hold a unit only if all their words are unit words: "re(LAT->P)" names a response.
 pub(super) fn name_and_unit(heading: &str) -> (String, Option<String>) {
     let heading = heading.trim().trim_matches(['"', '\'']).trim();
     for (open, close) in [('[', ']'), ('(', ')'), ('{', '}')] {

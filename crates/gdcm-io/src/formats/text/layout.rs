@@ -21,7 +21,7 @@ pub(super) struct Layout {
     pub(super) trailing: bool,
 }
 
-/// Cells in a line that holds numbers.
+/// Shape of a line of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct RowShape {
     /// Cell count.
@@ -92,7 +92,7 @@ impl Layout {
     }
 }
 
-/// Returns a tally for each separator and decimal mark; the decimal point goes first.
+/// Returns a tally for each separator and decimal mark; decimal points precede decimal commas.
 fn candidates() -> Vec<Tally> {
     let mut tallies = Vec::with_capacity(2 * Separator::ALL.len());
     for decimal_comma in [false, true] {
@@ -125,7 +125,7 @@ struct RowCount {
     ending_empty: usize,
 }
 
-/// A layout and how many examined rows have it.
+/// A layout and the number of examined rows with this layout.
 #[derive(Clone, Copy)]
 struct Score {
     rows: usize,

@@ -4,7 +4,7 @@
 const COMMENT_MARKS: [&str; 5] = ["#", "%", "//", "!", ";"];
 /// Marks that begin a comment after the cells, with the blanks around them.
 const TRAILING_MARKS: [&str; 7] = [" # ", " % ", " ! ", " // ", "\t# ", "\t% ", "\t! "];
-/// Longest excerpt in a message \[characters\].
+/// Maximum length of an excerpt in a message \[characters\].
 const EXCERPT: usize = 40;
 
 /// Iterator over numbered lines, from 1; a line ends in a line feed, a carriage return, or both.

@@ -4,7 +4,7 @@ use crate::formats::text::matlab_scanner::{Position, REMEDY, ValueError, refused
 use crate::formats::variables::{Array, StructArray, Value};
 use crate::reading_budget::ReadingBudget;
 
-/// A function whose value is understood.
+/// A supported MATLAB function.
 #[derive(Clone, Copy)]
 pub(super) enum Function {
     /// Creates a record with these fields from the first arguments. Name-value pairs follow, after

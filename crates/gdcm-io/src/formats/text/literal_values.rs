@@ -51,7 +51,7 @@ impl ValueReader<'_, '_, '_> {
         }
     }
 
-    /// Reads a value inside `depth` others.
+    /// Reads a value that is nested in `depth` other values.
     fn value(&mut self, depth: usize) -> Result<Value, ValueError> {
         if depth > MOST_NESTED {
             return Err(VariableFault::too_deep("").into());
@@ -250,7 +250,7 @@ impl ValueReader<'_, '_, '_> {
         }))
     }
 
-    /// Reads a matrix with numbers, transposed if a quote follows it, or with texts in double quotes.
+    /// Reads a matrix of numbers, transposed if a quote follows it, or of texts in double quotes.
     fn matrix(&mut self) -> Result<Value, ValueError> {
         let opening = self.scanner.position();
         let Rows {
@@ -349,7 +349,7 @@ impl ValueReader<'_, '_, '_> {
     }
 }
 
-/// Refuses an expression.
+/// Returns the error for an expression, which the reader does not evaluate.
 fn not_computed<T>(place: Position) -> Result<T, ValueError> {
     refused(
         format!("expressions are not computed here; {REMEDY}"),

@@ -1,8 +1,8 @@
 //! Variables written as MATLAB or Octave statements: `A = [1 2; 3 4e-3]; % comment`.
 //!
-//! Supported are numbers, texts, matrices and cells with them, variables and fields assigned to them,
-//! and models created by `ss`, `tf` and `zpk`. Nothing is computed or run: other statements are
-//! reported with a remedy, and never guessed.
+//! Supported are numbers, texts, matrices and cell arrays of these, variables and fields on either
+//! side of `=`, and models created by `ss`, `tf` and `zpk`. Nothing is computed or run: other
+//! statements are reported with a remedy.
 
 use crate::formats::text::encoding::refuse_binary;
 use crate::formats::text::lines::excerpt;
@@ -14,7 +14,7 @@ use crate::formats::text::workspace::Workspace;
 use crate::formats::variables::{Value, Variable};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Words that begin a block, which may run never, once or repeatedly.
+/// Words that begin a block, whose statements may run never, once or repeatedly.
 const BLOCKS: [&str; 8] = [
     "if",
     "for",
@@ -41,8 +41,8 @@ const BLOCK_ENDS: [&str; 9] = [
 /// Variables and notes from the statements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Statements {
-    /// The variables in the order in which they were first assigned, with their last values. A value that
-    /// is not understood is [`Value::Opaque`] with the reason, its line and its column.
+    /// The variables in the order of their first assignments, with their last values. A value that
+    /// is not supported is [`Value::Opaque`] with the reason, its line and its column.
     pub variables: Vec<Variable>,
     /// Statements that were not run.
     pub notes: Vec<String>,
@@ -167,7 +167,7 @@ impl<'t> Reading<'t, '_> {
         self.scanner.pass_statement(self.budget)
     }
 
-    /// Reads an assigned value; a value that is not understood makes the variable opaque.
+    /// Reads an assigned value; a value that is not supported makes the variable opaque.
     fn assignment(&mut self, path: &[&'t str], begin: Position) -> Result<(), VariableFault> {
         let before = self.scanner.clone();
         match self.assigned_value(begin) {

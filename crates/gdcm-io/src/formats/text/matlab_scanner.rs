@@ -6,7 +6,7 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 /// Remedy for unsupported statements.
 pub(super) const REMEDY: &str =
     "write its numbers, or save the workspace in MATLAB: save -v7 workspace.mat";
-/// Deepest nesting of values; each level takes stack space.
+/// Maximum nesting depth of values; each level takes stack space.
 pub(super) const MOST_NESTED: usize = 64;
 
 /// Whether a name can contain this character.
@@ -21,9 +21,9 @@ pub(super) fn begins_word(text: &str) -> bool {
 
 /// Reason why a value was not read.
 pub(super) enum ValueError {
-    /// The value is not understood; other values may be.
+    /// The value is not supported; other values may be readable.
     NotUnderstood { what: String, at: Position },
-    /// Ends the reading.
+    /// A fault that ends the reading.
     Fault(VariableFault),
 }
 
@@ -96,9 +96,9 @@ impl<'t> Scanner<'t> {
         is_next
     }
 
-    /// Returns the current position; in a very long line the column is counted in bytes.
+    /// Returns the current position; in a line beyond 2000 bytes the column is counted in bytes.
     pub(super) fn position(&self) -> Position {
-        /// Longest line whose characters are counted \[bytes\].
+        /// Maximum length of text in which characters are counted \[bytes\].
         const COUNTED: usize = 2000;
         let before = &self.text[self.line_start..self.at];
         let characters = if before.len() > COUNTED {
@@ -157,7 +157,7 @@ impl<'t> Scanner<'t> {
         self.text[self.line_start..self.at].trim().is_empty()
     }
 
-    /// Whether the line continues with only a comment mark and this bracket, which begin or end a block
+    /// Whether the rest of the line is a comment mark and this bracket, which begin or end a block
     /// comment.
     fn is_block_mark(&self, bracket: char) -> bool {
         let line = self.rest_of_line().trim();
@@ -273,8 +273,8 @@ impl<'t> Scanner<'t> {
         }
     }
 
-    /// Moves to the end of the statement; an unclosed bracket is a fault, as it would include all
-    /// that follows.
+    /// Moves to the end of the statement. An unclosed bracket is a fault, as all text after it
+    /// would belong to the statement.
     pub(super) fn pass_statement(&mut self, budget: &ReadingBudget) -> Result<(), VariableFault> {
         let mut open = OpenBrackets::default();
         loop {
@@ -414,15 +414,16 @@ impl OpenBrackets {
         }
     }
 
-    /// Closes the round brackets after the last other bracket: they end at the latest with their
-    /// line.
+    /// Closes the innermost round brackets, up to a square or curly bracket: a round bracket
+    /// extends at most to the end of its line.
     fn end_line(&mut self) {
         while self.0.last().is_some_and(|open| open.bracket == '(') {
             self.0.pop();
         }
     }
 
-    /// Refuses a bracket other than a round bracket that is still open.
+    /// Returns an error if a square or curly bracket is still open. Unclosed round brackets are
+    /// tolerated.
     fn check_closed(self) -> Result<(), VariableFault> {
         let unclosed = self.0.into_iter().rfind(|open| open.bracket != '(');
         let Some(OpenBracket { bracket, place }) = unclosed else {

@@ -23,7 +23,7 @@ pub(crate) struct CoherenceColumn {
     pub(super) is_gamma: bool,
 }
 
-/// The two columns, counted from 0, for a complex number.
+/// The two columns of a complex number, counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ResponseParts {
     Polar {
@@ -60,11 +60,12 @@ impl CoherenceColumn {
 }
 
 impl RecognisedResponse {
-    /// Returns the points of the response, without rows in which both its numbers are missing;
-    /// `omega` is the frequency in each row \[rad/s\].
+    /// Returns the points of the response, without rows in which both parts of the complex number
+    /// are missing; `omega` is the frequency in each row \[rad/s\].
     ///
     /// # Errors
-    /// Half a complex number is missing or infinite, or the magnitude is too large.
+    /// Only one part of a complex number is missing, a part is infinite, or the magnitude is too
+    /// large.
     pub(super) fn points(
         &self,
         table: &TextTable,

@@ -64,7 +64,7 @@ impl ResponseLabel {
     }
 }
 
-/// Returns the channel in a part of a name; `None` without any letters or digits.
+/// Returns the channel in a part of a name; `None` if only brackets, punctuation and blanks remain.
 fn channel(part: &str) -> Option<String> {
     let channel = clean(part);
     if channel.is_empty() {
@@ -74,7 +74,7 @@ fn channel(part: &str) -> Option<String> {
     }
 }
 
-/// Returns a text without surrounding brackets, strokes and blanks.
+/// Returns a text without surrounding brackets, punctuation and blanks.
 fn clean(text: &str) -> &str {
     text.trim_matches(|c: char| c.is_whitespace() || "_-.,:;(){}[]|∠=\"'".contains(c))
 }

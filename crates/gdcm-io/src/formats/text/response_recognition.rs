@@ -10,7 +10,7 @@ use crate::formats::text::response_columns::{
 use crate::formats::text::response_label::ResponseLabel;
 use crate::formats::text::unrecognised::{Unrecognised, UnsaidUnit, unrecognised};
 
-/// Largest difference between the rectangular and the polar form of a response, relative to its
+/// Maximum difference between the rectangular and the polar form of a response, relative to its
 /// magnitude: tables have few digits.
 const FORM_TOLERANCE: f64 = 0.01;
 /// Coherence above this value is in percent; the margin above 1 is for rounding and noise.
@@ -31,7 +31,7 @@ pub(super) struct Recognition<'t> {
     meanings: Vec<ColumnMeaning>,
     /// Each decision with its reason.
     pub(super) notes: Vec<String>,
-    /// Columns without a unit whose numbers allow several.
+    /// Columns without a unit whose numbers allow several units.
     pub(super) unsaid: Vec<UnsaidUnit>,
     /// Unused column names.
     pub(super) unused: Vec<String>,
@@ -154,8 +154,8 @@ impl<'t> Recognition<'t> {
         responses
     }
 
-    /// Finds the columns with the complex numbers; real and imaginary parts go before magnitude and
-    /// phase.
+    /// Finds the columns with the complex numbers; real and imaginary parts take precedence over
+    /// magnitude and phase.
     fn parts(&mut self, group: &Group) -> Option<ResponseParts> {
         let polar = group.polar();
         if let Some(re) = group.column(Quantity::Real)
@@ -166,7 +166,7 @@ impl<'t> Recognition<'t> {
             self.note(im, "imaginary part", "");
             if let Some(columns) = polar {
                 let polar = self.polar(columns);
-                // Missing units in the second form are not asked for.
+                // Missing units of the polar form are not asked for: it only serves as a check.
                 if polar.unsaid.is_empty() {
                     self.compare(parts, polar.parts);
                 }
@@ -178,7 +178,7 @@ impl<'t> Recognition<'t> {
         Some(polar.parts)
     }
 
-    /// Notes that a group is unused because half the response is missing.
+    /// Notes that a group is unused because one part of the complex number is missing.
     fn leave_out(&mut self, group: &Group) {
         for known in &group.columns {
             if known.quantity == Quantity::Error {
@@ -191,8 +191,8 @@ impl<'t> Recognition<'t> {
         }
     }
 
-    /// Interprets a coherence column: percent if its unit or its numbers above 1 require it. For a
-    /// column called gamma, γ or γ² is a question to the user.
+    /// Interprets a coherence column: percent if its unit or its numbers above 1 require it. If its
+    /// unit is unknown (a column called gamma), the user is asked whether it holds γ or γ².
     fn coherence(&mut self, column: usize) -> CoherenceColumn {
         let unit = self.meanings[column].unit;
         if unit.is_none() {
@@ -307,8 +307,8 @@ impl<'t> Recognition<'t> {
         }
     }
 
-    /// Whether negative numbers show that a magnitude is in dB. A gain may be a level in dB, or a
-    /// signed ratio.
+    /// Whether negative numbers show that a magnitude is in dB. They do not in a column called
+    /// gain, which may hold a level in dB or a signed ratio.
     fn has_negative_levels(&self, magnitude: usize) -> bool {
         let name = self.table.name(magnitude).unwrap_or_default();
         let is_gain = name.to_lowercase().contains("gain");
@@ -344,7 +344,7 @@ impl<'t> Recognition<'t> {
 /// Returns the group to which a column belongs: the last group for a column without a label, else
 /// the last group with the same label; only groups that lack the quantity are considered.
 fn group_for(groups: &[Group], quantity: Quantity, label: &ResponseLabel) -> Option<usize> {
-    // The other words in an error's name give the quantity in error.
+    // In the name of an error column, the other words give the quantity to which the error belongs.
     let joins_last = *label == ResponseLabel::default() || quantity == Quantity::Error;
     if joins_last
         && let Some(last) = groups.last()

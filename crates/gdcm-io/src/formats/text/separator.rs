@@ -87,7 +87,7 @@ impl Separator {
     }
 }
 
-/// Iterator over the cells in a line, so that a line with a million cells takes no memory.
+/// Iterator over the cells in a line, so that a line with a million cells needs no list of them.
 pub(super) struct Cells<'t> {
     rest: Option<&'t str>,
     separator: Separator,
@@ -135,7 +135,7 @@ fn unquoted(cell: &str) -> &str {
 
 /// A quoted cell that begins a text.
 struct Quoted<'t> {
-    /// Content between the quotes; a doubled quote stands for a single quote.
+    /// Content between the quotes; a doubled quote represents a single quote.
     cell: Cow<'t, str>,
     /// Text after the closing quote.
     behind: &'t str,

@@ -10,9 +10,9 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Number of lines examined to recognise the columns.
 const SAMPLE: usize = 200;
-/// Largest number of distinct words in a column; a column with more is not a label.
+/// Maximum number of distinct words in a column; a column with more is not a label.
 const MOST_WORDS: usize = 500;
-/// Largest number of words listed in a note.
+/// Maximum number of words listed in a note.
 const SHOWN: usize = 12;
 const DAY_S: f64 = 86_400.0;
 
@@ -20,7 +20,7 @@ const DAY_S: f64 = 86_400.0;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NumberedText {
     pub text: String,
-    /// The number of each word, and the columns with clock times.
+    /// The numbers that replace the words, and the columns with clock times.
     pub notes: Vec<String>,
 }
 
@@ -182,8 +182,8 @@ impl Numbering {
 }
 
 impl Column {
-    /// Returns the number for a word; an empty text for an empty cell, and for words beyond the
-    /// limit.
+    /// Returns the number that replaces a word; an empty text for an empty cell, and once a column
+    /// has more than `MOST_WORDS` words.
     fn number(&mut self, word: &str) -> String {
         if word.is_empty() || self.words.len() > MOST_WORDS {
             return String::new();
@@ -240,7 +240,7 @@ struct Candidate {
     lines: usize,
 }
 
-/// Finds the separator for which most lines have one width, more than two cells.
+/// Finds the separator for which the largest number of lines have the same width, above two cells.
 fn best_candidate(sample: &[&str]) -> Option<Candidate> {
     Separator::ALL
         .into_iter()

@@ -9,7 +9,7 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 /// The variables and their fields.
 #[derive(Default)]
 pub(super) struct Workspace<'t> {
-    /// In the order in which they were first assigned, with their last values.
+    /// Variables in the order of their first assignments, with their last values.
     pub(super) variables: Vec<Variable>,
     /// Index by name.
     places: HashMap<&'t str, usize>,
@@ -112,7 +112,7 @@ fn set_field(target: &mut Value, path: &[&str], value: Value) {
     }
 }
 
-/// Memory for a copy of a value \[bytes\].
+/// Returns the memory of a copy of a value \[bytes\].
 fn memory_of(value: &Value, depth: usize) -> Result<u64, VariableFault> {
     if depth > MOST_NESTED {
         return Err(VariableFault::too_deep(""));

@@ -7,10 +7,10 @@ use crate::reading_budget::VariableFault;
 
 /// Bytes before the names: version, name count, and eight region offsets.
 const HEADER_BYTES: usize = 40;
-/// Newest known layout version.
+/// Newest supported layout version.
 const NEWEST: u32 = 4;
 
-/// Regions of 32-bit words after the names, by number.
+/// Regions of 32-bit words after the names, by index.
 #[derive(Clone, Copy)]
 enum Region {
     Classes = 0,
@@ -30,7 +30,7 @@ pub(super) struct Directory {
     created: Vec<Vec<Property>>,
     /// Property lists of all other objects.
     plain: Vec<Vec<Property>>,
-    /// Cells after the property values.
+    /// Number of cells after the property values.
     pub(super) cells_after_values: usize,
 }
 
@@ -54,7 +54,7 @@ pub(super) struct ObjectProperties<'d> {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Property {
-    /// Number of the name.
+    /// Index of the name, counted from 1.
     pub(super) name: u32,
     pub(super) content: Content,
 }
@@ -62,11 +62,11 @@ pub(super) struct Property {
 /// Where a property value is found.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Content {
-    /// The value is the name with this number.
+    /// The value is the name with this index, counted from 1.
     Name(u32),
     /// The value is in a cell, counted from the first cell with a value.
     Cell(usize),
-    /// The value is this number.
+    /// The value is this integer.
     Number(u32),
 }
 
@@ -105,7 +105,7 @@ impl Directory {
         Ok(directory)
     }
 
-    /// Returns the full name of a class, from the numbers of its package name and its own name.
+    /// Returns the full name of a class, from the indices of its package name and its own name.
     fn qualified_name(&self, words: &[u32]) -> String {
         let package = self.name_or_empty(words.first());
         let name = self.name_or_empty(words.get(1));
@@ -122,7 +122,7 @@ impl Directory {
             .unwrap_or_default()
     }
 
-    /// Returns the name of a property or class by its number.
+    /// Returns the name of a property or class by its index, counted from 1.
     pub(super) fn name(&self, number: u32) -> Option<&str> {
         self.names
             .get((number as usize).checked_sub(1)?)

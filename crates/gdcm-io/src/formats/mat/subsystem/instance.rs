@@ -21,7 +21,7 @@ const CREATED: &str = "any";
 pub(super) struct Assembly<'s> {
     subsystem: &'s Subsystem,
     budget: &'s ReadingBudget<'s>,
-    /// Objects under assembly, to detect an object that contains itself.
+    /// Objects being assembled, to detect an object that contains itself.
     open: Vec<u32>,
 }
 

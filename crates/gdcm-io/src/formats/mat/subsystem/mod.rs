@@ -25,7 +25,7 @@ pub(in crate::formats::mat) use crate::formats::mat::subsystem::reference::Refer
 
 /// Class system for the objects of MATLAB's own classes.
 pub(super) const CLASS_SYSTEM: &str = "MCOS";
-/// Cells before the property values.
+/// Number of cells before the property values.
 const CELLS_BEFORE_VALUES: usize = 2;
 
 /// Exact integers of cells that hold unsigned 64-bit integers, by cell index from 0.

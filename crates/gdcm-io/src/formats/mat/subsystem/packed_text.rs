@@ -3,13 +3,14 @@
 use crate::formats::variables::TextArray;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// The only known version of the packing.
+/// The only supported version of the packing.
 const VERSION: u64 = 1;
 /// Length that marks a missing text.
 const MISSING: u64 = u64::MAX;
 
-/// Unpacks texts from their words: version, dimension count, side lengths, text lengths, and UTF-16
-/// units, four to a word. Returns `None` for other numbers. A missing text becomes an empty text.
+/// Unpacks texts from their words: version, dimension count, dimensions, text lengths, and UTF-16
+/// units, four to a word. Returns `None` for words in another form. A missing text becomes an empty
+/// text.
 pub(super) fn unpack_texts(
     words: &[u64],
     budget: &ReadingBudget<'_>,

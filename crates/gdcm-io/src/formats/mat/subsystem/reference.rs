@@ -9,17 +9,17 @@ const REFERENCE: u32 = 0xdd00_0000;
 /// A reference to objects.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(in crate::formats::mat) struct Reference {
-    /// Side lengths of the object array.
+    /// Length of each dimension of the object array.
     pub(super) shape: Vec<usize>,
-    /// Object numbers, first index fastest.
+    /// Object numbers, the first index running fastest.
     pub(super) objects: Vec<u32>,
     /// Class number.
     pub(super) class: u32,
 }
 
 impl Reference {
-    /// Parses the words of a reference: 0xDD000000, dimension count, side lengths, object numbers
-    /// and class number.
+    /// Parses the words of a reference: 0xDD000000, dimension count, dimensions, object numbers and
+    /// class number.
     pub(super) fn parse(words: &[u32]) -> Option<Self> {
         let [REFERENCE, dimensions, rest @ ..] = words else {
             return None;

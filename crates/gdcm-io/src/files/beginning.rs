@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! n <- 64 KiB
-//! 1  text <- the first n bytes, unpacked; if that is the whole file, stop: the full reader checks it
+//! 1  text <- the first n bytes, unpacked; if that is the whole file, stop (fully read later)
 //! 2  read text up to its last comma as a dataset or a study
 //! 3  an error other than the end of the text: report it
 //! 4  n <- 16 n, and again up to 16 MiB

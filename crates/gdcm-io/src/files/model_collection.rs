@@ -149,8 +149,8 @@ fn units_text(labels: &[ChannelLabel]) -> Option<Limited<String, MOST_CHANNELS>>
     Some(Limited(units))
 }
 
-/// Reads the models in a text in one of this program's formats; `None` for any other text. Unknown
-/// keys become remarks.
+/// Reads the models in a text in one of this program's formats; `None` for any other text. The
+/// second list holds cautions about unknown keys.
 ///
 /// Also `None` if an unknown key resembles a delay. Such a text is read as general JSON, with all
 /// supported notations of delays, and the rest becomes a question.

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! bytes -> format, from the first bytes
-//!       -> a table with columns, or variables, or archived files             (text, mat, mat73, npy, zip, JSON)
+//!       -> a table with columns, or variables, or files (text, mat, mat73, npy, zip, JSON)
 //!       -> columns with equal lengths: vectors and matrices, structs, timetables, iddata
 //!       -> records: a table is split by a column that numbers them, or where time restarts
 //! ```

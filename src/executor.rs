@@ -1,4 +1,4 @@
-//! All processor cores as an executor for the window and the commands.
+//! Executor that uses all processor cores, for the window and the commands.
 
 use std::sync::OnceLock;
 
@@ -10,7 +10,7 @@ pub struct Pool;
 
 impl Executor for Pool {
     fn carry_out(&self, tasks: Vec<Task<'_>>) {
-        // First in, first out: earlier requests are computed first.
+        // First in, first out, so that earlier requests are computed first.
         rayon::scope_fifo(|scope| {
             for task in tasks {
                 scope.spawn_fifo(move |_| task());
@@ -22,7 +22,7 @@ impl Executor for Pool {
 /// Starts the threads of the pool, once per process.
 ///
 /// # Errors
-/// The reason, if no thread can be started.
+/// Returns the reason if no thread can be started.
 pub fn start_threads() -> Result<(), String> {
     static STARTED: OnceLock<Result<(), String>> = OnceLock::new();
     STARTED.get_or_init(build_pool).clone()

@@ -24,7 +24,7 @@ use super::model_arguments::AssembleArguments;
 use super::terminal::{caution, coded_caution, error, print};
 use super::text::{counted, indented};
 
-/// Makes a dataset from the models in a folder.
+/// Assembles a dataset from the models in files and folders.
 pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
     check_declared_once(arguments)?;
     let given_rules = arguments.rules.as_deref();
@@ -78,8 +78,8 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
     }
 }
 
-/// Reads the models, and applies the file's rules, or else proposed rules, with the
-/// declarations on the command line.
+/// Reads the models, and applies the rules in a file, or proposed rules without a file, together
+/// with the declarations on the command line.
 fn assembled_models(arguments: &AssembleArguments) -> Result<Assembly, Failure> {
     let given = match &arguments.rules {
         Some(path) => Some(rules_of_file(path)?),
@@ -112,7 +112,7 @@ fn rules_of_file(path: &Path) -> Result<Rules, Failure> {
     Ok(rules)
 }
 
-/// Reports the conditions without a reference.
+/// Reports the conditions without an identified model as reference.
 fn report_missing_references(dataset: &Dataset) {
     let without = dataset.without_reference();
     if !without.is_empty() {
@@ -121,7 +121,7 @@ fn report_missing_references(dataset: &Dataset) {
     }
 }
 
-/// Rejects duplicate declarations for a channel in the same models.
+/// Rejects duplicate declarations of a channel for the same models.
 fn check_declared_once(arguments: &AssembleArguments) -> Result<(), Failure> {
     let mut signs = BTreeSet::new();
     for FileValue { channel, scope, .. } in &arguments.sign {
@@ -149,7 +149,7 @@ fn converted_already(option: &'static str, channel: &str, scope: &FileScope) -> 
     Failure::coded_option(option, "given-twice", reason)
 }
 
-/// Adds the units, factors and signs on the command line to the rules.
+/// Adds the units, factors and signs given on the command line to the rules.
 fn declare(
     arguments: &AssembleArguments,
     models: &[FoundModel],
@@ -182,7 +182,7 @@ fn declare(
     Ok(())
 }
 
-/// Adds a declaration to a single model's rules, or to a scope's.
+/// Adds a declaration to the rules of a single model, or to those of a scope.
 fn declare_for_scope(
     scope: &FileScope,
     declared: &ChannelDeclarations,
@@ -197,7 +197,7 @@ fn declare_for_scope(
     }
 }
 
-/// Rejects an option for a channel missing from the dataset, or for files that were not read.
+/// Rejects a declaration for a channel that the dataset lacks, or for files that were not read.
 fn check_declared<T>(
     option: &'static str,
     declaration: &FileValue<T>,
@@ -230,7 +230,7 @@ fn check_declared<T>(
     Ok(())
 }
 
-/// Returns a dataset's proposed name: the first folder's.
+/// Returns the proposed name of the dataset: that of the first folder.
 fn dataset_name(folders: &[PathBuf]) -> String {
     match folders.first().and_then(|folder| folder.file_name()) {
         Some(name) => name.to_string_lossy().into_owned(),

@@ -27,7 +27,7 @@ impl<T> ChannelValue<T> {
     }
 }
 
-/// Returns the first channel that several declarations name.
+/// Returns the first channel that is named by more than one declaration.
 pub(super) fn first_duplicate<'a, T: 'a>(
     declarations: impl IntoIterator<Item = &'a ChannelValue<T>>,
 ) -> Option<&'a str> {
@@ -55,10 +55,10 @@ impl<'a> RecordChannel<'a> {
     }
 }
 
-/// Role whose models are inverted in a channel; `None` restores the file's sign.
+/// Role whose models get the channel's sign inverted; `None` restores the sign in the files.
 pub type ChannelSign = ChannelValue<Option<SignRole>>;
 
-/// Parses a channel's sign: "NZ=-1", "NZ=-1:physics", "NZ=1".
+/// Parses the sign of a channel: "NZ=-1", "NZ=-1:physics", "NZ=1".
 pub(super) fn channel_sign(text: &str) -> Result<ChannelSign, String> {
     valid_sign(text).ok_or_else(|| {
         format!(
@@ -107,13 +107,13 @@ fn text_value(text: &str) -> Option<String> {
     }
 }
 
-/// Parses a channel with its samples' unit: "P=rad/s".
+/// Parses a channel and the unit of its samples: "P=rad/s".
 pub(super) fn channel_unit(text: &str) -> Result<ChannelValue<String>, String> {
     ChannelValue::parse(text, text_value)
         .ok_or_else(|| format!("expected CHANNEL=UNIT, as P=rad/s, found \"{text}\""))
 }
 
-/// Parses a channel with its samples' factor: "LON=25".
+/// Parses a channel and the factor of its samples: "LON=25".
 pub(super) fn channel_factor(text: &str) -> Result<ChannelValue<f64>, String> {
     ChannelValue::parse(text, factor).ok_or_else(|| {
         format!(
@@ -122,7 +122,7 @@ pub(super) fn channel_factor(text: &str) -> Result<ChannelValue<f64>, String> {
     })
 }
 
-/// Parses a channel's location: topic and field, or a column.
+/// Parses a channel and the location of its samples: topic and field, or a column.
 pub(super) fn channel_topic(text: &str) -> Result<ChannelValue<String>, String> {
     ChannelValue::parse(text, |column| text_value(column.trim_matches('"'))).ok_or_else(|| {
         format!(
@@ -131,9 +131,9 @@ pub(super) fn channel_topic(text: &str) -> Result<ChannelValue<String>, String> 
     })
 }
 
-/// Parses a channel's known delay \[s\], positive if the channel is logged late.
+/// Parses a channel and its delay \[s\], positive if the channel is logged late.
 pub(super) fn channel_delay(text: &str) -> Result<ChannelValue<f64>, String> {
-    /// Maximum plausible sensor or bus delay \[s\].
+    /// Maximum plausible delay \[s\] of a sensor or bus.
     const MOST_S: f64 = 2.0;
     let expected = || format!("expected CHANNEL=SECONDS, as P=0.02, found \"{text}\"");
     let delay = ChannelValue::parse(text, |seconds| seconds.parse().ok()).ok_or_else(expected)?;
@@ -152,7 +152,7 @@ pub(super) fn channel_delay(text: &str) -> Result<ChannelValue<f64>, String> {
 pub struct FileValue<T> {
     pub channel: String,
     pub value: T,
-    /// By default the identified models' files.
+    /// Files to which the value applies; by default those of the identified models.
     pub scope: FileScope,
 }
 
@@ -174,7 +174,7 @@ impl<T> FileValue<T> {
     }
 }
 
-/// Hint about an option's scope, for its error message.
+/// Hint about the scope of an option, for its error message.
 const SCOPE_HINT: &str =
     ":identified, :physics, :all or : and the file of a model or a pattern of folders may follow";
 

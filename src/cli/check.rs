@@ -1,4 +1,4 @@
-//! `gdcm check`.
+//! `gdcm check`: contents and faults of a dataset or a study.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -36,7 +36,7 @@ pub(super) fn check(
     signs: &[ChannelSign],
 ) -> Result<(), Failure> {
     if file.is_file() && !holds_models(file) {
-        // A wrong structure is found before a large file is read completely.
+        // Finds structural errors before a large file is read completely.
         check_beginning(file)?;
     }
     let opened = match open(file, arguments) {
@@ -55,14 +55,14 @@ pub(super) fn check(
     print(&(decided + &contents(&loaded) + &model_cautions(&study)?))
 }
 
-/// Returns whether an error concerns a dataset's content, which may have further faults; behind a
-/// syntax error no further fault can be found.
+/// Returns whether an error concerns the content of a dataset, which may have further faults; after
+/// a syntax error no others can be found.
 fn has_several_faults(error: &FileError) -> bool {
     matches!(error, FileError::Content { fault, .. } if matches!(**fault, ContentFault::Dataset(_)))
 }
 
-/// Reports every fault in a dataset; returns a single fault itself, or a failure with their
-/// number.
+/// Reports every fault in a dataset. Returns a single fault itself; several faults as a failure
+/// that gives their number.
 fn report_faults(file: &Path, first: FileError) -> Failure {
     match dataset_faults(file) {
         Ok(faults) if faults.len() > 1 => {
@@ -74,12 +74,12 @@ fn report_faults(file: &Path, first: FileError) -> Failure {
                 count: faults.len(),
             }
         }
-        // A single fault, or a study: the first message is complete.
+        // For a single fault, or a study, the first message is complete.
         _ => Failure::File(first),
     }
 }
 
-/// Returns the dataset's contents: its header, conditions, timings, records and cautions.
+/// Returns the contents of a dataset: its header, conditions, timings, records and cautions.
 fn contents(loaded: &LoadedDataset) -> String {
     let dataset = &loaded.dataset;
     let band = format!(
@@ -118,8 +118,8 @@ fn on_axis_words(dataset: &Dataset) -> String {
     }
 }
 
-/// Returns an analysis's cautions about the models alone. Missing references come
-/// first, then signs and units, because other cautions may follow from them.
+/// Returns the cautions of an analysis that concern only the models. Missing references come first,
+/// then signs and units, because other cautions may result from them.
 fn model_cautions(study: &Study) -> Result<String, Failure> {
     let execution = Execution::new(&crate::executor::Pool, &Unobserved, 0);
     let dataset = &study.dataset;
@@ -189,7 +189,7 @@ fn condition_table(dataset: &Dataset) -> String {
     indented(&table, 2)
 }
 
-/// Formats a number with its unit; "-" without a number.
+/// Formats a number with its unit; "-" for `None`.
 fn with_unit(value: Option<f64>, unit: &str) -> String {
     match value {
         Some(value) => format!("{} {unit}", number(value)),
@@ -197,7 +197,7 @@ fn with_unit(value: Option<f64>, unit: &str) -> String {
     }
 }
 
-/// Returns the sample times and delays, for each bundle with the models that share them (M2a).
+/// Returns the sample times and delays of each bundle, with the models that share them (M2a).
 fn timings(dataset: &Dataset) -> String {
     let mut text = String::new();
     for condition in dataset.conditions() {
@@ -227,7 +227,7 @@ fn timings(dataset: &Dataset) -> String {
     text
 }
 
-/// Returns each condition's flight records: their number, manoeuvres and use.
+/// Returns the flight records of each condition: their number, manoeuvres and use.
 fn records(dataset: &Dataset) -> String {
     let mut text = String::new();
     for condition in dataset.conditions() {
@@ -259,7 +259,7 @@ fn record_words(records: &[ConditionRecord]) -> String {
     words.join(", ")
 }
 
-/// Returns the models' state counts: "39", "11-14", "measured", "12, measured".
+/// Returns the number of states of the models: "39", "11-14", "measured", "12, measured".
 fn order_words(models: &[Model]) -> String {
     let mut orders: Vec<usize> = Vec::new();
     for model in models {
@@ -281,7 +281,7 @@ fn order_words(models: &[Model]) -> String {
     words.join(", ")
 }
 
-/// Returns the decisions in a study.
+/// Describes the decisions of a study.
 fn decisions(file: &Path, study: &Study) -> String {
     let mut text = line("Study", &sanitized_path(file));
     for condition in study.dataset.conditions() {

@@ -18,19 +18,20 @@ use super::study_options::{condition_ids, condition_of};
 use super::terminal::{caution, note};
 use super::text::listed_conditions;
 
-/// Records for a joint identification.
+/// Records that are identified jointly.
 pub(super) struct RecordGroup {
-    /// Their condition; `None` without a dataset.
+    /// Condition of the records; `None` without a dataset.
     pub(super) condition: Option<ConditionId>,
     pub(super) records: Vec<LaidOutRecord>,
 }
 
-/// A dataset that receives models.
+/// A dataset that receives identified models.
 pub(super) struct Destination {
     pub(super) dataset: Arc<Dataset>,
-    /// Output path.
+    /// Path of the extended dataset.
     pub(super) path: PathBuf,
-    /// The condition; `None` if each record goes to the condition in its name.
+    /// Condition that receives all records; `None` if each record goes to the condition in its
+    /// name.
     condition: Option<ConditionId>,
 }
 
@@ -58,8 +59,8 @@ impl Destination {
         }))
     }
 
-    /// Groups the records by condition, in the dataset's order; reports omitted records on
-    /// standard error.
+    /// Groups the records by condition, in the order of the dataset; omitted records are reported
+    /// on standard error.
     pub(super) fn groups(&self, records: Vec<LaidOutRecord>) -> Result<Vec<RecordGroup>, Failure> {
         match self.condition {
             Some(condition) => Ok(vec![group_for_condition(condition, records)?]),
@@ -67,7 +68,7 @@ impl Destination {
         }
     }
 
-    /// Groups the records by the conditions in their names.
+    /// Groups the records by the conditions given in their names.
     fn groups_by_name(&self, records: Vec<LaidOutRecord>) -> Result<Vec<RecordGroup>, Failure> {
         let mut groups: Vec<RecordGroup> = Vec::new();
         for condition in self.dataset.conditions() {
@@ -113,7 +114,7 @@ impl Destination {
         Ok(groups)
     }
 
-    /// Puts models and records into a condition.
+    /// Adds models and records to a condition.
     pub(super) fn adopt(
         &mut self,
         condition: ConditionId,
@@ -130,8 +131,8 @@ impl Destination {
     }
 }
 
-/// Returns the records for a condition, without those whose names give another condition, which
-/// are reported on standard error.
+/// Returns the records of a condition; those whose names give another condition are omitted and
+/// reported on standard error.
 fn group_for_condition(
     condition: ConditionId,
     records: Vec<LaidOutRecord>,
@@ -164,7 +165,7 @@ fn group_for_condition(
     })
 }
 
-/// Returns the conditions in record names, as "3, 7".
+/// Returns the conditions given in record names, as "3, 7".
 pub(super) fn named_conditions(records: &[LaidOutRecord]) -> String {
     let named: BTreeSet<i64> = records
         .iter()
@@ -174,8 +175,8 @@ pub(super) fn named_conditions(records: &[LaidOutRecord]) -> String {
     named.join(", ")
 }
 
-/// Returns the dataset for another folder: its records are referenced through `folder`, and its
-/// description is replaced if a new description is given.
+/// Returns the dataset for a file in another folder: record paths lead through `folder`, and a new
+/// description replaces the old one.
 fn moved_dataset(
     dataset: &Dataset,
     folder: &str,
@@ -202,7 +203,7 @@ fn moved_dataset(
     Dataset::new(header, conditions).map_err(|error| Failure::option(OPTION, error))
 }
 
-/// Returns a file's path through another folder; an absolute path stays.
+/// Returns the path prefixed with `folder`; an absolute path is unchanged.
 fn moved_file(file: &str, folder: &str) -> String {
     if folder.is_empty() || folder == "." || Path::new(file).is_absolute() {
         file.to_owned()

@@ -49,7 +49,7 @@ pub(super) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
     print(&text)
 }
 
-/// Returns an export's name: the study's or the dataset's file.
+/// Returns the name of the source stated in an export: the study file or the dataset file.
 fn source_name(arguments: &StudyArguments) -> String {
     let file = arguments.file.as_ref().and_then(|file| file.file_name());
     match file {

@@ -7,9 +7,9 @@ use gdcm_model::progress::Cancelled;
 
 use super::text::{counted, listed_paths};
 
-/// Exit status without a result.
+/// Exit status if the command produced no complete result.
 pub(super) const NOT_DONE: u8 = 1;
-/// Exit status if the command line or a file is wrong.
+/// Exit status if the command line or an input file is wrong.
 pub(super) const WRONG_INPUT: u8 = 2;
 
 /// Reason why a command was not carried out.
@@ -26,10 +26,10 @@ pub(super) enum Failure {
     /// The first word is neither a command nor a file, but resembles a command.
     #[error("{found}: no such command or file; did you mean gdcm {suggestion}?")]
     UnknownCommand { found: String, suggestion: String },
-    /// The study's dataset differs from the dataset that the study was made with.
+    /// The dataset has changed since the study was saved, and `--strict` was given.
     #[error("{path}: {} from the dataset of the study, refused by --strict", counted(*count, "difference"))]
     Different { path: String, count: usize },
-    /// Several faults in a dataset, each already reported.
+    /// Several faults in a dataset, each of which has already been reported.
     #[error("{path}: {count} faults; correct them and check the file again")]
     Faulty { path: String, count: usize },
     /// A model file instead of a dataset or a study.
@@ -41,7 +41,7 @@ pub(super) enum Failure {
     /// The rules are incomplete, so the files do not form a dataset yet.
     #[error("no dataset was written: complete {} in {rules} and pass it with --rules", counted(*count, "item"))]
     Incomplete { count: usize, rules: String },
-    /// Records with unclear or impossible columns, each already reported.
+    /// Records with unclear or invalid columns, each of which has already been reported.
     #[error(
         "{wrong} of {} cannot be used: give their columns (--inputs P=COLUMN, --time) and units \
          (--unit P=deg/s), or leave them out",
@@ -51,10 +51,10 @@ pub(super) enum Failure {
     /// No usable content in the files.
     #[error("{paths}: no usable {noun}")]
     Nothing { paths: String, noun: &'static str },
-    /// Named records that could not be read, or not completely; the rest was used.
+    /// Named records that could not be read completely; the others were used.
     #[error("{paths}: not read, or only in part; the results are without the rest")]
     Unread { paths: String },
-    /// Identification ran but identified no input.
+    /// Identification was completed, but the records identify no input.
     #[error("no input is identified by these records; the models do not describe {inputs}")]
     NotIdentified { inputs: String },
     #[error("no thread can be started: {reason}")]
@@ -69,7 +69,7 @@ pub(super) enum Failure {
     StandardOutput { reason: String },
 }
 
-/// Returns the option that helps against a file's error, to follow its message.
+/// Returns a hint, appended to the message of a file's error, at the option that helps.
 fn file_remedy(error: &FileError) -> &'static str {
     match error {
         FileError::Exists { .. } => "; --force overwrites",
@@ -78,7 +78,7 @@ fn file_remedy(error: &FileError) -> &'static str {
 }
 
 impl Failure {
-    /// Returns the failure for files without usable content.
+    /// Returns the failure for files without any usable `noun`.
     pub(super) fn nothing_in(paths: &[PathBuf], noun: &'static str) -> Self {
         Failure::Nothing {
             paths: listed_paths(paths),
@@ -86,12 +86,12 @@ impl Failure {
         }
     }
 
-    /// Returns the failure for a wrong option value.
+    /// Returns the failure for an invalid option value.
     pub(super) fn option(option: &'static str, reason: impl ToString) -> Self {
         Self::coded_option(option, "wrong-option", reason)
     }
 
-    /// Returns the failure for a wrong option value with a code of its own.
+    /// Returns the failure for an invalid option value, with its own code.
     pub(super) fn coded_option(
         option: &'static str,
         code: &'static str,
@@ -104,18 +104,18 @@ impl Failure {
         }
     }
 
-    /// Returns the failure for an option that is given twice for the same subject.
+    /// Returns the failure for an option given twice on one subject.
     pub(super) fn given_twice(option: &'static str, subject: &str) -> Self {
         Self::coded_option(option, "given-twice", format!("{subject} is given twice"))
     }
 
-    /// Returns the failure for an option with an unknown record.
+    /// Returns the failure for an option that names an unknown record.
     pub(super) fn unknown_record(option: &'static str, record: &str) -> Self {
         let reason = format!("\"{record}\" is none of the records");
         Self::coded_option(option, "unknown-record", reason)
     }
 
-    /// Returns the stable code for scripts; `None` for a file's error without a code.
+    /// Returns the stable code for scripts; `None` for a file error without a code.
     pub(super) fn code(&self) -> Option<&'static str> {
         let code = match self {
             Failure::File(error) => return error.code(),

@@ -1,4 +1,4 @@
-//! `gdcm figure`: a figure of the window, or its numbers, as a file.
+//! `gdcm figure`: a figure as in the window, or its data, as a file.
 
 use std::sync::Arc;
 
@@ -69,7 +69,7 @@ pub(super) fn figure(arguments: &FigureArguments) -> Result<(), Failure> {
     ))
 }
 
-/// Assesses the couplings requested by the study, or else mixing and feedback.
+/// Assesses the couplings requested by the study; without a request, mixing and feedback.
 fn assessed_couplings(
     study: &Study,
     engine: &mut Engine,
@@ -160,7 +160,7 @@ fn bode_options(dataset: &Dataset, arguments: &FigureArguments) -> Result<BodeOp
         Some(list) => pairs_of(dataset, list, "--zeros")?.first().copied(),
         None => None,
     };
-    // Showing couplings alone is an option of the window only.
+    // Only the window can show the curves with couplings.
     let mut hidden = vec![Role::Coupled];
     hidden.extend(arguments.hide.iter().copied());
     Ok(BodeOptions {
@@ -221,12 +221,12 @@ fn named_channel(dataset: &Dataset, name: &str) -> Result<Channel, Failure> {
         })
 }
 
-/// Returns the condition for a figure that shows a single condition.
+/// Returns the condition of a figure that shows a single condition.
 fn figure_condition(
     study: &Study,
     arguments: &FigureArguments,
 ) -> Result<Option<ConditionId>, Failure> {
-    // Couplings concern all conditions; the poles beside them belong to a single condition.
+    // Couplings concern all conditions; the poles shown beside them belong to a single condition.
     let is_requested = arguments.view == FigureKind::Couplings && arguments.condition.is_some();
     if !arguments.view.is_of_condition() && !is_requested {
         return Ok(None);

@@ -29,16 +29,16 @@ use super::text::indented;
 pub(super) struct ReadRecords {
     /// The records with their columns.
     pub(super) records: Vec<LaidOutRecord>,
-    /// Named files that could not be read, or only in part.
+    /// Named files that could not be read completely.
     pub(super) unread: Vec<PathBuf>,
     /// Notes about choices made while reading.
     pub(super) reading: Vec<String>,
     pub(super) duplicates: Vec<Duplicate>,
-    /// Records cut into parts, with their spans.
+    /// Whole records from which parts were cut, with their time spans.
     pub(super) wholes: Vec<WholeRecord>,
 }
 
-/// A record with the same samples as another record.
+/// A record whose samples equal those of another record.
 pub(super) struct Duplicate {
     /// Name of the other record.
     pub(super) original: String,
@@ -61,8 +61,8 @@ pub(super) fn found_records(paths: &[PathBuf]) -> Result<FoundRecords, Failure> 
     }
 }
 
-/// Reads and lays out the records; reports choices and faults on standard error. Units that a
-/// record states become those of the channels.
+/// Reads and lays out the records; choices and faults are reported on standard error. Channels
+/// without a unit take the unit stated by a record.
 pub(super) fn laid_out_records(
     arguments: &IdentifyArguments,
     channels: &mut RecordChannels,
@@ -117,25 +117,26 @@ pub(super) fn laid_out_records(
     })
 }
 
-/// Lays out records and reports what is found.
+/// Lays out records and reports notes, cautions and problems.
 struct RecordLayouts<'a> {
     dataset: Option<&'a Dataset>,
     wish: TimeWish,
     reported: Reported,
 }
 
-/// Messages of the records, of which those equal to the previous record's are not repeated.
+/// Messages reported so far; a record's messages are omitted if they equal those of the previous
+/// record.
 #[derive(Default)]
 struct Reported {
-    /// Notes about choices made while reading, each behind its record.
+    /// Notes about choices made while reading, each prefixed with its record.
     reading: Vec<String>,
     last_notes: Vec<String>,
     last_problems: Vec<String>,
 }
 
 impl RecordLayouts<'_> {
-    /// Lays out a record, following the dataset's entry for it if there is one; returns it with the
-    /// notes about choices. It is always used, because it was requested.
+    /// Lays out a record, according to its entry in the dataset if there is one, and returns it
+    /// with the notes about choices. The record is used in any case, because it was requested.
     fn lay_out(
         &self,
         table: RecordTable,
@@ -150,7 +151,8 @@ impl RecordLayouts<'_> {
         (record, notes)
     }
 
-    /// Lays out all records and reports notes, cautions and problems; takes over their units.
+    /// Lays out all records and reports notes, cautions and problems; the channels take the
+    /// records' units.
     fn lay_out_all(
         &mut self,
         tables: Vec<RecordTable>,
@@ -179,7 +181,7 @@ impl RecordLayouts<'_> {
     }
 
     /// Lays out the usable records again with the final units: a record read before the first
-    /// record with units may have none.
+    /// record with units may lack them.
     fn lay_out_again(
         &self,
         records: Vec<LaidOutRecord>,
@@ -202,7 +204,7 @@ impl RecordLayouts<'_> {
 }
 
 impl Reported {
-    /// Reports a record's notes: a flight's records are alike, and equal choices are reported once.
+    /// Reports the notes of a record, unless they equal those of the previous record.
     fn add_notes(&mut self, name: &str, notes: Vec<String>) {
         if notes == self.last_notes {
             return;
@@ -215,7 +217,7 @@ impl Reported {
         self.last_notes = notes;
     }
 
-    /// Reports a record's problems, unless the previous record had the same.
+    /// Reports the problems of a record, unless they equal those of the previous record.
     fn add_problems(&mut self, record: &LaidOutRecord) {
         let problems: Vec<String> = record.problems.iter().map(ToString::to_string).collect();
         if problems == self.last_problems {
@@ -228,8 +230,8 @@ impl Reported {
     }
 }
 
-/// Returns whether a record is a part without samples: a part applies only to records that have
-/// samples at its time.
+/// Returns whether a record is a part without samples. A part requested of all records is cut even
+/// from those without samples at its times.
 fn is_empty_part(record: &LaidOutRecord) -> bool {
     match (&record.table.part_s, &record.flight) {
         (Some(_), Some(flight)) => flight.time_s.len() < 2,
@@ -237,7 +239,7 @@ fn is_empty_part(record: &LaidOutRecord) -> bool {
     }
 }
 
-/// Returns whether a record is from a log, whose kind and sign convention no other file states.
+/// Returns whether a record comes from a log; its notes state format and sign convention.
 fn is_log(table: &RecordTable) -> bool {
     table
         .columns
@@ -262,8 +264,8 @@ fn check_parts(
     Ok(())
 }
 
-/// Holds out the requested records, or parts of `wholes`; without a request, records whose names
-/// say so stay held out.
+/// Holds out the requested records or parts; `wholes` are the records that were cut. Without a
+/// request, records whose names say so stay held out.
 pub(super) fn hold_out(
     names: &[String],
     records: &mut [LaidOutRecord],
@@ -301,7 +303,7 @@ pub(super) fn hold_out(
     Ok(())
 }
 
-/// Reports a record with the samples of others, and returns the cautions.
+/// Reports a record that has the same samples as others, and returns the cautions.
 pub(super) fn report_duplicates(record: &LaidOutRecord) -> Vec<Duplicate> {
     let mut duplicates = Vec::new();
     for reason in &record.cautions {
@@ -345,7 +347,7 @@ pub(super) fn record_table(records: &[LaidOutRecord], indent: usize) -> String {
     indented(&table, indent)
 }
 
-/// Record clock as used: with topics resampled and parts cut.
+/// Time axis of a record as used, after resampling of topics and cutting of parts.
 struct RecordClock {
     samples: usize,
     /// Median step \[s\]; NaN if unknown.

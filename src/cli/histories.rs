@@ -1,4 +1,4 @@
-//! Flight records that models are compared with in the time domain (M17.2).
+//! Flight records with which models are compared in the time domain (M17.2).
 
 use gdcm_io::import::record_files::FoundRecords;
 use gdcm_model::dataset::{Band, ConditionId, Dataset};
@@ -20,16 +20,16 @@ use super::result_arguments::HistoryArguments;
 use super::terminal::{caution, note};
 use crate::executor::Pool;
 
-/// Each condition's records.
+/// Flight records of each condition.
 #[derive(Default)]
 pub(super) struct ReadHistories {
     pub(super) conditions: Vec<HistoryRecords>,
-    /// Requested records that could not be read, or only in part.
+    /// Requested records that could not be read completely.
     unread: Vec<String>,
 }
 
 impl ReadHistories {
-    /// Returns the outcome for a command that used these records: a failure if some were not read.
+    /// Returns the outcome of a command that used these records: a failure if some were not read.
     pub(super) fn into_outcome(self) -> Result<(), Failure> {
         if self.unread.is_empty() {
             return Ok(());
@@ -40,8 +40,8 @@ impl ReadHistories {
     }
 }
 
-/// Reads each condition's records, with topics resampled to a clock for this band; reports
-/// omitted records on standard error.
+/// Reads the records of each condition. Topics are resampled to a sample rate suitable for `band`;
+/// omitted records are reported on standard error.
 pub(super) fn read_histories(
     arguments: &HistoryArguments,
     dataset: &Dataset,
@@ -95,7 +95,7 @@ pub(super) fn read_histories(
     Ok(ReadHistories { conditions, unread })
 }
 
-/// Computes the models' responses to the records, with progress on a terminal.
+/// Computes the responses of the models to the records, with progress on a terminal.
 pub(super) fn simulated_histories(
     analysis: &Analysis,
     records: &ReadHistories,
@@ -109,7 +109,7 @@ pub(super) fn simulated_histories(
     )?)
 }
 
-/// A record with its condition, if known.
+/// A record with its condition, if that is known.
 struct ConditionRecord {
     condition: Option<ConditionId>,
     record: LaidOutRecord,
@@ -127,7 +127,7 @@ impl ConditionRecord {
     }
 }
 
-/// Lays out a record, following the dataset's entry if any.
+/// Lays out a record according to its entry in the dataset, if there is one.
 fn laid_out_record(
     table: RecordTable,
     dataset: &Dataset,
@@ -149,7 +149,7 @@ fn laid_out_record(
     ConditionRecord { condition, record }
 }
 
-/// Reports a record's cautions and problems, and why it is omitted.
+/// Reports the cautions and problems of a record, and why it is omitted.
 fn report_record(laid_out: &ConditionRecord) {
     let record = &laid_out.record;
     let name = &record.table.name;

@@ -1,4 +1,4 @@
-//! Identifying models from flight records at a condition.
+//! Identification of models from the flight records of a condition.
 
 use std::path::{Path, PathBuf};
 
@@ -22,10 +22,10 @@ use super::progress::TerminalProgress;
 use super::text::counted;
 use crate::executor::Pool;
 
-/// File of the identified models.
+/// Name of the file with the identified models.
 pub(super) const IDENTIFIED_FILE: &str = "identified.json";
 
-/// Identifying models from a group of records.
+/// Identification of models from a group of records.
 pub(super) struct IdentificationTask {
     /// The condition in the dataset; `None` without a dataset.
     pub(super) condition: Option<ConditionId>,
@@ -64,13 +64,13 @@ impl IdentificationTask {
         self.request.identify(&Pool, &TerminalProgress::new(&work))
     }
 
-    /// Returns whether a record with this name takes part.
+    /// Returns whether a record with this name is used.
     pub(super) fn has_record(&self, name: &str) -> bool {
         self.records.iter().any(|record| record.table.name == name)
     }
 
-    /// Returns the cautions with the options that remedy them; with a dataset, also about a channel
-    /// that lags.
+    /// Returns the cautions, each with the options that remedy it; with a dataset, also about a
+    /// channel that lags.
     pub(super) fn cautions(
         &self,
         found: &Identification,
@@ -87,8 +87,8 @@ impl IdentificationTask {
         cautions
     }
 
-    /// Returns a caution for a channel that lags in all records compared with the nominal physics
-    /// model of the condition, with the option that removes its delay.
+    /// Returns a caution about a channel that in the measured responses lags behind the condition's
+    /// nominal physics model, with the option that removes its delay.
     fn late_channel(&self, found: &Identification, dataset: &Dataset) -> Option<CautionNote> {
         let condition = dataset.condition(self.condition?)?;
         let options = &self.request.options;
@@ -108,7 +108,7 @@ impl IdentificationTask {
         })
     }
 
-    /// Returns a caution with the options that remedy it.
+    /// Returns a caution together with the options that remedy it.
     fn caution_with_remedy(&self, caution: &IdentificationCaution) -> CautionNote {
         let mut note = caution.note();
         let IdentificationCaution::Contradiction { records, .. } = caution else {
@@ -148,7 +148,7 @@ impl IdentificationTask {
             .collect()
     }
 
-    /// Returns a table with a line for each record, below the condition if any.
+    /// Returns a table with a line for each record, under a heading with the condition if any.
     pub(super) fn table(&self) -> String {
         match self.condition {
             Some(id) => format!("condition {id}\n{}", record_table(&self.records, 2)),
@@ -156,7 +156,7 @@ impl IdentificationTask {
         }
     }
 
-    /// Returns the path for the identified models: a file for each condition if there are several.
+    /// Returns the output path of the identified models: with several conditions, a file for each.
     pub(super) fn output_path(&self, arguments: &IdentifyArguments) -> PathBuf {
         match self.condition {
             Some(id) if arguments.every_condition => arguments

@@ -1,4 +1,4 @@
-//! `gdcm identify`: models from flight records, optionally put into a dataset.
+//! `gdcm identify`: models from flight records, optionally added to a dataset.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -33,8 +33,8 @@ use super::requested_channels::{
 use super::terminal::{caution, caution_for, note, print};
 use super::text::{ConditionMessage, counted, listed_paths, shared_messages};
 
-/// Identifies models from flight records and writes them, with a copy of a dataset that contains
-/// them if given.
+/// Identifies models from flight records and writes them; with `--into`, also a copy of the dataset
+/// that contains them.
 pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
     let read = arguments.records.iter().chain(&arguments.into);
     let outputs = OutputSet::new(existing(arguments.force), read.cloned().collect());
@@ -67,7 +67,7 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
     }
 }
 
-/// Checks the outputs before the records are read, as far as their names are known.
+/// Checks those outputs whose names are known before the records are read.
 fn check_known_outputs(
     arguments: &IdentifyArguments,
     destination: Option<&Destination>,
@@ -91,7 +91,7 @@ struct IdentificationTasks {
     duplicates: Vec<Duplicate>,
 }
 
-/// Creates the identification tasks: a single task for all records, or a task for each condition.
+/// Creates the identification tasks: one for all records, or one per condition.
 fn identification_tasks(
     arguments: &IdentifyArguments,
     destination: Option<&Destination>,
@@ -127,7 +127,7 @@ fn identification_tasks(
     })
 }
 
-/// Groups all records; reports names that give several conditions.
+/// Puts all records into one group; reports names that give several conditions.
 fn single_group(records: Vec<LaidOutRecord>) -> RecordGroup {
     let conditions = named_conditions(&records);
     if conditions.contains(',') {
@@ -141,7 +141,7 @@ fn single_group(records: Vec<LaidOutRecord>) -> RecordGroup {
     }
 }
 
-/// Prepares the inputs with sample and hold, from a record that was not resampled:
+/// Sets the sample-and-hold behaviour of the inputs, judged from a record that was not resampled:
 /// resampling already shifts the time stamps.
 fn set_holds(preparation: &mut Preparation, records: &[LaidOutRecord], channels: &RecordChannels) {
     let as_logged = records
@@ -154,8 +154,8 @@ fn set_holds(preparation: &mut Preparation, records: &[LaidOutRecord], channels:
         if !channels.resampling.held.contains(&input.name) {
             continue;
         }
-        // A visible staircase acts as logged; a command logged once per hold acts half a hold later
-        // (M14.1).
+        // A signal logged as a staircase acts as logged; a command logged once per hold acts on
+        // average half a hold later (M14.1).
         let values: Vec<f64> = flight.inputs.column(index).iter().copied().collect();
         input.hold = match median_step(&flight.time_s) {
             Some(hold_s) if !is_held(&values) => Hold::Command { hold_s },
@@ -164,7 +164,7 @@ fn set_holds(preparation: &mut Preparation, records: &[LaidOutRecord], channels:
     }
 }
 
-/// A delay or factor for channels in single records.
+/// A delay or factor of channels in single records.
 struct RecordRemedy<'a> {
     option: &'static str,
     record: &'a str,
@@ -172,7 +172,7 @@ struct RecordRemedy<'a> {
     remedy: ChannelRemedy,
 }
 
-/// Returns the delays and factors for channels in single records.
+/// Returns the delays and factors of channels in single records.
 fn record_remedies(arguments: &IdentifyArguments) -> Vec<RecordRemedy<'_>> {
     let mut remedies = Vec::new();
     for delay in &arguments.delay {
@@ -204,7 +204,7 @@ fn record_remedies(arguments: &IdentifyArguments) -> Vec<RecordRemedy<'_>> {
     remedies
 }
 
-/// Applies the requested delays and factors to channels in single records; rejects duplicates.
+/// Applies the given delays and factors of channels in single records; rejects duplicates.
 fn apply_record_remedies(
     arguments: &IdentifyArguments,
     records: &mut [LaidOutRecord],
@@ -247,7 +247,7 @@ fn apply_record_remedies(
     Ok(())
 }
 
-/// Identifications with the outputs made so far.
+/// Results of the identifications and outputs made so far.
 struct Identifications<'a> {
     arguments: &'a IdentifyArguments,
     channels: &'a RecordChannels,
@@ -259,7 +259,7 @@ struct Identifications<'a> {
     lines: String,
     /// Successful identifications.
     count: usize,
-    /// Whether the records identify any input.
+    /// Whether the records identify at least one input.
     identifies_input: bool,
     cautions: Vec<ConditionMessage>,
 }
@@ -295,7 +295,7 @@ impl Identifications<'_> {
         Ok(())
     }
 
-    /// Adds a task's result to the outputs, and reports its facts.
+    /// Adds the result of a task to the outputs, and reports its notes and cautions.
     fn take(
         &mut self,
         task: &IdentificationTask,
@@ -342,8 +342,8 @@ impl Identifications<'_> {
         Ok(())
     }
 
-    /// Returns a task's cautions, and keeps those that are printed at the end: duplicates have
-    /// already been reported.
+    /// Returns the cautions of a task. They are also stored for printing at the end, except those
+    /// about duplicates, which have already been reported.
     fn cautions_of(
         &mut self,
         task: &IdentificationTask,
@@ -363,7 +363,7 @@ impl Identifications<'_> {
         cautions
     }
 
-    /// Returns the model channels, without the references behind the inputs.
+    /// Returns the channels of the model, without the reference channels after the inputs.
     fn model_channels(&self) -> RecordChannels {
         let mut channels = self.channels.clone();
         let references = self.arguments.references().len();
@@ -410,8 +410,8 @@ fn identifies_any_input(found: &Identification, channels: &RecordChannels) -> bo
     (0..channels.inputs.len()).any(|input| is_identified(found, input, outputs))
 }
 
-/// Returns whether the records identify an input: the other inputs do not explain it, and a
-/// response to it is known (M14).
+/// Returns whether the records identify an input: the other inputs do not explain it, and at least
+/// one response to it is known (M14).
 fn is_identified(found: &Identification, input: usize, outputs: usize) -> bool {
     let excitation = found.measured.excitation();
     if excitation.not_identified().any(|other| other == input) {

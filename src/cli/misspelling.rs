@@ -10,9 +10,9 @@ use gdcm_model::message_text::{sanitized, shortened};
 use super::arguments::Arguments;
 use super::failure::Failure;
 
-/// Returns the failure for a command line whose first word is neither a command nor a file but
-/// differs from a command by a letter or two; `None` for any other. The first element of
-/// `arguments` is the program.
+/// Returns the failure if the first word of the command line is neither a command nor a file but
+/// differs from a command by one or two letters; otherwise `None`. The first element of `arguments`
+/// is the program.
 pub(super) fn misspelt_command(arguments: &[OsString]) -> Option<Failure> {
     let word = arguments
         .iter()
@@ -29,7 +29,7 @@ pub(super) fn misspelt_command(arguments: &[OsString]) -> Option<Failure> {
         .get_subcommands()
         .flat_map(|command| command.get_name_and_visible_aliases())
         .min_by_key(|name| edit_distance(word, name))?;
-    // Two letters are half of a short word: that is another word.
+    // In a short word, two different letters make another word.
     let most = if word.chars().count() < 5 { 1 } else { 2 };
     if edit_distance(word, nearest) > most {
         return None;
@@ -40,12 +40,12 @@ pub(super) fn misspelt_command(arguments: &[OsString]) -> Option<Failure> {
     })
 }
 
-/// Returns the Levenshtein distance: the least number of letters to insert, delete or replace to
+/// Returns the Levenshtein distance: the minimum number of letters to insert, delete or replace to
 /// turn one word into the other (V. I. Levenshtein, "Binary codes capable of correcting deletions,
 /// insertions, and reversals", 1966).
 fn edit_distance(from: &str, to: &str) -> usize {
     let to: Vec<char> = to.chars().collect();
-    // Distances from the processed letters of `from` to each prefix of `to`.
+    // Distances from the processed part of `from` to each prefix of `to`.
     let mut distances: Vec<usize> = (0..=to.len()).collect();
     for (row, letter) in from.chars().enumerate() {
         let mut diagonal = distances[0];

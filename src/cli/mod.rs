@@ -1,7 +1,7 @@
-//! The commands that need no window.
+//! Commands that work without the window.
 //!
-//! Exit status: 0 done, 1 the analysis could not be done, 2 the command line or a file is wrong;
-//! the reason on standard error.
+//! Exit status: 0 done; 1 no complete result; 2 the command line or a file is wrong. The reason is
+//! reported on standard error.
 
 mod analyze;
 mod arguments;
@@ -59,8 +59,8 @@ use failure::{Failure, WRONG_INPUT};
 use study_arguments::OpeningArguments;
 use terminal::{OutputFormat, caution, coded_error, print};
 
-/// Carries out a command line. Without a command it opens a window, on a file or on the embedded
-/// example; it prints help, version and errors itself.
+/// Carries out a command line. Without a command, opens the window with a file or with the embedded
+/// example. Help, version and errors of the command line are printed here.
 pub fn run(
     arguments: impl IntoIterator<Item = OsString>,
     open_window: impl FnOnce(Option<PathBuf>) -> ExitCode,
@@ -105,9 +105,9 @@ fn has_argument(arguments: &[OsString], option: &str) -> bool {
     arguments.iter().any(|argument| argument == option)
 }
 
-/// Removes `--json` and `--quiet` before the command and returns the requested output: the parser
-/// refuses a command behind any option, as it must behind the window's file. The first
-/// element of `arguments` is the program.
+/// Removes `--json` and `--quiet` before the command and returns the output that they request. The
+/// parser itself rejects a command after any option, because it must reject one after the window's
+/// file. The first element of `arguments` is the program.
 fn take_leading_switches(arguments: &mut Vec<OsString>) -> OutputFormat {
     let mut output = OutputFormat::default();
     while let Some(argument) = arguments.get(1) {
@@ -123,8 +123,8 @@ fn take_leading_switches(arguments: &mut Vec<OsString>) -> OutputFormat {
     output
 }
 
-/// Joins a value to its option if the option takes a variable number of values: `--gain-bounds auto
-/// FILE` must not take the file for its second number, nor `--schedule-delays FILE` for its value.
+/// Joins an option and its value if the number of values is variable: `--gain-bounds auto FILE`
+/// must not take the file as its second number, nor `--schedule-delays FILE` as its value.
 fn with_values_joined(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
     let mut joined: Vec<OsString> = Vec::new();
     for argument in arguments {
@@ -139,7 +139,7 @@ fn with_values_joined(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsSt
     joined
 }
 
-/// Returns whether an argument is a word for an option with a variable number of values.
+/// Returns whether an argument is a word accepted by an option with a variable number of values.
 fn is_value_of(argument: &OsStr, option: &OsStr) -> bool {
     let Some(setting) = SETTINGS.iter().find(|setting| option == setting.option) else {
         return false;
@@ -176,8 +176,8 @@ fn carry_out(command: &Command) -> Result<(), Failure> {
     }
 }
 
-/// Opens a dataset or a study; reports the differences in a study's dataset on standard error, one
-/// per line.
+/// Opens a dataset or a study; if the dataset of a study has changed, the differences are reported
+/// on standard error, one per line.
 fn open(file: &Path, arguments: &OpeningArguments) -> Result<Opened, Failure> {
     if file.is_file() && file.extension().is_some() && holds_models(file) {
         return Err(Failure::Models {
@@ -236,8 +236,8 @@ fn finish(result: Result<(), Failure>) -> ExitCode {
     ExitCode::from(terminal::end(status))
 }
 
-/// Returns clap's message on one line, without the usage, which is printed below; for a wrong
-/// value, the option and the reason.
+/// Returns the message of clap on one line, without the usage, which is printed separately; for an
+/// invalid value, the option and the reason.
 fn usage_words(error: &clap::Error) -> String {
     if let (Some(ContextValue::String(option)), Some(reason)) =
         (error.get(ContextKind::InvalidArg), error.source())
@@ -267,7 +267,8 @@ fn on_one_line(paragraph: &str) -> String {
 mod tests {
     use super::*;
 
-    /// Arguments left behind the program, and the output that the removed switches request.
+    /// Returns the remaining arguments after the program, and the output that the removed switches
+    /// request.
     fn leading(words: &str) -> (Vec<String>, OutputFormat) {
         let mut arguments: Vec<OsString> = words.split(' ').map(OsString::from).collect();
         let output = take_leading_switches(&mut arguments);

@@ -4,7 +4,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 use gdcm_model::units::number;
 
-/// Returns a parser for the names of these values.
+/// Returns a parser that accepts the names of these values.
 pub(super) fn one_of<T, const N: usize>(
     values: [T; N],
     name: fn(T) -> &'static str,
@@ -47,7 +47,7 @@ pub(super) fn positive_rate(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Lookup-table airspeeds \[kt\], rising.
+/// Airspeeds \[kt\] of a lookup table, increasing.
 pub type Breakpoints = Vec<f64>;
 
 pub(super) fn breakpoints(text: &str) -> Result<Breakpoints, String> {
@@ -73,7 +73,7 @@ pub struct PairName {
     pub input: String,
 }
 
-/// Responses; an alias because the parser would take a vector for a repeated option.
+/// A list of responses. An alias, because the parser takes a plain vector for a repeated option.
 pub type PairList = Vec<PairName>;
 
 /// Parses "P/LAT,Q/LON", or "none".
@@ -95,7 +95,7 @@ fn pair_name(text: &str) -> Result<PairName, String> {
     }
 }
 
-/// Responses for a figure.
+/// Choice of responses in a figure.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PairChoice {
     OnAxis,
@@ -116,7 +116,7 @@ pub(super) fn pair_choice(text: &str) -> Result<PairChoice, String> {
 /// A rejected model.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Rejection {
-    /// Id of its condition.
+    /// Id of the model's condition.
     pub condition: i64,
     pub model: String,
 }
@@ -130,19 +130,19 @@ pub(super) fn rejection(text: &str) -> Result<Rejection, String> {
     })
 }
 
-/// A part of a record.
+/// A part of a record, selected by time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordPart {
-    /// Record name; `None` for all records with samples at that time.
+    /// Record name; `None` selects all records with samples at these times.
     pub record: Option<String>,
     /// First and last time \[s\].
     pub part_s: [f64; 2],
-    /// Whether the times count from the record's first sample instead of its own clock.
+    /// Whether the times count from the record's first sample instead of its time axis.
     pub is_from_start: bool,
 }
 
 impl RecordPart {
-    /// Returns the first and last time \[s\] on the clock of a record that starts at `start_s`.
+    /// Returns the first and last time \[s\] on the time axis of a record that starts at `start_s`.
     pub(super) fn on_clock_s(&self, start_s: f64) -> [f64; 2] {
         if self.is_from_start {
             self.part_s.map(|time_s| start_s + time_s)
@@ -151,7 +151,7 @@ impl RecordPart {
         }
     }
 
-    /// Returns the times as given: `5:34`, `+5:+34`.
+    /// Formats the times as on the command line: `5:34`, `+5:+34`.
     pub(super) fn words(&self) -> String {
         let sign = if self.is_from_start { "+" } else { "" };
         let [from, to] = self.part_s.map(number);
@@ -159,7 +159,8 @@ impl RecordPart {
     }
 }
 
-/// Parses "29:58" on the record's clock, "+5:+34" from its start, or either behind "RECORD:".
+/// Parses "29:58" on the record's time axis, "+5:+34" from its first sample, or either after
+/// "RECORD:".
 pub(super) fn record_part(text: &str) -> Result<RecordPart, String> {
     valid_part(text).ok_or_else(|| {
         format!(

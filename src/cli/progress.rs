@@ -1,4 +1,4 @@
-//! Progress on a terminal, and its interruption by Ctrl+C.
+//! Progress on a terminal, and interruption by Ctrl+C.
 
 #[cfg(unix)]
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -14,8 +14,8 @@ use gdcm_model::progress::Progress;
 
 use super::terminal::shows_progress;
 
-/// Returns the progress bars' target: hidden if standard error is no terminal or only results are
-/// requested.
+/// Returns where progress bars are drawn: nowhere if standard error is not a terminal or only
+/// results are requested.
 fn progress_target() -> ProgressDrawTarget {
     if shows_progress() {
         ProgressDrawTarget::stderr()
@@ -24,7 +24,7 @@ fn progress_target() -> ProgressDrawTarget {
     }
 }
 
-/// Reading progress, shown on a terminal only.
+/// Progress of reading files, shown only on a terminal.
 pub(super) struct ReadingProgress {
     bar: ProgressBar,
 }
@@ -54,12 +54,12 @@ impl Drop for ReadingProgress {
     }
 }
 
-/// Shorter analyses show no progress.
+/// Delay before the progress bar appears; shorter analyses show none.
 const QUICK: Duration = Duration::from_millis(500);
 
-/// Progress bar on standard error, if that is a terminal, once the analysis takes longer than half
-/// a second. While it exists, Ctrl+C ends the work at its next step, with a message and the exit
-/// status for incomplete work.
+/// Progress bar on standard error, if that is a terminal, once the analysis has taken half a
+/// second. While the bar exists, Ctrl+C stops the work at its next step, with a message and the
+/// exit status of incomplete work.
 pub(super) struct TerminalProgress {
     bar: ProgressBar,
     started: Instant,
@@ -68,7 +68,7 @@ pub(super) struct TerminalProgress {
 }
 
 impl TerminalProgress {
-    /// Creates the bar; `work` is its label.
+    /// Creates the bar with the label `work`.
     pub(super) fn new(work: &str) -> Self {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
         // An invalid template leaves the default style.
@@ -113,12 +113,12 @@ impl Progress for TerminalProgress {
     }
 }
 
-/// Work that checks for interruptions (SIGINT, Ctrl+C). Without such work, and from the second
-/// interruption on, the process ends at once.
+/// Marks work that checks for interruptions (SIGINT, Ctrl+C). Without such work, and from the
+/// second interruption on, the process ends at once.
 #[cfg(unix)]
 struct Interruptible;
 
-/// Interruptions during the process.
+/// State of interruptions of the process.
 #[cfg(unix)]
 struct Interruption {
     /// Whether an interruption occurred.
@@ -135,8 +135,8 @@ static INTERRUPTION: LazyLock<Interruption> = LazyLock::new(|| {
         is_requested: Arc::default(),
         ends_process: Arc::new(AtomicBool::new(true)),
     };
-    // The order matters: the first interruption of work only arms the second. If the system
-    // refuses, Ctrl+C ends the process.
+    // The order matters: the first interruption during work only prepares for the second. If the
+    // registration fails, Ctrl+C ends the process.
     let _ = flag::register_conditional_default(SIGINT, Arc::clone(&interruption.ends_process));
     let _ = flag::register(SIGINT, Arc::clone(&interruption.ends_process));
     let _ = flag::register(SIGINT, Arc::clone(&interruption.is_requested));

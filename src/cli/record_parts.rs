@@ -1,4 +1,4 @@
-//! Flight-record parts, chosen by time (`--part`).
+//! Parts of flight records, selected by time (`--part`).
 
 use std::path::Path;
 
@@ -8,22 +8,22 @@ use gdcm_sysid::records::{LaidOutRecord, RecordSource, RecordTable};
 use super::failure::Failure;
 use super::option_values::RecordPart;
 
-/// A record with a requested part.
+/// A record of which a part is requested.
 pub(super) struct WholeRecord {
     name: String,
     source: RecordSource,
-    /// First and last time \[s\] on its own clock.
+    /// First and last time \[s\] on the record's time axis.
     span_s: [f64; 2],
 }
 
 impl WholeRecord {
-    /// "prbs runs from 42.30 s to 81.30 s".
+    /// Describes the record: "prbs runs from 42.30 s to 81.30 s".
     fn words(&self) -> String {
         let [first, last] = self.span_s.map(|time_s| telling(time_s, 2));
         format!("{} runs from {first} s to {last} s", self.name)
     }
 
-    /// Returns whether a part may belong to this record, as far as its name says.
+    /// Returns whether a part may belong to this record, judging by the record name in the part.
     fn matches(&self, part: &RecordPart) -> bool {
         let Some(record) = &part.record else {
             return true;
@@ -43,8 +43,8 @@ pub(super) struct CutRecords {
     pub(super) wholes: Vec<WholeRecord>,
 }
 
-/// Cuts the requested parts from the records. A record with unclear columns replaces its parts,
-/// so that its problems are reported.
+/// Cuts the requested parts from the records. If the columns of a record are unclear, the whole
+/// record is kept so that its problems are reported.
 pub(super) fn cut_parts(
     tables: &[RecordTable],
     parts: &[RecordPart],
@@ -74,7 +74,7 @@ pub(super) fn cut_parts(
 }
 
 impl CutRecords {
-    /// Adds a record's part, or the whole record once if its columns are unclear.
+    /// Adds a part of a record; if the record's columns are unclear, the whole record, once only.
     fn add(
         &mut self,
         table: &RecordTable,
@@ -102,8 +102,8 @@ impl CutRecords {
     }
 }
 
-/// Returns whether a record is a requested part from the requested record; a record with
-/// unclear columns counts as every part.
+/// Returns whether a record is the requested part; a record with unclear columns matches every
+/// part.
 pub(super) fn is_part(table: &RecordTable, part: &RecordPart, wholes: &[WholeRecord]) -> bool {
     if let Some(record) = &part.record
         && !is_called(table, record)
@@ -117,7 +117,8 @@ pub(super) fn is_part(table: &RecordTable, part: &RecordPart, wholes: &[WholeRec
     }
 }
 
-/// Returns whether a record has this name: its file, its name, or its name within its file.
+/// Returns whether `wanted` identifies a record: as its file, its name, or its name within the
+/// file.
 pub(super) fn is_called(table: &RecordTable, wanted: &str) -> bool {
     let source = &table.source;
     let file = Path::new(wanted)
@@ -129,16 +130,16 @@ pub(super) fn is_called(table: &RecordTable, wanted: &str) -> bool {
         || source.variable.as_deref() == Some(wanted)
 }
 
-/// Returns whether a part belongs to the named record: a part's name is the record's name followed
-/// by the times.
+/// Returns whether a record is a part of the record `wanted`: the name of a part is that of the
+/// whole record followed by the times.
 fn is_called_before_part(table: &RecordTable, wanted: &str) -> bool {
     let rest = table.name.strip_prefix(wanted);
     table.part_s.is_some() && rest.is_some_and(|rest| rest.starts_with(", "))
 }
 
-/// Returns the failure for a part without samples, with the records' spans.
+/// Returns the failure for a part without samples; it lists the time spans of the records.
 pub(super) fn part_without_samples(part: &RecordPart, wholes: &[WholeRecord]) -> Failure {
-    /// Maximum count of listed spans.
+    /// Maximum number of listed time spans.
     const MOST: usize = 4;
     let spans: Vec<String> = wholes
         .iter()

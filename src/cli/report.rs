@@ -1,4 +1,4 @@
-//! `gdcm report`: the full report, ready to print.
+//! `gdcm report`: full report, ready to print.
 
 use std::path::Path;
 
@@ -59,7 +59,7 @@ pub(super) fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     records.into_outcome()
 }
 
-/// Rejects a name that does not end in .html or .htm.
+/// Rejects a file name that ends in neither .html nor .htm.
 fn check_ending(path: &Path) -> Result<(), Failure> {
     let ending = path
         .extension()

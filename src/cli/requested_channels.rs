@@ -1,4 +1,4 @@
-//! Channels that `gdcm identify` requests, with the declarations about their samples.
+//! Channels requested by `gdcm identify`, with the declarations about their samples.
 
 use gdcm_model::dataset::{Band, Dataset};
 use gdcm_model::names::channel_rule::ChannelRule;
@@ -11,7 +11,7 @@ use super::channel_values::{ChannelValue, RecordChannel, first_duplicate};
 use super::failure::Failure;
 use super::identify_arguments::IdentifyArguments;
 
-/// Returns the identification band, by default the dataset's.
+/// Returns the identification band; by default the band of the dataset.
 pub(super) fn requested_band(
     arguments: &IdentifyArguments,
     dataset: Option<&Dataset>,
@@ -58,7 +58,7 @@ pub(super) fn requested_channels(
     Ok(channels)
 }
 
-/// Returns the declarations that are not limited to a single record.
+/// Returns the declarations that apply to all records, not to a single one.
 fn for_all_records<T>(declarations: &[ChannelValue<T>]) -> Vec<&ChannelValue<T>> {
     declarations
         .iter()
@@ -73,7 +73,7 @@ fn listed(list: &Option<ChannelList>) -> &[SaidChannel] {
     }
 }
 
-/// Returns the channels on the command line, in the first record's units.
+/// Returns the channels listed on the command line, in the units of the first record.
 fn named_channels(arguments: &IdentifyArguments) -> RecordChannels {
     let inputs = listed(&arguments.inputs).iter();
     let outputs = listed(&arguments.outputs).iter();
@@ -84,7 +84,7 @@ fn named_channels(arguments: &IdentifyArguments) -> RecordChannels {
     }
 }
 
-/// Returns the dataset's channels, in its units, with the columns on the command line.
+/// Returns the channels of the dataset, in its units; columns may be given on the command line.
 fn channels_of_dataset(
     arguments: &IdentifyArguments,
     dataset: &Dataset,
@@ -99,7 +99,7 @@ fn channels_of_dataset(
     Ok(channels)
 }
 
-/// Sets a channel's column in the dataset; rejects another unit.
+/// Sets the column of a channel of the dataset; rejects a unit other than the dataset's.
 fn set_column(
     option: &'static str,
     channel: &SaidChannel,
@@ -131,7 +131,7 @@ fn set_column(
     Ok(())
 }
 
-/// Adds the references behind the model's inputs, because they are read like inputs.
+/// Adds the reference channels after the model's inputs, because both are read in the same way.
 fn add_references(
     arguments: &IdentifyArguments,
     channels: &mut RecordChannels,
@@ -170,7 +170,7 @@ fn set_locations(
     Ok(())
 }
 
-/// Rejects a channel of `--held` that is no input.
+/// Rejects a channel of `--held` that is not an input.
 fn check_held(arguments: &IdentifyArguments, channels: &RecordChannels) -> Result<(), Failure> {
     for held in &arguments.held {
         if channels.inputs.iter().all(|rule| rule.name != *held) {
@@ -181,7 +181,7 @@ fn check_held(arguments: &IdentifyArguments, channels: &RecordChannels) -> Resul
     Ok(())
 }
 
-/// Returns the channel preparation, which removes known delays.
+/// Returns the preparation of the channels, which removes the given delays.
 pub(super) fn requested_preparation(
     arguments: &IdentifyArguments,
     channels: &RecordChannels,
@@ -203,7 +203,7 @@ pub(super) fn requested_preparation(
     })
 }
 
-/// Returns the channel preparations that remove known delays.
+/// Returns the preparation of each channel, which removes its delay if one is given.
 fn without_delays(rules: &[ChannelRule], delays: &[&ChannelValue<f64>]) -> Vec<ChannelPreparation> {
     let mut prepared = Vec::new();
     for rule in rules {
@@ -223,13 +223,13 @@ pub(super) fn has_channel(channels: &RecordChannels, name: &str) -> bool {
     rules.any(|rule| rule.name == name)
 }
 
-/// Returns the failure for an option about an unknown channel.
+/// Returns the failure for an option that names an unknown channel.
 pub(super) fn unknown_channel(option: &'static str, channel: &str) -> Failure {
     let reason = format!("{channel} is none of the channels");
     Failure::coded_option(option, "unknown-channel", reason)
 }
 
-/// Applies an option's declarations to the channels; rejects duplicates.
+/// Applies the declarations of an option to the channels; rejects duplicates.
 pub(super) fn declare_conversions<'a, T: Clone + 'a>(
     option: &'static str,
     declarations: impl IntoIterator<Item = &'a ChannelValue<T>>,

@@ -1,5 +1,5 @@
-//! `gdcm requirements`: the quantities required for a qualification, computed for the models of
-//! every condition; written as files, with a short table.
+//! `gdcm requirements`: metrics required for a qualification, computed for the models of every
+//! condition; written to files, with a short printed table.
 
 use std::collections::BTreeSet;
 
@@ -27,8 +27,8 @@ use super::study_options::{CommandStudy, ErrorBars, StudyAnalysis, analyze_study
 use super::terminal::{caution_for, note, print};
 use super::text::{ConditionMessage, counted, indented, indented_untitled, line, shared_messages};
 
-/// Writes the tolerance table if requested; analyses, writes the requirements, and prints a
-/// short table.
+/// Writes the tolerance table if requested; analyses the study, writes the requirements, and prints
+/// a short table.
 pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Failure> {
     let CommandStudy {
         study,
@@ -103,8 +103,8 @@ fn report_cautions(requirements: &Requirements) {
     }
 }
 
-/// Reports missing results, first those about the whole. Missing records are not reported if
-/// none were given.
+/// Reports missing results, first those that concern all conditions. Missing records are not
+/// reported if none were given.
 fn report_missing(requirements: &Requirements, histories: &TimeHistories) {
     // Conditions without a result have already been reported.
     let mut missing: Vec<&MissingFinding> = requirements
@@ -125,7 +125,7 @@ fn report_missing(requirements: &Requirements, histories: &TimeHistories) {
     }
 }
 
-/// Formats a number, or a dash.
+/// Formats a number; a dash for `None`.
 fn cell(value: Option<f64>, digits: usize) -> String {
     match value {
         Some(value) => format!("{value:.digits$}"),
@@ -133,7 +133,7 @@ fn cell(value: Option<f64>, digits: usize) -> String {
     }
 }
 
-/// A response's bandwidth results, by role.
+/// Bandwidth results of a response, one per role.
 struct ResponseBandwidths<'a> {
     name: String,
     findings: &'a [BandwidthFinding],
@@ -149,8 +149,8 @@ fn has_number(finding: &BandwidthFinding) -> bool {
     finding.omega_bw_rad_s.is_some() || finding.phase_delay_s.is_some()
 }
 
-/// Returns bandwidth and phase delay of every response with either number, by role; for the others
-/// the reason, once.
+/// Returns bandwidth and phase delay, by role, of every response in which either is defined; for
+/// the others the reasons.
 fn bandwidth_section(study: &Study, requirements: &Requirements) -> String {
     let responses: Vec<ResponseBandwidths> = requirements
         .bandwidth
@@ -187,8 +187,8 @@ fn absent_bandwidths(responses: &[ResponseBandwidths]) -> Vec<ConditionMessage> 
         .collect()
 }
 
-/// Returns the reasons for missing phase delays; a response without any number needs only the
-/// reason for its bandwidth.
+/// Returns the reasons for missing phase delays; omits a reason if its first result lacks the
+/// bandwidth too, since the reason for that is given.
 fn absent_delays(responses: &[ResponseBandwidths]) -> Vec<ConditionMessage> {
     responses
         .iter()
@@ -206,9 +206,9 @@ fn absent_lines(label: &str, messages: Vec<ConditionMessage>) -> String {
     text
 }
 
-/// Reason why a response's number is missing.
+/// Reason why a bandwidth or phase delay is missing.
 struct AbsentReason<'a> {
-    /// First result without the number for this reason.
+    /// First result to which the reason applies.
     finding: &'a BandwidthFinding,
     /// "LON → Q (physics, corrected): …".
     words: String,
@@ -220,8 +220,8 @@ impl AbsentReason<'_> {
     }
 }
 
-/// Returns the reasons for a response's missing numbers, each once, with its roles unless it
-/// applies to all.
+/// Returns the distinct reasons why a quantity is missing in the results of a response, each with
+/// its roles unless it applies to all.
 fn absent_reasons<'a>(response: &ResponseBandwidths<'a>, quantity: &str) -> Vec<AbsentReason<'a>> {
     let findings = response.findings;
     let reasons: BTreeSet<&String> = findings
@@ -248,7 +248,8 @@ fn absent_reasons<'a>(response: &ResponseBandwidths<'a>, quantity: &str) -> Vec<
     absent
 }
 
-/// Returns a table with a row for each response with a number: its name and the numbers by role.
+/// Returns a table with a row for each response that has a bandwidth or a phase delay, and a column
+/// for each role.
 fn bandwidth_table(responses: &[ResponseBandwidths]) -> Table {
     let mut headings = vec!["condition", "response"];
     headings.extend(RequirementRole::ALL.map(RequirementRole::name));
@@ -271,8 +272,8 @@ fn bandwidth_table(responses: &[ResponseBandwidths]) -> Table {
     table
 }
 
-/// Formats "2.13 / 112*": bandwidth \[rad/s\] and phase delay \[ms\] of a response, each marked if
-/// it depends on the response above the band.
+/// Formats "2.13 / 112*": bandwidth \[rad/s\] and phase delay \[ms\] of a response; a star marks a
+/// value that depends on the response above the band.
 fn bandwidth_cell(finding: &BandwidthFinding) -> String {
     format!(
         "{}{} / {}{}",
@@ -291,7 +292,7 @@ fn above_mark(finding: &BandwidthFinding, quantity: &str) -> &'static str {
     }
 }
 
-/// Returns mean J and the band share inside the envelopes, on-axis, by role.
+/// Returns, by role, the on-axis mean of J and the share of the band inside the envelopes.
 fn summary_section(requirements: &Requirements) -> String {
     let roles = [
         RequirementRole::Physics,
@@ -323,7 +324,7 @@ fn summary_section(requirements: &Requirements) -> String {
     line("Summary", words) + &indented(&table, 2)
 }
 
-/// Returns how many modes are within their tolerances, for the physics models and, where couplings
+/// Returns how many modes are within their tolerances for the physics models and, where couplings
 /// change the modes, for the corrected models.
 fn mode_section(requirements: &Requirements) -> String {
     let modes = &requirements.modes;
@@ -355,7 +356,7 @@ fn verdict_counts(model: &str, verdicts: &[ModeVerdict]) -> String {
     format!("of {model} against identified: {}", counts.join(", "))
 }
 
-/// Returns the time share inside the tolerances for models that leave them, by condition, and
+/// Returns the share of time inside the tolerances, by condition, of models that leave them, and
 /// the rms errors.
 fn history_section(histories: &TimeHistories) -> String {
     const HEADING: &str = "Time history";
@@ -391,8 +392,8 @@ fn history_section(histories: &TimeHistories) -> String {
     text + &indented_untitled(history_cost_table(histories))
 }
 
-/// Returns whether a model of the row leaves the tolerances. Condition, record and quantity stand
-/// before the shares in percent.
+/// Returns whether a model in the row leaves the tolerances. The row gives condition, record and
+/// quantity, then the shares of time in percent.
 fn leaves_tolerances(row: &[String]) -> bool {
     row[3..]
         .iter()

@@ -1,5 +1,5 @@
-//! Printed schedule: its net gains and delays, the evidence about its scatter, and its assessment
-//! with conditions left out.
+//! Printed summary of the schedule: its net gains and delays, the sources of their scatter, and its
+//! assessment at conditions left out of its fit.
 
 use gdcm_method::schedule::{Schedule, ScheduleCaution, ScheduledQuantity};
 use gdcm_model::dataset::Pair;
@@ -18,15 +18,16 @@ use gdcm_words::uncertainty::{
 use super::terminal::keep_coded_caution;
 use super::text::{detail, fixed_digits, indented, indented_untitled, line};
 
-/// Returns the responses in tables: the on-axis responses, which rate a model, and the constrained
-/// responses.
+/// Returns the responses listed in tables: the on-axis responses, which measure a model, and the
+/// constrained responses.
 pub(super) fn shown_pairs(study: &Study) -> Vec<Pair> {
     let measuring = study.dataset.measuring_pairs();
     let shown = measuring.map(|pair, measures| *measures || study.settings.constrained[pair]);
     shown.marked().collect()
 }
 
-/// Returns a correction's usual assessment: for the nominal models, with the study's average.
+/// Returns the usual choice for the assessment of a correction: nominal models, with the study's
+/// average.
 pub(super) fn nominal_choice(
     analysis: &Analysis,
     correction: AssessedCorrection,
@@ -97,13 +98,13 @@ fn schedule_words(schedule: &Schedule) -> String {
 #[derive(Clone, Copy)]
 enum NetQuantity {
     Gain,
-    /// In ms.
+    /// Delay \[ms\].
     Delay,
 }
 
 /// Returns a table with a scheduled quantity over airspeed.
 fn schedule_table(analysis: &Analysis, schedule: &Schedule, quantity: NetQuantity) -> String {
-    /// Displayed airspeeds as fractions of the range: the ends, the middle, and the quarters.
+    /// Listed airspeeds as fractions of the range: the ends, the middle and the quarters.
     const SHOWN: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
     let min = schedule.airspeeds.min_kt;
     let max = schedule.airspeeds.max_kt;
@@ -127,8 +128,8 @@ fn schedule_table(analysis: &Analysis, schedule: &Schedule, quantity: NetQuantit
     indented(&table, 2)
 }
 
-/// Returns the scatter's sources, the differences at equal airspeed, and the second variables;
-/// empty if the error bars were not computed.
+/// Returns the sources of scatter, the differences at equal airspeed, and the need for a second
+/// variable; empty if the error bars were not computed.
 pub(super) fn evidence_section(analysis: &Analysis) -> String {
     let Some(uncertainty) = &analysis.uncertainty else {
         return String::new();
@@ -190,7 +191,7 @@ fn second_variable_lines(study: &Study, uncertainty: &Uncertainty) -> String {
     text
 }
 
-/// Returns the change of J of each condition's nominal model under the schedule made from the other
+/// Returns the change in J of each condition's nominal model due to a schedule fitted to the other
 /// conditions.
 pub(super) fn leave_one_out_section(analysis: &Analysis) -> String {
     let seen = assessment(analysis, AssessedCorrection::Scheduled);

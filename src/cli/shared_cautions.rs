@@ -1,5 +1,5 @@
-//! Cautions of many conditions: a table for the remarks that most conditions share, and a line for
-//! every other caution.
+//! Cautions about many conditions: a table of the remarks of recurring kinds, and a line for each
+//! other caution.
 
 use gdcm_model::dataset::{ConditionId, Dataset, Pair};
 use gdcm_model::message_text::sanitized;
@@ -12,14 +12,14 @@ use gdcm_words::remark::{Remark, RemarkKind, Repeated};
 use super::terminal::keep_caution;
 use super::text::{ConditionMessage, indented, line, shared_messages};
 
-/// Repeated remarks about a condition.
+/// Remarks on a condition, of kinds that typically recur at other conditions.
 struct RemarkRow {
     condition: ConditionId,
     remarks: Vec<Remark>,
 }
 
 impl RemarkRow {
-    /// Returns the facts in the remarks.
+    /// Returns the facts stated by the remarks.
     fn facts(&self) -> impl Iterator<Item = &Repeated> {
         self.remarks
             .iter()
@@ -27,8 +27,8 @@ impl RemarkRow {
     }
 }
 
-/// Returns the cautions common to most conditions as a table, and every other caution once with its
-/// conditions; keeps them for the JSON object.
+/// Returns the remarks of recurring kinds as a table, and each other caution once with its
+/// conditions; also adds them to the JSON object.
 pub(super) fn cautions_section(analysis: &Analysis) -> String {
     let mut rows: Vec<RemarkRow> = Vec::new();
     let mut others: Vec<ConditionMessage> = Vec::new();
@@ -58,7 +58,7 @@ pub(super) fn cautions_section(analysis: &Analysis) -> String {
     if let [row] = &rows[..]
         && let [alone] = &row.remarks[..]
     {
-        // For a single remark of a single condition a sentence suffices.
+        // A sentence suffices if only a single remark on a single condition remains.
         let message = ConditionMessage::new(row.condition, alone.text.clone());
         others.insert(0, message);
     } else if !rows.is_empty() {
@@ -71,8 +71,8 @@ pub(super) fn cautions_section(analysis: &Analysis) -> String {
     text
 }
 
-/// Returns a condition's cautions, without the doubts about signs and units, which are printed
-/// above all conditions.
+/// Returns the cautions about a condition, without the doubts about signs and units, which are
+/// printed before all conditions.
 fn condition_cautions(analysis: &Analysis, result: &ConditionAnalysis) -> Vec<Remark> {
     remarks(&analysis.study, result, None)
         .into_iter()
@@ -81,9 +81,9 @@ fn condition_cautions(analysis: &Analysis, result: &ConditionAnalysis) -> Vec<Re
         .collect()
 }
 
-/// Returns a table with a row for each condition, a column for each response that needs lead or
-/// moves away from flight, and columns for other repeated remarks; above it, the meaning of the
-/// columns.
+/// Returns an explanation of the columns, followed by a table with a row for each condition, a
+/// column for each response that needs lead or moves away from flight, and columns for other
+/// repeated remarks.
 fn repeated_table(dataset: &Dataset, rows: &[RemarkRow]) -> String {
     let facts: Vec<&Repeated> = rows.iter().flat_map(RemarkRow::facts).collect();
     let pairs: Vec<Pair> = dataset
@@ -117,7 +117,7 @@ fn repeated_table(dataset: &Dataset, rows: &[RemarkRow]) -> String {
     line("Cautions", &format!("{sentence}:")) + &indented(&table, 2)
 }
 
-/// Explains the entries in the columns of responses.
+/// Explains the cell entries of the response columns.
 fn pair_sentences(facts: &[&Repeated]) -> Vec<&'static str> {
     let mut sentences = Vec::new();
     if facts
@@ -136,12 +136,12 @@ fn pair_sentences(facts: &[&Repeated]) -> Vec<&'static str> {
     sentences
 }
 
-/// Returns whether a response needs lead or moves away from flight in any condition.
+/// Returns whether the facts say that a response needs lead or moves away from flight.
 fn has_entry(facts: &[&Repeated], pair: Pair) -> bool {
     needed_lead_ms(facts, pair).is_some() || is_farther(facts, pair)
 }
 
-/// Returns the lead that a response needs \[ms\].
+/// Returns the lead \[ms\] that a response needs.
 fn needed_lead_ms<'a>(facts: &[&'a Repeated], pair: Pair) -> Option<&'a str> {
     for fact in facts {
         let Repeated::NeedsLead(needed) = fact else {
@@ -163,7 +163,7 @@ fn is_farther(facts: &[&Repeated], pair: Pair) -> bool {
         .any(|fact| matches!(fact, Repeated::Farther(pairs) if pairs.contains(&pair)))
 }
 
-/// Formats the lead that a response needs, with a star if it moves away from flight.
+/// Formats the lead that a response needs, with a star if the response moves away from flight.
 fn pair_cell(facts: &[&Repeated], pair: Pair) -> String {
     let lead_ms = needed_lead_ms(facts, pair).unwrap_or(NO_ENTRY);
     if is_farther(facts, pair) {
@@ -176,11 +176,11 @@ fn pair_cell(facts: &[&Repeated], pair: Pair) -> String {
 /// Cell without an entry.
 const NO_ENTRY: &str = "-";
 
-/// A column for a repeated remark.
+/// A column of the table for a repeated remark other than those on responses.
 struct RemarkColumn {
     heading: &'static str,
     sentence: &'static str,
-    /// Returns the cell for a remark that belongs in the column.
+    /// Returns the cell of a remark; `None` if the remark does not belong in the column.
     format: fn(&Repeated, &Dataset) -> Option<String>,
 }
 

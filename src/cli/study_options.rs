@@ -1,4 +1,4 @@
-//! The study of a command, with the options of the command line applied.
+//! The study of a command, modified by the options on the command line.
 
 use std::sync::Arc;
 
@@ -25,15 +25,15 @@ use crate::executor::Pool;
 /// The study of a command.
 pub(super) struct CommandStudy {
     pub(super) study: Study,
-    /// Its dataset, as loaded.
+    /// Dataset as loaded from the file, before options are applied.
     pub(super) loaded: LoadedDataset,
     /// Output files, which never overwrite the inputs.
     pub(super) outputs: OutputSet,
 }
 
 impl CommandStudy {
-    /// Opens the study and its dataset and applies the options. Reports the file's cautions on
-    /// standard error.
+    /// Opens the study and its dataset, and applies the options. Cautions about the files are
+    /// reported on standard error.
     pub(super) fn open(arguments: &StudyArguments, force: bool) -> Result<Self, Failure> {
         let (mut study, loaded) = match &arguments.file {
             Some(file) => {
@@ -70,14 +70,14 @@ pub(super) enum ErrorBars {
     Omitted,
 }
 
-/// An analysis with the engine that made it.
+/// An analysis with the engine that computed it.
 pub(super) struct StudyAnalysis {
     pub(super) analysis: Analysis,
     pub(super) engine: Engine,
 }
 
-/// Analyses a study, after rejecting the suggested outliers if requested. With error bars, the
-/// couplings are assessed too. Reports conditions without a result on standard error.
+/// Analyses a study; if requested, the suggested outliers are first rejected. With error bars, the
+/// couplings are assessed too. Conditions without a result are reported on standard error.
 ///
 /// # Errors
 /// No condition has a result.
@@ -132,7 +132,7 @@ fn report_failed_conditions(analysis: &Analysis) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Returns the condition with an option's id.
+/// Returns the condition with the id given by an option.
 pub(super) fn condition_of(dataset: &Dataset, id: i64) -> Result<ConditionId, Failure> {
     match dataset.condition(ConditionId(id)) {
         Some(condition) => Ok(condition.id()),
@@ -148,7 +148,7 @@ pub(super) fn condition_of(dataset: &Dataset, id: i64) -> Result<ConditionId, Fa
     }
 }
 
-/// Joins the conditions' ids with commas.
+/// Lists the ids of all conditions, separated by commas.
 pub(super) fn condition_ids(dataset: &Dataset) -> String {
     let ids: Vec<String> = dataset
         .conditions()
@@ -165,7 +165,7 @@ fn apply(study: &mut Study, option: &'static str, edit: &Edit) -> Result<(), Fai
         .map_err(|refusal| Failure::option(option, refusal))
 }
 
-/// Applies the options to the study; they override the study's own settings.
+/// Applies the options to the study, overriding its own settings.
 fn apply_options(study: &mut Study, arguments: &StudyArguments) -> Result<(), Failure> {
     for GivenSetting { setting, words } in &arguments.settings.given {
         let option = setting.option;
@@ -194,7 +194,7 @@ fn apply_options(study: &mut Study, arguments: &StudyArguments) -> Result<(), Fa
     Ok(())
 }
 
-/// Applies the options about requirements, which override the study's own.
+/// Applies the options about requirements, overriding the study's own.
 fn apply_requirements(study: &mut Study, arguments: &StudyArguments) -> Result<(), Failure> {
     let mut settings = RequirementSettings::clone(&study.requirements);
     let (_, outputs) = study.dataset.names_of_channels();
@@ -237,8 +237,8 @@ fn apply_requirements(study: &mut Study, arguments: &StudyArguments) -> Result<(
     Ok(())
 }
 
-/// Rejects a second variable that a scheduled condition lacks, before the analysis: its schedule
-/// would have no result.
+/// Rejects a second variable that a scheduled condition lacks. Checked before the analysis, whose
+/// schedule would fail.
 fn check_second_variable(study: &Study) -> Result<(), Failure> {
     let Some(variable) = study.settings.schedule.second else {
         return Ok(());
@@ -294,7 +294,7 @@ pub(super) fn apply_signs(study: &mut Study, signs: &[ChannelSign]) -> Result<()
     Ok(())
 }
 
-/// Returns the responses that an option lists.
+/// Returns the responses listed in an option.
 pub(super) fn pairs_of(
     dataset: &Dataset,
     list: &[PairName],
@@ -315,7 +315,7 @@ pub(super) fn pairs_of(
     Ok(pairs)
 }
 
-/// Joins channel names with commas.
+/// Lists channel names, separated by commas.
 pub(super) fn channel_names(channels: &[Channel]) -> String {
     let names: Vec<&str> = channels
         .iter()
@@ -324,7 +324,7 @@ pub(super) fn channel_names(channels: &[Channel]) -> String {
     names.join(", ")
 }
 
-/// Constrains the listed responses and releases the others.
+/// Constrains the listed responses and releases all others.
 fn constrain(study: &mut Study, list: &[PairName]) -> Result<(), Failure> {
     let dataset = study.dataset.clone();
     let constrained = pairs_of(&dataset, list, "--on")?;
@@ -365,7 +365,7 @@ fn reject(study: &mut Study, rejection: &Rejection) -> Result<(), Failure> {
     }
 }
 
-/// Rejects the suggested outliers; returns whether anything changed.
+/// Rejects the suggested outliers; returns whether any was not yet rejected.
 fn reject_suggested(study: &mut Study, analysis: &Analysis) -> Result<bool, Failure> {
     let before = study.clone();
     for (&condition, outcome) in &analysis.conditions {

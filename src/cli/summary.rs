@@ -31,7 +31,7 @@ use super::shared_cautions::cautions_section;
 use super::terminal::keep_caution;
 use super::text::{detail, detail_list, fixed_digits, indented, line};
 
-/// Returns the readable results: settings, each condition, schedule, assessment, and output files.
+/// Returns the printed results: settings, each condition, schedule, assessment, and output files.
 pub(super) fn summary(analysis: &Analysis, loaded: &LoadedDataset, out: &Path) -> String {
     let mut text = heading(analysis, loaded);
     text += &doubts_section(analysis);
@@ -50,7 +50,7 @@ pub(super) fn summary(analysis: &Analysis, loaded: &LoadedDataset, out: &Path) -
     text + &line("Written", &files)
 }
 
-/// Returns the doubts about signs and units, and keeps them for the JSON object.
+/// Returns the doubts about signs and units, and adds them to the JSON object.
 fn doubts_section(analysis: &Analysis) -> String {
     let mut text = String::new();
     for doubt in &analysis.doubts {
@@ -61,7 +61,7 @@ fn doubts_section(analysis: &Analysis) -> String {
     text
 }
 
-/// Describes a doubtful sign or unit of a channel, with the option that inverts the sign.
+/// Describes a doubt about the sign or unit of a channel, with the option that inverts the sign.
 pub(super) fn doubt_words(doubt: &ConventionDoubt, dataset: &Dataset) -> String {
     let mut words = doubt_text(doubt, dataset);
     if let Some(channel) = doubt.turns() {
@@ -130,7 +130,7 @@ fn held_words(analysis: &Analysis) -> String {
     }
 }
 
-/// Returns the couplings' meaning, benefit and cost; empty without couplings.
+/// Returns the meaning, benefit and cost of the couplings; empty without couplings.
 fn couplings_section(analysis: &Analysis) -> String {
     let remarks = analysis_coupling_remarks(analysis);
     if remarks.is_empty() {
@@ -165,8 +165,8 @@ fn couplings_section(analysis: &Analysis) -> String {
     text
 }
 
-/// Returns how far the scheduled correction improves the nominal models, and the conditions without
-/// an assessment.
+/// Returns the improvement of the nominal models due to the scheduled correction, and the
+/// conditions without an assessment.
 fn assessment_lines(analysis: &Analysis) -> String {
     let mut text = line("Assessment", &sanitized(&assessment_sentence(analysis)));
     let choice = nominal_choice(analysis, AssessedCorrection::Scheduled);
@@ -178,7 +178,7 @@ fn assessment_lines(analysis: &Analysis) -> String {
     text
 }
 
-/// Returns the schedule's results for the held-out conditions.
+/// Returns the results of the schedule at the held-out conditions.
 fn held_out_line(analysis: &Analysis) -> String {
     let choice = nominal_choice(analysis, AssessedCorrection::Scheduled);
     match held_out_verdict(analysis, choice) {
@@ -187,7 +187,7 @@ fn held_out_line(analysis: &Analysis) -> String {
     }
 }
 
-/// Returns a condition's section: representatives, rejections, the on-axis and constrained
+/// Returns the section on a condition: representatives, rejections, the on-axis and constrained
 /// responses, and unmatched entries.
 fn condition_section(analysis: &Analysis, condition: &Condition) -> String {
     let state = condition.flight_state();
@@ -289,15 +289,15 @@ fn response_table(analysis: &Analysis, result: &ConditionAnalysis) -> Table {
     table
 }
 
-/// Returns half an error bar's width, relative for gains and in s for delays; `None` if the
-/// bars were not computed.
+/// Returns the half-width of an error bar, relative for gains and in s for delays; `None` if the
+/// error bars were not computed.
 fn bar_half_width(analysis: &Analysis, result: &ConditionAnalysis, scalar: Scalar) -> Option<f64> {
     let uncertainty = analysis.uncertainty.as_ref()?;
     let bar = uncertainty.bar(result.condition.id(), scalar)?;
     bar.half_width(uncertainty.level)
 }
 
-/// Returns column headings, with a further heading for the amplification by leads above the band.
+/// Returns column headings, with an additional heading for the gain of the leads above the band.
 fn with_price_heading(columns: &[&str], price: Option<&LeadPrice>) -> Vec<String> {
     let mut headings: Vec<String> = columns.iter().map(|&column| column.to_owned()).collect();
     if let Some(price) = price {
@@ -306,7 +306,7 @@ fn with_price_heading(columns: &[&str], price: Option<&LeadPrice>) -> Vec<String
     headings
 }
 
-/// Returns the channels' gains and delays or leads.
+/// Returns the gains of all channels, and their delays or leads.
 fn channel_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let dataset = &analysis.study.dataset;
     let correction = &result.correction;
@@ -333,8 +333,8 @@ fn channel_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     detail_list("gains", &gains) + &detail_list("delays", &delays)
 }
 
-/// Returns a table with each channel's gain and delay or lead, with the servos that its
-/// filter is equivalent to: as if the first were replaced by the second (M15).
+/// Returns a table of gain and delay or lead of each channel. Its lead filter has the effect of
+/// replacing a servo with one bandwidth by a servo with another; both are listed (M15).
 fn lead_table(dataset: &Dataset, correction: &ChannelCorrection, leads: &ChannelLeads) -> Table {
     let columns = [
         "channel",
@@ -366,7 +366,7 @@ fn lead_table(dataset: &Dataset, correction: &ChannelCorrection, leads: &Channel
     table
 }
 
-/// Lists the unmatched entries with reasons, and the unproven results.
+/// Lists the unmatched entries with reasons, and results without a proof.
 fn trouble_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let mut text = String::new();
     // The unmatched entries come first, then the reasons and remedies.

@@ -1,5 +1,5 @@
-//! Command output: results on standard output; notes, cautions and errors on standard
-//! error, or everything as one JSON object.
+//! Output of a command: results on standard output; notes, cautions and errors on standard error;
+//! or everything as one JSON object.
 
 use std::io::{ErrorKind, Write};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -14,7 +14,7 @@ use gdcm_model::message_text::{sanitized, shortened_message};
 use super::failure::Failure;
 use super::text::with_conditions;
 
-/// A command's output format.
+/// Output format of a command.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct OutputFormat {
     /// Omits notes.
@@ -31,19 +31,19 @@ struct Messages {
     format: &'static str,
     version: u32,
     status: u8,
-    /// Text otherwise printed on standard output.
+    /// Text that would otherwise be printed on standard output.
     text: String,
     notes: Vec<String>,
     cautions: Vec<Caution>,
     errors: Vec<String>,
-    /// Stable code for each error; null without a code.
+    /// Stable code of each error; null for an error without a code.
     error_codes: Vec<Option<&'static str>>,
 }
 
-/// A caution with its conditions; no conditions if it concerns the whole.
+/// A caution with its conditions; the list is empty if it is about the whole result.
 #[derive(Debug, Serialize)]
 struct Caution {
-    /// Stable code for its subject, if any.
+    /// Stable code of the kind of caution, if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     code: Option<&'static str>,
     text: String,
@@ -70,18 +70,18 @@ fn messages() -> MutexGuard<'static, Messages> {
     MESSAGES.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Sets the command's output format.
+/// Sets the output format of the command.
 pub(super) fn set_output(output: OutputFormat) {
     messages().output = output;
 }
 
-/// Returns whether progress is shown: neither JSON nor quiet output is requested.
+/// Returns whether progress is shown: not if JSON or quiet output is requested.
 pub(super) fn shows_progress() -> bool {
     messages().output == OutputFormat::default()
 }
 
-/// Prints a text, which includes its line end. A reader that closes the pipe early (`gdcm …
-/// head`) is no failure.
+/// Prints a text, which includes its line end. A reader that closes the pipe early, as in
+/// `gdcm … | head`, is not a failure.
 pub(super) fn print(text: &str) -> Result<(), Failure> {
     let mut plain_text = String::new();
     for line in text.split_inclusive('\n') {
@@ -98,8 +98,8 @@ pub(super) fn print(text: &str) -> Result<(), Failure> {
     write_standard_output(&plain_text)
 }
 
-/// Removes control codes, which come from files and must not reach the terminal, and shortens
-/// excessive lengths.
+/// Removes control characters, which may come from files and must not reach the terminal, and
+/// shortens very long messages.
 fn plain(words: &str) -> String {
     shortened_message(&sanitized(words))
 }
@@ -117,7 +117,7 @@ fn write_standard_output(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Prints a line on standard error; a failure to do so cannot be reported.
+/// Prints a line on standard error; a failure to print is ignored, since it cannot be reported.
 fn write_standard_error(kind: &str, words: &str) {
     let _ = writeln!(std::io::stderr(), "{kind}: {}", plain(words));
 }
@@ -137,7 +137,7 @@ pub(super) fn caution(words: &str) {
     caution_for(&[], words);
 }
 
-/// Reports the same caution for several conditions once, with the conditions listed.
+/// Reports a caution about several conditions once, with a list of the conditions.
 pub(super) fn caution_for(conditions: &[ConditionId], words: &str) {
     coded_caution(None, conditions, words);
 }
@@ -185,8 +185,8 @@ pub(super) fn coded_error(code: Option<&'static str>, words: &str) {
     }
 }
 
-/// Ends the command with this status; prints the JSON object if requested. Returns the exit status,
-/// which a failure to print replaces.
+/// Ends the command; prints the JSON object if requested. Returns the exit status: `status`, or
+/// that of a failure to print.
 pub(super) fn end(status: u8) -> u8 {
     let mut messages = messages();
     messages.status = status;

@@ -1,4 +1,4 @@
-//! Printed text: labelled lines, lists, tables, and messages shared by several conditions.
+//! Printed text: labelled lines, lists, tables, and merging of messages about several conditions.
 
 use std::path::PathBuf;
 
@@ -6,20 +6,20 @@ use gdcm_model::dataset::ConditionId;
 use gdcm_model::message_text::{sanitized_path, shortened, shortened_message};
 use gdcm_words::Table;
 
-/// Maximum page width in columns.
+/// Maximum line width in columns.
 const PAGE_WIDTH: usize = 110;
 
-/// Label width in columns.
+/// Width of labels in columns.
 const LABEL_WIDTH: usize = 14;
 
-/// Indentation within a section, in columns.
+/// Indentation of lines within a section, in columns.
 const DETAIL_INDENT: usize = 2;
 
 /// A label at the left of wrapped text.
 #[derive(Clone, Copy)]
 struct Label<'a> {
     text: &'a str,
-    /// Columns before the label.
+    /// Number of columns before the label.
     indent: usize,
 }
 
@@ -35,19 +35,19 @@ impl<'a> Label<'a> {
         }
     }
 
-    /// Returns the label with spaces up to the column where the text begins.
+    /// Returns the label, padded to the column where the text begins.
     fn padded(self) -> String {
         let Self { text, indent } = self;
         let width = LABEL_WIDTH - indent;
         format!("{:indent$}{text:<width$}", "")
     }
 
-    /// Returns the words behind the label, wrapped at [`PAGE_WIDTH`] columns and aligned.
+    /// Returns the label followed by `words`, wrapped at [`PAGE_WIDTH`] columns and aligned.
     fn before(self, words: &str) -> String {
         self.before_pieces(shortened_message(words).split(' '))
     }
 
-    /// Returns pieces of text behind the label, wrapped between pieces only.
+    /// Returns the label followed by pieces of text; lines break only between pieces.
     fn before_pieces<'p>(self, pieces: impl Iterator<Item = &'p str>) -> String {
         let mut text = self.padded();
         let start = text.chars().count();
@@ -71,17 +71,17 @@ impl<'a> Label<'a> {
     }
 }
 
-/// Returns text behind a section's label.
+/// Returns a line with a section's label.
 pub(super) fn line(label: &str, words: &str) -> String {
     Label::of_section(label).before(words)
 }
 
-/// Returns an indented line of a section.
+/// Returns an indented line within a section.
 pub(super) fn detail(label: &str, words: &str) -> String {
     Label::of_detail(label).before(words)
 }
 
-/// Returns a comma-separated list in a section, wrapped between entries; an empty list is "none".
+/// Returns a comma-separated list within a section, wrapped between entries; "none" if empty.
 pub(super) fn detail_list(label: &str, entries: &[String]) -> String {
     let Some((last, others)) = entries.split_last() else {
         return detail(label, "none");
@@ -107,7 +107,7 @@ pub(super) fn indented(table: &Table, indent: usize) -> String {
         .collect()
 }
 
-/// Formats a table without its title, for a place that has a heading.
+/// Formats a table without its title, for use below a heading.
 pub(super) fn indented_untitled(table: Table) -> String {
     let table = Table {
         title: String::new(),
@@ -116,8 +116,7 @@ pub(super) fn indented_untitled(table: Table) -> String {
     indented(&table, DETAIL_INDENT)
 }
 
-/// Formats a number with fixed digits behind the point, from 1e7 on with an exponent; "-" without a
-/// number.
+/// Formats a number with this many decimals, or with an exponent from 1e7 on; "-" for `None`.
 pub(super) fn fixed_digits(value: Option<f64>, digits: usize) -> String {
     let Some(value) = value else {
         return "-".to_owned();
@@ -146,8 +145,8 @@ pub(super) fn listed_paths(paths: &[PathBuf]) -> String {
     paths.join(", ")
 }
 
-/// Returns "condition 3", "conditions 3, 4, 7", "conditions 1 to 3, 7": three or more in a row by
-/// their ends.
+/// Returns "condition 3", "conditions 3, 4, 7", "conditions 1 to 3, 7": three or more consecutive
+/// conditions are given as a range.
 pub(super) fn listed_conditions(conditions: &[ConditionId]) -> String {
     let mut entries: Vec<String> = Vec::new();
     for run in conditions.chunk_by(|id, next| id.0.checked_add(1) == Some(next.0)) {
@@ -160,7 +159,7 @@ pub(super) fn listed_conditions(conditions: &[ConditionId]) -> String {
     format!("condition{several} {}", entries.join(", "))
 }
 
-/// Prefixes words with their conditions; no prefix if they concern the whole.
+/// Prefixes a message with its conditions; no prefix if the list is empty.
 pub(super) fn with_conditions(conditions: &[ConditionId], words: &str) -> String {
     if conditions.is_empty() {
         words.to_owned()
@@ -169,7 +168,7 @@ pub(super) fn with_conditions(conditions: &[ConditionId], words: &str) -> String
     }
 }
 
-/// A message about a condition, or about the whole.
+/// A message about a condition; without a condition, about the whole result.
 pub(super) struct ConditionMessage {
     condition: Option<ConditionId>,
     text: String,
@@ -184,20 +183,21 @@ impl ConditionMessage {
     }
 }
 
-/// A message with all its conditions; no conditions if it concerns the whole.
+/// A message with all conditions to which it applies; the list is empty if it is about the whole
+/// result.
 pub(super) struct SharedMessage {
     pub(super) conditions: Vec<ConditionId>,
     pub(super) text: String,
 }
 
 impl SharedMessage {
-    /// Returns the text behind its conditions.
+    /// Returns the message, prefixed with its conditions.
     pub(super) fn words(&self) -> String {
         with_conditions(&self.conditions, &self.text)
     }
 }
 
-/// Merges equal messages, in the order of first occurrence.
+/// Merges messages with equal text, in the order of first occurrence.
 pub(super) fn shared_messages(
     messages: impl IntoIterator<Item = ConditionMessage>,
 ) -> Vec<SharedMessage> {

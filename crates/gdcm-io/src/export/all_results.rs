@@ -1,4 +1,4 @@
-//! All analysis results: `corrections.json`, `corrections.csv`, and the fields of the former as a
+//! All analysis results: `corrections.json`, `corrections.csv`, and the content of the former as a
 //! MATLAB struct.
 
 use std::collections::BTreeSet;
@@ -79,7 +79,7 @@ const LAYOUT: Layout = Layout {
     columns: &["table"],
 };
 
-/// Keys of `corrections.json` that are repeated under other names, which earlier versions wrote.
+/// Members of `corrections.json` that are repeated in MATLAB under their names in earlier versions.
 const EARLIER_NAMES: [EarlierName; 6] = [
     EarlierName::new("gain_objective", "gain_solution", "objective"),
     EarlierName::new("gain_lower_bound", "gain_solution", "lower_bound"),
@@ -89,7 +89,7 @@ const EARLIER_NAMES: [EarlierName; 6] = [
     EarlierName::new("delay_matched", "delay_solution", "matched"),
 ];
 
-/// Earlier name for a member in a solution.
+/// Earlier name of a member of a solution.
 struct EarlierName {
     name: &'static str,
     solution: &'static str,
@@ -106,9 +106,9 @@ impl EarlierName {
     }
 }
 
-/// Returns the fields in `corrections.json` as a struct. Lists with responses become logical
-/// matrices with a row for each output and a column for each input; `net_gains` becomes several
-/// matrices, and its original is `net_gain_table`. Fields from earlier versions keep their names.
+/// Returns the members of `corrections.json` as a struct. Lists of responses become logical
+/// matrices with a row per output and a column per input; `net_gains` becomes several matrices, and
+/// its original form is kept as `net_gain_table`. Members of earlier versions keep their names.
 fn corrections_struct(mut corrections: Tree, dataset: &Dataset) -> Value {
     let settings = &mut corrections["settings"];
     for name in ["constrained", "ignored"] {
@@ -177,7 +177,7 @@ fn restructure_condition(condition: &mut Tree, dataset: &Dataset) {
     }
 }
 
-/// Returns a list with a row for each output, which holds a value for each input.
+/// Returns a list with a row for each output and, in each row, a value for each input.
 fn response_table(dataset: &Dataset, value: impl Fn(&str, &str) -> Tree) -> Tree {
     let mut rows = Vec::new();
     for output in dataset.outputs() {
@@ -190,7 +190,7 @@ fn response_table(dataset: &Dataset, value: impl Fn(&str, &str) -> Tree) -> Tree
     Tree::Array(rows)
 }
 
-/// Returns which responses are in a list with pairs, output and input.
+/// Returns a matrix that marks the responses in a list of pairs (output, input).
 fn marked_responses(pairs: &Tree, dataset: &Dataset) -> Tree {
     let pairs = pairs.as_array().map(Vec::as_slice).unwrap_or_default();
     response_table(dataset, |output, input| {
@@ -201,8 +201,8 @@ fn marked_responses(pairs: &Tree, dataset: &Dataset) -> Tree {
     })
 }
 
-/// Returns the member `key` of a response's net gain, or its entry at `place` in a list; null if it
-/// is missing.
+/// Returns the member `key` of a response's net gain, or the entry at `place` if it is a list; null
+/// if missing.
 fn net_gain_value(
     net_gains: &[Tree],
     output: &str,
@@ -222,7 +222,7 @@ fn net_gain_value(
     }
 }
 
-/// Adds the delays in a schedule row as lists in channel order.
+/// Adds the delays of a schedule row as lists in channel order.
 fn add_delay_lists(row: &mut Tree) {
     for (name, side) in [("input_delays_s", "inputs"), ("output_delays_s", "outputs")] {
         if let Some(delays) = row

@@ -22,7 +22,7 @@ use crate::formats::mat;
 use crate::formats::npy::write_npz;
 use crate::formats::variables::{TextArray, Value, Variable};
 
-/// Corrected models, in the format that the file extension names.
+/// Corrected models, in the format given by the file extension.
 pub(super) const STATE_SPACE: ExportFormat = ExportFormat {
     name: "state-space",
     extension: "mat",
@@ -73,7 +73,7 @@ impl ModelsFormat {
     }
 }
 
-/// Returns the models as `gdcm-models` holds them, each with its block `contains`. The names are
+/// Returns the models in the form of `gdcm-models`, each with its block `contains`. The names are
 /// "condition 10, nominal"; the notes describe the correction and its accuracy.
 fn containing_models(models: &[ExportedModel], dataset: &Dataset) -> Vec<ContainingModel> {
     let mut containing = Vec::with_capacity(models.len());
@@ -106,8 +106,8 @@ fn found_model(model: &ExportedModel, dataset: &Dataset) -> FoundModel {
     }
 }
 
-/// Returns the variable `models`: a struct for each model, with properties as in MATLAB's `ss`, so
-/// that `ss(m.A, m.B, m.C, m.D, m.Ts)` is the model.
+/// Returns the variable `models`: a struct for each model with the property names of MATLAB's `ss`,
+/// so that `ss(m.A, m.B, m.C, m.D, m.Ts)` is the model.
 fn models_variable(models: &[ExportedModel], dataset: &Dataset) -> Variable {
     Variable {
         name: "models".to_owned(),
@@ -147,7 +147,7 @@ fn units_of(channels: &[Channel]) -> Value {
     cell_of_texts(channels.iter().map(|channel| channel.unit.clone()))
 }
 
-/// Name of a model metric in files, and its function.
+/// Name of a model metric in files, and the function that computes it.
 type Metric = (&'static str, fn(&ExportedModel) -> f64);
 
 const METRICS: [Metric; 8] = [
@@ -164,7 +164,7 @@ const METRICS: [Metric; 8] = [
     ("gain_above_band_db", ExportedModel::gain_above_band_db),
 ];
 
-/// Name and source of a part in a correction.
+/// Name of a part of a correction, and the function that returns its source.
 type ContainedPart = (&'static str, fn(&ExportContents) -> PartSource);
 
 const CONTAINED: [ContainedPart; 4] = [
@@ -174,8 +174,8 @@ const CONTAINED: [ContainedPart; 4] = [
     ("couplings", |contents| contents.couplings),
 ];
 
-/// Returns the models as arrays, NumPy's only type: for model 0 `A_0`, `B_0`, `C_0`, `D_0` and
-/// `StateName_0`; the other arrays have an entry for each model or channel.
+/// Returns the models as arrays, the only type of NumPy files: for model 0 `A_0`, `B_0`, `C_0`,
+/// `D_0` and `StateName_0`; the other arrays have an entry for each model or channel.
 fn model_arrays(models: &[ExportedModel], dataset: &Dataset) -> Vec<Variable> {
     let mut arrays = NamedArrays::default();
     for (place, model) in models.iter().enumerate() {
@@ -211,7 +211,7 @@ fn model_arrays(models: &[ExportedModel], dataset: &Dataset) -> Vec<Variable> {
     arrays.variables
 }
 
-/// Arrays in an archive, in order.
+/// Named arrays, in file order.
 #[derive(Default)]
 struct NamedArrays {
     variables: Vec<Variable>,
@@ -239,7 +239,7 @@ fn matrices(model: &ExportedModel) -> [(&'static str, &DMatrix<f64>); 4] {
 }
 
 fn array(values: &DMatrix<f64>) -> Value {
-    // Both are stored by columns.
+    // Both libraries store matrices by columns.
     matrix(values.nrows(), values.ncols(), values.as_slice().to_vec())
 }
 
@@ -395,7 +395,7 @@ mod tests {
                 let gain = result.correction.net_gain(pair);
                 let largest = curve.iter().map(|value| value.norm()).fold(0.0, f64::max) * gain;
                 for (found, expected) in found.curve(pair).iter().zip(curve) {
-                    // Both close the loop, one in states, the other at each frequency.
+                    // Both methods close the loop: one in the states, the other at each frequency.
                     assert!(
                         (found - expected * gain).norm() <= 1e-9 * largest,
                         "{pair:?} of {}",

@@ -1,4 +1,4 @@
-//! Corrected models with their accuracy, before they are written.
+//! Corrected models with their accuracy, ready to be written to files.
 
 use gdcm_method::correction::corrected_model::CorrectedModel;
 use gdcm_method::correction::{self, ChannelCorrection, LeadPrice};
@@ -25,34 +25,34 @@ pub(super) struct ExportedModel {
     pub(super) model: StateSpace,
     /// A name for each state.
     pub(super) states: Vec<String>,
-    /// State count for delays.
+    /// Number of states that represent delays.
     delay_states: usize,
-    /// State count for lead filters.
+    /// Number of lead filter states.
     lead_states: usize,
     /// Order of the Padé approximants; 0 in discrete time, where delays are exact.
     pub(super) pade_order: usize,
-    /// Largest phase error at the top of the band \[deg\], from approximants.
+    /// Maximum phase error \[deg\] at the top of the band due to the approximants.
     approximation_error_deg: f64,
-    /// Largest phase \[deg\] there that delays of the condition's own correction would add, if the
-    /// model is under a schedule without delays.
+    /// Phase lag \[deg\] at the top of the band of the delays in the condition's own correction
+    /// that the schedule omits.
     pub(super) left_out_deg: f64,
-    /// Correction parts in the model.
+    /// Parts of the correction in the model.
     pub(super) contents: ExportContents,
-    /// Highest compared frequency \[rad/s\].
+    /// Upper end of the band, the highest compared frequency \[rad/s\].
     pub(super) band_top_rad_s: f64,
-    /// Lead filter cost; `None` without lead filters.
+    /// Cost of the lead filters; `None` without lead filters.
     price: Option<DescribedPrice>,
     /// Description of the couplings; empty without couplings.
     couplings: &'static str,
 }
 
-/// Lead filter cost, with its description.
+/// Cost of lead filters, with its description.
 struct DescribedPrice {
     price: LeadPrice,
     words: String,
 }
 
-/// Returns the requested corrected models, in the dataset's order.
+/// Returns the requested corrected models, in the order of the dataset.
 pub(super) fn exported_models(
     analysis: &Analysis,
     request: &ExportRequest,
@@ -74,7 +74,8 @@ pub(super) fn exported_models(
     }
 }
 
-/// Returns the parts in the requested models; none if the study lacks the requested schedule.
+/// Returns the correction parts in the requested models; none if the study lacks the requested
+/// schedule.
 pub(super) fn contents_of_models(analysis: &Analysis, request: &ExportRequest) -> ExportContents {
     let conditions: Vec<ConditionId> = match request.condition {
         Some(condition) => vec![condition],
@@ -86,8 +87,8 @@ pub(super) fn contents_of_models(analysis: &Analysis, request: &ExportRequest) -
     }
 }
 
-/// Returns the largest phase \[deg\] at `omega` \[rad/s\] of those delays of a condition's own
-/// correction that an export omits.
+/// Returns the phase lag \[deg\] at `omega` \[rad/s\] of the omitted delays: the longest input
+/// delay plus the longest output delay over all conditions.
 fn left_out_phase_deg(contents: &ExportContents, omega: f64) -> f64 {
     let mut input_s = 0.0_f64;
     let mut output_s = 0.0_f64;
@@ -158,7 +159,7 @@ fn exported_model(
     })
 }
 
-/// Returns the word for a correction before "correction".
+/// Returns the words placed before "correction" in descriptions.
 fn correction_words(correction: AssessedCorrection) -> &'static str {
     match correction {
         AssessedCorrection::Scheduled => "scheduled",
@@ -168,7 +169,7 @@ fn correction_words(correction: AssessedCorrection) -> &'static str {
     }
 }
 
-/// Describes the parts in a model besides its channel corrections.
+/// Describes the couplings in a model; empty without couplings.
 fn couplings_words(analysis: &Analysis, dynamics: &StateSpace) -> &'static str {
     let has_delays =
         !StateSpace::timing(dynamics).is_plain() && dynamics.timing().sample_time_s.is_none();
@@ -185,7 +186,7 @@ fn couplings_words(analysis: &Analysis, dynamics: &StateSpace) -> &'static str {
     }
 }
 
-/// Returns a condition's requested physics model.
+/// Returns the requested physics model of a condition.
 fn model_of<'c>(
     analysis: &Analysis,
     role: &ExportedRole,
@@ -209,7 +210,7 @@ fn model_of<'c>(
     }
 }
 
-/// Returns a condition's requested correction.
+/// Returns the requested correction of a condition.
 fn correction_of(
     analysis: &Analysis,
     which: AssessedCorrection,
@@ -238,7 +239,7 @@ fn correction_of(
     }
 }
 
-/// Returns a condition's analysis.
+/// Returns the analysis of a condition.
 fn result_of<'a>(
     analysis: &'a Analysis,
     condition: &Condition,
@@ -254,8 +255,8 @@ fn result_of<'a>(
     })
 }
 
-/// Returns state names: "LON lead 1" and "LON delay 1" for inputs, the model's own names, "Q delay
-/// 1" and "Q lead 1" for outputs.
+/// Returns the state names: "LON lead 1" and "LON delay 1" of inputs, the model's own names, "Q
+/// delay 1" and "Q lead 1" of outputs.
 fn state_names(analysis: &Analysis, model: &Model, corrected: &CorrectedModel) -> Vec<String> {
     let CorrectedModel {
         lead_states,
@@ -278,7 +279,7 @@ fn state_names(analysis: &Analysis, model: &Model, corrected: &CorrectedModel) -
     names
 }
 
-/// Adds names for a part's states in each channel, counted from 1.
+/// Adds names of the states of `part` ("lead", "delay"), counted from 1 within each channel.
 fn add_state_names(names: &mut Vec<String>, channels: &[Channel], part: &str, counts: &[usize]) {
     for (channel, &count) in channels.iter().zip(counts) {
         for place in 1..=count {
@@ -288,8 +289,8 @@ fn add_state_names(names: &mut Vec<String>, channels: &[Channel], part: &str, co
 }
 
 impl ExportedModel {
-    /// Returns the largest phase error \[deg\] at the top of the band against the condition's own
-    /// delays, as far as the export causes it: by approximants and omitted delays.
+    /// Returns the maximum phase error \[deg\] at the top of the band due to the export: from
+    /// approximants and omitted delays.
     pub(super) fn phase_error_deg(&self) -> f64 {
         self.approximation_error_deg + self.left_out_deg
     }
@@ -303,7 +304,7 @@ impl ExportedModel {
         }
     }
 
-    /// Returns the gain at ten times the band \[dB\] that the leads add to the most expensive
+    /// Returns the gain \[dB\] at ten times the band that the leads add to the most affected
     /// response; 0 without leads.
     pub(super) fn gain_above_band_db(&self) -> f64 {
         match &self.price {
@@ -331,8 +332,8 @@ impl ExportedModel {
         )
     }
 
-    /// Describes omitted delays of the condition's own correction and their phase at the top of the
-    /// band; empty without them.
+    /// Describes the omitted delays of the condition's own correction and their phase lag at the
+    /// top of the band; empty without such delays.
     fn left_out_words(&self) -> String {
         if self.left_out_deg == 0.0 {
             return String::new();
@@ -344,8 +345,7 @@ impl ExportedModel {
         )
     }
 
-    /// Describes the parts in the model and their accuracy. Delays that are not in the model have
-    /// no accuracy.
+    /// Describes the parts in the model and their accuracy; omitted delays are not mentioned.
     fn delay_words(&self) -> String {
         let has_delays = self.contents.delays != PartSource::None;
         let has_leads = self.lead_states > 0;
@@ -363,7 +363,7 @@ impl ExportedModel {
             let words = match (has_delays, self.delay_states) {
                 (true, _) => "gains and delays exact",
                 (false, 0) => "gains exact, without delays",
-                // In discrete time: whole samples.
+                // Own delays in discrete time are whole samples.
                 (false, _) => "gains and the model's own delays exact",
             };
             return words.to_owned();
@@ -391,9 +391,9 @@ fn greatest(gains_db: &[f64]) -> f64 {
     gains_db.iter().copied().fold(0.0, f64::max)
 }
 
-/// Describes an upper bound on a phase error \[deg\]; values below 0.001 are not distinguished.
+/// Formats an upper bound on a phase error \[deg\]; nonzero errors below 0.001 are given as 0.001.
 fn bound_words(error_deg: f64) -> String {
-    /// The smallest bound that is reported.
+    /// Minimum reported bound.
     const LEAST_DEG: f64 = 1e-3;
     let bound_deg = if error_deg > 0.0 {
         error_deg.max(LEAST_DEG)

@@ -1,4 +1,4 @@
-//! Scheduled gains and delays at given airspeeds, for lookup tables with linear interpolation: as
+//! Scheduled gains and delays at given airspeeds, as lookup tables for linear interpolation: as
 //! text, and for MATLAB.
 
 use std::fmt::Write;
@@ -51,7 +51,7 @@ const OPTIONS: &[&str] = &["--breakpoints"];
 #[derive(Debug, PartialEq)]
 struct Quantity {
     name: &'static str,
-    /// Part in field names.
+    /// Part of the names of MATLAB fields.
     field: &'static str,
     is_time: bool,
 }
@@ -78,11 +78,11 @@ const LEAD: Quantity = Quantity {
 };
 
 impl Quantity {
-    /// Returns the error against the true value: \[%\] for a gain, \[ms\] for a time.
+    /// Returns the error of `value`: \[%\] for a gain, \[ms\] for a time.
     fn error(&self, value: f64, truth: f64) -> f64 {
         let difference = value - truth;
         if difference == 0.0 {
-            // Also if both are zero, where a percentage is undefined.
+            // Equal values have no error, even if both are zero, where a percentage is undefined.
             0.0
         } else if self.is_time {
             1e3 * difference.abs()
@@ -92,7 +92,7 @@ impl Quantity {
     }
 }
 
-/// Airspeed and second variable in a row.
+/// Airspeed and second variable of a row.
 #[derive(Clone, Copy)]
 struct Breakpoint {
     airspeed_kt: f64,
@@ -100,25 +100,25 @@ struct Breakpoint {
     second: Option<f64>,
 }
 
-/// Channel values at a table's airspeeds.
+/// Values of a channel quantity at the breakpoints.
 struct Column {
     quantity: &'static Quantity,
     channel: Channel,
     name: String,
     /// A value for each row.
     values: Vec<f64>,
-    /// Largest deviation from the schedule: \[%\] for a gain, \[ms\] for a time.
+    /// Maximum deviation of the table from the schedule: \[%\] for a gain, \[ms\] for a time.
     error: TableError,
 }
 
-/// A schedule at given airspeeds.
+/// A schedule sampled at given airspeeds.
 struct BreakpointTable<'e> {
     scheduled: Scheduled<'e>,
     /// Airspeeds \[kt\], increasing.
     airspeeds_kt: Vec<f64>,
-    /// All airspeeds, for each value of the second variable.
+    /// All airspeeds, repeated for each value of the second variable.
     rows: Vec<Breakpoint>,
-    /// Gain, delay and lead filter for each input, then for each output; then the mixing.
+    /// Gain, delay and lead filter of each input, then of each output; then the mixing.
     columns: Vec<Column>,
 }
 
@@ -130,7 +130,7 @@ impl<'e> BreakpointTable<'e> {
         )
     }
 
-    /// Builds the table at the requested airspeeds \[kt\], by default at the distinct airspeeds of
+    /// Builds the table at the requested airspeeds \[kt\]; by default at the distinct airspeeds of
     /// the scheduled conditions.
     ///
     /// # Errors
@@ -171,7 +171,7 @@ impl<'e> BreakpointTable<'e> {
         Ok(table)
     }
 
-    /// Adds a channel's gain, delay and lead filter.
+    /// Adds the gain, delay and lead filter of a channel.
     fn add_channel(&mut self, channel: Channel, second_values: &[Option<f64>]) {
         let schedule = self.scheduled.schedule;
         let gain = self.column(channel, &GAIN, second_values, |row| {
@@ -192,7 +192,7 @@ impl<'e> BreakpointTable<'e> {
         }
     }
 
-    /// Adds the weight with which each input enters each input, first those in the first input.
+    /// Adds the entries of the normalised mixing matrix as columns, row by row.
     fn add_mixing(&mut self, couplings: &CouplingMatrices) {
         let (inputs, _) = self.scheduled.dataset.names_of_channels();
         for (to, receiver) in inputs.iter().enumerate() {
@@ -206,8 +206,8 @@ impl<'e> BreakpointTable<'e> {
         }
     }
 
-    /// Returns a channel's column; `value_at` gives its value at an airspeed and a value of the
-    /// second variable. The error is searched at all `second_values`.
+    /// Returns the column of a channel; `value_at` gives the value at a breakpoint. The maximum
+    /// error is searched over airspeed at each of `second_values`.
     fn column(
         &self,
         channel: Channel,
@@ -263,7 +263,7 @@ impl<'e> BreakpointTable<'e> {
         remarks
     }
 
-    /// Returns the table as CSV, preceded by lines with # that describe it and the largest
+    /// Returns the table as CSV, preceded by comment lines (#) that describe it and the maximum
     /// deviation of each column from its curve.
     fn csv(&self) -> String {
         let mut text = String::new();
@@ -316,7 +316,7 @@ impl<'e> BreakpointTable<'e> {
         text.push('\n');
     }
 
-    /// Returns a line with the feedback to each input.
+    /// Returns a line for each input with the feedback gains from all outputs.
     fn feedback_lines(&self, couplings: &CouplingMatrices) -> Vec<String> {
         let (inputs, outputs) = self.scheduled.dataset.names_of_channels();
         let mut lines = Vec::with_capacity(inputs.len());
@@ -335,9 +335,9 @@ impl<'e> BreakpointTable<'e> {
         lines
     }
 
-    /// Returns the variable `gdcm_table`: the airspeeds, and for the inputs and the outputs
-    /// matrices of gains, delays \[s\] and lead numerators \[s\], a row for each airspeed and a
-    /// column for each channel, with their largest errors.
+    /// Returns the variable `gdcm_table`: the airspeeds, and for inputs and outputs the matrices of
+    /// gains, delays \[s\] and lead numerators \[s\] with a row for each airspeed and a column for
+    /// each channel, with their maximum errors.
     fn variable(&self) -> Variable {
         let scheduled = &self.scheduled;
         let mut fields = Fields::default();
@@ -374,7 +374,7 @@ impl<'e> BreakpointTable<'e> {
         }
     }
 
-    /// Adds channel names and columns on one side, "input" or "output".
+    /// Adds the channel names and columns of one side, "input" or "output".
     fn add_side_fields(&self, fields: &mut Fields, side: &str, names: Vec<String>) {
         fields.add(&format!("{side}s"), cell_of_texts(names));
         let mut quantities = vec![&GAIN, &DELAY];
@@ -441,7 +441,7 @@ impl<'e> BreakpointTable<'e> {
         }
     }
 
-    /// Returns columns side by side, a row for each breakpoint.
+    /// Returns a matrix of these columns with a row for each breakpoint.
     fn columns_matrix(&self, columns: &[&Column]) -> Value {
         let mut values = Vec::new();
         for column in columns {
@@ -451,7 +451,7 @@ impl<'e> BreakpointTable<'e> {
     }
 }
 
-/// Returns the scheduled conditions' distinct airspeeds \[kt\], increasing.
+/// Returns the distinct airspeeds \[kt\] of the scheduled conditions, increasing.
 fn distinct_airspeeds_kt(scheduled: &Scheduled<'_>) -> Vec<f64> {
     let mut airspeeds_kt = scheduled.schedule.airspeeds.values_kt.clone();
     airspeeds_kt.sort_by(f64::total_cmp);
@@ -459,8 +459,8 @@ fn distinct_airspeeds_kt(scheduled: &Scheduled<'_>) -> Vec<f64> {
     airspeeds_kt
 }
 
-/// Returns the ends and the middle of the second variable's range, between which the effect is
-/// nearly linear; a single `None` without a second variable.
+/// Returns the ends and the middle of the second variable's range, over which its effect is nearly
+/// linear; a single `None` without a second variable.
 fn second_values(scheduled: &Scheduled<'_>) -> Vec<Option<f64>> {
     match &scheduled.schedule.second {
         Some(term) => vec![
@@ -485,7 +485,7 @@ impl Column {
         format!("{} of {} {}", self.quantity.name, self.side(), self.name)
     }
 
-    /// Describes the largest error: "1.200e0 % at 62.000 kt".
+    /// Describes the maximum error: "1.200e0 % at 62.000 kt".
     fn error_words(&self) -> String {
         let unit = if self.quantity.is_time { "ms" } else { "%" };
         let TableError { error, airspeed_kt } = self.error;

@@ -1,4 +1,4 @@
-//! Conversion from JSON to MATLAB values: the same schema for JSON and for `.mat`.
+//! Conversion of JSON to MATLAB values, so that both have the same schema.
 
 use serde_json::Value as Json;
 
@@ -13,14 +13,14 @@ pub(super) const LONGEST_NAME: usize = 63;
 
 static NULL: Json = Json::Null;
 
-/// Names of members that are not converted as plain lists and objects.
+/// Names of members that are not converted as ordinary lists and objects.
 pub(super) struct Layout {
     /// Objects with a member for each channel, which become arrays in channel order.
     pub(super) by_channel: &'static [&'static str],
     /// Objects with member names that MATLAB does not accept, which become structs with the fields
     /// `name` and `value`.
     pub(super) by_name: &'static [&'static str],
-    /// Lists with objects that become a single struct with columns instead of a struct array.
+    /// Lists of objects that become a single struct of columns instead of a struct array.
     pub(super) columns: &'static [&'static str],
 }
 
@@ -29,14 +29,14 @@ fn is_number(json: &Json) -> bool {
     matches!(json, Json::Number(_) | Json::Null)
 }
 
-/// Returns the number; NaN if it is missing.
+/// Returns a number; NaN for null.
 fn number(json: &Json) -> f64 {
     json.as_f64().unwrap_or(f64::NAN)
 }
 
 impl Layout {
-    /// Converts a JSON value: objects become structs, lists with objects struct arrays, rectangular
-    /// lists with numbers matrices, lists with texts cell columns, and null becomes NaN.
+    /// Converts a JSON value: objects become structs, lists of objects struct arrays, rectangular
+    /// lists of numbers matrices, lists of texts cell columns, and null becomes NaN.
     pub(super) fn value(&self, name: &str, json: &Json) -> Value {
         match json {
             Json::Null | Json::Number(_) => Value::number(number(json)),
@@ -87,7 +87,7 @@ impl Layout {
         }
     }
 
-    /// Returns structs with the same fields in a row; missing members are empty.
+    /// Returns a row of structs with the same fields; missing members are empty.
     fn records(&self, objects: &[&Json]) -> Value {
         let mut fields = Vec::new();
         for name in names_of(objects) {
@@ -106,9 +106,9 @@ impl Layout {
         })
     }
 
-    /// Returns the leaves as an array with this shape; the last index is fastest among the leaves.
-    /// Objects become a struct with arrays, numbers an array, truth values a logical array, rows
-    /// with numbers an array with another index, all others cells.
+    /// Returns the leaves as an array of this shape; in `leaves` the last index runs fastest.
+    /// Objects become a struct of arrays, numbers an array, truth values a logical array, lists of
+    /// numbers an array with an additional index, all others cells.
     fn gathered(&self, shape: &[usize], leaves: Vec<&Json>) -> Value {
         if leaves.iter().any(|leaf| leaf.is_object()) {
             return self.gathered_objects(shape, &leaves);
@@ -144,8 +144,7 @@ impl Layout {
         })
     }
 
-    /// Returns a struct with an array for each member name; members by channel add an index to the
-    /// array.
+    /// Returns a struct with an array for each member name; members by channel add an index.
     fn gathered_objects(&self, shape: &[usize], leaves: &[&Json]) -> Value {
         let mut fields = Fields::default();
         for name in names_of(leaves) {
@@ -175,7 +174,7 @@ impl Layout {
     }
 }
 
-/// Returns an object's member at a position; null if there is none.
+/// Returns the member of an object at a position; null if there is none.
 fn member_at(value: &Json, at: usize) -> &Json {
     match value {
         Json::Object(members) => members.values().nth(at).unwrap_or(&NULL),
@@ -192,8 +191,8 @@ fn truth_values(leaves: &[&Json]) -> Option<Vec<f64>> {
     Some(numbers)
 }
 
-/// Returns the common length, if all leaves are rows with equally many numbers; null replaces a
-/// missing row.
+/// Returns the common length if all leaves are lists of equally many numbers; null stands for a
+/// missing list.
 fn row_length(leaves: &[&Json]) -> Option<usize> {
     let length = leaves
         .iter()
@@ -208,7 +207,7 @@ fn row_length(leaves: &[&Json]) -> Option<usize> {
     Some(length)
 }
 
-/// Returns all distinct member names, ordered by appearance.
+/// Returns all distinct member names, in order of appearance.
 fn names_of<'j>(objects: &[&'j Json]) -> Vec<&'j str> {
     let mut names: Vec<&str> = Vec::new();
     for object in objects {
@@ -240,7 +239,7 @@ fn valid_name(name: &str) -> String {
     valid
 }
 
-/// Returns at least two dimensions; a list becomes a column.
+/// Returns the array shape in MATLAB, with at least two dimensions; a list becomes a column.
 fn sides(shape: &[usize]) -> Vec<usize> {
     if let [length] = shape {
         vec![*length, 1]
@@ -271,13 +270,13 @@ impl Fields {
         self.fields.push((name.to_owned(), value));
     }
 
-    /// Returns a single record.
+    /// Returns a struct with these fields.
     pub(super) fn record(self) -> Value {
         records(vec![self])
     }
 }
 
-/// Returns records with the same fields in a row.
+/// Returns a row of structs with the same fields.
 pub(super) fn records(records: Vec<Fields>) -> Value {
     let shape = vec![1, records.len()];
     let mut fields: Vec<(String, Vec<Value>)> = Vec::new();
@@ -292,7 +291,7 @@ pub(super) fn records(records: Vec<Fields>) -> Value {
     Value::Struct(StructArray { shape, fields })
 }
 
-/// Returns texts in a column, each in a cell.
+/// Returns a column of cells with one text each.
 pub(super) fn cell_of_texts(texts: impl IntoIterator<Item = String>) -> Value {
     let values: Vec<Value> = texts.into_iter().map(Value::text).collect();
     Value::Cell(CellArray {
@@ -301,13 +300,13 @@ pub(super) fn cell_of_texts(texts: impl IntoIterator<Item = String>) -> Value {
     })
 }
 
-/// Returns numbers in a row.
+/// Returns a row of numbers.
 pub(super) fn row(values: impl IntoIterator<Item = f64>) -> Value {
     let values: Vec<f64> = values.into_iter().collect();
     matrix(1, values.len(), values)
 }
 
-/// Returns numbers in a column.
+/// Returns a column of numbers.
 pub(super) fn column(values: impl IntoIterator<Item = f64>) -> Value {
     let values: Vec<f64> = values.into_iter().collect();
     matrix(values.len(), 1, values)
@@ -318,7 +317,7 @@ pub(super) fn matrix(rows: usize, columns: usize, values: Vec<f64>) -> Value {
     Value::Array(Array::matrix(rows, columns, values))
 }
 
-/// Returns the correction parts in a file: the source of each, and the omitted parts.
+/// Returns the correction parts in a file with their sources, and the omitted parts.
 pub(super) fn contained_parts(contents: &ExportContents, dataset: &Dataset) -> Value {
     let mut fields = Fields::default();
     for (name, source) in contents.parts() {

@@ -29,15 +29,15 @@ use crate::output_set::OutputSet;
 /// A format for exporting a study's corrections.
 #[derive(Clone, Copy, Debug)]
 pub struct ExportFormat {
-    /// Its name on the command line.
+    /// Name on the command line.
     pub name: &'static str,
     /// File extension.
     pub extension: &'static str,
-    /// Description for people.
+    /// Description in words.
     pub words: &'static str,
     /// Accepted command-line options.
     pub options: &'static [&'static str],
-    /// Rejects an unsuitable file name, before the work.
+    /// Rejects an unsuitable file name, before the analysis.
     check_path: fn(&Path) -> Result<(), ExportFault>,
     /// Returns the correction parts in the file.
     contents: fn(&Analysis, &ExportRequest) -> ExportContents,
@@ -77,24 +77,24 @@ impl PartialEq for ExportFormat {
     }
 }
 
-/// Physics model to be exported from a condition.
+/// Choice of the physics model to export at each condition.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum ExportedRole {
     /// The model at the condition's own trim.
     #[default]
     Nominal,
-    /// The model that represents its bundle.
+    /// The model that represents the bundle.
     Representative,
     /// The model with this name.
     Named(String),
 }
 
-/// Contents and options of an export; by default, nominal models under the schedule, with
-/// second-order delay approximants.
+/// Contents and options of an export; by default nominal models with the scheduled correction and
+/// second-order Padé approximants.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ExportRequest {
     pub format: ExportFormat,
-    /// Airspeeds in a lookup table \[kt\]; by default the distinct airspeeds of the scheduled
+    /// Airspeeds \[kt\] of a lookup table; by default the distinct airspeeds of the scheduled
     /// conditions.
     pub breakpoints_kt: Option<Vec<f64>>,
     /// Condition to be exported; all if `None`.
@@ -107,7 +107,7 @@ pub struct ExportRequest {
     pub pade: Pade,
 }
 
-/// Origin of a correction.
+/// Origin of an exported correction, stated in the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ExportSource {
     /// Study name.
@@ -128,7 +128,7 @@ pub struct Export<'e> {
 }
 
 impl<'e> Export<'e> {
-    /// Returns a remark on the cost of scheduled leads, for a file with their numbers.
+    /// Returns remarks on the cost of the scheduled leads, for files that contain them.
     fn price_remarks(&self) -> Vec<String> {
         let Ok(schedule) = &self.analysis.schedule else {
             return Vec::new();
@@ -143,7 +143,7 @@ impl<'e> Export<'e> {
     }
 
     /// Returns the study's schedule with its couplings.
-    ///
+    /// Returns the schedule of the study with its couplings.
     /// # Errors
     /// A study without a schedule, or without the couplings that it requests.
     fn scheduled(&self) -> Result<Scheduled<'e>, ExportFault> {
@@ -192,7 +192,7 @@ impl<'e> Exported<'e> {
     }
 }
 
-/// Rejects a file name that does not suit the export, before the work.
+/// Rejects a file name that does not suit the export, before the analysis.
 ///
 /// # Errors
 /// [`FileError::Export`] with the reason.
@@ -205,8 +205,8 @@ pub fn export_contents(analysis: &Analysis, request: &ExportRequest) -> ExportCo
     (request.format.contents)(analysis, request)
 }
 
-/// Writes the requested export and returns remarks, line by line; [`export_contents`] describes its
-/// contents.
+/// Writes the requested export and returns remarks, line by line; [`export_contents`] describes the
+/// contents of the file.
 pub fn write_export(
     analysis: &Analysis,
     source: &ExportSource,

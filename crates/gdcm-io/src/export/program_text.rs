@@ -6,15 +6,15 @@ pub(super) fn number(value: f64) -> String {
     format!("{:.16e}", value + 0.0)
 }
 
-/// Formats numbers as a list with commas.
+/// Formats numbers as a comma-separated list.
 pub(super) fn number_list(values: &[f64]) -> String {
     let numbers: Vec<String> = values.iter().map(|&value| number(value)).collect();
     numbers.join(", ")
 }
 
-/// Escapes a text for a comment in any language: visible ASCII characters remain, special signs of
-/// the program's own texts are replaced by equivalents, all others by their Unicode numbers.
-/// Nothing in the result can end or begin a comment.
+/// Escapes a text for a comment in any language: visible ASCII characters remain, symbols in the
+/// program's own texts get ASCII equivalents, and all others are written as code points. The result
+/// can neither end nor begin a comment.
 pub(super) fn comment(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     for character in text.chars() {
@@ -44,7 +44,7 @@ pub(super) fn comment(text: &str) -> String {
     plain
 }
 
-/// Quotes a text for C: bytes other than plain characters become three octal digits.
+/// Writes a text as a C string literal; bytes other than plain characters become octal escapes.
 pub(super) fn c_text(text: &str) -> String {
     let mut quoted = String::from("\"");
     for byte in text.bytes() {
@@ -58,7 +58,7 @@ pub(super) fn c_text(text: &str) -> String {
     quoted
 }
 
-/// Quotes a text for Python.
+/// Writes a text as a Python string literal.
 pub(super) fn python_text(text: &str) -> String {
     let mut quoted = String::from("\"");
     for character in text.chars() {

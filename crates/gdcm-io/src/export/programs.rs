@@ -1,5 +1,5 @@
-//! The schedule as a function in other programming languages: a template for each, and its format
-//! of numbers and texts.
+//! The schedule as a function in other programming languages: one template per language, filled
+//! with formatted numbers and texts.
 
 use std::io;
 use std::path::Path;
@@ -21,20 +21,20 @@ use crate::files::export_contents::ExportContents;
 #[cfg(test)]
 mod program_tests;
 
-/// A programming language: the template of a file, and the names in its expressions.
+/// A programming language: its file template and the function names in its expressions.
 struct Language {
     template: &'static str,
     exp: &'static str,
     min: &'static str,
     max: &'static str,
-    /// Function of coefficients and the scaled airspeed `v`.
+    /// Name of the function that evaluates a polynomial from its coefficients and `v`.
     polynomial: &'static str,
-    /// Function of airspeeds, values and the airspeed `a`.
+    /// Name of the function that interpolates a table from airspeeds, values and `a`.
     table: &'static str,
-    /// Whether a list of numbers is a previously declared array; otherwise it is written in square
+    /// Whether lists of numbers are declared as arrays; otherwise they are written in square
     /// brackets.
     declares_arrays: bool,
-    /// Quotes the name of a channel.
+    /// Writes a channel name as a string literal.
     text: fn(&str) -> String,
 }
 
@@ -154,8 +154,8 @@ impl Language {
             .map_err(io::Error::other)
     }
 
-    /// Returns the parts of the correction: name and source of each, and the omitted parts, as
-    /// texts of the language.
+    /// Returns the name and source of each part of the correction, and the omitted parts, as string
+    /// literals of the language.
     fn contained_parts(&self, scheduled: &Scheduled<'_>) -> Value {
         let mut parts = Vec::new();
         for (name, source) in scheduled.contents.parts() {
@@ -168,8 +168,8 @@ impl Language {
         context! { parts, left_out }
     }
 
-    /// Returns the mixing `M~(V)` at the airspeed `V`, clamped and scaled as for the couplings, and
-    /// the feedback `K`, both row by row.
+    /// Returns the mixing `M~(V)`, at an airspeed clamped and scaled as for the couplings, and the
+    /// feedback `K`, both row by row.
     fn coupling_values(&self, couplings: &CouplingMatrices) -> Value {
         let airspeeds = couplings.airspeeds();
         let (inputs, outputs) = couplings.feedback().shape();
@@ -204,7 +204,7 @@ impl Language {
         self.expression(&Curve::plain(couplings.mixing_curve(to, from).clone()))
     }
 
-    /// Returns the values of the channels on one side; `capital` is "Input" or "Output".
+    /// Returns the template values of the inputs or the outputs; `capital` is "Input" or "Output".
     fn side_values(&self, scheduled: &Scheduled<'_>, capital: &str, channels: &[Channel]) -> Value {
         let (inputs, outputs) = scheduled.dataset.names_of_channels();
         let mut entries = Vec::with_capacity(channels.len());
@@ -234,8 +234,8 @@ impl Language {
         }
     }
 
-    /// Returns the expression for a curve in terms of the airspeed `a`, the scaled airspeed `v` and
-    /// the scaled second variable `z`, with its arrays `c0`, `c1` and so on.
+    /// Returns the expression of a curve in the airspeed `a`, the scaled airspeed `v` and the
+    /// scaled second variable `z`, with its arrays `c0`, `c1` and so on.
     fn expression(&self, curve: &Curve) -> Value {
         let mut arrays = Vec::new();
         let mut value = self.regression_expression(&curve.figures, &mut arrays);
@@ -277,8 +277,8 @@ impl Language {
         }
     }
 
-    /// Returns the expression for a list of numbers; a language that declares arrays gets another
-    /// entry in `arrays`.
+    /// Returns the expression of a list of numbers; for a language that declares arrays, the list
+    /// is added to `arrays`.
     fn array_expression(&self, values: &[f64], arrays: &mut Vec<String>) -> String {
         let numbers = number_list(values);
         if !self.declares_arrays {
@@ -289,7 +289,7 @@ impl Language {
     }
 }
 
-/// Returns the values of the second variable for templates, if the schedule has one.
+/// Returns the template values of the second variable, if the schedule has one.
 fn second_variable_values(scheduled: &Scheduled<'_>) -> Option<Value> {
     let term = scheduled.schedule.second.as_ref()?;
     let name = format!("{}_{}", term.variable.name(), term.variable.unit());
@@ -303,7 +303,7 @@ fn second_variable_values(scheduled: &Scheduled<'_>) -> Option<Value> {
     })
 }
 
-/// Returns the values of the lead filters for templates, if the schedule has any.
+/// Returns the template values of the lead filters, if the schedule has any.
 fn lead_values(scheduled: &Scheduled<'_>) -> Option<Value> {
     let leads = scheduled.schedule.leads.as_ref()?;
     Some(context! {
@@ -313,7 +313,7 @@ fn lead_values(scheduled: &Scheduled<'_>) -> Option<Value> {
     })
 }
 
-/// Returns the expression for the scaled airspeed, the same in every language.
+/// Returns the expression of the scaled airspeed, identical in every language.
 fn scaled_airspeed(airspeeds: &Airspeeds) -> String {
     if airspeeds.half_range_kt == 0.0 {
         return number(0.0);
@@ -338,7 +338,7 @@ const KEYWORDS: &str = "break case catch classdef continue do else elseif end en
     endfunction endif endparfor endswitch endwhile for function global if otherwise parfor persistent return spmd switch try \
     until unwind_protect unwind_protect_cleanup while gdcm_polynomial gdcm_table";
 
-/// Rejects a name that no function in a MATLAB file can have.
+/// Rejects a file name that is not a valid function name in MATLAB.
 fn check_function_name(name: &str) -> Result<(), ExportFault> {
     let is_name = name.starts_with(|first: char| first.is_ascii_alphabetic())
         && name.len() <= LONGEST_NAME

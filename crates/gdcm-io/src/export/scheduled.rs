@@ -1,5 +1,5 @@
-//! A schedule for external programs and tables: each channel's gain, delay and lead filter over
-//! airspeed, and the file headings.
+//! The schedule in the form exported to programs and tables: gain, delay and lead filter of each
+//! channel as curves over airspeed, and the file headings.
 
 use gdcm_method::correction::Channel;
 use gdcm_method::couplings::CouplingMatrices;
@@ -13,7 +13,8 @@ use super::program_text::{comment, number};
 use crate::export_fault::ExportFault;
 use crate::files::export_contents::ExportContents;
 
-/// Airspeed intervals in which an airspeed-dependent lead filter is linear.
+/// Number of airspeed intervals of the table that approximates a lead filter which varies with
+/// airspeed.
 const LEAD_INTERVALS: u32 = 100;
 
 /// A schedule with its dataset and study.
@@ -32,11 +33,11 @@ pub(super) struct Scheduled<'e> {
 pub(super) struct Curve {
     /// A polynomial in the scaled airspeed, or a table.
     pub(super) figures: Regression,
-    /// Coefficient of the scaled second variable, for an added term.
+    /// Coefficient of the scaled second variable; `None` without one.
     pub(super) slope: Option<f64>,
-    /// Whether the sum is the value's natural logarithm.
+    /// Whether the other fields give the natural logarithm of the value.
     pub(super) of_logarithm: bool,
-    /// If present, the value is clipped between zero and this table.
+    /// Upper limit of the value, whose lower limit is then zero.
     pub(super) upper: Option<Regression>,
 }
 
@@ -103,8 +104,8 @@ impl Scheduled<'_> {
         }
     }
 
-    /// Returns the time constant `a` \[s\] in the numerator of a channel's lead filter: equal to
-    /// `b` without a lead. `None` for a schedule without leads.
+    /// Returns the numerator time constant `a` \[s\] of a channel's lead filter, which equals `b`
+    /// without a lead. `None` if the schedule has no leads.
     pub(super) fn zero_s(&self, channel: Channel) -> Option<Curve> {
         let leads = self.schedule.leads.as_ref()?;
         let least = self.schedule.airspeeds.min_kt;
@@ -112,7 +113,7 @@ impl Scheduled<'_> {
         if leads.taus_s[channel].figures().len() == 1 || least == most {
             return Some(Curve::constant(self.zero_at_s(channel, least)?));
         }
-        // The numerator for a signed delay is not a polynomial in it.
+        // The numerator time constant is not a polynomial in airspeed even if the signed delay is.
         let mut airspeeds_kt = Vec::new();
         let mut values = Vec::new();
         for place in 0..=LEAD_INTERVALS {
@@ -154,7 +155,7 @@ impl Scheduled<'_> {
         notes
     }
 
-    /// Returns the same remarks, and a remark on lead filters that are tables.
+    /// Returns the remarks on the schedule, and a remark on lead filters given as tables.
     pub(super) fn notes_of_curves(&self) -> Vec<String> {
         let mut notes = self.notes();
         let has_lead_table = all_channels(self.dataset).into_iter().any(|channel| {
@@ -170,7 +171,7 @@ impl Scheduled<'_> {
         notes
     }
 
-    /// Describes a file with the schedule, line by line, with these notes.
+    /// Returns the heading of a file with the schedule, line by line, including these notes.
     pub(super) fn heading(&self, notes: &[String]) -> Vec<String> {
         let airspeeds = &self.schedule.airspeeds;
         let quantities = if self.schedule.has_delays() {
@@ -237,7 +238,7 @@ impl Scheduled<'_> {
         ]
     }
 
-    /// Rejects curves with numbers that are not finite.
+    /// Rejects curves with coefficients or values that are not finite.
     pub(super) fn check(&self) -> Result<(), ExportFault> {
         for channel in all_channels(self.dataset) {
             self.check_curve(channel, "gain", &self.gain(channel))?;

@@ -1,24 +1,24 @@
-//! Largest error of linear interpolation in a table.
+//! Maximum error of linear interpolation in a table.
 
-/// Grid intervals in the search for the largest error.
+/// Number of grid intervals in the search for the maximum error.
 const GRID: usize = 2000;
-/// Golden-section steps: each multiplies the interval by 0.618.
+/// Number of golden-section steps: each multiplies the interval by 0.618.
 const STEPS: usize = 60;
 
-/// Largest error of linear interpolation in a table.
+/// Maximum error of linear interpolation in a table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct TableError {
-    /// Absolute error, in the unit of `measure`.
+    /// Absolute error, in the unit of the `measure` passed to [`Self::greatest`].
     pub(super) error: f64,
-    /// Airspeed \[kt\] with this error.
+    /// Airspeed \[kt\] at which the maximum occurs.
     pub(super) airspeed_kt: f64,
 }
 
 impl TableError {
-    /// Finds the largest error of a table of `curve` at `points` within `range_kt`; `measure`
-    /// returns a value's error against the true value.
+    /// Finds the maximum error within `range_kt` of a table that samples `curve` at `points`;
+    /// `measure` returns the error of an interpolated value, given the true one.
     ///
-    /// A grid finds the neighbourhood, a golden-section search the location.
+    /// A grid search is refined by a golden-section search.
     pub(super) fn greatest(
         points: &[f64],
         range_kt: [f64; 2],
@@ -53,7 +53,7 @@ impl TableError {
         greatest
     }
 
-    /// Returns the greater error, `self` if they are equal.
+    /// Returns the larger error; `self` if they are equal.
     pub(super) fn or_greater(self, other: Self) -> Self {
         if other.error > self.error {
             other
@@ -63,7 +63,7 @@ impl TableError {
     }
 }
 
-/// Interpolates a table at an airspeed: linear between its points, the end values outside.
+/// Interpolates a table linearly at an airspeed; outside its range, the end values apply.
 fn interpolated(points: &[f64], values: &[f64], airspeed_kt: f64) -> f64 {
     let above = points.partition_point(|&point| point <= airspeed_kt);
     match (above.checked_sub(1), points.get(above)) {
@@ -82,7 +82,7 @@ mod tests {
 
     #[test]
     fn the_error_of_a_parabola_is_greatest_in_the_middle() {
-        // x^2 between 0 and h is at most h^2/4 below its chord.
+        // Between 0 and h, the chord of x^2 is at most h^2/4 above the curve.
         let found = TableError::greatest(
             &[0.0, 10.0, 16.0],
             [0.0, 16.0],

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! n <- 64 KiB
-//! 1  text <- the first n bytes, unpacked; if that is the whole file, stop: the full reader checks it
+//! 1  text <- the first n bytes, unpacked; if that is the whole file, stop (fully read later)
 //! 2  read text up to its last comma as a dataset or a study
 //! 3  an error other than the end of the text: report it
 //! 4  n <- 16 n, and again up to 16 MiB
@@ -20,11 +20,11 @@ use crate::location::Outline;
 use crate::reading_budget::ReadingBudget;
 use crate::source::{text_reader, without_mark};
 
-/// Length read first \[bytes\].
+/// Number of bytes checked first.
 const FIRST: usize = 1 << 16;
-/// Growth factor from each beginning to the next.
+/// Growth factor from one checked length to the next.
 const GROWTH: usize = 16;
-/// Length read last \[bytes\].
+/// Number of bytes checked last.
 const LAST: usize = 16 << 20;
 
 /// Looks for the first structural error of a dataset or a study: text that is not JSON, another
@@ -51,9 +51,9 @@ pub fn check_beginning(path: &Path) -> Result<(), FileError> {
     Ok(())
 }
 
-/// Returns the first error in a text that continues beyond its end.
+/// Returns the first error in an incomplete text: one that continues in the file.
 fn check_text(text: &[u8], path: &Path) -> Result<(), FileError> {
-    // A number or a word that is cut off would have another value.
+    // A number or a word cut off at the end would be read with another value.
     let Some(comma) = text.iter().rposition(|&byte| byte == b',') else {
         return Ok(());
     };
@@ -66,7 +66,7 @@ fn check_text(text: &[u8], path: &Path) -> Result<(), FileError> {
         check_dataset_text(text, path, &budget)
     };
     match checked {
-        // Expected: the text continues.
+        // The cut-off itself is expected, since the text continues.
         Err(FileError::CutOff { .. }) => Ok(()),
         checked => checked,
     }
@@ -95,7 +95,7 @@ mod tests {
         assert!(tried > 1000, "{tried}");
     }
 
-    /// A file with this beginning that exceeds every reading limit.
+    /// A file that begins with `begin` and exceeds every reading limit.
     fn endless(begin: &str) -> tempfile::NamedTempFile {
         let file = tempfile::NamedTempFile::new().unwrap();
         std::fs::write(&file, begin).unwrap();

@@ -1,5 +1,5 @@
-//! Contents of an export: gains, delays, leads and couplings, scheduled or a condition's own; and
-//! the parts it omits.
+//! Contents of an export: gains, delays, leads and couplings, each scheduled or of the condition's
+//! own correction; and the omitted parts.
 
 use serde_json::{Value, json};
 
@@ -9,20 +9,20 @@ use gdcm_study::results::schedule_losses::DelayedChannel;
 use gdcm_study::{Analysis, AssessedCorrection, PhaseCorrection};
 use gdcm_words::schedule::delayed_channel_text;
 
-/// Source of a part in an exported correction.
+/// Source of a part of an exported correction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PartSource {
     Scheduled,
     /// Each condition's own correction.
     Own,
-    /// Both, side by side.
+    /// Own and scheduled correction, side by side.
     OwnAndScheduled,
     /// Not in the file.
     None,
 }
 
 impl PartSource {
-    /// Returns its word in files.
+    /// Returns the word for the source in files.
     pub fn word(self) -> &'static str {
         match self {
             Self::Scheduled => "scheduled",
@@ -44,7 +44,7 @@ impl PartSource {
         if is_own { Self::Own } else { Self::None }
     }
 
-    /// Combines this part with the same part in the schedule.
+    /// Combines the source of this part with the source of the same part in the schedule.
     fn beside(self, scheduled: Self) -> Self {
         match (self, scheduled) {
             (Self::Own, Self::Scheduled) => Self::OwnAndScheduled,
@@ -54,19 +54,19 @@ impl PartSource {
     }
 }
 
-/// A part in the conditions' corrections that an export does not contain.
+/// A part of the conditions' corrections that an export omits.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LeftOutPart {
-    /// A channel's delays in some conditions' own corrections that the schedule does not have.
+    /// Delays of a channel in the own corrections of some conditions, which the schedule omits.
     Delay(DelayedChannel),
     /// The scheduled lead filters.
     Leads,
-    /// The requested couplings, and the reason why there are none.
+    /// The requested couplings, with the reason why they are unavailable.
     Couplings(String),
 }
 
 impl LeftOutPart {
-    /// Returns its code.
+    /// Returns the stable code of the part.
     pub fn code(&self) -> &'static str {
         match self {
             Self::Delay(_) => "delay-not-scheduled",
@@ -75,7 +75,7 @@ impl LeftOutPart {
         }
     }
 
-    /// Describes it in words: "delay of output NX: 5.3 ms in condition 4 (not scheduled)".
+    /// Describes the part: "delay of output NX: 5.3 ms in condition 4 (not scheduled)".
     pub fn words(&self, dataset: &Dataset) -> String {
         match self {
             Self::Delay(delayed) => {
@@ -87,20 +87,20 @@ impl LeftOutPart {
     }
 }
 
-/// Export contents, and the parts that it omits.
+/// Sources of the parts in an export, and the omitted parts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExportContents {
     pub gains: PartSource,
     pub delays: PartSource,
     pub leads: PartSource,
-    /// Mixing and feedback, the same for all conditions.
+    /// Mixing and feedback, identical for all conditions.
     pub couplings: PartSource,
     /// The omitted parts.
     pub left_out: Vec<LeftOutPart>,
 }
 
 impl ExportContents {
-    /// Returns the contents for the result files: each condition's own correction, beside the
+    /// Returns the contents of the result files: the own correction of each condition, beside the
     /// schedule if it exists.
     pub fn of_results(analysis: &Analysis) -> Self {
         let own = Self::of_own(analysis);
@@ -123,7 +123,7 @@ impl ExportContents {
         }
     }
 
-    /// Returns the contents for the study's schedule; empty without a schedule.
+    /// Returns the contents of an exported schedule; empty without a schedule.
     pub fn of_scheduled(analysis: &Analysis) -> Self {
         match &analysis.schedule {
             Ok(schedule) => Self::of_schedule(analysis, schedule),
@@ -131,10 +131,10 @@ impl ExportContents {
         }
     }
 
-    /// Returns the contents for corrected models in these conditions.
+    /// Returns the contents of corrected models at these conditions.
     ///
     /// # Errors
-    /// [`ScheduleError`] if a schedule is requested and there is none.
+    /// [`ScheduleError`] if the schedule is requested but does not exist.
     pub fn of_models(
         analysis: &Analysis,
         correction: AssessedCorrection,
@@ -210,7 +210,7 @@ impl ExportContents {
         contents
     }
 
-    /// Returns each part with its name, in report order.
+    /// Returns the name and source of each part, in report order.
     pub fn parts(&self) -> [(&'static str, PartSource); 4] {
         [
             ("gains", self.gains),
@@ -235,7 +235,7 @@ impl ExportContents {
             .collect()
     }
 
-    /// Returns lines with both: "contains: …", then "left out: …" for each omitted part.
+    /// Returns the lines of both: "contains: …", then "left out: …" for each omitted part.
     pub fn lines(&self, dataset: &Dataset) -> Vec<String> {
         let mut lines = vec![format!("contains: {}", self.words())];
         for words in self.left_out_words(dataset) {

@@ -1,4 +1,4 @@
-//! Models identified from flight records, `gdcm-identified` 1, as `gdcm identify` writes them.
+//! Models identified from flight records, `gdcm-identified` 1, written by `gdcm identify`.
 
 use std::path::Path;
 
@@ -24,15 +24,15 @@ use crate::file_error::FileError;
 use crate::json_text::{Nested, write_compact};
 use crate::output_set::OutputSet;
 
-/// Identification results, with the additional information in their file.
+/// Identification results, with the additional information in the file.
 pub struct IdentifiedModels<'f> {
-    /// In channel units.
+    /// Results in the units of the channels.
     pub found: &'f Identification,
     pub channels: &'f RecordChannels,
-    /// In order.
+    /// Records used, in order.
     pub records: &'f [ConditionRecord],
     pub cautions: &'f [CautionNote],
-    /// Assumptions and actions while the records were read.
+    /// Notes on assumptions and choices made while the records were read.
     pub reading: &'f [String],
 }
 
@@ -54,15 +54,15 @@ struct MeasuredText {
     omega_rad_s: Vec<f64>,
     re: Nested<3>,
     im: Nested<3>,
-    /// Multiple coherence, by output.
+    /// Multiple coherence of each output.
     coherence: Nested<2>,
     partial_coherence: Nested<3>,
     sd_db: Nested<3>,
     sd_deg: Nested<3>,
 }
 
-/// Adds identification results as a file to `outputs`: the recommended model first, then CT-PBSID
-/// without refinement, then the remaining bundle. Values that are not finite become `null`.
+/// Adds identification results as a file to `outputs`: the recommended model, then the CT-PBSID
+/// model without refinement, then the rest of the bundle. Values that are not finite become `null`.
 pub fn add_identified(
     results: &IdentifiedModels<'_>,
     path: &Path,
@@ -114,9 +114,9 @@ fn label(rule: &ChannelRule) -> ChannelLabel {
     }
 }
 
-/// Returns the validation: costs over degrees of freedom for the fitted and for the held-out
-/// records, the latter also with the model free within its own uncertainty; and in time, the share
-/// of each output that the model reproduces in the held-out records \[%\], and Theil's coefficient.
+/// Returns the validation: the cost per degree of freedom of the fitted and of the held-out
+/// records, the latter also with the uncertainty of the model taken into account; in the time
+/// domain, the fit of each output in the held-out records \[%\], and Theil's coefficient.
 fn validation_text(found: &Identification) -> Value {
     let (fit_percent, theil) = match &found.validation {
         Some(in_time) => (json!(in_time.fit_percent), json!(in_time.theil)),
@@ -155,8 +155,8 @@ fn measured_text(measured: &ResponseEstimate) -> MeasuredText {
     }
 }
 
-/// Returns values for all responses, outputs x inputs x frequencies; `value` takes a point and the
-/// output and input indices.
+/// Returns the values of all responses, outputs x inputs x frequencies; `value` is evaluated for
+/// each point and each response.
 fn response_array(
     points: &[EstimatePoint],
     value: impl Fn(&EstimatePoint, (usize, usize)) -> f64,
@@ -177,7 +177,7 @@ fn response_array(
     }
 }
 
-/// Returns a caution, with its record if it concerns a single record.
+/// Returns a caution, with its record if it concerns only one.
 fn caution_text(note: &CautionNote) -> Value {
     let single_record = match note.records.as_slice() {
         [record] => Some(record),
@@ -194,7 +194,7 @@ fn caution_text(note: &CautionNote) -> Value {
     })
 }
 
-/// Returns a pole, with the standard deviation of its distance in the complex plane.
+/// Returns a pole, with the standard deviation of its position in the complex plane.
 fn pole_text(estimate: &PoleEstimate) -> Value {
     json!({
         "re": estimate.pole.re,
@@ -204,8 +204,8 @@ fn pole_text(estimate: &PoleEstimate) -> Value {
     })
 }
 
-/// Returns record `index`: first and last time \[s\] for its part in the file and for each used
-/// segment, and the reasons why other segments were not used.
+/// Returns record `index`: first and last time \[s\] of the part used and of each used segment, and
+/// the reasons why other segments were not used.
 fn record_text(found: &Identification, index: usize, record: &ConditionRecord) -> Value {
     let mut reasons = Vec::new();
     if let Some(used) = found.record_uses.get(index) {

@@ -1,4 +1,4 @@
-//! Model files, `gdcm-models` 1, as `gdcm convert` writes them.
+//! Model files, `gdcm-models` 1, written by `gdcm convert`.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -59,7 +59,7 @@ fn write_models(models: &[FoundModel], file: &mut dyn Write) -> io::Result<()> {
     write_compact(&text, file)
 }
 
-/// A corrected model, and the correction parts in it.
+/// A corrected model, and a description of the correction parts in it.
 pub(crate) struct ContainingModel {
     pub(crate) model: FoundModel,
     /// The block `contains`.
@@ -104,7 +104,7 @@ pub(crate) fn write_containing_models(
 pub(crate) fn model_text(model: &FoundModel) -> ModelText {
     let text = ModelText::from_draft(model.draft.clone());
     let role = match &model.draft.origin {
-        // Stands for an unknown origin.
+        // This value represents an unknown origin.
         Origin::Perturbed { perturbation: None } => None,
         Origin::Identified { .. } => Some("identified".to_owned()),
         Origin::Nominal { .. } | Origin::Perturbed { .. } => text.role,
@@ -131,7 +131,7 @@ pub(crate) fn model_text(model: &FoundModel) -> ModelText {
     }
 }
 
-/// Returns the channel names, empty if they are unknown.
+/// Returns the channel names; empty strings if they are unknown.
 fn names_text(labels: &[ChannelLabel]) -> Option<Limited<LabelText, MOST_CHANNELS>> {
     let mut names = Vec::with_capacity(labels.len());
     for label in labels {
@@ -140,7 +140,7 @@ fn names_text(labels: &[ChannelLabel]) -> Option<Limited<LabelText, MOST_CHANNEL
     Some(Limited(names))
 }
 
-/// Returns the channel units, empty if they are unknown.
+/// Returns the channel units; empty strings if they are unknown.
 fn units_text(labels: &[ChannelLabel]) -> Option<Limited<String, MOST_CHANNELS>> {
     let mut units = Vec::with_capacity(labels.len());
     for label in labels {
@@ -149,11 +149,11 @@ fn units_text(labels: &[ChannelLabel]) -> Option<Limited<String, MOST_CHANNELS>>
     Some(Limited(units))
 }
 
-/// Reads the models in a text that has this program's formats, with its unknown keys; `None` for
-/// any other text.
+/// Reads the models in a text in one of this program's formats; `None` for any other text. The
+/// second list holds cautions about unknown keys.
 ///
-/// Also `None` if an unknown key looks like a delay. Such a text is read like any other, with all
-/// known notations for delays, and a question about the rest.
+/// Also `None` if an unknown key resembles a delay. Such a text is read as general JSON, with all
+/// supported notations of delays, and the rest becomes a question.
 pub(crate) fn found_models(
     text: &[u8],
     path: &Path,
@@ -162,7 +162,7 @@ pub(crate) fn found_models(
     let (texts, unknown) = match MODELS.decode::<ModelsText>(text, path, budget) {
         Ok((text, unknown)) => (text.models, unknown),
         Err(_) => {
-            // The keys besides the models are identification results.
+            // The other keys of the file are identification results.
             let (text, _) = IDENTIFIED.decode::<ModelsText>(text, path, budget).ok()?;
             (text.models, Vec::new())
         }
@@ -177,7 +177,7 @@ pub(crate) fn found_models(
     Some((models, unknown))
 }
 
-/// Whether the caution about an unknown key names a key that looks like a delay.
+/// Whether the caution about an unknown key names a key that resembles a delay.
 fn names_delay(words: &str) -> bool {
     let words = words.to_lowercase();
     ["delay", "\"tau", "\"td", "dead", "latency"]
@@ -185,7 +185,7 @@ fn names_delay(words: &str) -> bool {
         .any(|word| words.contains(word))
 }
 
-/// Returns labels for a dataset's channels.
+/// Returns the labels of a dataset's channels.
 pub(crate) fn labels(channels: &[Channel]) -> Vec<ChannelLabel> {
     let mut labels = Vec::with_capacity(channels.len());
     for channel in channels {
@@ -211,8 +211,8 @@ pub(crate) fn bare_draft(name: String, origin: Origin) -> ModelDraft {
     }
 }
 
-/// Converts a model's text; its variable gets the place `index` in the list of models. `None` if it
-/// has no size.
+/// Converts the text of the model at `index`, which becomes part of its variable name. `None` if
+/// neither matrices nor a response give its dimensions.
 fn found_model(mut text: ModelText, index: usize) -> Option<FoundModel> {
     let origin = match text.origin() {
         Some(origin) => origin,
@@ -253,8 +253,8 @@ fn found_model(mut text: ModelText, index: usize) -> Option<FoundModel> {
     })
 }
 
-/// Returns `count` labels from channel names and units, each list possibly empty; `None` if a list
-/// has another length.
+/// Returns `count` labels from channel names and units, each list possibly empty; `None` if the
+/// length of a list is not `count`.
 fn labels_from_texts(
     count: usize,
     names: Vec<LabelText>,

@@ -1,4 +1,4 @@
-//! Requirement files (M17): `requirements.json` and `requirements.csv`, with the same numbers.
+//! Requirement files (M17): `requirements.json` and `requirements.csv`, with the same values.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -31,7 +31,7 @@ pub fn requirement_paths(directory: &Path) -> [PathBuf; 2] {
     REQUIREMENT_FILES.map(|name| directory.join(name))
 }
 
-/// `requirements.json`: the findings, preceded by their subject.
+/// Contents of `requirements.json`: the dataset, then the findings.
 #[derive(Serialize)]
 struct RequirementsDocument<'a> {
     format: &'static str,
@@ -49,7 +49,7 @@ struct DatasetName<'a> {
     sha256: &'a str,
 }
 
-/// Findings on the requirements, and the dataset that they concern.
+/// Findings on the requirements, and the dataset to which they apply.
 #[derive(Clone, Copy)]
 pub struct RequirementResults<'a> {
     pub requirements: &'a Requirements,
@@ -60,7 +60,7 @@ pub struct RequirementResults<'a> {
     pub sha256: &'a str,
 }
 
-/// Writes both files into a directory, created if missing: both, or none.
+/// Writes both files or neither into a directory, which is created if missing.
 pub fn write_requirements(
     results: RequirementResults<'_>,
     directory: &Path,
@@ -96,7 +96,7 @@ pub fn write_requirements(
 /// Column headings.
 const HEADING: &str = "question condition airspeed_kt role model output input mode record tolerance quantity value low high remark";
 
-/// Writes a row for each number.
+/// Writes a row for each value.
 fn write_rows(
     requirements: &Requirements,
     time_histories: &TimeHistories,
@@ -118,7 +118,7 @@ fn write_rows(
     write_records(file, rows.into_iter())
 }
 
-/// Subject of a number: the first ten cells of a row.
+/// Subject of a value: the first ten cells of a row.
 #[derive(Clone, Copy, Default)]
 struct Subject<'a> {
     question: &'a str,
@@ -134,7 +134,7 @@ struct Subject<'a> {
 }
 
 impl Subject<'_> {
-    /// Returns the row for a number with this name.
+    /// Returns the row of the quantity `name`.
     fn row(
         &self,
         name: &str,
@@ -162,7 +162,7 @@ impl Subject<'_> {
     }
 }
 
-/// Formats a number; empty if it is missing.
+/// Formats a value; empty if it is missing.
 fn cell(value: Option<f64>) -> String {
     match value {
         Some(value) => value.to_string(),
@@ -190,7 +190,7 @@ fn bandwidth_rows(finding: &BandwidthFinding) -> Vec<Vec<String>> {
     rows
 }
 
-/// Returns the reason why a number is missing, or its basis.
+/// Returns the reason why a quantity is missing; otherwise remarks on how it was determined.
 fn bandwidth_remark(finding: &BandwidthFinding, name: &'static str, is_known: bool) -> String {
     if !is_known {
         return finding.absent.get(name).cloned().unwrap_or_default();
@@ -228,7 +228,7 @@ fn mode_rows(finding: &ModeFinding) -> Vec<Vec<String>> {
     rows
 }
 
-/// Returns a mode's rows for the model with this role.
+/// Returns the rows of a mode for the model with this role.
 fn model_mode_rows(finding: &ModeFinding, role: &str, numbers: &ModeNumbers) -> Vec<Vec<String>> {
     let mode = match finding.name {
         Some(name) => format!("{} {name}", finding.number),
@@ -268,7 +268,8 @@ fn summary_rows(finding: &SummaryFinding) -> Vec<Vec<String>> {
     rows
 }
 
-/// Returns rows for values without a tolerance first, then for each tolerance.
+/// Returns the rows of a time history: quantities without a tolerance, then those of each
+/// tolerance.
 fn history_rows(finding: &HistoryFinding) -> Vec<Vec<String>> {
     let subject = Subject {
         question: "time_histories",
@@ -304,7 +305,7 @@ fn history_rows(finding: &HistoryFinding) -> Vec<Vec<String>> {
     rows
 }
 
-/// Returns the unit for an excess, and the trend that a correlation indicates.
+/// Returns the unit of an excess; for a correlation, the trend that it indicates.
 fn tolerance_remark(finding: &ToleranceFinding, name: &str) -> String {
     match (name, finding.correlation, finding.trend) {
         ("largest_excess", ..) => finding.unit.clone(),
@@ -314,8 +315,8 @@ fn tolerance_remark(finding: &ToleranceFinding, name: &str) -> String {
     }
 }
 
-// The engineer's own tables for requirements, each a separate file, for any study (M17): levels for
-// bandwidth and phase delay, tolerances for time histories.
+// Tables for requirements that the engineer supplies as separate files, for any study (M17): levels
+// of bandwidth and phase delay, tolerances of time histories.
 
 const TOLERANCES: Format = Format {
     name: "gdcm-tolerances",
@@ -343,7 +344,7 @@ pub fn read_levels(path: &Path) -> Result<LevelBoundaries, FileError> {
         .map_err(|error| json_error(text, path, Location::default(), &error))
 }
 
-/// Reads a tolerance table; whole, or not at all. Unknown keys are cautions.
+/// Reads a tolerance table completely, or returns an error. Unknown keys become cautions.
 pub fn load_tolerances(path: &Path) -> Result<(ToleranceTable, Vec<String>), FileError> {
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget)?;

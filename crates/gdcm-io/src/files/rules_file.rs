@@ -1,5 +1,5 @@
-//! Rules files, `*.gdcm-rules.json`: the engineer's rules for the files in a folder, reusable for
-//! later folders.
+//! Rules files, `*.gdcm-rules.json`: the engineer's rules on the files in a folder, which can be
+//! reused for other folders.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -23,7 +23,8 @@ use crate::source::Source;
 /// File extension.
 const RULES_EXTENSION: &str = "gdcm-rules.json";
 
-/// Returns the path for rules beside a dataset: "week.gdcm-rules.json" beside "week.json.gz".
+/// Returns the path of the rules file beside a dataset: "week.gdcm-rules.json" beside
+/// "week.json.gz".
 pub fn rules_path(dataset: &Path) -> PathBuf {
     let name = match dataset.file_name() {
         Some(name) => name.to_string_lossy().into_owned(),
@@ -33,7 +34,7 @@ pub fn rules_path(dataset: &Path) -> PathBuf {
     dataset.with_file_name(format!("{stem}.{RULES_EXTENSION}"))
 }
 
-/// Reads a rules file; whole, or not at all. Unknown keys are cautions.
+/// Reads a rules file completely, or returns an error. Unknown keys become cautions.
 pub fn load_rules(path: &Path) -> Result<(Rules, Vec<String>), FileError> {
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget)?;
@@ -50,7 +51,7 @@ pub fn add_rules(rules: &Rules, path: &Path, outputs: &mut OutputSet) -> Result<
     outputs.add(path, |file| write_pretty(&text, file))
 }
 
-/// Returns the error for an entry with a word other than expected.
+/// Returns the error for an entry that contains an unexpected word.
 fn word_error(entry: String, expected: &str, found: String) -> ContentError {
     let fault = ContentFault::Word {
         expected: expected.to_owned(),
@@ -101,7 +102,7 @@ impl RulesText {
         Ok(rules)
     }
 
-    /// Rejects invalid signs for all files, for roles and for single models.
+    /// Rejects invalid signs, whether for all files, for roles or for single models.
     fn check_signs(&self) -> Result<(), ContentError> {
         check_signs("signs", &self.signs)?;
         for (role, signs) in &self.role_signs {
@@ -115,7 +116,7 @@ impl RulesText {
         Ok(())
     }
 
-    /// Rejects invalid declarations for roles, folders and files, and for single models.
+    /// Rejects invalid declarations, whether for roles, folders and files, or for single models.
     fn check_declarations(&self) -> Result<(), ContentError> {
         for scoped in &self.declarations {
             check_declarations(&format!("declarations, {}", scoped.of), &scoped.channels)?;
@@ -162,8 +163,8 @@ fn check_signs(place: &str, signs: &Signs) -> Result<(), ContentError> {
     Ok(())
 }
 
-/// Rejects a factor that converts nothing, a unit beside a factor for the same channel, an empty
-/// unit, and an invalid sign.
+/// Rejects an invalid factor, a unit beside a factor for the same channel, an empty unit, and an
+/// invalid sign.
 fn check_declarations(place: &str, declared: &ChannelDeclarations) -> Result<(), ContentError> {
     for (channel, factor) in &declared.factors {
         let entry = format!("{place}, factors, {channel}");
@@ -207,10 +208,11 @@ pub(crate) const FORMAT: Format = Format {
     version: 1,
 };
 
-/// Largest number of patterns, and of conversions, in a rules file.
+/// Maximum number of patterns, and of conversions, in a rules file.
 const MOST_PATTERNS: usize = 200;
 
-/// Largest number of declarations in a rules file, each for a role, for folders or for a file.
+/// Maximum number of declarations in a rules file, each of which applies to a role, to folders or
+/// to a file.
 const MOST_DECLARATIONS: usize = 1000;
 
 #[derive(Deserialize, Serialize)]
@@ -238,7 +240,7 @@ pub(crate) struct RulesText {
     /// Channel signs for the models with a role, "identified" or "physics".
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub(crate) role_signs: BTreeMap<String, Signs>,
-    /// Channel units, factors and signs for the models with a role, in folders, or in a file.
+    /// Channel units, factors and signs of the models with a role, in folders, or in a file.
     #[serde(
         default,
         skip_serializing_if = "Vec::is_empty",
@@ -248,7 +250,7 @@ pub(crate) struct RulesText {
     /// Sample time \[s\] for models without a sample time; 0 for continuous time.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) sample_time_s: Option<f64>,
-    /// Column headings for tables, by file.
+    /// Column headings of tables, by file.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub(crate) headings: BTreeMap<String, Vec<String>>,
     /// Rules for single models, by file and variable.
@@ -256,7 +258,7 @@ pub(crate) struct RulesText {
     pub(crate) models: BTreeMap<String, RowRule>,
 }
 
-/// Returns the patterns for a file without any.
+/// Returns the default patterns for a file that contains none.
 fn standard() -> Vec<String> {
     pattern_texts(standard_patterns())
 }

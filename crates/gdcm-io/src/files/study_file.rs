@@ -1,4 +1,4 @@
-//! Study files, `*.gdcm-study.json`: a study's decisions, and a reference to its dataset.
+//! Study files, `*.gdcm-study.json`: the decisions of a study, and a reference to its dataset.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -32,7 +32,7 @@ use crate::output_set::{Existing, OutputSet};
 use crate::reading_budget::ReadingBudget;
 use crate::source::Source;
 
-/// Largest number of variants in a study file.
+/// Maximum number of variants in a study file.
 pub(crate) const MOST_VARIANTS: usize = 1000;
 
 /// Format and version of a study file.
@@ -43,21 +43,22 @@ const FORMAT: Format = Format {
 
 /// File extension of a study.
 pub const STUDY_EXTENSION: &str = "gdcm-study.json";
-/// Replaces a path if a study uses the embedded example.
+/// Replaces the path of the dataset if a study uses the embedded example.
 const EMBEDDED: &str = "embedded example";
 
-/// A study with its dataset, and the dataset's changes since the study was saved.
+/// A study with its dataset, and the changes of the dataset since the study was saved.
 #[derive(Clone, Debug)]
 pub struct OpenedStudy {
-    /// The study, with every decision that still applies.
+    /// The study, with all decisions that still apply.
     pub study: Study,
     pub loaded: LoadedDataset,
     pub path: PathBuf,
-    /// Changes in the dataset, and decisions that no longer apply; empty if it is unchanged.
+    /// Changes in the dataset, and decisions that no longer apply; empty if the dataset is
+    /// unchanged.
     pub differences: Vec<Difference>,
 }
 
-/// A study file, key by key.
+/// Members of a study file, as JSON.
 #[derive(Deserialize, Serialize)]
 struct StudyText {
     format: String,
@@ -68,24 +69,24 @@ struct StudyText {
     settings: Settings<ResponseNames>,
     #[serde(deserialize_with = "list::<MOST_CONDITIONS, _, _>")]
     conditions: Vec<ConditionText>,
-    /// Identified models that replace the dataset's own; absent if there are none.
+    /// Identified models that replace those of the dataset; absent if there are none.
     #[serde(
         default,
         skip_serializing_if = "Vec::is_empty",
         deserialize_with = "list::<MOST_CONDITIONS, _, _>"
     )]
     taken: Vec<TakenText>,
-    /// Channels with reversed sign in their models; absent if there are none.
+    /// Channels whose sign is reversed in some models; absent if there are none.
     #[serde(
         default,
         skip_serializing_if = "Vec::is_empty",
         deserialize_with = "list::<MOST_CHANNELS, _, _>"
     )]
     signs: Vec<TurnedChannel>,
-    /// Inputs for the requirements; absent if nothing was decided.
+    /// Decisions about the requirements; absent if they are the defaults.
     #[serde(default, skip_serializing_if = "is_default")]
     requirements: RequirementSettings,
-    /// Named decisions; absent in older studies.
+    /// Variants: alternative decisions with a name; absent in older studies.
     #[serde(
         default,
         skip_serializing_if = "Vec::is_empty",
@@ -105,7 +106,7 @@ struct TakenText {
     records: Vec<RecordText>,
 }
 
-/// Named decisions.
+/// A variant: decisions with a name.
 #[derive(Deserialize, Serialize)]
 struct VariantText {
     name: String,
@@ -120,15 +121,15 @@ struct DatasetReference {
     /// Path relative to the study's directory, with `/` between its parts; `None` for the embedded
     /// example.
     path: Option<String>,
-    /// The dataset's name, for people; "embedded example" for the embedded example.
+    /// Name of the dataset, for display only; "embedded example" for the embedded example.
     name: String,
     sha256: String,
-    /// Content inventory; absent in older studies.
+    /// Inventory of the dataset's contents; absent in older studies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     holds: Option<Inventory>,
 }
 
-/// The choices for a condition.
+/// Decisions about a condition.
 #[derive(Deserialize, Serialize)]
 struct ConditionText {
     #[serde(deserialize_with = "whole")]
@@ -136,7 +137,7 @@ struct ConditionText {
     physics: BundleChoice,
     identified: BundleChoice,
     scheduled: bool,
-    /// Whether it is held out; absent in older studies.
+    /// Whether the condition is held out for validation; absent in older studies.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     held_out: bool,
 }
@@ -158,7 +159,7 @@ impl ConditionText {
         }
     }
 
-    /// Returns the choices for all conditions.
+    /// Returns the decisions about all conditions.
     fn from_study(study: &Study) -> Vec<Self> {
         let conditions = study.dataset.conditions().iter();
         conditions
@@ -210,7 +211,7 @@ fn is_default(settings: &RequirementSettings) -> bool {
     *settings == RequirementSettings::default()
 }
 
-/// Returns the decisions in a study file about its dataset.
+/// Returns the decisions of a study file, checked against the dataset.
 fn decisions_of(text: StudyText, dataset: &Dataset) -> Result<Decisions, ContentError> {
     let mut decisions = present_decisions(text.settings, text.conditions, dataset)?;
     decisions.taken = adopted_models(text.taken, dataset)?;
@@ -233,10 +234,10 @@ fn decisions_of(text: StudyText, dataset: &Dataset) -> Result<Decisions, Content
     Ok(decisions)
 }
 
-/// Returns decisions without variants.
+/// Returns the present decisions, without the variants.
 ///
 /// # Errors
-/// A setting outside its range, and a condition given twice.
+/// A setting outside its range, and a condition that appears twice.
 fn present_decisions(
     mut settings: Settings<ResponseNames>,
     conditions: Vec<ConditionText>,
@@ -311,13 +312,13 @@ fn adopted_models(
     Ok(adopted)
 }
 
-/// Saves a study, replacing an existing file; whole, or not at all. The dataset itself is never
-/// replaced.
+/// Saves a study completely or not at all, replacing an existing file. The dataset itself is never
+/// overwritten.
 pub fn save_study(study: &Study, loaded: &LoadedDataset, path: &Path) -> Result<(), FileError> {
     save(study, loaded, path, |dataset| path_text(dataset, path))
 }
 
-/// Saves a study with its dataset's absolute path: for a file in an unrelated place.
+/// Saves a study with the absolute path of its dataset, because the file is in an unrelated folder.
 pub(crate) fn save_recovery(
     study: &Study,
     loaded: &LoadedDataset,
@@ -328,8 +329,8 @@ pub(crate) fn save_recovery(
     })
 }
 
-/// Returns a dataset's settled path; without resolved links if its directory is out of reach, so
-/// that the decisions are kept all the same.
+/// Returns the absolute path of a dataset with links resolved; without resolving them if its
+/// directory is inaccessible, so that the decisions are saved in any case.
 fn settled_or_absolute(dataset: &Path) -> PathBuf {
     if let Ok(settled) = settled(dataset) {
         return settled;
@@ -368,7 +369,7 @@ fn save(
     output.persist()
 }
 
-/// Returns the dataset's file name in a study file. `None` if the study cannot be read.
+/// Returns the dataset's file name given in a study file. `None` if the study cannot be read.
 pub(crate) fn dataset_of_study(path: &Path) -> Option<String> {
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget).ok()?;
@@ -384,7 +385,7 @@ pub(crate) fn dataset_of_study(path: &Path) -> Option<String> {
     }
 }
 
-/// Opens a study and its dataset: at the path in the study, otherwise beside the study.
+/// Opens a study and its dataset: at the path given in the study, otherwise beside the study.
 pub fn open_study(path: &Path) -> Result<OpenedStudy, FileError> {
     let budget = ReadingBudget::default();
     study_from(&Source::read(path, &budget)?, path, None, &budget)
@@ -399,7 +400,7 @@ pub fn open_study_of(
     study_from(&Source::read(path, budget)?, path, Some(dataset), budget)
 }
 
-/// Checks the structure in a study's text, as far as the text goes.
+/// Checks the structure of a study's text, which may be incomplete.
 pub(crate) fn check_study_text(
     text: &[u8],
     path: &Path,
@@ -408,7 +409,8 @@ pub(crate) fn check_study_text(
     FORMAT.decode::<StudyText>(text, path, budget).map(drop)
 }
 
-/// Returns the study in a source; its dataset is at `moved`, or at the path in the study.
+/// Returns the study read from a source; its dataset is at `moved`, or at the path given in the
+/// study.
 pub(crate) fn study_from(
     source: &Source<'_>,
     path: &Path,
@@ -439,7 +441,7 @@ pub(crate) fn study_from(
     })
 }
 
-/// Loads a study's dataset, at `moved` or at the path in the study.
+/// Loads the dataset of a study, at `moved` or at the path given in the study.
 fn load_referenced(
     reference: &DatasetReference,
     study: &Path,
@@ -453,7 +455,7 @@ fn load_referenced(
     };
     match load_dataset_within(&path, budget) {
         Ok(loaded) => Ok(loaded),
-        // A dataset whose reading was stopped is not missing.
+        // If reading was stopped, the dataset is not missing.
         Err(error) if error.is_stopped() => Err(error),
         Err(error) => Err(FileError::StudyDataset {
             path: study.to_owned(),
@@ -462,7 +464,8 @@ fn load_referenced(
     }
 }
 
-/// Returns the path to the dataset: as in the study, or beside the study if it exists only there.
+/// Returns the path of the dataset: as given in the study, or beside the study if the file exists
+/// only there.
 fn referenced_path(study: &Path, relative: &str) -> PathBuf {
     let directory = study.parent().unwrap_or(Path::new(""));
     let referenced = directory.join(relative);
@@ -475,11 +478,11 @@ fn referenced_path(study: &Path, relative: &str) -> PathBuf {
     referenced
 }
 
-/// Returns the dataset's path as written in the study at `study`.
+/// Returns the path of the dataset as written in the study file `study`.
 fn path_text(dataset: &Path, study: &Path) -> Result<String, FileError> {
     let dataset = settled(dataset)?;
     let directory = settled(study)?;
-    // There is no relative path to another drive: the dataset's own path is used.
+    // There is no relative path to another drive; the absolute path is used.
     let relative = directory
         .parent()
         .and_then(|directory| pathdiff::diff_paths(&dataset, directory))
@@ -487,8 +490,8 @@ fn path_text(dataset: &Path, study: &Path) -> Result<String, FileError> {
     slashed(&relative, study)
 }
 
-/// Returns the relative path from the folder around `file` to `folder`, the current folder if that
-/// is empty, with `/` between its parts; the unchanged folder if there is no such path.
+/// Returns the relative path from the directory of `file` to `folder` (empty: the current
+/// directory), with `/` as the separator; the unchanged `folder` if there is no such path.
 pub fn relative_folder(folder: &Path, file: &Path) -> String {
     let folder = if folder.as_os_str().is_empty() {
         Path::new(".")
@@ -501,14 +504,14 @@ pub fn relative_folder(folder: &Path, file: &Path) -> String {
         .replace(std::path::MAIN_SEPARATOR, "/")
 }
 
-/// Returns the relative path from the folder around `file` to `folder`, if it exists.
+/// Returns the relative path from the directory of `file` to `folder`, if there is one.
 fn relative_path(folder: &Path, file: &Path) -> Option<PathBuf> {
     let folder = std::path::absolute(folder).ok()?;
     let file = std::path::absolute(file).ok()?;
     pathdiff::diff_paths(folder, file.parent()?)
 }
 
-/// Returns a path with `/` between its parts.
+/// Returns a path with `/` as the separator.
 fn slashed(path: &Path, study: &Path) -> Result<String, FileError> {
     match path.to_str() {
         Some(text) => Ok(text.replace(std::path::MAIN_SEPARATOR, "/")),
@@ -547,7 +550,8 @@ pub enum Opened {
 }
 
 impl Opened {
-    /// Returns the study, opened or new for the dataset; the dataset; and its differences.
+    /// Returns the opened study, or a new study of the dataset, with the dataset and its
+    /// differences.
     pub fn into_study(self) -> (Study, LoadedDataset, Vec<Difference>) {
         match self {
             Opened::Dataset(loaded) => (Study::new(loaded.dataset.clone()), loaded, Vec::new()),
@@ -561,8 +565,8 @@ impl Opened {
     }
 }
 
-/// Whether a path is a folder, or a file that by its name and its first character can only hold
-/// models: neither a dataset nor a study.
+/// Whether a path can only hold models, neither a dataset nor a study: a folder, or a file
+/// according to its name and first character.
 pub fn holds_models(path: &Path) -> bool {
     let extension = path
         .extension()
@@ -578,7 +582,7 @@ fn begins_an_object(path: &Path) -> bool {
     read.is_ok() && first.trim_ascii_start().starts_with(b"{")
 }
 
-/// Opens a dataset or a study, as identified by its content, within a budget.
+/// Opens a dataset or a study, depending on its content, within a budget.
 pub fn load_any(path: &Path, budget: &ReadingBudget<'_>) -> Result<Opened, FileError> {
     let source = Source::read(path, budget)?;
     match Outline::format_of(source.text(), budget).as_deref() {

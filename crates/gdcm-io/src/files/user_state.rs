@@ -1,5 +1,5 @@
-//! User state kept between program starts: recently opened and saved files, and whether it was
-//! started before.
+//! User state kept between program starts: recently opened and saved files, and whether the program
+//! was started before.
 
 use std::fs::{self, File, OpenOptions, TryLockError, create_dir_all};
 use std::io::{Read, Seek, Write};
@@ -20,9 +20,9 @@ use crate::output_set::{make_directory, write_whole};
 use crate::reading_budget::ReadingBudget;
 use crate::source::Source;
 
-/// Largest number of listed files.
+/// Maximum number of listed files.
 const MOST: usize = 10;
-/// File name in the program's directory.
+/// File name in the program's directory for user state.
 const NAME: &str = "recent-files.json";
 /// Format and version of the list.
 const FORMAT: Format = Format {
@@ -82,8 +82,8 @@ pub fn add_recent_file(directory: &Path, file: &Path) -> Result<(), FileError> {
 /// Marker file from an earlier start.
 const STARTED: &str = "started";
 
-/// Whether this is the first start, which is then recorded in the program's directory. Also false
-/// if the record cannot be created: otherwise every start would look like the first.
+/// Returns whether this is the first start, and records it in the program's directory. Also false
+/// if it cannot be recorded: otherwise every start would look like the first.
 pub fn is_first_start(directory: &Path) -> bool {
     let kept = create_dir_all(directory).and_then(|()| {
         OpenOptions::new()
@@ -96,13 +96,13 @@ pub fn is_first_start(directory: &Path) -> bool {
 
 // Recovery files: unsaved decisions that survive a crash or a kill.
 
-/// File extension for locks that show whether a process lives.
+/// Extension of lock files, which are locked while their process runs.
 const LOCK_EXTENSION: &str = "lock";
-/// Much longer than the time between creating and locking a file.
+/// Age below which a lock file may belong to a process that has not locked it yet.
 const YOUNG: Duration = Duration::from_secs(60);
 
-/// Recovery file of an open window: a study file, `PROCESS-NUMBER.gdcm-study.json`. A file beside
-/// it is locked while the process lives, and contains the path to the study's own file.
+/// Recovery file of an open window: a study file, `PROCESS-NUMBER.gdcm-study.json`. The file beside
+/// it is locked while the process runs, and contains the path of the study's own file.
 #[derive(Debug)]
 pub struct RecoveryFile {
     path: PathBuf,
@@ -116,7 +116,7 @@ impl RecoveryFile {
     /// # Errors
     /// Returned if the directory or the lock cannot be created.
     pub fn claim(directory: &Path) -> Result<Self, FileError> {
-        /// Windows in the same process have different names.
+        /// Gives windows of one process different names.
         static NUMBER: AtomicUsize = AtomicUsize::new(1);
         make_directory(directory)?;
         loop {
@@ -127,7 +127,7 @@ impl RecoveryFile {
             );
             let path = directory.join(format!("{name}.{STUDY_EXTENSION}"));
             let lock_path = directory.join(format!("{name}.{LOCK_EXTENSION}"));
-            // A file from an earlier process with this number may be waiting there to be restored.
+            // A file left by an earlier process with this id may still be waiting to be restored.
             if path.exists() || lock_path.exists() {
                 continue;
             }
@@ -143,12 +143,12 @@ impl RecoveryFile {
         }
     }
 
-    /// Returns the path to the kept decisions.
+    /// Returns the path of the recovery file.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Keeps a study, whole or not at all; `saved_as` is the study's own file.
+    /// Writes the study completely or not at all; `saved_as` is the study's own file.
     ///
     /// # Errors
     /// Returned if it cannot be written.
@@ -174,58 +174,58 @@ impl RecoveryFile {
         save_recovery(study, loaded, &self.path)
     }
 
-    /// Removes the kept decisions, which are saved or not wanted.
+    /// Removes the recovery file, because its decisions are saved or not wanted.
     ///
     /// # Errors
-    /// Returned if they exist and cannot be removed.
+    /// Returned if the file exists and cannot be removed.
     pub fn clear(&mut self) -> Result<(), FileError> {
         remove(&self.path)
     }
 }
 
 impl Drop for RecoveryFile {
-    /// Leaves kept decisions, with their lock file, for the next start.
+    /// Keeps a written recovery file, with its lock file, for the next start.
     fn drop(&mut self) {
         if !self.path.exists() {
-            // If left behind, it is removed by the next start.
+            // If the lock file cannot be removed now, the next start removes it.
             let _ = remove(&self.lock_path);
         }
     }
 }
 
-/// Recovery file of a window that ended without saving. It is not offered to other windows while
-/// this value exists.
+/// Recovery file of a window that ended without saving. While this value exists, other windows do
+/// not find the file.
 #[derive(Debug)]
 pub struct LostStudy {
     path: PathBuf,
     lock_path: PathBuf,
     _lock: File,
-    /// Time at which the decisions were kept.
+    /// Time at which the recovery file was written.
     pub kept_at: SystemTime,
-    /// Their dataset, in words.
+    /// Dataset of the study, in words.
     pub dataset: String,
     /// The study's own file, if any.
     pub saved_as: Option<PathBuf>,
 }
 
 impl LostStudy {
-    /// Returns the path to the decisions.
+    /// Returns the path of the recovery file.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Removes the decisions permanently.
+    /// Removes the recovery file permanently.
     ///
     /// # Errors
-    /// Returned if they cannot be removed.
+    /// Returned if the file cannot be removed.
     pub fn remove(self) -> Result<(), FileError> {
         remove(&self.path)?;
         remove(&self.lock_path)
     }
 }
 
-/// Returns the recovery files in `directory` whose processes have ended, the newest first. Files
-/// without decisions are removed.
+/// Returns the recovery files in `directory` whose processes have ended, newest first. Lock files
+/// without a recovery file are removed.
 pub fn lost_studies(directory: &Path) -> Vec<LostStudy> {
     let Ok(entries) = fs::read_dir(directory) else {
         return Vec::new();
@@ -238,7 +238,7 @@ pub fn lost_studies(directory: &Path) -> Vec<LostStudy> {
     lost
 }
 
-/// Returns the recovery file beside a lock file, unless its process lives.
+/// Returns the recovery file beside a lock file, unless its process still runs.
 fn lost_study(lock_path: &Path) -> Option<LostStudy> {
     if lock_path.extension()? != LOCK_EXTENSION {
         return None;
@@ -254,8 +254,8 @@ fn lost_study(lock_path: &Path) -> Option<LostStudy> {
         Err(TryLockError::WouldBlock | TryLockError::Error(_)) => return None,
     }
     let Ok(kept_at) = fs::metadata(&path).and_then(|study| study.modified()) else {
-        // Left by a process without decisions; a young file may belong to another process that has
-        // created but not yet locked it.
+        // Left by a process that wrote no recovery file; a recent lock file may belong to a process
+        // that has created but not yet locked it.
         let created_at = lock.metadata().and_then(|lock| lock.modified()).ok();
         let age = created_at.and_then(|time| time.elapsed().ok());
         if age.is_some_and(|age| age > YOUNG) {
@@ -264,7 +264,7 @@ fn lost_study(lock_path: &Path) -> Option<LostStudy> {
         return None;
     };
     let mut name = String::new();
-    // An unreadable name is treated as unknown.
+    // A path that cannot be read is treated as absent.
     let _ = lock.read_to_string(&mut name);
     let saved_as = if name.is_empty() {
         None

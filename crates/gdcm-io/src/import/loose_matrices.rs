@@ -11,16 +11,16 @@ use crate::reading_budget::ReadingBudget;
 
 /// A matrix in a separate file.
 pub(super) struct LooseMatrix {
-    /// The folder, and the file name before the letter: matrices with the same group are a model.
+    /// Folder, and file name before the letter; the matrices of one group form a model.
     group: String,
     file: String,
     sha256: String,
-    /// The matrix, named by its letter.
+    /// Matrix values, under its letter as the name.
     variable: Variable,
 }
 
 impl LooseMatrix {
-    /// Takes the only variable in a file that is named as a matrix.
+    /// Takes the only variable of a file whose name ends in the letter of a matrix.
     pub(super) fn from_variables(variables: &[Variable], file: &str, sha256: &str) -> Option<Self> {
         let [variable] = variables else { return None };
         if !matches!(variable.value, Value::Array(_)) {
@@ -63,8 +63,7 @@ pub(super) fn matrix_letter(stem: &str) -> Option<(char, &str)> {
     Some((letter, before.trim_end_matches(['_', '-', '.', ' '])))
 }
 
-/// Builds a model from each group; its file is the folder, or the part of the name before the
-/// letters.
+/// Builds a model from each group; the file stated is the folder, or the common part of the names.
 pub(super) fn models_of_matrices(loose: Vec<LooseMatrix>) -> Found<FoundModel> {
     let mut groups: BTreeMap<String, Vec<LooseMatrix>> = BTreeMap::new();
     for matrix in loose {
@@ -85,7 +84,7 @@ fn models_of_group(group: &str, matrices: &[LooseMatrix]) -> Found<FoundModel> {
         .map(|matrix| matrix.variable.clone())
         .collect();
     let mut found = Found::default();
-    // The files were within their budgets; their matrices are copied once.
+    // Each file was already read within its budget; copying the matrices once needs no limit.
     match recognise(&variables, true, &ReadingBudget::new(u64::MAX)) {
         Ok(recognised) => {
             found.items = recognised.items;

@@ -18,12 +18,12 @@ use crate::formats::variables::Variable;
 use crate::formats::{Contents, FolderProgress, ImportedFile, import, import_bytes, of_file};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Key for the headings that apply to every table with as many columns, among the keys for single
+/// Key of the headings for every table with a matching number of columns; all other keys are single
 /// files.
 pub const EVERY_TABLE: &str = "*";
 /// Number of lines at the beginning of a text in which a named matrix is looked for.
 const HEADING_LINES: usize = 50;
-/// Largest number of unused variables listed for a file.
+/// Maximum number of unused variables listed per file.
 const MOST_LISTED: usize = 20;
 
 /// Models found in files.
@@ -35,13 +35,13 @@ pub struct FoundModels {
     pub faults: Vec<String>,
     /// Descriptions of contents that are not models.
     pub ignored: Vec<String>,
-    /// Unused variables, by the file that contains them beside models.
+    /// Unused variables beside the models, by file.
     pub unused: BTreeMap<String, Vec<String>>,
-    /// Tables of columns among the files, with the headings used.
+    /// Tables of columns in the files, with the headings used.
     pub tables: Headings,
-    /// Missing units, without which these tables are not recognised as frequency responses.
+    /// Units to be stated before these tables can be read as frequency responses, by file.
     pub unsaid: BTreeMap<String, Vec<UnsaidUnit>>,
-    /// File count.
+    /// Number of files read.
     pub files: usize,
 }
 
@@ -60,8 +60,8 @@ impl FoundModels {
     }
 }
 
-/// Reads the models in files and folders, including all subfolders; tables of columns by the given
-/// headings. A file that cannot be read is a fault, and the rest is read.
+/// Reads the models in files and folders, including all subfolders; `headings` name the columns of
+/// tables. An unreadable file is recorded as a fault, and the rest is read.
 pub fn read_models(
     paths: &[PathBuf],
     headings: &Headings,
@@ -95,14 +95,14 @@ pub fn models_of_bytes(
     })
 }
 
-/// Name and hash: those of the archive for a file inside it.
+/// Name and hash of a file; for an archived file, the hash of the archive.
 #[derive(Clone, Copy)]
 struct FileIdentity<'f> {
     name: &'f str,
     sha256: &'f str,
 }
 
-/// Model files during reading.
+/// State while model files are read.
 struct ModelReading<'h> {
     headings: &'h Headings,
     found: FoundModels,
@@ -173,7 +173,7 @@ impl<'h> ModelReading<'h> {
                     self.add_archived_file(identity, &inner, contents, budget)?;
                 }
                 self.found.ignored.extend(of_file(name, ignored));
-                // NumPy arrays: the first index counts the matrices.
+                // NumPy arrays: the first index selects the matrix.
                 self.recognise(&variables, &[], identity, true, budget)
                     .map_err(error)?
             }
@@ -182,7 +182,7 @@ impl<'h> ModelReading<'h> {
         Ok(())
     }
 
-    /// Adds the models in an archived file. A file that cannot be read is a fault.
+    /// Adds the models in an archived file. An unreadable file is recorded as a fault.
     ///
     /// # Errors
     /// Only cancellation.
@@ -291,7 +291,7 @@ impl<'h> ModelReading<'h> {
     }
 }
 
-/// Contents of a text, in the search for models.
+/// Contents of a text file in the search for models.
 enum TextContents {
     Variables {
         variables: Vec<Variable>,

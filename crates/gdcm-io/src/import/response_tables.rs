@@ -1,4 +1,4 @@
-//! Frequency responses in tables with columns.
+//! Frequency responses in tables of columns.
 
 use gdcm_model::assembly::found_model::Facts;
 use gdcm_model::assembly::{ChannelLabel, FoundModel};
@@ -13,15 +13,15 @@ use crate::formats::text::{
 };
 use crate::reading_budget::VariableFault;
 
-/// Responses in a table.
+/// Frequency responses found in a table.
 pub(super) struct TableModels {
     pub(super) found: Found<FoundModel>,
-    /// Missing units, without which the table is not recognised.
+    /// Units to be stated before the table can be read as a frequency response.
     pub(super) unsaid: Vec<UnsaidUnit>,
 }
 
-/// Returns the responses in a table, each as a model with an input and an output. A table without
-/// any is reported as ignored, with the units that would make it a response.
+/// Returns each response in a table as a model with one input and one output. A table without
+/// responses is reported as ignored, with the units that would make it readable.
 pub(super) fn models_of_table(table: &TextTable, file: &str) -> Result<TableModels, VariableFault> {
     let columns = match FrequencyColumns::recognise(table) {
         Ok(columns) => columns,
@@ -58,8 +58,8 @@ pub(super) fn models_of_table(table: &TextTable, file: &str) -> Result<TableMode
     })
 }
 
-/// Returns a response as a model, without notes. If the table `has_several` responses, its channels
-/// become the variable name.
+/// Returns a response as a model, without notes. If the table `has_several` responses, the variable
+/// is named after the response's channels.
 fn response_model(
     response: &RecognisedResponse,
     points: ResponsePoints,
@@ -67,7 +67,7 @@ fn response_model(
 ) -> FoundModel {
     let count = points.omega.len();
     let coherence = points.coherence.map(|mut values| {
-        // Points with missing coherence are not trusted.
+        // Missing coherence counts as zero.
         for value in &mut values {
             if value.is_nan() {
                 *value = 0.0;
@@ -108,7 +108,7 @@ fn response_model(
     }
 }
 
-/// Returns a response's values at `count` frequencies as an array, outputs x inputs x frequencies.
+/// Returns the values of a single response as an array, outputs x inputs x frequencies.
 fn single_response(values: Vec<f64>, count: usize) -> ResponseArray {
     ResponseArray {
         shape: [1, 1, count],

@@ -1,5 +1,5 @@
-//! Value of the scheduled correction, uncertainty of the results (M13), and meaning, value and cost
-//! of couplings in the physics models (M16).
+//! Sections on the benefit of the scheduled correction, the uncertainty of the results (M13), and
+//! the meaning, benefit and cost of couplings in the physics models (M16).
 
 use std::sync::Arc;
 
@@ -96,9 +96,9 @@ pub(super) fn add_uncertainty(page: &mut Page, analysis: &Analysis) {
     }
 }
 
-/// Largest number of responses in a figure, in four rows.
+/// Maximum number of responses in a figure, in four rows.
 const IN_A_FIGURE: usize = 12;
-/// Largest number of conditions side by side in a table that fits on a page.
+/// Maximum number of conditions side by side in a table that fits on a page.
 const CONDITIONS: usize = 12;
 
 /// Adds the section on the assessment.
@@ -138,7 +138,8 @@ pub(super) fn add_assessment(page: &mut Page, analysis: &Analysis) {
     }
 }
 
-/// Adds the changes in J for some responses, called `name`: a summary, figures and tables.
+/// Adds the changes in J of the responses `pairs` under the title `name`: a summary, figures and
+/// tables.
 fn add_responses(
     page: &mut Page,
     analysis: &Analysis,
@@ -166,7 +167,7 @@ pub(super) fn capital(words: &str) -> String {
     capital
 }
 
-/// Adds figures with the changes in J for some responses, called `name`.
+/// Adds figures of the changes in J of the responses `pairs` under the title `name`.
 fn add_figures(page: &mut Page, analysis: &Analysis, pairs: &[Pair], name: &str) {
     let drawn = &pairs[..pairs.len().min(PAIRS_DRAWN)];
     for pairs in drawn.chunks(IN_A_FIGURE) {
@@ -186,8 +187,8 @@ fn add_figures(page: &mut Page, analysis: &Analysis, pairs: &[Pair], name: &str)
     }
 }
 
-/// Adds ΔJ for some responses, called `name`, in every condition, as many conditions side by side
-/// as fit on a page.
+/// Adds tables of ΔJ of the responses `pairs` at every condition, with as many conditions side by
+/// side as fit on a page; `name` is part of the titles.
 fn add_tables(
     page: &mut Page,
     analysis: &Analysis,
@@ -231,7 +232,7 @@ fn add_tables(
     page.list(missing);
 }
 
-/// Tabulates J before and after, and its change by part, for every condition and response.
+/// Tabulates J before and after, and its change in parts, for every condition and response.
 fn parts_table(analysis: &Analysis, assessment: &AssessmentTable, pairs: &[Pair]) -> Table {
     let columns = [
         "condition",
@@ -267,7 +268,7 @@ fn parts_table(analysis: &Analysis, assessment: &AssessmentTable, pairs: &[Pair]
     table
 }
 
-/// Largest number of matrix columns that fit on a page.
+/// Maximum number of matrix columns that fit on a page.
 const MATRIX_COLUMNS: usize = 8;
 
 /// Returns the analysis with its couplings assessed, if it has any.

@@ -1,4 +1,5 @@
-//! Each condition: its representatives, its gains and delays with their basis, and its plots.
+//! Section on each condition: its representatives, its gains and delays with their basis, and its
+//! plots.
 
 use std::collections::BTreeSet;
 
@@ -26,8 +27,8 @@ use gdcm_words::remark::RemarkKind;
 use super::Unobtrusive;
 use super::page::{CONDITIONS_DRAWN, MODELS_SHOWN, PAIRS_DRAWN, PAIRS_LISTED, Page, names};
 
-/// Adds the section on the conditions: representatives, gains and delays with their basis, and
-/// plots for each.
+/// Adds the section on the conditions: for each its representatives, gains and delays with their
+/// basis, and plots.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `progress` requests it.
@@ -68,7 +69,7 @@ pub(super) fn add_conditions(
     Ok(())
 }
 
-/// Computes a condition's curves and adds its plots.
+/// Computes the curves of a condition and adds its plots.
 fn add_condition_plots(
     page: &mut Page,
     analysis: &Analysis,
@@ -92,7 +93,7 @@ fn add_condition_plots(
     Ok(())
 }
 
-/// Adds a condition's results as text and tables.
+/// Adds the results of a condition as text and tables.
 fn add_result(page: &mut Page, analysis: &Analysis, result: &ConditionAnalysis) {
     page.facts(facts(analysis, result));
     let study = &analysis.study;
@@ -118,7 +119,7 @@ fn add_result(page: &mut Page, analysis: &Analysis, result: &ConditionAnalysis) 
     }
 }
 
-/// Returns the gains' proof status in a word.
+/// Returns the proof status of the gains in a word.
 pub(super) fn proof_word(result: &ConditionAnalysis) -> &'static str {
     match result.gains.proof.outcome {
         Outcome::Proven { .. } => "global optimum",
@@ -181,7 +182,7 @@ fn facts<'a>(analysis: &Analysis, result: &ConditionAnalysis) -> Vec<(&'a str, S
     ]
 }
 
-/// Describes a flight state: "80 kt, sea level, 0 ft, light, 6500 kg".
+/// Describes the flight state of a condition: "80 kt, sea level, 0 ft, light, 6500 kg".
 fn flight_words(condition: &Condition) -> String {
     let state = condition.flight_state();
     let [altitude_class, weight_class] = class_names(state);
@@ -280,7 +281,7 @@ fn add_responses(page: &mut Page, study: &Study, result: &ConditionAnalysis) {
     page.list(undefined_lines(study, result));
 }
 
-/// Stands in tables for a missing value.
+/// Mark of a missing value in tables.
 const MISSING: &str = "–";
 
 /// Formats a value with this many decimals.
@@ -291,7 +292,7 @@ fn decimals_or_missing(value: Option<f64>, digits: usize) -> String {
     }
 }
 
-/// Formats a change with its sign and a decimal.
+/// Formats a change with its sign and one decimal.
 fn change_or_missing(value: Option<f64>) -> String {
     match value {
         Some(value) => signed(value, 1),
@@ -348,7 +349,7 @@ fn undefined_lines(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
     lines
 }
 
-/// Adds a table with a bundle's models, for a long bundle with the most important models.
+/// Adds a table of a bundle's models; for a long bundle, of its most important models.
 fn add_models(page: &mut Page, study: &Study, result: &ConditionAnalysis, kind: BundleKind) {
     let models = result.condition.bundle(kind);
     let shown = models_shown(study, result, kind);
@@ -427,10 +428,11 @@ fn kept_word(
     }
 }
 
-/// Largest number of responses in a figure, in two rows at most.
+/// Maximum number of responses in a figure, in at most two rows.
 const IN_A_FIGURE: usize = 10;
 
-/// Adds plots for important responses, their errors in the fit, all responses, and the poles.
+/// Adds the plots of a condition: important responses, their errors in the fit, all responses, and
+/// poles.
 fn add_plots(page: &mut Page, result: &ConditionAnalysis, source: &ConditionSource<'_>) {
     let options = BodeOptions {
         hidden_models: models_hidden(source.study, result),
@@ -441,7 +443,7 @@ fn add_plots(page: &mut Page, result: &ConditionAnalysis, source: &ConditionSour
     add_poles(page, source, &options);
 }
 
-/// Adds plots for the responses that measure a model, and for their errors in the fit.
+/// Adds plots of the responses that measure a model, and of their errors in the fit.
 fn add_response_plots(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOptions) {
     let id = source.curves.condition.id();
     let measuring: Vec<Pair> = source.study.dataset.measuring_pairs().marked().collect();
@@ -466,7 +468,7 @@ fn add_response_plots(page: &mut Page, source: &ConditionSource<'_>, options: &B
     }
 }
 
-/// Adds all response magnitudes, unless there are too many for a figure.
+/// Adds a plot of the magnitudes of all responses, unless there are too many for a figure.
 fn add_overview(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOptions) {
     let without_bundles = BodeOptions {
         hidden: BTreeSet::from([Role::Perturbed, Role::Identified, Role::Rejected]),
@@ -483,7 +485,7 @@ fn add_overview(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOpt
     }
 }
 
-/// Adds the model poles, with their shifts by couplings.
+/// Adds a plot of the model poles, with their shifts due to couplings.
 fn add_poles(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOptions) {
     let Ok(modes) = ConditionModes::of(&source.curves.condition, &Unobserved) else {
         return;
@@ -500,7 +502,7 @@ fn add_poles(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOption
     );
 }
 
-/// Reduces line labels in narrow frames to their names ("G", "UB"): the values are in the tables.
+/// Reduces line labels to their names ("G", "UB") for narrow frames: the tables give the values.
 fn without_values(mut figure: Figure) -> Figure {
     let panels = figure.plots.iter_mut().flat_map(|plot| &mut plot.panels);
     for mark in panels.flat_map(|panel| &mut panel.marks) {
@@ -511,7 +513,8 @@ fn without_values(mut figure: Figure) -> Figure {
     figure
 }
 
-/// Returns " on axis" if responses are marked as such; otherwise all responses measure a model.
+/// Returns " on axis" if the dataset marks on-axis responses; otherwise every response measures a
+/// model.
 fn on_axis_words(source: &ConditionSource<'_>) -> &'static str {
     if source.study.dataset.on_axis().marked().next().is_some() {
         " on axis"
@@ -520,9 +523,9 @@ fn on_axis_words(source: &ConditionSource<'_>) -> &'static str {
     }
 }
 
-/// Returns the indices of listed and drawn models in a bundle. In a short bundle these are all; in
-/// a long bundle the representative, the nominal and the suggested models, rejected models, then
-/// others, evenly over the bundle.
+/// Returns the indices of the models of a bundle that are listed and drawn: all models of a short
+/// bundle; of a long bundle the representative, nominal and suggested models, then rejected models,
+/// then others spread evenly over the bundle.
 fn models_shown(study: &Study, result: &ConditionAnalysis, kind: BundleKind) -> BTreeSet<usize> {
     let models = result.condition.bundle(kind);
     if models.len() <= MODELS_SHOWN {
@@ -552,7 +555,7 @@ fn models_shown(study: &Study, result: &ConditionAnalysis, kind: BundleKind) -> 
     shown
 }
 
-/// Returns the models in a condition that are not drawn.
+/// Returns the models of a condition that are not drawn.
 fn models_hidden(study: &Study, result: &ConditionAnalysis) -> BTreeSet<ModelId> {
     let mut hidden = BTreeSet::new();
     for kind in BundleKind::BOTH {

@@ -1,5 +1,5 @@
-//! A study's report: a single HTML file without external resources that prints on A4 and letter.
-//! The same study makes the same bytes.
+//! Report of a study: a single HTML file without external resources, for printing on A4 or letter
+//! paper. The bytes depend only on the study.
 
 mod assessment;
 mod conditions;
@@ -25,22 +25,22 @@ pub use self::study::assessment_sentence;
 
 const PROGRAM: &str = concat!("gdcm ", env!("CARGO_PKG_VERSION"));
 
-/// A study's files, as a report names them.
+/// Names and hash of a study's files, for the report.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReportSource {
     /// The study's file name; `None` for a study that is not saved.
     pub study: Option<String>,
-    /// The dataset's file name, or its replacement.
+    /// Name of the dataset's file; "(embedded example)" without a file.
     pub dataset: String,
-    /// SHA-256 of that file, in hexadecimal.
+    /// SHA-256 of the dataset's file, in hexadecimal.
     pub sha256: String,
-    /// Oddities in that file.
+    /// Irregularities in the dataset's file.
     pub cautions: Vec<String>,
 }
 
 impl ReportSource {
-    /// Takes a study's files: its dataset, and its own file if any. They are named without their
-    /// folders, so that the report does not depend on their location.
+    /// Takes the files of a study: its dataset, and its own file if it is saved. Folders are
+    /// omitted, so that the report does not depend on their location.
     pub fn of(loaded: &LoadedDataset, study: Option<&Path>) -> Self {
         let study = study
             .and_then(Path::file_name)
@@ -54,18 +54,18 @@ impl ReportSource {
     }
 }
 
-/// Report subject.
+/// Subject of a report.
 #[derive(Clone, Copy, Debug)]
 pub struct ReportSubject<'a> {
-    /// With its study's requirements.
+    /// Analysis of the study, whose requirements are reported too.
     pub analysis: &'a Analysis,
     /// Model responses to flight records, if available.
     pub histories: Option<&'a TimeHistories>,
-    /// The identified poles.
+    /// Poles of the identified models.
     pub known: &'a KnownPoles,
 }
 
-/// Creates the report on an analysis; `engine` provides the responses to be drawn. Each condition
+/// Creates the report on an analysis; `engine` computes the responses to be drawn. Each condition
 /// is a progress step.
 ///
 /// # Errors
@@ -112,7 +112,7 @@ pub fn report(
     Ok(page.finish(&title, &[origin]))
 }
 
-/// Forwards cancellation only, not the progress in inner steps.
+/// Forwards cancellation only; the progress of inner steps is not shown.
 struct Unobtrusive<'a>(&'a dyn Progress);
 
 impl Progress for Unobtrusive<'_> {
@@ -123,7 +123,7 @@ impl Progress for Unobtrusive<'_> {
     fn advanced(&self, _done: usize, _total: usize) {}
 }
 
-/// Writes a report, whole or not at all.
+/// Writes a report completely or not at all.
 pub fn save_report(report: &str, path: &Path, mut outputs: OutputSet) -> Result<(), FileError> {
     outputs.add(path, |file| file.write_all(report.as_bytes()))?;
     outputs.persist()

@@ -1,5 +1,5 @@
-//! A page written from top to bottom: numbered sections, tables and figures, and a table of
-//! contents; in markup that is both HTML and well-formed XML.
+//! A page written from top to bottom, with numbered sections, tables, figures and a table of
+//! contents; its markup is both HTML and well-formed XML.
 
 use gdcm_model::message_text::sanitized;
 use gdcm_plot::figure::drawing::Drawing;
@@ -7,19 +7,19 @@ use gdcm_plot::figure::{ColumnWidth, Figure};
 use gdcm_plot::paper::{escaped, inline_svg};
 use gdcm_words::Table;
 
-/// Largest number of conditions with figures; all have tables.
+/// Maximum number of conditions with figures; every condition has tables.
 pub(super) const CONDITIONS_DRAWN: usize = 60;
-/// Largest number of on-axis responses with figures, and of off-axis responses.
+/// Maximum number of on-axis responses with figures, and of off-axis responses.
 pub(super) const PAIRS_DRAWN: usize = 40;
-/// Largest number of responses in a table with all; a longer table lists only on-axis and
-/// constrained responses.
+/// Maximum number of responses in a table of all responses; beyond it, the table lists only on-axis
+/// and constrained responses.
 pub(super) const PAIRS_LISTED: usize = 48;
-/// Largest number of models in a bundle that are listed and drawn.
+/// Maximum number of models of a bundle that are listed and drawn.
 pub(super) const MODELS_SHOWN: usize = 40;
-/// Largest number of names in a sentence.
+/// Maximum number of names in a sentence.
 pub(super) const NAMES_SHOWN: usize = 12;
 
-/// Lists names with commas; for many, the first names and how many follow.
+/// Lists names with commas; if there are too many, the first names and how many follow.
 pub(super) fn names<S: AsRef<str>>(all: &[S]) -> String {
     let shown: Vec<&str> = all.iter().take(NAMES_SHOWN).map(AsRef::as_ref).collect();
     let shown = shown.join(", ");
@@ -29,17 +29,17 @@ pub(super) fn names<S: AsRef<str>>(all: &[S]) -> String {
     format!("{shown} and {} more", all.len() - NAMES_SHOWN)
 }
 
-/// Maximum distance \[pt\] between a line in a figure and its original points: less than the
-/// thinnest line width, hence invisible. It reduces file sizes to a quarter.
+/// Maximum distance \[pt\] between a simplified line in a figure and its original points: less than
+/// the thinnest line width, hence invisible. Simplifying reduces the file size to a quarter.
 const TOLERANCE_PT: f64 = 0.1;
-/// Largest number of rows in a table; the result files have all.
+/// Maximum number of rows in a table; the result files contain all rows.
 const ROWS: usize = 1000;
-/// Largest number of rows in a table that is not split between pages.
+/// Maximum number of rows in a table that is kept on one page.
 const ROWS_ON_A_SHEET: usize = 30;
-/// Largest number of letters in a text that stays on a line.
+/// Maximum number of characters in a cell that is kept on one line.
 const SHORT: usize = 24;
 const STYLE: &str = include_str!("style.css");
-/// Nothing is fetched and nothing is run, whatever a page contains.
+/// Security policy of the page: no external resources and no scripts, whatever text it contains.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'";
 
 /// A heading in the table of contents.
@@ -115,7 +115,7 @@ impl Page {
         }
     }
 
-    /// Adds facts about a subject: names at the left, values at the right.
+    /// Adds facts about a subject as a table: names at the left, values at the right.
     pub(super) fn facts<'a>(&mut self, facts: impl IntoIterator<Item = (&'a str, String)>) {
         self.body.push_str("<table class=\"facts\"><tbody>\n");
         for (name, value) in facts {
@@ -162,12 +162,12 @@ impl Page {
         }
     }
 
-    /// Adds a table with as many columns side by side as fit, each time after the first.
+    /// Adds a table in parts of at most `columns` columns; each part repeats the first column.
     pub(super) fn wide_table(&mut self, table: &Table, columns: usize) {
         self.wide_table_behind(table, 1, columns);
     }
 
-    /// Adds a wide table with `heads` leading columns repeated.
+    /// Adds a table in parts; each part repeats the first `heads` columns.
     pub(super) fn wide_table_behind(&mut self, table: &Table, heads: usize, columns: usize) {
         for from in (heads..table.columns.len()).step_by(columns) {
             let to = from + columns;
@@ -201,12 +201,12 @@ impl Page {
         ));
     }
 
-    /// Adds fixed markup from the program itself.
+    /// Adds fixed markup that is part of the program.
     pub(super) fn fixed(&mut self, markup: &'static str) {
         self.body.push_str(markup);
     }
 
-    /// Finishes the page with a title and the `lines` below it.
+    /// Finishes the page with a title and `lines` below it.
     pub(super) fn finish(self, title: &str, lines: &[String]) -> String {
         let mut below = String::new();
         for line in lines {
@@ -243,7 +243,7 @@ impl Page {
     }
 }
 
-/// Returns a table row, with a class for each column.
+/// Returns a table row; `classes` holds the class of each column.
 fn table_row(tag: &str, cells: &[String], classes: &[&str]) -> String {
     let mut row = String::from("<tr>\n");
     for (text, class) in cells.iter().zip(classes) {
@@ -257,13 +257,13 @@ fn table_row(tag: &str, cells: &[String], classes: &[&str]) -> String {
     row
 }
 
-/// Returns the first `heads` cells in a row, and those from `from` up to `to`.
+/// Returns the first `heads` cells of a row, and those from `from` up to `to`.
 fn columns_between(cells: &[String], heads: usize, from: usize, to: usize) -> Vec<String> {
     let to = to.min(cells.len());
     [&cells[..heads], &cells[from..to]].concat()
 }
 
-/// Returns a column's class: numbers (`n`), texts short enough to stay on a line (`s`), or other
+/// Returns the class of a column: numbers (`n`), texts short enough for one line (`s`), or other
 /// texts (none).
 fn class_of(table: &Table, column: usize) -> &'static str {
     let is_short = table
@@ -277,7 +277,7 @@ fn class_of(table: &Table, column: usize) -> &'static str {
     }
 }
 
-/// Escapes text from any source for a page: it contains no markup and no invisible characters.
+/// Escapes a text from any source, so that it contains no markup and no invisible characters.
 fn words(text: &str) -> String {
     escaped(&sanitized(text))
 }
@@ -324,7 +324,7 @@ mod tests {
         page.finish("A <title>", &["below & so on".to_owned()])
     }
 
-    /// The document type is HTML's, which names no other file.
+    /// Parses a page, allowing its document type, which is HTML's and refers to no file.
     fn parsed(text: &str) -> Document<'_> {
         Document::parse_with_options(
             text,

@@ -1,4 +1,4 @@
-//! Qualification requirements on the models (M17): the same numbers as `gdcm requirements`.
+//! Section on the qualification requirements (M17), with the same values as `gdcm requirements`.
 
 use std::collections::BTreeMap;
 
@@ -16,10 +16,10 @@ use gdcm_words::time_histories::{record_table, share_table};
 use super::page::Page;
 use super::{ReportSubject, Unobtrusive};
 
-/// Largest number of columns in a table that fits on a page.
+/// Maximum number of columns in a table that fits on a page.
 const COLUMNS: usize = 9;
 
-/// Adds the section on the requirements; with the responses to flight records if available.
+/// Adds the section on the requirements, with the responses to flight records if available.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `progress` requests it.
@@ -68,8 +68,8 @@ pub(super) fn add_requirements(
     Ok(())
 }
 
-/// Adds bandwidth and phase delay for the responses in which either is defined, and the reasons why
-/// others have none.
+/// Adds bandwidth and phase delay of the responses in which either is defined, and the reasons why
+/// the others have none.
 fn add_bandwidth(page: &mut Page, requirements: &Requirements, study: &Study) {
     let dataset = &study.dataset;
     page.subsection("Bandwidth and phase delay");
@@ -121,7 +121,7 @@ fn add_modes(page: &mut Page, requirements: &Requirements) {
     }
 }
 
-/// Adds time histories within tolerances, and those that are not compared.
+/// Adds the comparison of time histories with tolerances, and the records that are not compared.
 fn add_histories(page: &mut Page, histories: &TimeHistories) {
     page.subsection("Time histories");
     let source = match histories.tolerance_table.source() {
@@ -175,7 +175,7 @@ fn tolerance_table(histories: &TimeHistories) -> Table {
     table
 }
 
-/// Distinct remarks, with the conditions to which each applies.
+/// Distinct remarks, each with the conditions to which it applies.
 #[derive(Default)]
 struct ConditionRemarks {
     conditions_by_words: BTreeMap<String, Vec<ConditionId>>,

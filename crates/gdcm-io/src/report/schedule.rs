@@ -1,4 +1,4 @@
-//! The channels over the conditions, and the gains scheduled with airspeed.
+//! Section on the channels over the conditions, and on the gains scheduled with airspeed.
 
 use gdcm_method::correction::{Channel, ChannelCorrection};
 use gdcm_method::schedule::Schedule;
@@ -15,11 +15,11 @@ use gdcm_words::schedule::delayed_channel_text;
 use super::page::{PAIRS_DRAWN, Page, names};
 use super::study::schedule_words;
 
-/// Largest number of channels in a figure, in two rows.
+/// Maximum number of channels in a figure, in two rows.
 const IN_A_FIGURE: usize = 12;
-/// Largest number of responses in a figure, in two rows.
+/// Maximum number of responses in a figure, in two rows.
 const PAIRS_IN_A_FIGURE: usize = 10;
-/// Largest number of value columns in a table that fits on a page.
+/// Maximum number of value columns in a table that fits on a page.
 const COLUMNS: usize = 10;
 
 /// Adds the section on the schedule.
@@ -43,7 +43,7 @@ pub(super) fn add_schedule(page: &mut Page, analysis: &Analysis) {
     }
 }
 
-/// Adds channel figures; `axes` are the drawn quantity and the horizontal axis.
+/// Adds figures of the channels; `axes` are the drawn quantity and the horizontal axis.
 fn add_channels(
     page: &mut Page,
     analysis: &Analysis,
@@ -106,7 +106,7 @@ fn add_schedule_facts(page: &mut Page, analysis: &Analysis, schedule: &Schedule)
     ]);
 }
 
-/// Adds lead costs, cautions about the schedule, and the delays that it omits.
+/// Adds the cost of leads, cautions about the schedule, and the delays that the schedule omits.
 fn add_schedule_remarks(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
     let dataset = &analysis.study.dataset;
     let (inputs, outputs) = dataset.names_of_channels();
@@ -138,7 +138,7 @@ fn not_scheduled(analysis: &Analysis) -> Vec<String> {
     names
 }
 
-/// Returns the responses that measure a model, and the constrained ones.
+/// Returns the responses that measure a model, and the constrained responses.
 fn shown_pairs(study: &Study) -> Vec<Pair> {
     let measuring = study.dataset.measuring_pairs();
     let shown = measuring.map(|pair, measures| *measures || study.settings.constrained[pair]);
@@ -208,13 +208,13 @@ fn channel_name(dataset: &Dataset, channel: Channel) -> String {
     channel.name(&inputs, &outputs)
 }
 
-/// Column in a table over airspeed: its name, and its cell for the correction at an airspeed.
+/// Column of a table over airspeed: its name, and the function that writes its cell.
 struct AirspeedColumn {
     name: String,
     cell: Box<dyn Fn(&ChannelCorrection) -> String>,
 }
 
-/// Adds a table with a row for each airspeed, in parts that fit on a page.
+/// Adds a table with a row for each airspeed, in parts that each fit on a page.
 fn add_over_airspeed(
     page: &mut Page,
     schedule: &Schedule,

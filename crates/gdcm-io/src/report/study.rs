@@ -1,4 +1,4 @@
-//! The study as a whole: its results, settings and sources, and the excluded models.
+//! Sections on the study as a whole: its results, settings and sources, and the excluded models.
 
 use std::collections::BTreeMap;
 
@@ -51,7 +51,7 @@ pub(super) fn add_summary(page: &mut Page, analysis: &Analysis) {
     page.table(&condition_table(analysis));
 }
 
-/// Describes the schedule's value for the nominal models in a sentence.
+/// Describes the benefit of the schedule to the nominal models in a sentence.
 pub fn assessment_sentence(analysis: &Analysis) -> String {
     let dataset = &analysis.study.dataset;
     let measuring = dataset.measuring_pairs();
@@ -76,7 +76,7 @@ pub fn assessment_sentence(analysis: &Analysis) -> String {
     )
 }
 
-/// Stands in tables for a missing value.
+/// Mark of a missing value in tables.
 const MISSING: &str = "–";
 
 fn condition_table(analysis: &Analysis) -> Table {
@@ -120,7 +120,7 @@ fn condition_table(analysis: &Analysis) -> Table {
     table
 }
 
-/// Returns how many models are kept in a bundle: "8 of 9".
+/// Returns how many models of a bundle are kept: "8 of 9".
 fn kept_words(study: &Study, condition: &Condition, kind: BundleKind) -> String {
     let models = condition.bundle(kind);
     let rejected = &study.choice(condition.id()).bundle(kind).rejected;
@@ -137,8 +137,8 @@ fn matched_words(result: &ConditionAnalysis, unmatched: usize) -> String {
     format!("{} of {held}", held.saturating_sub(unmatched))
 }
 
-/// Adds the section on the settings: constrained and ignored responses, then every setting that has
-/// an effect.
+/// Adds the section on the settings: constrained and ignored responses, then every setting that
+/// affects the results.
 pub(super) fn add_settings(page: &mut Page, study: &Study) {
     page.section("Settings");
     let settings = &study.settings;
@@ -183,7 +183,7 @@ fn pair_names(dataset: &Dataset, marked: &PairTable<bool>) -> String {
     }
 }
 
-/// Describes a schedule's form.
+/// Describes the form of a schedule.
 pub(super) fn schedule_words(settings: &ScheduleSettings) -> String {
     let kind = match settings.kind {
         ScheduleKind::Polynomial { degree } => format!("polynomial of degree {degree} in airspeed"),
@@ -240,7 +240,7 @@ fn channel_words(channels: &[Channel]) -> String {
     words.join(", ")
 }
 
-/// Adds the section on the models' source files, if any is known.
+/// Adds the section on the source files of the models, if the dataset records any.
 pub(super) fn add_models(page: &mut Page, study: &Study) {
     let mut models: BTreeMap<[String; 5], Vec<String>> = BTreeMap::new();
     let mut unknown = 0;
@@ -279,7 +279,7 @@ pub(super) fn add_models(page: &mut Page, study: &Study) {
     }
 }
 
-/// Returns file, hash, variable (or records), date and note from a model's source.
+/// Returns file, hash, variable (or records), date and note of a model's source.
 fn source_cells(source: &Provenance) -> [String; 5] {
     let Provenance {
         file,
@@ -299,8 +299,8 @@ fn source_cells(source: &Provenance) -> [String; 5] {
 
 const NO_REASON: &str = "no reason was given";
 
-/// Adds the models without influence: rejected ones with the analyst's reasons, those set aside,
-/// and the suspected ones.
+/// Adds the section on excluded models: rejected ones with the analyst's reasons, those excluded by
+/// the analysis, and suspected ones.
 pub(super) fn add_left_out(page: &mut Page, analysis: &Analysis) {
     page.section("Models left out");
     let rejected = rejected_table(analysis);
@@ -336,7 +336,7 @@ fn rejected_table(analysis: &Analysis) -> Table {
     table
 }
 
-/// Adds a row for each rejected model. If many have no reason, the last are only counted.
+/// Adds a row for each rejected model. Of many models without a reason, the last are only counted.
 fn rejected_rows(analysis: &Analysis, condition: &Condition, kind: BundleKind, table: &mut Table) {
     let study = &analysis.study;
     let result = analysis.condition(condition.id());
@@ -376,8 +376,8 @@ fn rejected_rows(analysis: &Analysis, condition: &Condition, kind: BundleKind, t
     }
 }
 
-/// Describes the models in a condition that are set aside, suspected but kept, or pinned by the
-/// analyst.
+/// Describes the models of a condition that are excluded by the analysis, suspected but kept, or
+/// pinned by the analyst.
 fn left_out_lines(analysis: &Analysis, condition: &Condition) -> Vec<String> {
     let study = &analysis.study;
     let id = condition.id();

@@ -1,4 +1,4 @@
-//! Figures as files: SVG, PNG, PDF, and their numbers as CSV. The same figure makes the same bytes.
+//! Figures as files: SVG, PNG, PDF, and their data as CSV. The bytes depend only on the figure.
 
 use std::io::{self, Write};
 use std::iter::once;
@@ -35,8 +35,8 @@ pub fn figure_format(path: &Path) -> Result<FigureFormat, FileError> {
 /// Writes a figure to a file, in the format that its extension names.
 ///
 /// # Errors
-/// [`FileError::FigureWithoutNumbers`] if CSV is requested for a figure without numbers; otherwise
-/// the error that prevents writing.
+/// [`FileError::FigureWithoutNumbers`] if CSV is requested for a figure without data; otherwise the
+/// error that prevents writing.
 pub fn write_figure(
     figure: &Figure,
     width: ColumnWidth,
@@ -84,8 +84,8 @@ mod tests {
     use super::*;
     use crate::output_set::Existing;
 
-    /// Returns a figure with the curve of a model whose name would turn a terminal red and hide the
-    /// text that follows.
+    /// Returns a figure with a curve whose model name contains codes that would turn a terminal red
+    /// and hide the text that follows.
     fn named_by_codes() -> Figure {
         let name = "\u{1b}[31mred\u{9b}31m\u{202e}";
         let curve =

@@ -1,5 +1,5 @@
-//! Exported programs are run by their interpreters and compilers and compared with the schedule
-//! itself.
+//! Runs exported programs with their interpreters and compilers and compares their output with the
+//! schedule.
 
 use std::process::Command;
 use std::sync::Arc;
@@ -19,7 +19,7 @@ use super::*;
 use crate::export::{EXPORTERS, ExportRequest, ExportSource};
 use crate::files::dataset_file::embedded_example;
 
-/// The example under every form of the schedule: kind, quantity, delays.
+/// Returns analyses of the example with every form of the schedule: kind, quantity, delays.
 fn analyses() -> Vec<(String, Analysis)> {
     let mut engine = Engine::default();
     let kinds = [ScheduleKind::Polynomial { degree: 2 }, ScheduleKind::Table];
@@ -41,7 +41,8 @@ fn analyses() -> Vec<(String, Analysis)> {
             }
         }
     }
-    // Leads, of one signed delay for all airspeeds and of one that varies with them.
+    // Schedules of leads: one with a constant signed delay, one with a signed delay that varies
+    // with airspeed.
     for tau_degree in [0, 2] {
         let mut study = Study::new(embedded_example().unwrap().dataset);
         let schedule = ScheduleSettings {
@@ -55,7 +56,7 @@ fn analyses() -> Vec<(String, Analysis)> {
         let analysis = engine.analyze(&study, &Unobserved).unwrap();
         analyses.push((format!("leads of degree {tau_degree}"), analysis));
     }
-    // One airspeed: the range is empty.
+    // A single airspeed: the range has zero width.
     let mut study = Study::new(embedded_example().unwrap().dataset);
     let conditions = study.dataset.clone();
     let at = conditions.conditions()[3].flight_state().airspeed_kt;
@@ -97,7 +98,7 @@ fn program(language: &str, analysis: &Analysis, name: &str) -> String {
     String::from_utf8(text).unwrap()
 }
 
-/// Names that would end a comment or a text if they were written unescaped.
+/// Names that would end a comment or a string literal if they were not escaped.
 const NASTY: [&str; 3] = [
     "LAT \"x\" 'y' */ \\ %d\n%}\r*/ end",
     "δ_a ??/ /* \u{2028} ''' \"\"\" ${x}",
@@ -105,7 +106,7 @@ const NASTY: [&str; 3] = [
 ];
 
 /// Returns fifty airspeeds \[kt\], from below the range of the example to above it, including both
-/// its ends.
+/// ends of the range.
 fn airspeeds() -> Vec<f64> {
     (0..48)
         .map(|index| 31.0 + f64::from(index) * 2.5)
@@ -113,7 +114,7 @@ fn airspeeds() -> Vec<f64> {
         .collect()
 }
 
-/// Returns the values of this program, in the order in which the exported programs print.
+/// Returns the expected values, in the order in which the exported programs print them.
 fn expected(analysis: &Analysis) -> Vec<f64> {
     let schedule = analysis.schedule.as_ref().unwrap();
     let values = |airspeed: f64| {
@@ -132,7 +133,7 @@ fn expected(analysis: &Analysis) -> Vec<f64> {
 fn assert_same(words: &str, found: &[f64], expected: &[f64]) {
     assert_eq!(found.len(), expected.len(), "{words}");
     for (index, (a, b)) in found.iter().zip(expected).enumerate() {
-        // A delay that crosses zero is clipped there: next to it, less than a femtosecond is
+        // A delay is clipped where it crosses zero; near there a difference below a femtosecond is
         // negligible.
         assert!(
             (a - b).abs() <= 1e-12 * b.abs() + 1e-16,
@@ -349,7 +350,7 @@ fn a_function_of_matlab_gives_the_programs_own_numbers() {
     }
 }
 
-/// Returns the example with mixing and feedback, gains only.
+/// Returns the example with mixing and feedback and without a phase correction.
 fn coupled() -> Analysis {
     let mut study = Study::new(embedded_example().unwrap().dataset);
     study
@@ -361,7 +362,7 @@ fn coupled() -> Analysis {
     Engine::default().analyze(&study, &Unobserved).unwrap()
 }
 
-/// Returns a 6 x 4 feed-through with numbers that every language writes alike.
+/// Returns a 6 x 4 feed-through matrix of values that every language formats identically.
 fn feed_through() -> DMatrix<f64> {
     DMatrix::from_fn(6, 4, |output, input| {
         0.25 * (output as f64 - 2.0) * (input as f64 + 1.0) / 4.0
@@ -383,8 +384,8 @@ fn list_of_rows(of: &DMatrix<f64>, [open, close]: [char; 2]) -> String {
     )
 }
 
-/// Returns, at each airspeed, the mixing, the feedback, and the feedback closed through the
-/// feed-through, row by row.
+/// Returns, at each airspeed and row by row, the mixing, the feedback, and the feedback with its
+/// loop closed through the feed-through matrix.
 fn expected_couplings(analysis: &Analysis) -> Vec<f64> {
     let matrices = analysis.fitted_couplings().unwrap().matrices();
     let feedback = matrices.feedback();
@@ -501,8 +502,8 @@ fn a_study_without_couplings_has_none_in_its_programs() {
     }
 }
 
-/// Returns the example with altitude as its second variable, and its values at fifty airspeeds and
-/// three altitudes.
+/// Returns the example scheduled with altitude as its second variable, and its values at fifty
+/// airspeeds and three altitudes.
 fn with_altitude(kind: ScheduleKind) -> (Analysis, Vec<f64>) {
     let mut study = Study::new(embedded_example().unwrap().dataset);
     let schedule = ScheduleSettings {
@@ -534,7 +535,7 @@ fn with_altitude(kind: ScheduleKind) -> (Analysis, Vec<f64>) {
     (analysis, expected)
 }
 
-/// Below, within and above the range of the example \[ft\].
+/// Altitudes \[ft\] below, within and above the range of the example.
 const ALTITUDES: [f64; 3] = [0.0, 4321.0, 20_000.0];
 
 #[test]
@@ -603,7 +604,7 @@ fn a_second_variable_is_the_second_argument_of_every_program() {
     }
 }
 
-/// Returns the example with channel names that are hard to write: one input and two outputs.
+/// Returns the example with one input and two outputs whose names need escaping.
 fn with_nasty_names() -> Analysis {
     let example = embedded_example().unwrap().dataset;
     let mut header = example.header();

@@ -7,7 +7,7 @@ use gdcm_method::schedule::Regression;
 use gdcm_model::dataset::{Pair, PairTable};
 use gdcm_study::Analysis;
 
-/// Whether a member is empty: null, false, or an empty list.
+/// Whether a value is empty: null, false, or an empty list.
 pub(super) fn is_empty_value(value: &Value) -> bool {
     match value {
         Value::Null | Value::Bool(false) => true,
@@ -16,7 +16,7 @@ pub(super) fn is_empty_value(value: &Value) -> bool {
     }
 }
 
-/// Returns an object without the named members that are empty.
+/// Returns the object without those of the named members whose values are empty.
 pub(crate) fn without_empty(mut object: Value, members: &[&str]) -> Value {
     if let Value::Object(all) = &mut object {
         all.retain(|name, value| !(members.contains(&name.as_str()) && is_empty_value(value)));
@@ -24,15 +24,15 @@ pub(crate) fn without_empty(mut object: Value, members: &[&str]) -> Value {
     object
 }
 
-/// Returns a table as a list with a row for each output. Values that are not finite become null,
-/// since JSON has no such numbers.
+/// Returns a table as a list of rows, one per output. Values that are not finite become null, since
+/// JSON cannot represent them.
 pub(super) fn rows<T>(table: &PairTable<Option<T>>, figure: impl Fn(&T) -> f64) -> Value {
     rows_of(table.outputs(), table.inputs(), |pair| {
         table[pair].as_ref().map(&figure).into()
     })
 }
 
-/// Returns table entries as a list with a row for each output.
+/// Returns table entries as a list of rows, one per output.
 pub(super) fn rows_of(outputs: usize, inputs: usize, entry: impl Fn(Pair) -> Value) -> Value {
     let mut rows = Vec::with_capacity(outputs);
     for output in 0..outputs {
@@ -45,7 +45,7 @@ pub(super) fn rows_of(outputs: usize, inputs: usize, entry: impl Fn(Pair) -> Val
     Value::Array(rows)
 }
 
-/// An analysis with its dataset's channel names.
+/// An analysis with the channel names of its dataset.
 pub(super) struct ChannelNames<'a> {
     pub(super) analysis: &'a Analysis,
     pub(super) inputs: Vec<String>,
@@ -62,17 +62,17 @@ impl<'a> ChannelNames<'a> {
         }
     }
 
-    /// Returns a response's channel names, output first.
+    /// Returns the channel names of a response, output first.
     pub(super) fn pair(&self, pair: Pair) -> (String, String) {
         self.analysis.study.dataset.channel_names(pair)
     }
 
-    /// Returns the channel names for each response, output first.
+    /// Returns the channel names of each response, output first.
     pub(super) fn pairs(&self, pairs: impl IntoIterator<Item = Pair>) -> Vec<(String, String)> {
         pairs.into_iter().map(|pair| self.pair(pair)).collect()
     }
 
-    /// Returns a response's entries, preceded by its output and its input.
+    /// Returns the entries of a response, preceded by its output and its input.
     pub(super) fn response_entries(&self, pair: Pair, entries: Value) -> Value {
         let (output, input) = self.pair(pair);
         let mut members = Map::new();
@@ -84,7 +84,7 @@ impl<'a> ChannelNames<'a> {
         Value::Object(members)
     }
 
-    /// Returns a value for each channel, by its name.
+    /// Returns an object with a value for each channel, by name.
     pub(super) fn by_channel<T: Into<Value>>(&self, value: impl Fn(Channel) -> T) -> Value {
         let mut inputs = Map::new();
         for (index, name) in self.inputs.iter().enumerate() {

@@ -13,13 +13,13 @@ use gdcm_study::Analysis;
 use super::condition_results::{ConditionResults, cell, condition_results};
 use crate::csv_text::write_records;
 
-/// A channel in a condition.
+/// A channel at a condition.
 struct ChannelRow<'a> {
     results: &'a ConditionResults<'a>,
     channel: Channel,
 }
 
-/// Column name, and its cell in a row.
+/// Name of a column, and the function that writes its cell.
 type ChannelColumn = (&'static str, fn(&ChannelRow<'_>) -> String);
 
 const CHANNEL_COLUMNS: [ChannelColumn; 23] = [
@@ -98,9 +98,9 @@ const CHANNEL_COLUMNS: [ChannelColumn; 23] = [
 ];
 
 /// Writes `corrections.csv`: the channel gains (factors) and delays \[s\] of the chosen conditions,
-/// and the scheduled ones at the same airspeed; with leads, the signed delays and the lead filters
-/// (M15). A missing value is an empty cell. With couplings, a column for each input and each output
-/// follows, with its share in an input (M16).
+/// and the scheduled ones at the same airspeed; with leads, also the signed delays and the lead
+/// filters (M15). With couplings, a column follows for each input and each output, with its
+/// coefficient in the row's input (M16). A missing value is an empty cell.
 pub(crate) fn channel_table(
     analysis: &Analysis,
     chosen: &BTreeSet<ConditionId>,
@@ -143,14 +143,14 @@ impl ChannelRow<'_> {
         self.channel.name(&inputs, &outputs)
     }
 
-    /// Returns the signed delay \[s\] in a correction, if it has leads.
+    /// Returns the signed delay \[s\] of a correction, if it has leads.
     fn tau_s(&self, correction: Option<&ChannelCorrection>) -> Option<f64> {
         let leads = correction?.leads.as_ref()?;
         Some(leads.taus_s[self.channel])
     }
 
-    /// Returns the weight with which each input and each output enters an input; empty without
-    /// couplings.
+    /// Returns the coefficients of all inputs (mixing) and outputs (feedback) in the row's input;
+    /// empty without couplings.
     fn coupling_cells(&self) -> Vec<String> {
         let Some(fitted) = self.results.analysis.fitted_couplings() else {
             return Vec::new();
@@ -174,12 +174,12 @@ impl ChannelRow<'_> {
         }
     }
 
-    /// Returns the lead cost in the condition's own correction.
+    /// Returns the cost of the leads in the condition's own correction.
     fn price(&self) -> Option<LeadPrice> {
         LeadPrice::of(self.results.own()?.leads.as_ref()?)
     }
 
-    /// Returns the lead filter in the condition's own correction.
+    /// Returns the channel's lead filter in the condition's own correction.
     fn filter(&self) -> Option<LeadFilter> {
         self.results.own()?.lead(self.channel)
     }

@@ -1,4 +1,4 @@
-//! The text of `corrections.json` about a condition.
+//! The part of `corrections.json` about a condition.
 
 use serde_json::{Map, Value, json};
 
@@ -88,7 +88,7 @@ fn rejection_reasons(choice: &ConditionChoice) -> Value {
     Value::Array(reasons)
 }
 
-/// Returns the models that the analysis set aside, with the reason.
+/// Returns the models that the analysis itself excluded, with the reason.
 fn set_aside(names: &ChannelNames<'_>, result: &ConditionAnalysis) -> Value {
     let mut models = Vec::new();
     for caution in &result.cautions {
@@ -103,7 +103,7 @@ fn caution_words(names: &ChannelNames<'_>, caution: &Caution) -> String {
     caution_text(caution, |pair| names.analysis.study.dataset.pair_name(pair))
 }
 
-/// Returns doubts about the models, then cautions about the results, then cautions about leads.
+/// Returns doubts about the models, then cautions about the results and about leads.
 fn cautions(names: &ChannelNames<'_>, result: &ConditionAnalysis) -> Value {
     let study = &names.analysis.study;
     let mut cautions = Vec::new();
@@ -131,7 +131,7 @@ fn net_gains(names: &ChannelNames<'_>, id: ConditionId, result: &ConditionAnalys
     Value::Array(net_gains)
 }
 
-/// Returns both parts of J by response.
+/// Returns the cost J of each response in its two parts.
 fn costs(table: &PairTable<Option<Cost>>) -> Value {
     json!({
         "mag": rows(table, |cost| cost.magnitude),
@@ -139,7 +139,7 @@ fn costs(table: &PairTable<Option<Cost>>) -> Value {
     })
 }
 
-/// Returns the model sources, as far as the dataset records them.
+/// Returns the sources of the models, as far as the dataset records them.
 fn sources(condition: &Condition) -> Value {
     let mut sources = Vec::new();
     for kind in BundleKind::BOTH {
@@ -167,7 +167,8 @@ fn source(kind: BundleKind, model: &Model, provenance: &Provenance) -> Value {
     without_empty(source, &["records", "unused"])
 }
 
-/// Returns the discontinuity ratios by model name, in file order; empty if none could be computed.
+/// Returns the discontinuity ratios by model name, in file order; empty if they could not be
+/// computed.
 fn discontinuity(condition: &Condition, result: &ConditionAnalysis) -> Value {
     let mut ratios = Map::new();
     if let Ok(found) = &result.figures.discontinuity {

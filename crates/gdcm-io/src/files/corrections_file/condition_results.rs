@@ -1,4 +1,4 @@
-//! A condition's results as comma-separated values (RFC 4180).
+//! Results of a condition for CSV files (RFC 4180).
 
 use std::collections::BTreeSet;
 
@@ -9,17 +9,17 @@ use gdcm_study::{Analysis, ConditionAnalysis};
 
 use crate::files::export_contents::ExportContents;
 
-/// Results for a condition.
+/// Results of a condition.
 pub(super) struct ConditionResults<'a> {
     pub(super) analysis: &'a Analysis,
     pub(super) condition: &'a Condition,
-    /// Correction by the schedule, if there is one.
+    /// Correction given by the schedule, if there is one.
     pub(super) scheduled: Option<ChannelCorrection>,
-    /// Correction parts in the file and omitted parts, in words.
+    /// Parts of the correction in the file, and omitted parts, in words.
     pub(super) contains: String,
 }
 
-/// Returns the results for the chosen conditions, in the dataset's order.
+/// Returns the results of the chosen conditions, in the order of the dataset.
 pub(super) fn condition_results<'a>(
     analysis: &'a Analysis,
     chosen: &BTreeSet<ConditionId>,
@@ -63,8 +63,8 @@ impl ConditionResults<'_> {
             .bar(self.condition.id(), scalar)
     }
 
-    /// Returns the lower (0) or upper (1) end in the total interval: a factor for a gain, seconds
-    /// for a delay.
+    /// Returns the lower (`end` 0) or upper (`end` 1) bound of the total interval: a factor for a
+    /// gain, seconds for a delay.
     pub(super) fn end(&self, scalar: Scalar, end: usize) -> String {
         let ends = match &self.analysis.uncertainty {
             Some(uncertainty) => self
@@ -79,7 +79,7 @@ impl ConditionResults<'_> {
         }
     }
 
-    /// Returns the standard deviation from a variance component.
+    /// Returns the square root of a variance component.
     pub(super) fn deviation(
         &self,
         scalar: Scalar,
@@ -93,7 +93,8 @@ impl ConditionResults<'_> {
 /// Formats a value at full precision; empty if it is missing or not finite.
 pub(super) fn cell(value: Option<f64>) -> String {
     match value {
-        // Debug writes an exponent, where Display would write hundreds of zeros.
+        // Debug writes very large and small values with an exponent; Display would write hundreds
+        // of zeros.
         Some(value) if value.is_finite() => format!("{value:?}"),
         _ => String::new(),
     }

@@ -1,4 +1,4 @@
-//! The text of `corrections.json`: all analysis results, key by key.
+//! Content of `corrections.json`: all analysis results.
 
 use std::collections::BTreeSet;
 
@@ -18,8 +18,8 @@ use super::uncertainty::uncertainty;
 use super::{NAME, VERSION};
 use crate::files::export_contents::ExportContents;
 
-/// Returns all results for the chosen conditions, with the schedule for the whole study, as
-/// `corrections.json` contains them. The file format documentation describes each key.
+/// Returns all results of the chosen conditions, with the schedule of the whole study, as written
+/// to `corrections.json`. The file format documentation describes each key.
 ///
 /// `sha256` is the hash of the dataset's file.
 pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<ConditionId>) -> Value {
@@ -53,7 +53,7 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
     }
     let schedule = analysis.schedule.as_ref().ok();
     let mut settings = analysis.study.settings.named(dataset);
-    // Older readers look here for whether the schedule below has delays.
+    // Earlier versions read here whether the schedule below has delays.
     settings.schedule.delays = schedule.is_some_and(|schedule| schedule.delays.is_some());
     let corrections = json!({
         "format": NAME,
@@ -75,7 +75,7 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
     without_empty(corrections, &["signs", "couplings", "uncertainty"])
 }
 
-/// Returns how the schedule changes J for a condition's nominal model.
+/// Returns the change in J of a condition's nominal model due to the schedule.
 fn assessment_json(condition: &Condition, changes: &PairTable<Option<CostChange>>) -> Value {
     json!({
         "id": condition.id().0,
@@ -86,7 +86,7 @@ fn assessment_json(condition: &Condition, changes: &PairTable<Option<CostChange>
     })
 }
 
-/// Returns channel names and units, in the order that all lists and tables have.
+/// Returns channel names and units, in the order of all lists and tables.
 fn channels(channels: &[Channel]) -> Value {
     let mut list = Vec::with_capacity(channels.len());
     for channel in channels {

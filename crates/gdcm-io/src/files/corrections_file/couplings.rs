@@ -1,4 +1,4 @@
-//! The text of `corrections.json` about couplings in the physics models, and their value (M16).
+//! The part of `corrections.json` about couplings in the physics models, and their value (M16).
 
 use nalgebra::{DMatrix, Scalar};
 use serde_json::{Value, json};
@@ -57,7 +57,7 @@ pub(super) fn couplings(analysis: &Analysis) -> Value {
     )
 }
 
-/// Returns a matrix as a list with a row for each receiving input.
+/// Returns a matrix as a list of rows, one per receiving input.
 fn matrix_rows<T: Scalar + Into<Value>>(matrix: &DMatrix<T>) -> Value {
     rows_of(matrix.nrows(), matrix.ncols(), |at| {
         matrix[(at.output, at.input)].clone().into()
@@ -77,8 +77,8 @@ fn coupling_cost(cost: CouplingCost) -> Value {
     })
 }
 
-/// Returns a condition's mixing, with ones on the diagonal, and how the couplings affect its
-/// physics representative; null without couplings.
+/// Returns the mixing at a condition (normalised to ones on the diagonal), and the effect of the
+/// couplings on its physics representative; null without couplings.
 pub(super) fn condition_couplings(analysis: &Analysis, result: &ConditionAnalysis) -> Value {
     let Some(coupled) = &result.coupled else {
         return Value::Null;

@@ -30,7 +30,7 @@ pub use self::corrections::corrections;
 const NAME: &str = "gdcm-corrections";
 const VERSION: u64 = 1;
 
-/// Result file names; the last file contains checksums for the others.
+/// Result file names; the last file contains the checksums of the others.
 pub const RESULT_FILES: [&str; 4] = [
     "corrections.json",
     "corrections.csv",
@@ -43,8 +43,8 @@ pub fn result_paths(directory: &Path) -> [PathBuf; 4] {
     RESULT_FILES.map(|name| directory.join(name))
 }
 
-/// Writes the results for the chosen conditions into a directory, created if missing: all files, or
-/// none. The checksums come last and show whether the files belong together.
+/// Writes the result files of the chosen conditions into a directory, created if missing: all or
+/// none. The checksums, written last, show whether the files belong together.
 ///
 /// `sha256` is the hash of the dataset's file.
 pub fn write_results(
@@ -66,7 +66,7 @@ pub fn write_results(
     outputs.persist()
 }
 
-/// Writes `corrections.json`: all results for the chosen conditions.
+/// Writes `corrections.json`: all results of the chosen conditions.
 pub(crate) fn write_corrections(
     analysis: &Analysis,
     sha256: &str,

@@ -12,13 +12,13 @@ use gdcm_words::assessment::not_assessed_text;
 use super::condition_results::{ConditionResults, cell, condition_results};
 use crate::csv_text::write_records;
 
-/// A response in a condition.
+/// A response at a condition.
 struct ResponseRow<'a> {
     results: &'a ConditionResults<'a>,
     pair: Pair,
 }
 
-/// Column name, and its cell in a row.
+/// Name of a column, and the function that writes its cell.
 type ResponseColumn = (&'static str, fn(&ResponseRow<'_>) -> String);
 
 const RESPONSE_COLUMNS: [ResponseColumn; 34] = [
@@ -152,8 +152,8 @@ const RESPONSE_COLUMNS: [ResponseColumn; 34] = [
     }),
 ];
 
-/// Writes `assessment.csv`: G, D \[s\], net gains, and J of the nominal model before and under the
-/// scheduled correction, for every response in the chosen conditions. A missing value is an empty
+/// Writes `assessment.csv`: G, D \[s\], net gains, and J of the nominal model with and without the
+/// scheduled correction, for every response at the chosen conditions. A missing value is an empty
 /// cell; `left_out` gives the reason why a condition is not assessed, `D_band_s` is the band delay
 /// (M15.2). The columns `…_low` and `…_high` are the confidence interval.
 pub(crate) fn response_table(
@@ -172,7 +172,7 @@ pub(crate) fn response_table(
 }
 
 impl ResponseRow<'_> {
-    /// Returns the change in J under the schedule.
+    /// Returns the change in J due to the schedule.
     fn change(&self) -> Option<CostChange> {
         let id = self.results.condition.id();
         let changes = self.results.analysis.assessment.get(&id)?;
@@ -188,7 +188,7 @@ impl ResponseRow<'_> {
         }
     }
 
-    /// Returns the error that remains in the band after a single gain.
+    /// Returns the error in the band that a single gain cannot remove.
     fn left_in_band(&self) -> Option<f64> {
         let uncertainty = self.results.analysis.uncertainty.as_ref()?;
         let id = self.results.condition.id();

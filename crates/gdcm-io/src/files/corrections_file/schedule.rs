@@ -1,4 +1,4 @@
-//! The text of `corrections.json` about the schedule.
+//! The part of `corrections.json` about the schedule.
 
 use serde_json::{Value, json};
 
@@ -85,8 +85,8 @@ fn schedule_table(names: &ChannelNames<'_>, schedule: &Schedule) -> Value {
     Value::Array(rows)
 }
 
-/// Returns a caution about the schedule by its code, with its numbers if it concerns a single
-/// condition.
+/// Returns a caution about the schedule: its code and text, and if it concerns a single condition
+/// also the condition and values.
 fn schedule_caution(names: &ChannelNames<'_>, caution: &ScheduleCaution) -> Value {
     let text = caution.words(&names.inputs, &names.outputs);
     match caution {

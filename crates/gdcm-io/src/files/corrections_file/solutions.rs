@@ -1,5 +1,5 @@
-//! The text of `corrections.json` about the gain fit and the delay fit: objective, proof, unmatched
-//! responses, and their explanation.
+//! The part of `corrections.json` about the gain fit and the delay fit: objective, proof of
+//! optimality, unmatched responses, and their explanation.
 
 use serde_json::{Value, json};
 
@@ -44,7 +44,7 @@ pub(super) fn delay_solution(names: &ChannelNames<'_>, result: &ConditionAnalysi
     let mut unmatched = Vec::new();
     for entry in &delays.unmatched {
         let mut why = entry.words(band_top_rad_s, &names.inputs, &names.outputs);
-        // The entry's words already report a single response that needs lead.
+        // If a single response needs lead, the entry's words already say so.
         if !entry.why.is_lone_lead() {
             why = format!("{why} {}", entry.why.words(&names.inputs, &names.outputs));
         }
@@ -71,8 +71,8 @@ pub(super) fn delay_solution(names: &ChannelNames<'_>, result: &ConditionAnalysi
     without_empty(solution, &["kkt_residual_s"])
 }
 
-/// Explains why the gains, or the delays, are not matched, which changes would match them, and the
-/// constraint costs.
+/// Explains why the gains or the delays are not matched, which changes would match them, and the
+/// cost of the constraints.
 fn explanation(names: &ChannelNames<'_>, problem: &Problem, solution: &Solution) -> Value {
     let mut conflicts = Vec::new();
     for conflict in &solution.conflicts {
@@ -101,7 +101,7 @@ fn explanation(names: &ChannelNames<'_>, problem: &Problem, solution: &Solution)
     without_empty(explanation, &["agreeing"])
 }
 
-/// Conflict kind with its numbers: factors for gains, seconds for delays.
+/// Kind of a conflict, and the conflicting values: factors for gains, seconds for delays.
 #[derive(Default)]
 struct ConflictFigures {
     kind: &'static str,

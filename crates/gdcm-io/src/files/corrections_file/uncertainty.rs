@@ -1,4 +1,4 @@
-//! The text of `corrections.json` about the uncertainty of the results (M13).
+//! The part of `corrections.json` about the uncertainty of the results (M13).
 
 use serde_json::{Map, Value, json};
 
@@ -15,9 +15,9 @@ use gdcm_words::uncertainty::{difference_text, second_variable_text};
 
 use super::channel_names::{ChannelNames, is_empty_value, rows_of, without_empty};
 
-/// Returns a confidence interval, with the error that remains in the band after a single gain. For
-/// a gain, intervals are factors and standard deviations those of its natural logarithm; for a
-/// delay, all are in seconds.
+/// Returns a confidence interval with its standard deviations, and the error in the band that a
+/// single gain cannot remove. For a gain, intervals are factors, and standard deviations refer to
+/// the natural logarithm; for a delay, all values are in seconds.
 fn bar_json(scalar: Scalar, bar: &Bar, level: f64, left_in_band: Option<f64>) -> Value {
     let interval = bar.interval(level).map(|ends| in_units(scalar, ends));
     let inner_interval = bar.inner_interval(level).map(|ends| in_units(scalar, ends));
@@ -53,7 +53,7 @@ fn in_units(scalar: Scalar, ends: [f64; 2]) -> [f64; 2] {
     }
 }
 
-/// Returns a net gain's interval.
+/// Returns the confidence interval of a net gain.
 pub(super) fn net_gain_bar(
     analysis: &Analysis,
     condition: ConditionId,
@@ -66,7 +66,7 @@ pub(super) fn net_gain_bar(
     Some(bar_json(scalar, bar, uncertainty.level, left_in_band))
 }
 
-/// Returns the other confidence intervals in a condition.
+/// Returns the confidence intervals of a condition other than those of net gains.
 pub(super) fn bars(names: &ChannelNames<'_>, condition: ConditionId) -> Option<Value> {
     let uncertainty = names.analysis.uncertainty.as_ref()?;
     let bars = ConditionBars {
@@ -89,7 +89,7 @@ pub(super) fn bars(names: &ChannelNames<'_>, condition: ConditionId) -> Option<V
     Some(without_empty(members, &["D_band_s"]))
 }
 
-/// Confidence intervals in a condition.
+/// Confidence intervals of a condition.
 struct ConditionBars<'a> {
     names: &'a ChannelNames<'a>,
     bars: &'a ScalarTable<Option<Bar>>,
@@ -115,7 +115,7 @@ impl ConditionBars<'_> {
     }
 }
 
-/// Returns the consequences that follow from all intervals, if these are available.
+/// Returns the conclusions from all confidence intervals; `None` without confidence intervals.
 pub(super) fn uncertainty(names: &ChannelNames<'_>) -> Option<Value> {
     let uncertainty = names.analysis.uncertainty.as_ref()?;
     let level = uncertainty.level;
@@ -155,7 +155,7 @@ fn difference_json(difference: &AirspeedDifference, level: f64) -> Value {
     })
 }
 
-/// Returns the contributions to a net gain's scatter, as standard deviations of the natural
+/// Returns the contributions to the scatter of a net gain, as standard deviations of the natural
 /// logarithm.
 fn scatter_json(scatter: &PairScatter, level: f64) -> Value {
     let same_airspeed = scatter.same_airspeed.as_ref();
@@ -180,8 +180,8 @@ fn decomposition_json(split: &VarianceDecomposition, level: f64) -> Value {
     })
 }
 
-/// Returns the scheduled net gains and their bands, as natural logarithms, for the responses that
-/// measure a model.
+/// Returns the scheduled net gains and their confidence and scatter bands, as natural logarithms,
+/// for the responses that measure a model.
 fn bands(names: &ChannelNames<'_>, uncertainty: &Uncertainty) -> Value {
     let (Ok(schedule), Some(bands)) = (&names.analysis.schedule, &uncertainty.bands) else {
         return json!([]);
@@ -196,7 +196,7 @@ fn bands(names: &ChannelNames<'_>, uncertainty: &Uncertainty) -> Value {
     Value::Array(list)
 }
 
-/// Returns a net gain's band at the distinct scheduled airspeeds; `None` unless all have it.
+/// Returns the bands of a net gain at the distinct scheduled airspeeds; `None` if any is missing.
 fn band_json(schedule: &Schedule, bands: &ScheduleBands, pair: Pair) -> Option<Value> {
     let airspeeds_kt = schedule.airspeeds.clusters_kt();
     let mut fit = Vec::new();
@@ -216,7 +216,7 @@ fn band_json(schedule: &Schedule, bands: &ScheduleBands, pair: Pair) -> Option<V
     }))
 }
 
-/// Returns whether a scheduled net gain needs a second variable.
+/// Returns the test whether a scheduled net gain needs a second variable.
 fn second_variable_json(test: &SecondVariableTest) -> Value {
     let effect = test.effect.as_ref().ok();
     json!({

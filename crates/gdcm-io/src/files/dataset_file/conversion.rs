@@ -1,4 +1,5 @@
-//! Conversion between dataset files and datasets: drafts from texts, texts from checked datasets.
+//! Conversion between dataset files and datasets: from JSON text to drafts, from checked datasets
+//! to text.
 
 use nalgebra::DMatrix;
 
@@ -20,16 +21,16 @@ use super::text::{
 use crate::file_error::{ContentError, ContentFault};
 use crate::json_text::{Limited, Nested};
 
-/// Dataset draft, with cautions about its text.
+/// Draft of a dataset, with cautions about its text.
 pub(super) struct CautionedDraft {
     pub(super) draft: DatasetDraft,
-    /// A caution for each model key without meaning at its place.
+    /// Cautions about model keys that have no meaning in a dataset.
     pub(super) cautions: Vec<String>,
 }
 
 impl DatasetText {
-    /// Converts the text to a draft. Checks only content that is spelled as words: units, roles and
-    /// kinds; numbers are checked with the draft.
+    /// Converts the text to a draft. Checks only entries spelled as words (units, roles, kinds);
+    /// numbers are checked with the draft.
     pub(super) fn into_draft(self) -> Result<CautionedDraft, ContentError> {
         let band = self.frequency_band;
         if band.unit != "rad/s" {
@@ -121,7 +122,7 @@ impl ChannelText {
 }
 
 impl ConditionText {
-    /// Converts the condition at this position, from 1.
+    /// Converts the condition at this position (from 1) in the list.
     fn into_draft(
         self,
         position: usize,
@@ -176,7 +177,7 @@ impl ConditionText {
     }
 }
 
-/// Converts a bundle's models, with a caution for each key without meaning there.
+/// Converts a bundle's models, with a caution for each key that has no meaning in a dataset.
 fn model_drafts(
     texts: Vec<ModelText>,
     kind: BundleKind,
@@ -202,7 +203,7 @@ fn model_drafts(
 }
 
 impl RecordText {
-    /// Converts the record at this position, from 1, in the condition at this place.
+    /// Converts the record at this position (from 1) in the condition at this place.
     pub(crate) fn into_record(
         self,
         condition: &Location,
@@ -260,7 +261,7 @@ impl RecordText {
 }
 
 impl ModelText {
-    /// Returns the present keys without meaning in a dataset's bundle.
+    /// Returns the keys that are present but have no meaning in a bundle of a dataset.
     fn misplaced_keys(&self, kind: BundleKind) -> Vec<&'static str> {
         let is_physics = kind == BundleKind::Physics;
         let mut misplaced = Vec::new();
@@ -291,7 +292,7 @@ impl ModelText {
     /// Returns a physics model's origin.
     ///
     /// # Errors
-    /// A missing role, and any role other than nominal and perturbed.
+    /// The role is missing, or neither nominal nor perturbed.
     fn physics_origin(&self, place: &Location) -> Result<Origin, ContentError> {
         let Some(role) = &self.role else {
             let fault = ContentFault::MissingKey { key: "role".into() };
@@ -316,7 +317,7 @@ impl ModelText {
         }
     }
 
-    /// Returns the origin that the role implies; `None` for an unknown role.
+    /// Returns the origin given by the role; `None` for an unknown role.
     pub(crate) fn origin(&self) -> Option<Origin> {
         let perturbation = self.perturbation.clone();
         match self.role.as_deref() {
@@ -327,7 +328,7 @@ impl ModelText {
         }
     }
 
-    /// Converts to a draft of an identified model in a dataset or a study.
+    /// Converts the text to the draft of an identified model in a dataset or a study.
     pub(crate) fn into_identified(self) -> ModelDraft {
         let origin = self.identified_origin();
         self.into_draft(origin)
@@ -354,12 +355,12 @@ impl ModelText {
         }
     }
 
-    /// Writes a dataset's model as text.
+    /// Writes a model of a dataset as text.
     pub(crate) fn of_model(model: &Model) -> Self {
         Self::from_draft(ModelDraft::from_model(model))
     }
 
-    /// Writes a model as text.
+    /// Writes a model draft as text.
     pub(crate) fn from_draft(draft: ModelDraft) -> Self {
         let [a, b, c, d] = draft
             .matrices

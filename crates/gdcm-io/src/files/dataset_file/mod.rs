@@ -33,7 +33,7 @@ const EXAMPLE_NAME: &str = "example-dataset.json";
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DatasetOrigin {
     File(PathBuf),
-    /// The example inside the program.
+    /// The example that is part of the program.
     EmbeddedExample,
 }
 
@@ -55,7 +55,7 @@ impl DatasetOrigin {
         }
     }
 
-    /// Returns the path, or the name that replaces it in errors.
+    /// Returns the path; for the embedded example, the name used in error messages.
     pub(crate) fn path(&self) -> PathBuf {
         match self {
             DatasetOrigin::File(path) => path.clone(),
@@ -64,14 +64,14 @@ impl DatasetOrigin {
     }
 }
 
-/// A dataset with its file's hash and cautions.
+/// A dataset with cautions and the hash of its file.
 #[derive(Clone, Debug)]
 pub struct LoadedDataset {
     pub dataset: Arc<Dataset>,
     /// SHA-256 of the file as stored, in lower-case hexadecimal.
     pub sha256: String,
     pub origin: DatasetOrigin,
-    /// Unknown keys and other oddities, each with its place.
+    /// Unknown keys and other irregularities, each with its place.
     pub cautions: Vec<String>,
 }
 
@@ -84,7 +84,7 @@ impl LoadedDataset {
         }
     }
 
-    /// Returns the dataset's file name, or its replacement.
+    /// Returns the dataset's file name; "(embedded example)" without a file.
     pub fn file_name(&self) -> String {
         match self.path().and_then(Path::file_name) {
             Some(name) => sanitized(&name.to_string_lossy()),
@@ -93,12 +93,12 @@ impl LoadedDataset {
     }
 }
 
-/// Loads a dataset from a file, with or without gzip compression; whole, or not at all.
+/// Loads a dataset from a file, with or without gzip compression, completely or not at all.
 pub fn load_dataset(path: &Path) -> Result<LoadedDataset, FileError> {
     load_dataset_within(path, &ReadingBudget::default())
 }
 
-/// Loads a dataset within a reading budget that can be stopped.
+/// Loads a dataset within a reading budget, which can also stop the reading.
 pub fn load_dataset_within(
     path: &Path,
     budget: &ReadingBudget<'_>,
@@ -113,7 +113,7 @@ pub fn load_dataset_within(
 /// Returns all faults in a dataset's file, each with its place; empty if it can be loaded.
 ///
 /// # Errors
-/// A text that cannot be read at all.
+/// A file whose text cannot be read at all.
 pub fn dataset_faults(path: &Path) -> Result<Vec<FileError>, FileError> {
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget)?;
@@ -126,7 +126,7 @@ pub fn dataset_faults(path: &Path) -> Result<Vec<FileError>, FileError> {
         .collect())
 }
 
-/// Checks the structure in a dataset's text, as far as the text goes.
+/// Checks the structure of a dataset's text, which may be incomplete.
 pub(crate) fn check_dataset_text(
     text: &[u8],
     path: &Path,
@@ -135,7 +135,7 @@ pub(crate) fn check_dataset_text(
     FORMAT.decode::<DatasetText>(text, path, budget).map(drop)
 }
 
-/// Loads a dataset from bytes in memory; errors name them by `origin`.
+/// Loads a dataset from bytes in memory; errors state `origin` as their source.
 pub fn load_dataset_bytes(bytes: &[u8], origin: DatasetOrigin) -> Result<LoadedDataset, FileError> {
     let budget = ReadingBudget::default();
     dataset_from(
@@ -145,7 +145,7 @@ pub fn load_dataset_bytes(bytes: &[u8], origin: DatasetOrigin) -> Result<LoadedD
     )
 }
 
-/// Returns the example dataset inside the program.
+/// Returns the example dataset that is part of the program.
 pub fn embedded_example() -> Result<LoadedDataset, FileError> {
     load_dataset_bytes(EXAMPLE, DatasetOrigin::EmbeddedExample)
 }
@@ -186,8 +186,8 @@ pub fn add_dataset(
         .is_some_and(|extension| extension.eq_ignore_ascii_case("gz"));
     outputs.add(path, |file| {
         if packed {
-            // Buffered: JSON is written in single numbers and punctuation marks, and the encoder
-            // clears a buffer for each.
+            // Buffered, because JSON is written in small pieces and the encoder compresses each
+            // piece separately.
             let mut pieces =
                 BufWriter::with_capacity(1 << 16, GzEncoder::new(file, Compression::default()));
             write_compact(&text, &mut pieces)?;
@@ -199,7 +199,7 @@ pub fn add_dataset(
     })
 }
 
-/// Returns the dataset in a source.
+/// Returns the dataset read from a source.
 pub(crate) fn dataset_from(
     source: &Source<'_>,
     origin: DatasetOrigin,

@@ -1,4 +1,4 @@
-//! A dataset file, key by key.
+//! Members of a dataset file, as JSON.
 
 use std::collections::BTreeMap;
 
@@ -39,7 +39,7 @@ pub(super) struct DatasetText {
     pub(super) conditions: Vec<ConditionText>,
 }
 
-/// Reads conditions within the limits on condition count and model count.
+/// Reads conditions, limited in their number and in the number of models.
 fn conditions<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<ConditionText>, D::Error> {
     let mut models = 0;
     list_while(
@@ -57,7 +57,7 @@ fn conditions<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Conditio
     )
 }
 
-/// Reads a perturbation's coordinates, or null.
+/// Reads the coordinates of a perturbation, or null.
 fn coordinates<'de, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Option<BTreeMap<String, f64>>, D::Error> {
@@ -111,11 +111,11 @@ pub(crate) struct RecordText {
     pub(super) variable: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) sha256: Option<String>,
-    /// "other" if absent.
+    /// "other" if the key is absent.
     pub(super) kind: Option<String>,
     #[serde(default)]
     pub(super) held_out: bool,
-    /// True if absent.
+    /// True if the key is absent.
     pub(super) used: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) sample_time_s: Option<f64>,
@@ -172,7 +172,7 @@ pub(crate) struct ModelText {
     pub(crate) input_units: Option<Limited<String, MOST_CHANNELS>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) output_units: Option<Limited<String, MOST_CHANNELS>>,
-    /// State names, for people.
+    /// State names, for display only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) states: Option<Limited<String, MOST_STATES>>,
     #[serde(rename = "A", skip_serializing_if = "Option::is_none")]
@@ -199,7 +199,7 @@ pub(crate) struct ModelText {
     /// Notes from reading a model outside a dataset.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) notes: Option<Limited<String, MOST_PIECES>>,
-    /// Whether identification recommends the model, if it produced it.
+    /// Whether the identification that produced the model recommends it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) recommended: Option<bool>,
 }
@@ -226,7 +226,7 @@ impl LabelText {
     }
 }
 
-/// Source file.
+/// Origin of a model: its file and variable.
 #[derive(Default, Deserialize, Serialize)]
 pub(crate) struct SourceText {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -239,18 +239,18 @@ pub(crate) struct SourceText {
     pub(super) made: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) note: Option<String>,
-    /// Flight records in the condition.
+    /// Flight records at the condition.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) records: Option<Limited<String, MOST_PIECES>>,
     /// Variables in the file that were not used.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) unused: Option<Limited<String, MOST_PIECES>>,
-    /// Sides with channels assigned by position: "inputs", "outputs".
+    /// Sides ("inputs", "outputs") whose channels were assigned by position.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) by_position: Option<Limited<SideText, 2>>,
 }
 
-/// Inputs or outputs.
+/// A list with all inputs or all outputs.
 #[derive(Clone, Copy, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum SideText {
@@ -258,7 +258,7 @@ pub(crate) enum SideText {
     Outputs,
 }
 
-/// Standard deviations for a model's response.
+/// Standard deviations of a model's response.
 #[derive(Deserialize, Serialize)]
 pub(crate) struct BandsText {
     #[serde(deserialize_with = "list::<MOST_FREQUENCIES, _, _>")]
@@ -276,10 +276,10 @@ pub(crate) struct ResponseText {
     pub(super) im: Nested<3>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) coherence: Option<Nested<3>>,
-    /// First and last trusted frequency, by response.
+    /// First and last trusted frequency of each response.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) valid_band_rad_s: Option<Nested<3>>,
-    /// Count of independent averages in the estimate.
+    /// Number of independent averages in the estimate.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) averages: Option<f64>,
     /// Window length.

@@ -5,7 +5,7 @@ use gdcm_model::names::channel_alias::folded_name;
 use super::values::{Field, array_of};
 use crate::formats::variables::Value;
 
-/// The delayed signals.
+/// Signals that a delay applies to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Delayed {
     /// Each input.
@@ -16,19 +16,19 @@ pub(super) enum Delayed {
     Responses,
     /// Internal delays, as MATLAB keeps them in feedback loops.
     Inside,
-    /// The name leaves it open.
+    /// Not determined by the name.
     Unclear,
 }
 
-/// Delay unit, from the name.
+/// Unit of a delay, according to its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum DelayUnit {
     Seconds,
     Milliseconds,
     Samples,
-    /// No unit, in MATLAB's spelling: seconds, or samples in discrete time.
+    /// No unit in a name spelled as in MATLAB: seconds, or samples in discrete time.
     Matlab,
-    /// No unit.
+    /// No unit in any other name.
     Unknown,
 }
 
@@ -48,8 +48,8 @@ pub(super) struct DelayField<'v> {
 }
 
 impl DelayField<'_> {
-    /// Whether the field holds anything except zeros. Structs, cells and objects may list delays by
-    /// name; texts are remarks.
+    /// Whether the field may hold a delay other than zero: structs, cells and objects may (delays
+    /// by name), texts are mere remarks.
     pub(super) fn is_nonzero(&self) -> bool {
         match array_of(self.value) {
             Some(array) => array.re.iter().any(|delay| *delay != 0.0),
@@ -164,7 +164,7 @@ fn is_mark(letter: char) -> bool {
     !letter.is_alphanumeric()
 }
 
-/// Whether a folded name without a known meaning may hold delays. Phase and group delays do not:
+/// Whether a folded name that is no delay name resembles one. Phase and group delays are excluded:
 /// they are curves over frequency.
 fn resembles_delay(folded: &str) -> bool {
     const NAMES: [&str; 14] = [

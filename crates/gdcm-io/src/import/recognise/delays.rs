@@ -10,20 +10,21 @@ use super::delay_names::{DelayField, DelayUnit, Delayed};
 use super::record::Record;
 use super::values::{array_of, first_text_of, list_of, scalar_of};
 
-/// Delay \[s\] without a unit in its name above which milliseconds are as likely as seconds.
+/// Maximum delay \[s\] that is taken to be in seconds if its name has no unit; a larger one may be
+/// in milliseconds.
 const LONGEST_PLAIN_S: f64 = 1.0;
-/// Tolerance \[s\] for delays that should be equal.
+/// Tolerance \[s\] on the equality of delays.
 const ROUNDING_S: f64 = 1e-9;
-/// Names for delays, suggested in questions.
+/// Remedies suggested in questions about delays.
 const WAYS: &str = "call it input_delays_s or output_delays_s (a number for each channel, in s), or rename it if it is not a delay";
 
-/// Model timing, with notes on the conventions applied.
+/// Sample time and delays of a model, with notes on the conventions applied.
 pub(super) struct NotedTiming {
     pub(super) timing: Timing,
     pub(super) notes: Vec<String>,
 }
 
-/// Reads sample time and delays; `outputs` and `inputs` are channel counts.
+/// Reads sample time and delays of a model with `outputs` and `inputs` channels.
 ///
 /// # Errors
 /// A possible delay whose signals or unit are ambiguous: it becomes a question and is never
@@ -76,10 +77,10 @@ pub(super) fn refuse_delays(record: &Record<'_>) -> Result<(), String> {
     Ok(())
 }
 
-/// Delays of a model, while its fields are read.
+/// State while the delay fields of a model are read.
 struct DelayReading {
     sample_time_s: Option<f64>,
-    /// Whether the model is a MATLAB or GNU Octave object, whose conventions are defined.
+    /// Whether the model is a MATLAB or GNU Octave object, in which the unit of delays is defined.
     is_object: bool,
     outputs: usize,
     inputs: usize,
@@ -89,7 +90,7 @@ struct DelayReading {
     notes: Vec<String>,
 }
 
-/// Response delays as sums, `tau_oi = tau_o + tau_i` \[s\].
+/// Response delays split into channel delays, `tau_oi = tau_o + tau_i` \[s\].
 struct SplitDelays {
     inputs: Vec<f64>,
     outputs: Vec<f64>,
@@ -123,8 +124,7 @@ impl DelayReading {
         }
     }
 
-    /// Returns a delay \[s\] for each of the `count` channels on one side; a single number applies
-    /// to all.
+    /// Returns a delay \[s\] for each of `count` inputs or outputs; a single value applies to all.
     fn channel_delays(
         &mut self,
         field: &DelayField<'_>,
@@ -145,7 +145,7 @@ impl DelayReading {
         self.in_seconds(field, &delays)
     }
 
-    /// Splits response delays (a matrix, outputs x inputs) into input delays and output delays. The
+    /// Splits response delays (a matrix, outputs x inputs) into input delays and output delays; the
     /// output with the smallest delay gets zero.
     fn split_response_delays(&mut self, field: &DelayField<'_>) -> Result<SplitDelays, String> {
         let name = field.name;
@@ -183,8 +183,8 @@ impl DelayReading {
         Ok(SplitDelays { inputs, outputs })
     }
 
-    /// Returns the delays of all responses in the file's unit, output index fastest; a single
-    /// number applies to all responses.
+    /// Returns the delays of all responses in the file's unit, output index fastest; a single value
+    /// applies to all responses.
     fn response_delay_values(&self, field: &DelayField<'_>) -> Result<Vec<f64>, String> {
         let p = self.outputs;
         let m = self.inputs;
@@ -204,7 +204,7 @@ impl DelayReading {
         ))
     }
 
-    /// Converts delays to seconds, if their unit is known.
+    /// Converts delays to seconds. An ambiguous unit is an error.
     fn in_seconds(&mut self, field: &DelayField<'_>, delays: &[f64]) -> Result<Vec<f64>, String> {
         let name = field.name;
         let factor = self.seconds_per_unit(field, delays)?;
@@ -220,7 +220,8 @@ impl DelayReading {
         Ok(delays)
     }
 
-    /// Returns a field's delay unit in seconds, and notes a convention if it decides.
+    /// Returns the unit of a field's delays in seconds; notes the convention if one determines the
+    /// unit.
     fn seconds_per_unit(&mut self, field: &DelayField<'_>, delays: &[f64]) -> Result<f64, String> {
         let name = field.name;
         match (field.meaning.unit, self.sample_time_s) {
@@ -261,7 +262,7 @@ impl DelayReading {
         }
     }
 
-    /// Notes an applied convention, except for objects, in which the meaning is defined.
+    /// Notes an applied convention; not for objects, in which the unit is defined.
     fn note_convention(&mut self, name: &str, words: &str) {
         if !self.is_object {
             self.notes.push(format!("{name} {words}"));
@@ -284,7 +285,7 @@ impl DelayReading {
     }
 }
 
-/// Formulates an ambiguity, and the name that resolves it.
+/// Returns the question about an ambiguous field, with the name that resolves it.
 fn question(name: &str, open: &str) -> String {
     format!(
         "{name}: {open}; call it {}_s and give it in s",
@@ -292,7 +293,7 @@ fn question(name: &str, open: &str) -> String {
     )
 }
 
-/// Stores the delays on one side; refuses a second list with other delays.
+/// Stores the delays of the inputs or outputs; refuses a second list with other delays.
 fn store(stored: &mut Option<Vec<f64>>, delays: Vec<f64>, name: &str) -> Result<(), String> {
     if let Some(known) = stored {
         let differs = known
@@ -309,7 +310,7 @@ fn store(stored: &mut Option<Vec<f64>>, delays: Vec<f64>, name: &str) -> Result<
     Ok(())
 }
 
-/// Adds channel delays and those split from response delays; `None` if all are zero.
+/// Returns the sum of channel delays and those split from response delays; `None` if all are zero.
 fn sum(own: Option<Vec<f64>>, more: Option<Vec<f64>>) -> Option<Vec<f64>> {
     let delays: Vec<f64> = match (own, more) {
         (Some(own), Some(more)) => own

@@ -15,21 +15,21 @@ const CONDITIONS: &[&str] = &["condition", "condition_id", "fc"];
 const AIRSPEEDS: &[&str] = &["airspeed_kt", "V_kt", "airspeed_knots", "speed_kt", "KTAS"];
 const ALTITUDES: &[&str] = &["altitude_ft", "alt_ft", "h_ft"];
 const MASSES: &[&str] = &["mass_kg", "m_kg"];
-/// Structs that hold a flight condition.
+/// Paths of structs that hold a flight condition.
 const CONDITION_STRUCTS: [&[&str]; 4] = [
     &["trim"],
     &["flight_condition"],
     &["flight_state"],
     &["condition"],
 ];
-/// Struct with trim offsets, by coordinate.
+/// Names of the struct with trim offsets by coordinate.
 const OFFSETS: &[&str] = &["perturbation", "trim_offset", "trim_offsets"];
 /// Prefix for a single offset: `by_roll_deg`.
 const OFFSET_PREFIX: &str = "by_";
-/// Largest condition number that is still a number for a condition.
+/// Maximum value accepted as the number of a condition.
 const GREATEST_CONDITION: f64 = 1e9;
 
-/// Position in an array of models; lists beside the array hold an entry for each model.
+/// Position in an array of models; lists beside the array have one entry per model.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Page {
     /// Counted from 0.
@@ -45,8 +45,8 @@ impl Page {
 /// Returns the flight condition given beside a model and in its enclosing records.
 ///
 /// # Errors
-/// A list that is not as long as the array of models, and a number that contradicts an enclosing
-/// record.
+/// A list whose length differs from that of the array of models, and a value that contradicts an
+/// enclosing record.
 pub(super) fn facts_of(record: &Record<'_>, page: Page) -> Result<Facts, String> {
     let condition = match fact(record, CONDITIONS, page)? {
         Some(id) if id.fract() == 0.0 && id.abs() < GREATEST_CONDITION => Some(id as i64),
@@ -62,7 +62,7 @@ pub(super) fn facts_of(record: &Record<'_>, page: Page) -> Result<Facts, String>
     })
 }
 
-/// Returns a number that describes the flight condition, beside a model or in an enclosing record.
+/// Returns a quantity of the flight condition, given beside a model or in an enclosing record.
 fn fact(record: &Record<'_>, names: &[&str], page: Page) -> Result<Option<f64>, String> {
     let mut known: Option<f64> = None;
     for (level, record) in record.with_outer().enumerate() {
@@ -115,7 +115,7 @@ fn figure(record: &Record<'_>, names: &[&str], page: Page) -> Result<Option<f64>
     Ok(Some(value))
 }
 
-/// Returns a number from a struct that describes the flight condition: `trim.airspeed_kt`,
+/// Returns a quantity from a struct that describes the flight condition: `trim.airspeed_kt`,
 /// `condition.id`.
 fn figure_inside(record: &Record<'_>, names: &[&str]) -> Result<Option<f64>, String> {
     for keys in CONDITION_STRUCTS {
@@ -173,9 +173,9 @@ fn name_beside(record: &Record<'_>, page: Page) -> Option<String> {
     Some(name.clone())
 }
 
-/// Returns the origin from a model's record and the enclosing records: role, trim offsets,
-/// identification method. Without a role, objects with a MATLAB class `id…` are identified and all
-/// others are simulated.
+/// Returns the origin (role, trim offsets, identification method) given in a model's record and the
+/// enclosing records. Without a role, objects of a MATLAB class `id…` are identified models and all
+/// others are physics models.
 pub(super) fn origin_of(record: &Record<'_>) -> Origin {
     let role = match text_beside(record, "role") {
         Some(word) => RowRole::from_word(&word.to_lowercase()),
@@ -199,7 +199,7 @@ pub(super) fn origin_of(record: &Record<'_>) -> Origin {
     }
 }
 
-/// Returns the single text under `key`, from the innermost record with a text.
+/// Returns the text under `key` from the innermost record that has one.
 fn text_beside(record: &Record<'_>, key: &str) -> Option<String> {
     for record in record.with_outer() {
         let Some(field) = record.find(&[key]) else {

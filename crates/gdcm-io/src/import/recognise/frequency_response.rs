@@ -17,7 +17,7 @@ use super::values::{array_of, first_text_of, list_of};
 use crate::files::model_collection::bare_draft;
 use crate::formats::variables::Array;
 
-/// Names for complex responses; python-control uses `frdata` and, in earlier versions, `fresp`.
+/// Names of complex responses; python-control uses `frdata` and, in earlier versions, `fresp`.
 const RESPONSES: &[&str] = &[
     "ResponseData",
     "Response",
@@ -30,11 +30,11 @@ const RESPONSES: &[&str] = &[
 ];
 const REAL_PARTS: &[&str] = &["re", "real", "Hre"];
 const IMAGINARY_PARTS: &[&str] = &["im", "imag", "Him"];
-/// Names for frequencies in rad/s.
+/// Names of frequencies in rad/s.
 const RADIANS: &[&str] = &["omega", "omega_rad_s", "w", "freq_rad_s", "frequency_rad_s"];
-/// Names for frequencies in an unspecified unit.
+/// Names of frequencies in an unspecified unit.
 const FREQUENCIES: &[&str] = &["Frequency", "freq", "frequencies", "f"];
-/// Names for frequencies in Hz.
+/// Names of frequencies in Hz.
 const HERTZ: &[&str] = &["f_hz", "freq_hz", "frequency_hz"];
 const UNITS: &[&str] = &["FrequencyUnit", "FreqUnits", "Units", "frequency_unit"];
 const COHERENCES: &[&str] = &[
@@ -45,11 +45,11 @@ const COHERENCES: &[&str] = &[
     "gamma_squared",
     "Cxy",
 ];
-/// Names that programs use for both γ and γ².
+/// Names that are used for both γ and γ².
 const GAMMAS: &[&str] = &["gamma", "γ"];
 
-/// Whether fields are a frequency response: complex numbers, or real and imaginary parts, with
-/// frequencies.
+/// Whether fields form a frequency response: frequencies, with complex values or real and imaginary
+/// parts.
 pub(super) fn is_response(record: &Record<'_>) -> bool {
     let frequencies = record
         .find(RADIANS)
@@ -62,7 +62,7 @@ pub(super) fn is_response(record: &Record<'_>) -> bool {
     has_frequencies && (complex_array(record).is_some() || real_and_imaginary(record).is_some())
 }
 
-/// Returns the field with complex numbers and marks it as used.
+/// Returns the field with complex values and marks it as used.
 fn complex_array<'v>(record: &Record<'v>) -> Option<&'v Array> {
     let field = record.find(RESPONSES)?;
     let array = array_of(field.value)?;
@@ -71,7 +71,7 @@ fn complex_array<'v>(record: &Record<'v>) -> Option<&'v Array> {
     Some(array)
 }
 
-/// Returns the fields with real and imaginary parts and marks them as used.
+/// Returns the real and the imaginary part and marks their fields as used.
 fn real_and_imaginary<'v>(record: &Record<'v>) -> Option<(&'v Array, &'v Array)> {
     let re = record.find(REAL_PARTS)?;
     let im = record.find(IMAGINARY_PARTS)?;
@@ -90,7 +90,7 @@ struct StoredResponse<'v> {
 
 impl<'v> StoredResponse<'v> {
     fn find(record: &Record<'v>) -> Result<Self, String> {
-        // Looked up in any case: fields with parts are used up even beside complex numbers.
+        // Looked up even beside complex values, so that the parts count as used.
         let parts = real_and_imaginary(record);
         if let Some(array) = complex_array(record) {
             return Ok(Self {
@@ -152,7 +152,7 @@ pub(super) fn response(record: &Record<'_>, variable: &str) -> Result<FoundModel
 /// Returns the coherence γ², if the record has it.
 ///
 /// # Errors
-/// A coherence that is not as large as the response; a field that may be γ or γ².
+/// A coherence whose dimensions differ from those of the response; a field that may be γ or γ².
 fn coherence_of(
     record: &Record<'_>,
     stored: &StoredResponse<'_>,
@@ -179,11 +179,11 @@ fn coherence_of(
     }
 }
 
-/// Response frequencies.
+/// Frequencies of a response.
 struct Frequencies {
-    /// In rad/s.
+    /// Angular frequencies \[rad/s\].
     omega: Vec<f64>,
-    /// Whether the file gives them in Hz or a multiple.
+    /// Whether the file states the frequencies in Hz or a multiple of it.
     is_hertz: bool,
 }
 
@@ -239,11 +239,11 @@ impl Frequencies {
     }
 }
 
-/// Order in which a response's numbers are stored.
+/// Dimensions and index order of a stored response.
 struct ResponseLayout {
     outputs: usize,
     inputs: usize,
-    /// Frequency count.
+    /// Number of frequencies.
     count: usize,
     output_stride: usize,
     input_stride: usize,
@@ -251,8 +251,8 @@ struct ResponseLayout {
 }
 
 impl ResponseLayout {
-    /// Finds the layout for `count` frequencies along the last index as in MATLAB, or along its
-    /// first as in NumPy. A single response may be a row or a column.
+    /// Finds the layout of a response with `count` frequencies: the frequency index is the last as
+    /// in MATLAB, or the first as in NumPy. A single response may be a row or a column.
     fn new(shape: &[usize], count: usize) -> Result<Self, String> {
         match *shape {
             [outputs, inputs, last] if last == count => Ok(Self {
@@ -289,8 +289,8 @@ impl ResponseLayout {
         }
     }
 
-    /// Reorders values to outputs x inputs x frequencies, frequency index fastest; refuses values
-    /// that are not finite.
+    /// Reorders values to outputs x inputs x frequencies with the frequency index fastest; refuses
+    /// values that are not finite.
     fn ordered(&self, name: &str, values: &[f64]) -> Result<ResponseArray, String> {
         let mut ordered = Vec::with_capacity(values.len());
         for output in 0..self.outputs {

@@ -41,7 +41,7 @@ const STATE_NAMES: &[&str] = &[
     "x_names",
     "xnames",
 ];
-/// Fields with the name in a channel object.
+/// Names of the fields that hold the name in a channel object.
 const LABEL_NAMES: &[&str] = &["name", "label", "id", "channel"];
 const LABEL_UNITS: &[&str] = &["unit", "units"];
 
@@ -68,12 +68,12 @@ pub(super) fn states_of(record: &Record<'_>, order: usize) -> Vec<String> {
     }
 }
 
-/// Returns the labels for `count` channels on one side: those beside the model, or those of an
-/// enclosing record with the same count.
+/// Returns the labels of `count` inputs or outputs: those beside the model, or those of an
+/// enclosing record with `count` entries.
 ///
 /// # Errors
-/// A list beside the model with another count, and a list without an order: channels are never
-/// assigned by guess.
+/// A list beside the model whose length is not `count`, and a list without an order: channels are
+/// never assigned by guessing.
 fn labels(
     record: &Record<'_>,
     side: ChannelSide,
@@ -91,8 +91,8 @@ fn labels(
     Ok(labels)
 }
 
-/// Returns the names or units under the first existing key, searching the record and then its
-/// enclosing records; missing entries are empty texts.
+/// Returns the names or units under the first key found in the record, otherwise in its enclosing
+/// records; missing entries are empty strings.
 fn list_of_labels(
     record: &Record<'_>,
     keys: &[&str],
@@ -129,8 +129,8 @@ fn list_of_labels(
     Ok(None)
 }
 
-/// Returns the labels in a value as texts: a list with texts, or with objects that have a name and
-/// a unit as in a dataset file; `None` for numbers.
+/// Returns the labels in a value as texts. The list holds texts, or objects with a name and a unit
+/// as in a dataset file; `None` for numbers.
 fn label_texts(field: &str, value: &Value) -> Result<Option<Vec<String>>, String> {
     if let Some(texts) = texts_of(value) {
         return Ok(Some(texts));

@@ -1,9 +1,9 @@
-//! From variables to models, whatever the file format.
+//! Recognition of models among variables, whatever the file format.
 //!
-//! Fields that belong together are a model if they have the customary names: `A`, `B`, `C`, `D`; a
-//! response over frequencies; numerators and denominators; zeros, poles and gains. They belong
-//! together as a struct, as a MATLAB object, or as the variables in a file. Structs and objects may
-//! be inside structs, cells and arrays.
+//! A group of fields is a model if the fields have the customary names: `A`, `B`, `C`, `D`; a
+//! response over frequencies; numerators and denominators; zeros, poles and gains. The group is a
+//! struct, a MATLAB object, or the variables of a file. Structs and objects may be inside structs,
+//! cells and arrays.
 
 mod delay_names;
 mod delays;
@@ -34,11 +34,11 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 
 pub(crate) use self::search::{Found, search};
 
-/// Deepest nesting of the search.
+/// Maximum nesting depth of the search.
 pub(crate) const DEEPEST: usize = 16;
-/// Largest number of models or records in one file.
+/// Maximum number of models or records in one file.
 pub(crate) const MOST_FOUND: usize = 10_000;
-/// Work steps for examining a field, which is compared with all known names.
+/// Work steps charged per field, which is compared with all recognised names.
 const STEPS: u64 = 64;
 /// Variables that describe the file, not its models.
 const SILENT: [&str; 5] = [
@@ -50,7 +50,7 @@ const SILENT: [&str; 5] = [
 ];
 
 /// Finds every model among the variables of a file. `pages_first` decides which index of an array
-/// counts its matrices if the shapes leave it open.
+/// selects the matrix if the shapes are ambiguous.
 pub(crate) fn recognise(
     variables: &[Variable],
     pages_first: bool,

@@ -1,4 +1,4 @@
-//! Tests of recognised models, with values as the readers of formats give them.
+//! Tests of recognised models, with values as produced by the format readers.
 
 use gdcm_model::assembly::ChannelLabel;
 use gdcm_model::dataset::model::Origin;
@@ -213,7 +213,7 @@ fn json(text: &str) -> Found<FoundModel> {
     }
 }
 
-/// Two inputs and two outputs beside further members.
+/// Recognises a model with two inputs and two outputs that has these further members.
 fn beside(members: &str) -> Found<FoundModel> {
     json(&format!(
         r#"{{"A": [[-1, 0], [0, -2]], "B": [[1, 0], [0, 2]], "C": [[1, 0], [0, 1]], "D": [[0, 0], [0, 0]], {members}}}"#

@@ -14,11 +14,11 @@ use crate::formats::variables::{StructArray, Value, Variable};
 const INNER_PARTS: [&str; 4] = ["data", "structure", "lti", RESPONSE_PART];
 /// Field with the measured response in this program's models.
 const RESPONSE_PART: &str = "frequencyresponse";
-/// Deepest nesting among inner parts.
+/// Maximum nesting depth of inner parts.
 const DEEPEST_PART: usize = 3;
 
-/// First field under each name. Built on the first query: a record may have as many fields as its
-/// file has bytes.
+/// First field of each name. Built at the first query: a record may have as many fields as its file
+/// has bytes.
 #[derive(Clone, Debug, Default)]
 struct FieldIndex<'v> {
     exact: HashMap<&'v str, Field<'v>>,
@@ -37,22 +37,22 @@ impl<'v> FieldIndex<'v> {
     }
 }
 
-/// Fields that belong together, and the used ones among them.
+/// A group of fields, with those already used.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Record<'v> {
     fields: Vec<Field<'v>>,
     index: OnceCell<FieldIndex<'v>>,
     used: RefCell<BTreeSet<&'v str>>,
-    /// Unused fields in structs that are used fields.
+    /// Unused fields inside structs that are themselves used.
     unused_inside: RefCell<Vec<String>>,
     delays: OnceCell<Vec<DelayField<'v>>>,
     /// The enclosing record; its labels and flight condition apply to every model inside.
     outer: Option<Rc<Record<'v>>>,
-    /// Whether the fields belong to several models.
+    /// Whether the fields apply to several models.
     pub(super) is_shared: bool,
-    /// Object class.
+    /// MATLAB or Octave class of an object.
     pub(crate) class: Option<&'v str>,
-    /// Whether the record is a struct or an object, not the variables in a file.
+    /// Whether the record is a struct or an object; false for the variables in a file.
     pub(crate) stands_alone: bool,
 }
 
@@ -73,8 +73,8 @@ impl<'v> Record<'v> {
         }
     }
 
-    /// Creates a record from element `index` in a struct array, with the inner parts of an object:
-    /// MATLAB objects keep their numbers in `Data_`. If an inner part is an array, its element
+    /// Creates a record from element `index` of a struct array, with the inner parts of an object:
+    /// MATLAB objects store their matrices in `Data_`. If an inner part is an array, its element
     /// `page` is read.
     pub(crate) fn from_struct(
         records: &'v StructArray,
@@ -113,8 +113,7 @@ impl<'v> Record<'v> {
         }
     }
 
-    /// Counts the models in element `index` of an object array, where `Data_` has an element for
-    /// each model.
+    /// Counts the models in element `index` of an object array: `Data_` has one element per model.
     pub(crate) fn page_count(records: &StructArray, index: usize) -> usize {
         let data = fields_of(records, index)
             .into_iter()
@@ -125,8 +124,8 @@ impl<'v> Record<'v> {
         }
     }
 
-    /// Returns the first existing field under these names and marks it as used: exact names first,
-    /// then names without case and underscores.
+    /// Returns the first field found under these names and marks it as used. Exact names are tried
+    /// first, then names without case and underscores.
     pub(crate) fn get(&self, names: &[&str]) -> Option<&'v Value> {
         Some(self.take(self.find(names)?))
     }
@@ -179,7 +178,7 @@ impl<'v> Record<'v> {
         }
     }
 
-    /// Returns the unused field names; none for objects, which store much internal data.
+    /// Returns the names of unused fields; none for objects, which store much internal data.
     pub(super) fn unused(&self) -> Vec<String> {
         if self.class.is_some() {
             return Vec::new();
@@ -199,7 +198,7 @@ impl<'v> Record<'v> {
         self.delays.get_or_init(|| delay_fields(&self.fields))
     }
 
-    /// Returns this record and the enclosing records, from inside out.
+    /// Returns this record and its enclosing records, from the inside out.
     pub(super) fn with_outer(&self) -> impl Iterator<Item = &Record<'v>> {
         std::iter::successors(Some(self), |record| record.outer.as_deref())
     }
@@ -214,7 +213,7 @@ impl<'v> Record<'v> {
     }
 }
 
-/// Returns the fields in element `index` of a struct array.
+/// Returns the fields of element `index` of a struct array.
 fn fields_of(records: &StructArray, index: usize) -> Vec<Field<'_>> {
     let mut fields = Vec::with_capacity(records.fields.len());
     for (name, values) in &records.fields {
@@ -225,7 +224,7 @@ fn fields_of(records: &StructArray, index: usize) -> Vec<Field<'_>> {
     fields
 }
 
-/// Appends the fields in an object's inner parts, recursively; outer fields come first.
+/// Appends the fields of an object's inner parts, recursively, after the outer fields.
 fn add_inner(fields: &mut Vec<Field<'_>>, page: usize, levels: usize) {
     if levels == 0 {
         return;

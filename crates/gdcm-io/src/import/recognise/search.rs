@@ -10,15 +10,15 @@ use super::{DEEPEST, MOST_FOUND, STEPS};
 use crate::formats::variables::{StructArray, Value, Variable};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Largest number of variables listed if nothing is found.
+/// Maximum number of variables listed if nothing is found.
 const MOST_LISTED: usize = 20;
 
 /// Models or records found among variables.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Found<T> {
-    /// The models or records; their sources give only the variable.
+    /// Models or records found; their provenance gives only the variable.
     pub(crate) items: Vec<T>,
-    /// Candidates that cannot be used, with place and reason.
+    /// Candidates that could not be read, with place and reason.
     pub(crate) faults: Vec<String>,
     /// Descriptions of contents that are not candidates.
     pub(crate) ignored: Vec<String>,
@@ -38,7 +38,7 @@ impl<T> Default for Found<T> {
 }
 
 impl<T> Found<T> {
-    /// Adds the results in a variable; the variable is empty for the whole file.
+    /// Adds the results of a variable; `variable` is empty for the whole file.
     pub(super) fn add(&mut self, variable: &str, items: Vec<Result<T, String>>) {
         for item in items {
             match item {
@@ -54,12 +54,12 @@ impl<T> Found<T> {
     }
 }
 
-/// Recognises a record's fields, given the variable name; `None` if they are not of the sought
-/// kind.
+/// Function that reads the fields of a record, given the variable name; `None` if they are neither
+/// a model nor a record, whichever is sought.
 pub(super) type Recognise<'r, T> = &'r dyn Fn(&Record<'_>, &str) -> Option<Vec<Result<T, String>>>;
 
 /// Finds everything that `recognise` accepts among variables: first all variables together, then
-/// each variable, from outside in.
+/// each variable and its contents, from the outside in.
 pub(crate) fn search<T>(
     variables: &[Variable],
     budget: &ReadingBudget<'_>,
@@ -93,8 +93,8 @@ pub(crate) fn search<T>(
     Ok(found)
 }
 
-/// Returns a record's unused fields that hold no result themselves; `empty` are the fields without
-/// results. Paths into structs are unused in any case.
+/// Returns the unused fields of a record. `empty` lists the fields without results: others contain
+/// results and are not unused, except paths into structs.
 fn unused_among(record: &Record<'_>, empty: &BTreeSet<&str>) -> Vec<String> {
     let mut unused = record.unused();
     unused.retain(|name| empty.contains(name.as_str()) || name.contains('.'));
@@ -108,14 +108,14 @@ struct Search<'r, T> {
 }
 
 impl<T> Search<'_, T> {
-    /// Adds the results from a record's fields; returns whether the fields are recognised.
+    /// Adds the results found in a record's fields; returns whether the fields are recognised.
     fn try_record(&mut self, record: &Record<'_>, variable: &str) -> Result<bool, VariableFault> {
         self.budget
             .work(STEPS * record.fields().count() as u64, variable)?;
         let Some(items) = (self.recognise)(record, variable) else {
             return Ok(false);
         };
-        // Each result copies its numbers.
+        // Charged per field, because each result copies its values.
         for field in record.fields() {
             if let Value::Array(array) = field.value {
                 self.budget.take(array.len() as u64, 16, variable)?;
@@ -125,8 +125,8 @@ impl<T> Search<'_, T> {
         Ok(true)
     }
 
-    /// Searches a value and its contents, at most `levels` deep; `outer` is the record with this
-    /// field. Returns whether anything was found.
+    /// Searches a value and its contents, at most `levels` deep; `outer` is the record that holds
+    /// the value. Returns whether anything was found.
     fn descend<'v>(
         &mut self,
         name: &str,
@@ -162,7 +162,7 @@ impl<T> Search<'_, T> {
         }
     }
 
-    /// Searches each element in a struct array or an object array.
+    /// Searches each element of a struct array or object array.
     fn descend_records<'v>(
         &mut self,
         name: &str,
@@ -203,8 +203,8 @@ impl<T> Search<'_, T> {
         Ok(is_any_found)
     }
 
-    /// Tries element `index` in a struct array itself, or each of its models if it is an array of
-    /// models; returns whether any is recognised.
+    /// Tries element `index` of a struct array, or each of its models if it is an array of models;
+    /// returns whether any is recognised.
     fn try_pages<'v>(
         &mut self,
         name: &str,
@@ -230,7 +230,7 @@ impl<T> Search<'_, T> {
         Ok(is_any_known)
     }
 
-    /// Notes a variable's unused fields, as paths.
+    /// Notes unused fields of a variable, as paths.
     fn note_unused(&mut self, variable: &str, names: &[String]) -> Result<(), VariableFault> {
         for name in names {
             let path = if variable.is_empty() {

@@ -17,7 +17,7 @@ use super::values::{PagedShape, array_of, matrix_of, page_of};
 use crate::files::model_collection::bare_draft;
 use crate::formats::variables::{Array, Value};
 
-/// Matrix name: a capital letter, or in structs and objects also a small letter.
+/// Name of a matrix: a capital letter, or in structs and objects also a small letter.
 #[derive(Clone, Copy)]
 struct MatrixName {
     large: &'static str,
@@ -51,14 +51,14 @@ impl MatrixName {
     }
 }
 
-/// Whether fields are a state-space model: they hold A, B and C.
+/// Whether fields form a state-space model: A, B and C are present.
 pub(super) fn is_state_space(record: &Record<'_>) -> bool {
     MatrixName::A.is_in(record) && MatrixName::B.is_in(record) && MatrixName::C.is_in(record)
 }
 
-/// Reads the model from the matrices in `record`, or each model of an array: `A(:,:,k)` in MATLAB,
-/// `A[k,:,:]` in NumPy. `pages_first` decides which index counts the models if the shapes leave it
-/// open.
+/// Reads the model formed by the matrices in `record`, or each model of an array: `A(:,:,k)` in
+/// MATLAB, `A[k,:,:]` in NumPy. `pages_first` decides which index selects the model if the shapes
+/// are ambiguous.
 pub(super) fn state_spaces(
     record: &Record<'_>,
     variable: &str,
@@ -94,7 +94,8 @@ pub(super) fn state_spaces(
     models
 }
 
-/// Whether the matrices fit together if the first index (or the last) counts the models.
+/// Whether the dimensions of A, B and C and their numbers of models are consistent if the first
+/// index (`pages_first`) or the last selects the model.
 fn shapes_fit(a: &Array, b: &Array, c: &Array, pages_first: bool) -> bool {
     let a = PagedShape::new(a, pages_first);
     let b = PagedShape::new(b, pages_first);
@@ -105,7 +106,7 @@ fn shapes_fit(a: &Array, b: &Array, c: &Array, pages_first: bool) -> bool {
     a.rows == a.columns && b.rows == a.rows && c.columns == a.rows && counts_fit
 }
 
-/// Returns a matrix for one model in an array; a single matrix is shared by all models.
+/// Returns a matrix of one model of an array; a single matrix is shared by all models.
 fn matrix_in_page(
     name: &str,
     value: &Value,
@@ -125,7 +126,7 @@ fn matrix_in_page(
     }
 }
 
-/// Reads a matrix from a value; the name is for errors.
+/// Function that reads a matrix from a value; the name is for error messages.
 type ReadMatrix<'f> = &'f dyn Fn(&str, &Value) -> Result<DMatrix<f64>, String>;
 
 /// Reads a matrix in `record`, if it exists.
@@ -151,7 +152,7 @@ fn required_matrix(
     }
 }
 
-/// Reads a model. D may be missing, or a single zero for a zero matrix; E is inverted.
+/// Reads a model. D may be missing, or a single zero for a zero matrix; E is eliminated.
 fn state_space(
     record: &Record<'_>,
     variable: &str,
@@ -210,7 +211,7 @@ pub(super) fn build_model(
     })
 }
 
-/// Returns the provenance for a variable, which is empty if the model is the whole file.
+/// Returns the provenance of a variable; the name is empty if the model is the whole file.
 pub(super) fn source_of(variable: &str) -> Provenance {
     let variable = if variable.is_empty() {
         None
@@ -223,7 +224,7 @@ pub(super) fn source_of(variable: &str) -> Provenance {
     }
 }
 
-/// Refuses a count above the largest state count, before matrices this large are allocated.
+/// Refuses more than the maximum number of states, before such large matrices are allocated.
 pub(super) fn at_most(count: usize, counted: &str, place: &str) -> Result<(), String> {
     if count > MOST_STATES {
         return Err(format!(
@@ -267,7 +268,7 @@ fn check_shape(
     ))
 }
 
-/// Condition number above which `E^-1` has lost most digits.
+/// Condition number above which solving with E loses most digits.
 const WORST_CONDITION: f64 = 1e12;
 
 /// Computes `E^-1 A` and `E^-1 B` of the descriptor model `E x' = A x + B u` (M2a).

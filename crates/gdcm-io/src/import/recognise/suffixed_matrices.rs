@@ -22,8 +22,8 @@ pub(super) struct SuffixedModels {
     pub(super) used: BTreeSet<String>,
 }
 
-/// Finds the models in matrices with suffixes. Other variables, such as labels, apply to all
-/// models; delays may have a model's suffix.
+/// Finds the models whose matrices share a suffix. Other variables, such as labels, apply to all
+/// models; delays may carry the suffix of a model.
 pub(super) fn suffixed_models(
     variables: &[Variable],
     read: Recognise<'_, FoundModel>,
@@ -79,7 +79,7 @@ pub(super) fn suffixed_models(
     Ok(models)
 }
 
-/// Returns the values by name; if a name occurs several times, the first counts.
+/// Returns the values by name; of several with one name, the first is taken.
 fn values_by_name(variables: &[Variable]) -> HashMap<&str, &Value> {
     let mut by_name = HashMap::with_capacity(variables.len());
     for variable in variables {
@@ -90,7 +90,7 @@ fn values_by_name(variables: &[Variable]) -> HashMap<&str, &Value> {
     by_name
 }
 
-/// Returns the matrices with a suffix, named without it.
+/// Returns the matrices with a suffix, under their names without it.
 fn matrices_with_suffix<'v>(by_name: &HashMap<&str, &'v Value>, suffix: &str) -> Vec<Field<'v>> {
     let mut fields = Vec::new();
     for name in MATRICES {
@@ -103,7 +103,7 @@ fn matrices_with_suffix<'v>(by_name: &HashMap<&str, &'v Value>, suffix: &str) ->
     fields
 }
 
-/// Returns the delay names with a model's suffix: `InputDelay_nom` beside `A_nom`.
+/// Returns the delays with a model's suffix: `InputDelay_nom` beside `A_nom`.
 fn delays_with_suffix<'v>(
     variables: &'v [Variable],
     suffixes: &BTreeSet<&str>,

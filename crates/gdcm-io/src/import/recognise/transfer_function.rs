@@ -11,12 +11,12 @@ use super::state_space::{at_most, build_model};
 use super::values::{array_of, complex_list_of, list_of};
 use crate::formats::variables::Value;
 
-/// Whether fields are transfer functions; marks these fields as used.
+/// Whether fields form transfer functions; marks these fields as used.
 pub(super) fn is_transfer_function(record: &Record<'_>) -> bool {
     Polynomials::find(record).is_some() || Factors::find(record).is_some()
 }
 
-/// Fields that give transfer functions by polynomials.
+/// Fields that give transfer functions as polynomials.
 struct Polynomials<'v> {
     numerators: &'v Value,
     denominators: &'v Value,
@@ -32,7 +32,8 @@ impl<'v> Polynomials<'v> {
         })
     }
 
-    /// Returns the fractions; a single denominator may apply to all.
+    /// Returns the fractions; if a response has no denominator of its own, the first denominator
+    /// applies.
     fn fractions(&self) -> Result<FractionTable, String> {
         let numerators = CellTable::new(self.numerators);
         let denominators = CellTable::new(self.denominators).cells;
@@ -56,7 +57,7 @@ impl<'v> Polynomials<'v> {
     }
 }
 
-/// Fields that give transfer functions by zeros, poles and gains.
+/// Fields that give transfer functions as zeros, poles and gains.
 struct Factors<'v> {
     zeros: &'v Value,
     poles: &'v Value,
@@ -113,7 +114,7 @@ struct Fraction {
 }
 
 impl Fraction {
-    /// Creates the fraction without leading zeros and with a monic denominator.
+    /// Creates the fraction with leading zeros removed and the denominator made monic.
     ///
     /// # Errors
     /// A zero denominator, a numerator with a higher degree than the denominator, and too many
@@ -155,14 +156,14 @@ fn without_leading_zeros(polynomial: &[f64]) -> &[f64] {
     }
 }
 
-/// Transfer functions, output index fastest.
+/// Transfer functions of all responses; the output index runs fastest.
 struct FractionTable {
     fractions: Vec<Fraction>,
     outputs: usize,
     inputs: usize,
 }
 
-/// Cells, row index fastest; a single value counts as a 1 x 1 cell array.
+/// Cells of a cell array; the row index runs fastest. Any other value counts as a 1 x 1 cell array.
 struct CellTable<'v> {
     cells: Vec<&'v Value>,
     rows: usize,
@@ -208,7 +209,7 @@ pub(super) fn transfer_function(record: &Record<'_>, variable: &str) -> Result<F
     let mut b = DMatrix::zeros(order, inputs);
     let mut c = DMatrix::zeros(outputs, order);
     let mut d = DMatrix::zeros(outputs, inputs);
-    // First state of a response.
+    // Index of the first state of the current response.
     let mut start = 0;
     for (index, fraction) in fractions.iter().enumerate() {
         let output = index % outputs;
@@ -295,7 +296,7 @@ mod tests {
         let model = transfer_function(&Record::from_variables(&variables), "g").unwrap();
         let s = Complex::new(0.3, 1.7);
         let expected = (s * s * 2.0 + s * 3.0 + 4.0) / (s * s * 2.0 + s * 5.0 + 7.0);
-        // A few rounding errors for numbers of order 1.
+        // A few rounding errors of values of order 1.
         assert!((response(&model, s) - expected).norm() < 1e-14);
     }
 

@@ -6,7 +6,7 @@ use gdcm_model::units::number;
 
 use crate::formats::variables::{Array, Value};
 
-/// A value under a name: a variable in a file, or a field in a struct.
+/// A named value: a variable of a file, or a field of a struct.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Field<'v> {
     pub(crate) name: &'v str,
@@ -48,7 +48,7 @@ pub(super) fn matrix_of(name: &str, value: &Value) -> Result<DMatrix<f64>, Strin
     page_of(name, array, 0, false)
 }
 
-/// Shape of an array that holds equally large matrices, called pages.
+/// Shape of an array that holds matrices of equal dimensions, called pages.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PagedShape {
     pub(super) pages: usize,
@@ -57,8 +57,8 @@ pub(super) struct PagedShape {
 }
 
 impl PagedShape {
-    /// Reads an array's shape; with `pages_first` the first of three indices counts the matrices,
-    /// otherwise the indices after the second.
+    /// Reads an array's shape; with `pages_first` the first of three indices selects the matrix,
+    /// otherwise the indices after the second do.
     pub(super) fn new(array: &Array, pages_first: bool) -> Self {
         let shape = &array.shape;
         if shape.len() == 3 && pages_first {
@@ -76,7 +76,7 @@ impl PagedShape {
     }
 }
 
-/// Extracts matrix number `page`, from 0, from an array that holds several.
+/// Extracts the matrix with index `page` (from 0) of an array that holds several.
 pub(super) fn page_of(
     name: &str,
     array: &Array,
@@ -100,7 +100,7 @@ pub(super) fn page_of(
     let step = if is_interleaved { pages.max(1) } else { 1 };
     let numbers = array.re.iter().skip(start).step_by(step);
     let values: Vec<f64> = numbers.take(rows * columns).copied().collect();
-    // If a later index has length 0, the array holds fewer numbers than its first two lengths say.
+    // With a zero among the later dimensions the array has fewer values than the first two imply.
     if values.len() != rows * columns {
         return Err(format!(
             "{name}: expected a matrix, found an array without numbers"
@@ -117,7 +117,7 @@ pub(super) fn page_of(
     Ok(DMatrix::from_column_slice(rows, columns, &values))
 }
 
-/// Whether an array is truly complex; an imaginary part that is zero throughout does not count.
+/// Whether an array has a nonzero imaginary part.
 pub(in crate::import) fn has_imaginary_part(array: &Array) -> bool {
     match &array.im {
         Some(im) => im.iter().any(|part| *part != 0.0),

@@ -1,4 +1,4 @@
-//! Column names, units and side for a field, from the fields beside it.
+//! Column names, units and role (input or output) of a field, from the fields beside it.
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::names::channel_alias::folded_name;
@@ -9,7 +9,7 @@ use crate::import::recognise::labels::label_of;
 use crate::import::recognise::record::Record;
 use crate::import::recognise::values::texts_of;
 
-/// Plain names for matrices with the inputs.
+/// Names of matrices with the inputs, without case and underscores.
 const INPUTS: [&str; 9] = [
     "u",
     "in",
@@ -21,7 +21,7 @@ const INPUTS: [&str; 9] = [
     "controls",
     "uin",
 ];
-/// Plain names for matrices with the outputs.
+/// Names of matrices with the outputs, without case and underscores.
 const OUTPUTS: [&str; 9] = [
     "y",
     "out",
@@ -51,7 +51,7 @@ const OUTPUT_NAMES: [&str; 6] = [
 ];
 const INPUT_UNITS: [&str; 4] = ["inputunit", "inputunits", "inunit", "uunits"];
 const OUTPUT_UNITS: [&str; 4] = ["outputunit", "outputunits", "outunit", "yunits"];
-/// Fields with column names, for the only matrix in a record.
+/// Names of fields that list the column names of the only matrix in a record.
 const NAMES: [&str; 10] = [
     "names",
     "channels",
@@ -64,10 +64,10 @@ const NAMES: [&str; 10] = [
     "colheaders",
     "varlab",
 ];
-/// Fields with column units, for the only matrix in a record.
+/// Names of fields that list the column units of the only matrix in a record.
 const UNITS: [&str; 3] = ["units", "columnunits", "channelunits"];
 
-/// Column names, units and side for a field.
+/// Labels of the columns of a field.
 pub(super) struct ColumnLabels {
     names: Option<Vec<String>>,
     units: Option<Vec<String>>,
@@ -75,12 +75,12 @@ pub(super) struct ColumnLabels {
 }
 
 impl ColumnLabels {
-    /// Finds the labels for a field with `count` columns: those named after the field (`u_names`),
-    /// then those for its side, then those for the whole record. Lists with another length are
-    /// ignored.
+    /// Finds the labels of a field with `count` columns: those named after the field (`u_names`),
+    /// then those of all inputs or all outputs, then those of the whole record. Lists whose length
+    /// is not `count` are ignored.
     pub(super) fn find(record: &Record<'_>, field: &str, count: usize) -> Self {
         let name = folded_name(field);
-        // A single column called u may be a speed.
+        // A single column called u may be a velocity component.
         let may_be_side = count > 1 || name.len() > 1;
         let (side, names, units) = if may_be_side && INPUTS.contains(&name.as_str()) {
             (
@@ -144,7 +144,7 @@ impl ColumnLabels {
     }
 }
 
-/// Returns the texts in the first field under these folded names, if there are `count`.
+/// Returns the texts in the first field with one of these folded names, if there are `count`.
 fn list_beside<K: AsRef<str>>(
     record: &Record<'_>,
     keys: &[K],

@@ -6,8 +6,8 @@ use gdcm_model::dataset::condition::ConditionRecord;
 
 use crate::files::study_file::relative_folder;
 
-/// Returns the entry for a record in the dataset file `dataset`, with the record's file relative to
-/// the dataset; `requested` are the files and folders that were read.
+/// Returns the entry of a record in the dataset file `dataset`: the path to the record's file
+/// becomes relative to the dataset. `requested` lists the files and folders that were read.
 pub fn relative_entry(
     mut entry: ConditionRecord,
     requested: &[PathBuf],
@@ -29,8 +29,8 @@ pub fn relative_entry(
 }
 
 /// Finds the path to a record's file: a requested file with this name, or the file in a requested
-/// folder. For topics joined from several files, which have no file, it is the folder around the
-/// first requested file.
+/// folder. Topics joined from several files have no file; for these it is the folder of the first
+/// requested file.
 fn place_of_record(file: &str, requested: &[PathBuf]) -> Option<PathBuf> {
     for path in requested {
         let is_file = path

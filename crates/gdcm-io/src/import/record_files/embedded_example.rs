@@ -8,9 +8,9 @@ use super::records_of_bytes;
 use crate::file_error::FileError;
 use crate::reading_budget::ReadingBudget;
 
-/// Simulated sweeps and a validation record for each of conditions 3 and 10, as CSV files.
+/// Simulated sweeps and a validation record at each of conditions 3 and 10, as CSV files.
 const ARCHIVE: &[u8] = include_bytes!("../../../../../assets/example-records-3-and-10.zip");
-/// Archive name in errors.
+/// Name of the archive in error messages.
 const NAME: &str = "(embedded example records).zip";
 
 /// Example conditions with embedded records.

@@ -14,13 +14,13 @@ use crate::formats::variables::Value;
 use crate::import::recognise::record::Record;
 use crate::import::recognise::values::{first_text_of, texts_of};
 
-/// Field names for one side, in MATLAB and in GNU Octave.
+/// Field names of the inputs or of the outputs, in MATLAB and in GNU Octave.
 struct SideFields {
     side: ChannelSide,
     data: [&'static str; 2],
     names: [&'static str; 2],
     units: [&'static str; 2],
-    /// Letter in names for unnamed columns.
+    /// Letter in the default names of unnamed columns.
     letter: char,
 }
 
@@ -108,7 +108,7 @@ fn experiment(
     })
 }
 
-/// Returns the columns on one side, for experiment `index`.
+/// Returns the columns of the inputs or of the outputs in experiment `index`.
 fn side_columns(
     record: &Record<'_>,
     fields: &SideFields,
@@ -150,7 +150,7 @@ fn nonempty_text(texts: &[String], at: usize) -> Option<String> {
     }
 }
 
-/// Returns a value for each experiment: its cell, or the only value.
+/// Returns the parts of a value, one per experiment: its cells, or the value itself.
 fn parts_of(value: &Value) -> Vec<&Value> {
     match value {
         Value::Cell(cell) => cell.values.iter().collect(),

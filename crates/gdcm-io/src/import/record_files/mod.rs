@@ -1,8 +1,8 @@
 //! Flight records in files: text tables, MATLAB, NumPy, JSON, and archives of these.
 //!
 //! ```text
-//! bytes -> format, by what they begin with
-//!       -> a table with columns, or variables, or archived files             (text, mat, mat73, npy, zip, JSON)
+//! bytes -> format, from the first bytes
+//!       -> a table with columns, or variables, or files (text, mat, mat73, npy, zip, JSON)
 //!       -> columns with equal lengths: vectors and matrices, structs, timetables, iddata
 //!       -> records: a table is split by a column that numbers them, or where time restarts
 //! ```
@@ -54,14 +54,14 @@ pub struct FoundRecords {
     pub faults: Vec<String>,
     /// Descriptions of contents that are not records.
     pub ignored: Vec<String>,
-    /// File count.
+    /// Number of files read.
     pub files: usize,
     /// Explicitly requested files that could not be read completely.
     pub unread: Vec<PathBuf>,
 }
 
-/// Reads the records of files and folders, recursively. A file that cannot be read is a fault, and
-/// the others are read; with a single requested file it is an error.
+/// Reads the records of files and folders, recursively. An unreadable file is recorded as a fault
+/// and the others are read; if only one file is requested, it is an error.
 pub fn read_records(
     paths: &[PathBuf],
     progress: &dyn FolderProgress,
@@ -103,10 +103,11 @@ pub fn records_of_bytes(
 }
 
 /// Reloads the records that a dataset identifies by these variables of a file; `None` selects the
-/// only record. The file is read once, within a budget.
+/// only record. The file is read a single time, within a budget.
 ///
 /// # Errors
-/// Errors from reading; for a record that is not in the file, [`FileError::NoRecord`] in its place.
+/// Errors from reading; a record that is not in the file gives [`FileError::NoRecord`] in its
+/// position.
 pub fn load_records(
     path: &Path,
     variables: &[Option<&str>],
@@ -223,8 +224,8 @@ impl FoundRecords {
         Ok(())
     }
 
-    /// Adds the records in the file `inner` of an archive; its path becomes part of the variable. A
-    /// file that cannot be read is a fault.
+    /// Adds the records in the file `inner` of an archive; its path becomes part of the variable.
+    /// An unreadable file is recorded as a fault.
     ///
     /// # Errors
     /// Only cancellation.

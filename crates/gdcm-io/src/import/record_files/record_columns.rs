@@ -11,9 +11,9 @@ use crate::formats::recorded_columns::Columns;
 use crate::formats::variables::Value;
 use crate::import::recognise::record::Record;
 
-/// Smallest sample count in a record with a time.
+/// Minimum number of samples in a record with time stamps or a sample time.
 pub(super) const FEWEST_TIMED: usize = 20;
-/// Smallest sample count in a record without a time.
+/// Minimum number of samples in a record without any time.
 const FEWEST: usize = 50;
 const SAMPLE_RATE_NAMES: [&str; 5] = [
     "fs",
@@ -23,15 +23,15 @@ const SAMPLE_RATE_NAMES: [&str; 5] = [
     "fsamp",
 ];
 
-/// Sample count in a record.
+/// Number of samples in a record.
 struct RecordLength {
     rows: usize,
     /// Whether a time vector has this length.
     is_timed: bool,
 }
 
-/// Returns the record in the fields, if they hold one: arrays with equal lengths, that of the time
-/// or the most frequent length.
+/// Returns the record formed by the arrays of equal length among the fields; `None` if there is
+/// none. The length is that of the time vector, otherwise the one with the most columns.
 pub(super) fn array_columns(record: &Record<'_>, variable: &str) -> Option<Columns> {
     let is_model = ["A", "B", "C"]
         .iter()
@@ -100,8 +100,8 @@ pub(super) fn array_columns(record: &Record<'_>, variable: &str) -> Option<Colum
     })
 }
 
-/// Returns the longest time vector's length, otherwise the length with the most columns (the
-/// longer, if two have as many).
+/// Returns the length of the longest time vector; without a long enough time vector, the length
+/// with the most columns (the greater length if tied).
 fn record_length(record: &Record<'_>) -> Option<RecordLength> {
     let mut timed = None;
     for field in record.fields() {
@@ -137,7 +137,7 @@ fn record_length(record: &Record<'_>) -> Option<RecordLength> {
     })
 }
 
-/// Returns the sample time \[s\], given as such or by the sample rate \[Hz\].
+/// Returns the sample time \[s\], stated directly or as a sample rate \[Hz\].
 fn sample_time(record: &Record<'_>) -> Option<f64> {
     let step = match positive_number(record, &SAMPLE_TIME_NAMES) {
         Some(step) => step,
@@ -146,7 +146,7 @@ fn sample_time(record: &Record<'_>) -> Option<f64> {
     if step.is_finite() { Some(step) } else { None }
 }
 
-/// Returns the number in the first field under these names, if it is positive.
+/// Returns the number in the first field with one of these names, if it is positive.
 fn positive_number(record: &Record<'_>, names: &[&str]) -> Option<f64> {
     let Value::Array(array) = record.get(names)? else {
         return None;

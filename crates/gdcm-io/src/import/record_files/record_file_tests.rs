@@ -33,8 +33,8 @@ fn channels() -> RecordChannels {
     }
 }
 
-/// Returns the flight record of a table with the proposed layout; columns without names are
-/// assigned explicitly, and "az" is positive up.
+/// Returns the flight record of a table in the proposed layout; unnamed columns are assigned
+/// explicitly, and "az" is positive up.
 fn flight(table: &RecordTable) -> gdcm_model::simulation::FlightRecord {
     let mut channels = channels();
     let rules = channels.inputs.iter_mut().chain(&mut channels.outputs);
@@ -49,7 +49,7 @@ fn flight(table: &RecordTable) -> gdcm_model::simulation::FlightRecord {
     proposal.layout.flight_record(table, &channels).unwrap()
 }
 
-/// Asserts that a record holds the data of `make_files.py`, to this number of decimals.
+/// Asserts that a record matches the data of `make_files.py` to this number of decimals.
 fn assert_record(table: &RecordTable, digits: i32) {
     let record = flight(table);
     let samples = record.time_s.len();

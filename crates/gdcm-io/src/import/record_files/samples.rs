@@ -5,16 +5,15 @@ use gdcm_sysid::records::RecordColumn;
 use crate::formats::variables::{Array, Value};
 use crate::import::recognise::values::has_imaginary_part;
 
-/// Samples in a field.
+/// Samples of one or more signals at common times.
 pub(super) struct Samples {
-    /// Sample count.
     pub(super) rows: usize,
     /// Values over time, column by column.
     pub(super) columns: Vec<Vec<f64>>,
 }
 
-/// Returns the real numbers in a value as samples; a vector is a single column. If `rows` is given,
-/// the time runs along the side with this length, otherwise along the longer side.
+/// Returns the real numbers in a value as samples; a vector is a single column. Time runs along the
+/// dimension with length `rows` if given, otherwise along the longer dimension.
 pub(super) fn samples_of(value: &Value, rows: Option<usize>) -> Option<Samples> {
     let array = match value {
         Value::Array(array) => array,
@@ -51,7 +50,8 @@ fn strided_values(array: &Array, from: usize, step: usize) -> Vec<f64> {
     array.re.iter().skip(from).step_by(step).copied().collect()
 }
 
-/// Reads single numbers in cells, as JSON lists with "null" among numbers become.
+/// Reads cells that each hold a single number, or nothing (NaN): the form of JSON lists with
+/// "null".
 fn samples_of_cells(cells: &[Value]) -> Option<Samples> {
     if cells.is_empty() {
         return None;
@@ -71,7 +71,7 @@ fn samples_of_cells(cells: &[Value]) -> Option<Samples> {
     })
 }
 
-/// Returns the first column in a value, along its longer side.
+/// Returns the first column of a value; time runs along its longer dimension.
 pub(super) fn first_column_of(value: &Value) -> Option<Vec<f64>> {
     samples_of(value, None)?.columns.into_iter().next()
 }
@@ -81,7 +81,7 @@ pub(super) fn first_number_of(value: &Value) -> Option<f64> {
     first_column_of(value)?.first().copied()
 }
 
-/// Returns record columns under a name, numbered if there are several: "rates_1", "rates_2".
+/// Returns record columns with a common name, numbered if there are several: "rates_1", "rates_2".
 pub(super) fn named_columns(name: &str, columns: Vec<Vec<f64>>) -> Vec<RecordColumn> {
     let is_single = columns.len() == 1;
     let mut named = Vec::with_capacity(columns.len());

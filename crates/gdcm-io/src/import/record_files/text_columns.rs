@@ -8,8 +8,8 @@ use crate::formats::text::sections::sections;
 use crate::formats::text::{NumberedText, TextTable, numbered_words, read_table};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Reads the columns in a text. If the columns change on the way, each part that is long enough for
-/// a record is read by itself.
+/// Reads the columns of a text table. If the text is not a single table, each of its tables that is
+/// long enough for a record becomes a separate entry.
 pub(super) fn text_columns(
     text: &str,
     budget: &ReadingBudget<'_>,
@@ -52,7 +52,7 @@ pub(super) fn text_columns(
     }
 }
 
-/// Whether a fault is in the text itself, not a limit that was reached.
+/// Whether a fault is in the text itself rather than an exceeded limit.
 fn is_of_the_text(fault: &VariableFault) -> bool {
     matches!(
         fault,
@@ -60,7 +60,8 @@ fn is_of_the_text(fault: &VariableFault) -> bool {
     )
 }
 
-/// Reads the columns in a single table; words and clock times in it are replaced by numbers.
+/// Reads a text as a single table; if necessary, words and clock times are first replaced by
+/// numbers.
 fn whole_text_columns(text: &str, budget: &ReadingBudget<'_>) -> Result<Columns, VariableFault> {
     let first_fault = match read_table(text, budget) {
         Ok(table) => return Ok(table_columns(table)),
@@ -70,7 +71,7 @@ fn whole_text_columns(text: &str, budget: &ReadingBudget<'_>) -> Result<Columns,
     let Some(NumberedText { text, notes }) = numbered_words(text, budget)? else {
         return Err(first_fault);
     };
-    // The fault in the original text is more useful than that in the converted text.
+    // An error in the original text is more useful than one in the converted text.
     let Ok(table) = read_table(&text, budget) else {
         return Err(first_fault);
     };

@@ -3,8 +3,8 @@
 //! A timetable is saved as a struct `any` with `data` (a cell for each variable), `varNames`,
 //! `varUnits` and `rowTimes`: a `duration` (`millis`), a `datetime` (`data`, ms since 1970), or
 //! `origin` with `stepSize` or `sampleRate`. A table has `data`, `varnames` and
-//! `props.VariableUnits`. Source: files of MATLAB R2017a to R2024a as the mat-io project describes
-//! them.
+//! `props.VariableUnits`. Source: files of MATLAB R2017a to R2024a as described by the mat-io
+//! project.
 
 use gdcm_sysid::records::RecordColumn;
 
@@ -75,7 +75,7 @@ fn read_table(record: &Record<'_>, variable: &str) -> Option<Columns> {
     Some(Columns::new(variable.to_owned(), columns))
 }
 
-/// Returns the fields in a struct or an object.
+/// Returns the fields of a struct or an object.
 fn inner_record(value: &Value) -> Option<Record<'_>> {
     let records = match value {
         Value::Struct(records) => records,
@@ -108,12 +108,12 @@ fn numeric_columns(data: &[Value], names: &[String], units: &[String]) -> Vec<Re
     columns
 }
 
-/// Sample times in a timetable.
+/// Sample times of a timetable.
 enum RowTimes {
     Stamps {
-        /// Time \[s\] at each row.
+        /// Times \[s\] of the rows.
         time_s: Vec<f64>,
-        /// Whether the file gives clock times, from which the first was subtracted.
+        /// Whether the file contains clock times; `time_s` is then relative to the first.
         is_clock: bool,
     },
     /// Constant sample time \[s\].
@@ -133,7 +133,8 @@ fn row_times(value: &Value) -> Option<RowTimes> {
     {
         let clock = samples.columns.into_iter().next()?;
         let start = clock.iter().copied().find(|ms| ms.is_finite())?;
-        // Subtracted before scaling: milliseconds since 1970 leave few digits.
+        // Subtracted before scaling: milliseconds since 1970 leave few digits of a double for
+        // fractions.
         return Some(RowTimes::Stamps {
             time_s: clock.iter().map(|ms| (ms - start) * MILLISECOND).collect(),
             is_clock: true,

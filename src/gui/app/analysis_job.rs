@@ -1,4 +1,4 @@
-//! The live answer as a job.
+//! Job of the live analysis, which follows every change to the study.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -14,34 +14,34 @@ use gdcm_study::{Analysis, ConditionAnalysis, Engine, Study};
 use super::threads::ReplySender;
 use crate::gui::state::results::FirstResult;
 
-/// A problem with its gains, proven optimal by another job.
+/// A problem and its gains, which another job has proven optimal.
 pub(super) type Proof = (Arc<Problem>, Arc<Solution>);
 
-/// Live answer to the current study and condition. All parts are shared, so a request is cheap.
+/// Request for the live analysis of the current study. All parts are shared, so a copy is cheap.
 #[derive(Clone)]
 pub(super) struct AnalysisJob {
-    /// Job number: a proof that arrives later creates another job for the same request.
+    /// Job number. A proof that arrives later creates another job for the same request.
     pub(super) number: u64,
-    /// Request number; the newest is the greatest.
+    /// Request number; newer requests have higher numbers.
     pub(super) generation: u64,
     pub(super) study: Study,
-    /// The displayed condition, whose result and curves come first.
+    /// The displayed condition, whose result and curves are computed first.
     pub(super) condition: ConditionId,
-    /// Problems proven since the last answer.
+    /// Problems proven since the last analysis.
     pub(super) proofs: Vec<Proof>,
-    /// Receives the displayed condition's result, ahead of the others.
+    /// Receives the result of the displayed condition before those of the other conditions.
     pub(super) replies: ReplySender,
 }
 
 impl AnalysisJob {
-    /// Returns whether the request contains a proof for this very problem.
+    /// Returns whether the request contains a proof for `problem`.
     pub(super) fn has_proof_of(&self, problem: &Arc<Problem>) -> bool {
         self.proofs
             .iter()
             .any(|(proven, _)| Arc::ptr_eq(problem, proven))
     }
 
-    /// Shows the displayed condition's result before the whole analysis is complete.
+    /// Shows the result of the displayed condition before the whole analysis is complete.
     fn send_first(&self, outcome: &Result<ConditionAnalysis, ConditionFailure>) {
         let first = FirstResult {
             generation: self.generation,
@@ -53,7 +53,8 @@ impl AnalysisJob {
             .send(move |app| app.state.results.first = Some(first));
     }
 
-    /// Returns whether both jobs compare the models at the same frequencies in the same condition.
+    /// Returns whether both jobs compare the same models at the same frequencies, starting with the
+    /// same condition.
     fn compares_the_same(&self, other: &Self) -> bool {
         let settings = &self.study.settings;
         let others = &other.study.settings;
@@ -88,10 +89,10 @@ impl Job for AnalysisJob {
         Ok((Arc::new(analysis), 1e3 * started.elapsed().as_secs_f64()))
     }
 
-    /// Returns whether this job should continue although a newer one waits. A job with the same
-    /// request number does. So does a job whose responses and distances are still being computed if
-    /// the newer job needs the same; otherwise only the displayed condition would keep up with a
-    /// steady drag.
+    /// Returns whether this job should continue although a newer job waits: always if both have the
+    /// same request number; otherwise only while responses and distances are being computed that
+    /// the newer job needs too. Without this rule, only the displayed condition would be updated
+    /// during a steady drag.
     fn serves(&self, newer: &Self, done: usize, total: usize) -> bool {
         if self.generation == newer.generation {
             return true;

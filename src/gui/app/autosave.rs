@@ -18,7 +18,7 @@ const AGAIN_AFTER: Duration = Duration::from_secs(10);
 /// Waiting time if nothing is due.
 const NEVER: Duration = Duration::from_secs(3600);
 
-/// State to keep. All parts are shared, so a copy is cheap.
+/// Decisions to keep. All parts are shared, so a copy is cheap.
 #[derive(Clone, Debug)]
 pub(super) struct Unsaved {
     pub(super) study: Study,
@@ -26,7 +26,7 @@ pub(super) struct Unsaved {
     pub(super) saved_as: Option<PathBuf>,
 }
 
-/// Decisions kept on the disk.
+/// Decisions kept in a recovery file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Kept {
     pub path: PathBuf,
@@ -41,9 +41,9 @@ pub enum Remains {
     Saved,
     /// All unsaved decisions are in the recovery file.
     Kept(Kept),
-    /// Later decisions than these could not be kept; holds the reason.
+    /// Some decisions are in the recovery file; later decisions could not be kept, with the reason.
     KeptInPart(Kept, String),
-    /// No decisions could be kept; holds the reason.
+    /// No decisions could be kept, with the reason.
     Lost(String),
 }
 
@@ -64,7 +64,8 @@ pub(super) enum Task {
     Keep(Box<Unsaved>, SystemTime),
     /// Every decision is saved or discarded: nothing to recover.
     Clear,
-    /// The lost decisions are open again: delete their file once they are kept anew or saved.
+    /// The lost decisions are open again: delete their recovery file once they are kept anew or
+    /// saved.
     Restored(LostStudy),
     /// Discard the lost decisions.
     Discard(LostStudy),
@@ -80,12 +81,12 @@ pub struct Autosave {
     tasks: Sender<Task>,
     /// Decisions last kept; `None` once they are saved.
     kept: Arc<Mutex<Option<Kept>>>,
-    /// Remaining decisions when the window, and with it the thread, ended.
+    /// State of the unsaved decisions when the window and this thread ended.
     at_end: Arc<OnceLock<Remains>>,
 }
 
 impl Autosave {
-    /// Starts the thread, which first offers lost decisions.
+    /// Starts the thread, which first offers the decisions lost by earlier windows.
     pub(super) fn start(
         directory: Option<&Path>,
         keep_after: Duration,
@@ -165,10 +166,10 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Decisions that wait to be kept.
+/// Decisions that are not in the recovery file yet.
 struct Pending {
     unsaved: Box<Unsaved>,
-    /// Time at which they were taken.
+    /// Time of the latest of these decisions.
     decided: SystemTime,
     due: Instant,
 }
@@ -218,7 +219,7 @@ impl Keeper {
         }
     }
 
-    /// Takes newer decisions, due when the earlier ones were.
+    /// Replaces the pending decisions by newer ones; they stay due at the same time.
     fn postpone(&mut self, unsaved: Box<Unsaved>, decided: SystemTime) {
         let due = match &self.pending {
             Some(pending) => pending.due,
@@ -232,7 +233,7 @@ impl Keeper {
         });
     }
 
-    /// Clears the kept decisions and removes the files behind restored decisions.
+    /// Clears the kept decisions and removes the recovery files of restored decisions.
     fn clear(&mut self) -> Result<(), FileError> {
         self.pending = None;
         *locked(&self.kept) = None;
@@ -242,7 +243,7 @@ impl Keeper {
         self.remove_restored()
     }
 
-    /// Keeps the pending decisions now; returns the remaining ones.
+    /// Keeps the pending decisions now; returns the resulting state.
     fn flush(&mut self) -> Remains {
         let kept = self.keep();
         let trouble = match (&self.pending, &self.folder) {
@@ -275,8 +276,8 @@ impl Keeper {
         }
     }
 
-    /// Removes the files behind restored decisions, which are kept anew or saved; stops at the
-    /// first fault.
+    /// Removes the recovery files of restored decisions, which are kept anew or saved by now; stops
+    /// at the first fault.
     fn remove_restored(&mut self) -> Result<(), FileError> {
         for lost in self.restored.drain(..) {
             lost.remove()?;
@@ -292,7 +293,7 @@ impl Keeper {
     }
 }
 
-/// Writes the recovery file, claimed at the first time; returns its path.
+/// Writes the recovery file, whose name is reserved at the first call; returns its path.
 fn write_recovery(
     unsaved: &Unsaved,
     file: &mut Option<RecoveryFile>,
@@ -328,7 +329,7 @@ mod tests {
         .unwrap()
     }
 
-    /// Far above the time that the slowest disk needs.
+    /// Far longer than the slowest disk needs.
     const LONG: Duration = Duration::from_secs(600);
 
     #[test]
@@ -336,8 +337,8 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let autosave = start_autosave(Some(directory.path()));
         autosave.keep(unsaved());
-        // The window and its thread end with the display; the program then reports what remains of
-        // the decisions.
+        // The window and its thread end with the display; the program then reports the state of the
+        // decisions.
         autosave.clone().close(LONG);
         let Remains::Kept(kept) = autosave.flush(LONG) else {
             panic!("{:?}", autosave.flush(LONG))

@@ -1,14 +1,15 @@
-//! The live answer and the window's other jobs. One table, [`BackgroundJobs::start`], lists every
-//! kind of job with its tools, its trigger and its destination.
+//! Background jobs of the window: the continuously updated analysis ("live analysis") and all
+//! others. One table, [`BackgroundJobs::start`], lists every kind of job with its tools, its
+//! trigger and its destination.
 //!
 //! The kinds share a thread pool. Order of urgency, and its reasons:
 //!
 //! | class  | kinds                                  | reason                              |
 //! |--------|----------------------------------------|-------------------------------------|
-//! | answer | live answer                            | follows every drag                  |
+//! | answer | live analysis                          | follows every drag                  |
 //! | short  | curves, modes                          | first picture of the condition      |
 //! | short  | assessment, conditions, requirements   | tables and plots in visible views   |
-//! | short  | test input, record in time, simulation | time responses in visible views     |
+//! | short  | test input, record history, simulation | time responses in visible views     |
 //! | long   | costs of constraining and releasing    | seconds; hints beside the matrix    |
 //! | long   | variants, proofs                       | complete the displayed results      |
 //! | long   | couplings, responses to all records    | views that show their progress      |
@@ -61,7 +62,7 @@ macro_rules! needed_jobs {
     };
 }
 
-/// All kinds of jobs with their pool. Dropping it cancels the running jobs and ends the threads
+/// All kinds of jobs and their pool. Dropping them cancels the running jobs and ends the threads
 /// without waiting.
 pub(super) struct BackgroundJobs {
     /// The most urgent kind first.
@@ -278,7 +279,7 @@ impl GdcmApp {
     }
 }
 
-/// Returns the jobs needed by the visible views, the overlay and the judged couplings.
+/// Returns the jobs needed by the visible views, the overlay and the assessed couplings.
 fn needs(state: &State) -> Vec<Need> {
     let mut needs = Vec::new();
     for view in View::ALL {
@@ -293,7 +294,7 @@ fn needs(state: &State) -> Vec<Need> {
     needs
 }
 
-/// Drops the kept outputs whose job is not in `jobs`.
+/// Drops the outputs whose job is not in `jobs`.
 fn keep_wanted<J: Job>(kept: &mut Vec<(J, J::Output)>, jobs: &[J]) {
     kept.retain(|(known, _)| jobs.contains(known));
 }
@@ -306,7 +307,7 @@ fn curves_job(state: &State) -> CurvesJob {
     }
 }
 
-/// Returns the job that computes the costs of constraining and releasing entries, for the displayed
+/// Returns the job that computes the cost of constraining or releasing each entry, in the displayed
 /// condition.
 fn toggles_job(state: &State) -> Option<TogglesJob> {
     let condition = state.analysis()?.condition(state.condition().id())?.clone();
@@ -334,8 +335,8 @@ fn proof_jobs(state: &State) -> Vec<ProofJob> {
     jobs
 }
 
-/// Returns the job for the displayed results' error bars. While these are recomputed, or drawn for
-/// the first time, the live answer has all cores.
+/// Returns the job that computes the error bars; `None` while the results are recomputed or not yet
+/// drawn, so that the live analysis has all cores.
 fn uncertainty_job(state: &State) -> Option<UncertaintyJob> {
     let results = &state.results;
     state.analysis()?;

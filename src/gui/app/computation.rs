@@ -1,4 +1,4 @@
-//! Requests for results, and the answers from the threads.
+//! Requests for results, and the replies from the threads.
 
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
@@ -21,12 +21,12 @@ use crate::gui::views::need::Need;
 
 /// Requested and received results.
 pub(super) struct Computation {
-    /// Last requested live answer.
+    /// Last request for the live analysis.
     pub(super) asked: Option<AnalysisJob>,
     pub(super) jobs: BackgroundJobs,
     /// Proofs that the results do not contain yet.
     pub(super) proven: Vec<Proof>,
-    /// Jobs needed by the visible views, beside the live answer.
+    /// Jobs needed by the visible views in addition to the live analysis.
     pub(super) needs: Vec<Need>,
     /// Study and condition in the newest request.
     pub(super) requested: Option<(Study, ConditionId)>,
@@ -81,7 +81,8 @@ impl GdcmApp {
         });
     }
 
-    /// Records that the live answer was stopped, by hand or by a fault; the displayed results stay.
+    /// Records that the live analysis was stopped, by hand or by a fault; the displayed results
+    /// stay.
     pub(super) fn answer_stopped(&mut self) {
         self.work.proven.clear();
         let results = &mut self.state.results;
@@ -116,12 +117,13 @@ impl GdcmApp {
         }
     }
 
-    /// Shows an analysis and requests the jobs that it leaves open.
+    /// Shows an analysis and requests the jobs needed to complete it.
     pub(super) fn answered(&mut self, job: AnalysisJob, answer: (Arc<Analysis>, f64)) {
         let (analysis, elapsed_ms) = answer;
         let now = self.now();
         let results = &mut self.state.results;
-        // A job repeated with a proof has the original job's request number and took no time.
+        // A rerun after an optimality proof has the request number of the original job; its short
+        // computing time must not replace the original one.
         if results.received != job.generation {
             results.elapsed_ms = elapsed_ms;
         }
@@ -140,8 +142,8 @@ impl GdcmApp {
         self.want_jobs();
     }
 
-    /// Repeats the newest request with a proof. The live answer has already reported a problem
-    /// without a solution.
+    /// Requests the analysis again with a proof. A problem without a solution needs no new request,
+    /// because the live analysis has already reported it.
     pub(super) fn take_proof(&mut self, job: ProofJob, proof: Result<Arc<Solution>, ProblemError>) {
         if let Ok(solution) = proof {
             self.work.proven.push((job.problem, solution));
@@ -159,7 +161,7 @@ impl GdcmApp {
         }
     }
 
-    /// Reports a panic: the ended work, the decisions kept, and the details to send.
+    /// Reports a panic: the interrupted work, the decisions kept, and the details to send.
     pub(super) fn report_fault(&mut self, work: &str, fault: &Fault) {
         let sentence = format!(
             "A fault in the program ended {work}; your decisions are kept and can be saved: please send this message, the \
@@ -175,9 +177,9 @@ impl GdcmApp {
     }
 }
 
-/// Returns whether two studies need the same results for the identical dataset. Datasets are
-/// compared by pointer: comparing values would take time in every frame, and results belong to a
-/// single dataset even if another is equal.
+/// Returns whether two studies need the same results. Datasets are compared by pointer: comparing
+/// values would take time in every frame, and results belong to a single dataset even if another is
+/// equal.
 fn needs_same_results(a: &Study, b: &Study) -> bool {
     Arc::ptr_eq(&a.dataset, &b.dataset) && a.settings == b.settings && a.choices == b.choices
 }

@@ -36,7 +36,7 @@ pub(super) struct Dialogs {
     pub(super) goes_on_once_saved: bool,
     /// Command waiting for the answer whether to overwrite files.
     pub(super) overwriting: Option<Command>,
-    /// Treatment for existing files: they are replaced only during the command that the engineer
+    /// Treatment of existing files: they are replaced only during the command that the engineer
     /// confirmed.
     pub(super) existing: Existing,
     pub(super) closing: bool,

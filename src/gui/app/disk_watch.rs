@@ -15,8 +15,8 @@ pub(super) struct Seen {
     pub(super) sha256: String,
 }
 
-/// Checks a file at every interval: its time and length, and its bytes if these have changed. It
-/// polls, because network drives send no events.
+/// Thread that checks a file at a fixed interval: its modification time and length, and its bytes
+/// if these have changed. It polls, because network drives send no events.
 pub(super) struct DiskWatch {
     paths: Sender<Option<PathBuf>>,
     watched: Option<PathBuf>,
@@ -45,20 +45,20 @@ impl DiskWatch {
     }
 }
 
-/// Known state for the watched file.
+/// State of the watched file at the last check.
 #[derive(Default)]
 struct Known {
     path: PathBuf,
-    /// Stamp at the last check.
+    /// Modification time and length at the last check.
     stamp: Option<FileStamp>,
-    /// Stamp when its bytes were last read.
+    /// Modification time and length when the bytes were last read.
     read: Option<FileStamp>,
     sha256: Option<String>,
 }
 
 impl Known {
-    /// Checks the file once; returns its content if new. A file being written is read once its
-    /// stamp stays the same.
+    /// Checks the file once; returns its content if it is new. A file that is being written is read
+    /// once its time and length stay the same between two checks.
     fn look(&mut self, path: &Path) -> Option<Seen> {
         if self.path != path {
             *self = Known {
@@ -66,7 +66,8 @@ impl Known {
                 ..Known::default()
             };
         }
-        // A missing file may be about to appear; until then the open dataset stays.
+        // A missing file may be in the course of being replaced; the open dataset stays until it
+        // reappears.
         let stamp = FileStamp::of(path)?;
         let is_unchanged = self.stamp == Some(stamp);
         self.stamp = Some(stamp);
@@ -74,7 +75,7 @@ impl Known {
             return None;
         }
         let sha256 = file_sha256(path).ok()?;
-        // Written again in the meantime: wait for the next check.
+        // The file was written again in the meantime: wait for the next check.
         if FileStamp::of(path) != Some(stamp) {
             return None;
         }
@@ -122,7 +123,7 @@ mod tests {
         std::fs::write(&path, "one, and more").unwrap();
         assert_eq!(known.look(&path), None);
         assert_ne!(known.look(&path).expect("it rests").sha256, first.sha256);
-        // Rewritten with the same bytes: another time, the same hash.
+        // Rewritten with the same bytes: another modification time, the same hash.
         std::fs::remove_file(&path).unwrap();
         std::thread::sleep(Duration::from_millis(20));
         std::fs::write(&path, "one, and more").unwrap();

@@ -41,7 +41,7 @@ pub(super) struct DocumentFiles {
     pub(super) disk: DiskWatch,
     /// Directory for the recent-files list; without it the list is not kept.
     pub(super) directory: Option<PathBuf>,
-    /// Expansion for `~` in typed paths.
+    /// Directory that replaces `~` in typed paths.
     pub(super) home: Option<PathBuf>,
 }
 

@@ -44,7 +44,7 @@ impl GdcmApp {
         }
     }
 
-    /// Saves the study to a file, like the form once a path is typed.
+    /// Saves the study to a file, as the Save form does after a path was typed.
     pub fn save_study_as(&mut self, path: PathBuf) {
         self.save_as(path, Existing::Keep);
     }

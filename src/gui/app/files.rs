@@ -26,7 +26,7 @@ use crate::gui::state::preferences::Preferences;
 use crate::gui::state::window_state::{RecentFile, State};
 
 impl GdcmApp {
-    /// Returns the initial state, dataset and saved study with which the window shows `opened`.
+    /// Returns the initial window state, the dataset and the saved study for `opened`.
     pub(super) fn parts_of(opened: Opened) -> (State, LoadedDataset, SavedStudy) {
         let path = match &opened {
             Opened::Dataset(_) => None,
@@ -64,7 +64,7 @@ impl GdcmApp {
         state.bars.retain(|bar| matches!(bar, Bar::Recovery { .. }));
         self.state = state;
         self.readers.record_reader.give_up();
-        // Request numbers continue, so that late answers about the old dataset can be recognised.
+        // Request numbers continue, so that late replies about the old dataset can be recognised.
         self.state.results.requested = requested;
         self.state.results.received = requested;
         self.files.loaded = loaded;
@@ -96,7 +96,7 @@ impl GdcmApp {
     }
 
     /// Opens a dataset or a study; the open study stays until the file is read. `moved` is the new
-    /// path for a study's dataset.
+    /// path of the dataset of a study.
     pub(super) fn open(&mut self, path: PathBuf, moved: Option<PathBuf>) {
         let path = self.files.at_home(path);
         let moved = moved.map(|dataset| self.files.at_home(dataset));
@@ -118,7 +118,8 @@ impl GdcmApp {
         });
     }
 
-    /// Reads a file in its own thread, within the budget for a file; replaces a reading under way.
+    /// Reads a file in its own thread, within the size limit of a file; replaces a reading under
+    /// way.
     pub(super) fn read(
         &mut self,
         purpose: ReadFor,
@@ -177,7 +178,7 @@ impl GdcmApp {
         }
     }
 
-    /// Asks whether unsaved decisions may be lost to the postponed action.
+    /// Asks whether the postponed action may discard unsaved decisions.
     pub(super) fn ask_to_lose(&mut self, postponed: PendingAction) {
         self.dialogs.postponed = Some(postponed);
         self.dialogs.goes_on_once_saved = false;
@@ -191,7 +192,7 @@ impl GdcmApp {
         self.save();
     }
 
-    /// Carries out the action that unsaved decisions have postponed.
+    /// Carries out the action that was postponed because of unsaved decisions.
     pub(super) fn go_on(&mut self) {
         self.dialogs.goes_on_once_saved = false;
         match self.dialogs.postponed.take() {
@@ -235,7 +236,8 @@ impl GdcmApp {
         match purpose {
             DialogPurpose::Open => self.open(path, None),
             DialogPurpose::SaveStudy => {
-                // The dialog has asked only about the name as it was chosen.
+                // The dialog has asked only about the chosen name, without the extension added
+                // here.
                 let existing = if with_study_extension(path.clone()) == path {
                     Existing::Replace
                 } else {
@@ -278,8 +280,8 @@ impl GdcmApp {
         }
     }
 
-    /// Saves the study to a file. Asks before overwriting a file other than the study's own, unless
-    /// the engineer has already agreed.
+    /// Saves the study to a file. Asks before overwriting a file other than that of the study,
+    /// unless the engineer has already agreed.
     pub(super) fn save_as(&mut self, path: PathBuf, existing: Existing) {
         let path = with_study_extension(self.files.at_home(path));
         let is_own = self.files.saved.path.as_ref() == Some(&path);

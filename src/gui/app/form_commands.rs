@@ -1,4 +1,4 @@
-//! Carries out forms and messages.
+//! Carries out the commands of forms and messages.
 
 use gdcm_io::Existing;
 
@@ -43,7 +43,7 @@ impl GdcmApp {
             Some(FormKind::ExportAs) => self.propose_export_name(),
             _ => {}
         }
-        // A form that asks for a save path continues with the action that waits for it.
+        // A form that asks for a save path continues with the postponed action.
         if !(self.dialogs.goes_on_once_saved && form == Some(FormKind::Save)) {
             self.dialogs.postponed = None;
             self.dialogs.goes_on_once_saved = false;
@@ -53,7 +53,7 @@ impl GdcmApp {
         self.state.forms.shown = form;
     }
 
-    /// Carries out the command whose overwriting was confirmed.
+    /// Repeats the command after its overwriting was confirmed.
     fn overwrite(&mut self) {
         self.state.forms.existing.clear();
         if let Some(command) = self.dialogs.overwriting.take() {

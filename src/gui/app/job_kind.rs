@@ -1,4 +1,4 @@
-//! A kind of job: its trigger, the destination for its output, and its queue.
+//! A kind of job: its trigger, the destination of its output, and its queue.
 
 use gdcm_study::jobs::job::Job;
 
@@ -15,9 +15,9 @@ pub(super) struct JobKind<J: Job> {
     pub(super) wanted: fn(&mut GdcmApp) -> Vec<J>,
     /// Stores a job's output.
     pub(super) store: fn(&mut GdcmApp, J, J::Output),
-    /// Reports running work.
+    /// Adds the running work to the displayed progress.
     pub(super) report: fn(&JobQueue<J>, &mut Background),
-    /// Withdraws a request with its own trigger after a stop or a fault; that trigger, not
+    /// Withdraws a request that has its own trigger, after a stop or a fault; that trigger, not
     /// "Compute", starts it again.
     pub(super) withdraw: Option<fn(&mut GdcmApp)>,
 }
@@ -37,7 +37,7 @@ impl<J: Job> JobKind<J> {
         }
     }
 
-    /// Replaces the report about running work.
+    /// Replaces the function that reports running work.
     pub(super) fn with_report(mut self, report: fn(&JobQueue<J>, &mut Background)) -> Self {
         self.report = report;
         self

@@ -19,7 +19,7 @@ pub(super) trait Lane: Send + Sync {
 /// Lane class by job duration; decides which threads serve it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LaneClass {
-    /// The live answer.
+    /// The live analysis.
     Answer,
     /// Jobs that usually end within a second.
     Short,
@@ -30,11 +30,11 @@ pub(super) enum LaneClass {
 /// Pool threads by the lanes that they serve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Server {
-    /// Reserved for the live answer.
+    /// Reserved for the live analysis.
     Answer,
     /// Reserved for short jobs.
     Short,
-    /// Serves every lane but the live answer.
+    /// Serves every lane except the live analysis.
     Shared,
 }
 
@@ -93,8 +93,8 @@ pub(super) struct JobPool {
 }
 
 impl JobPool {
-    /// Starts a thread for the live answer, a thread for short jobs, and a thread per processor
-    /// core for all lanes but the live answer.
+    /// Starts a thread for the live analysis, a thread for short jobs, and a thread per processor
+    /// core for all other lanes.
     ///
     /// # Errors
     /// The operating system's reason, if a thread cannot be started.
@@ -172,7 +172,7 @@ mod tests {
 
     use super::*;
 
-    /// Far above the time that the slowest machine needs: only a hang reaches it.
+    /// Far longer than the slowest machine needs: only a hang reaches it.
     const LIMIT: Duration = Duration::from_secs(60);
 
     /// Lane whose jobs report their start and end when the test releases them.
@@ -295,7 +295,7 @@ mod tests {
         assert_eq!(pool.next_start(), "answer");
         curves.add_jobs(1);
         assert_eq!(pool.next_start(), "curves");
-        // The threads of the answer and of the short jobs, free again, leave the third long job.
+        // The reserved threads, free again, do not take the third long job.
         answer.end_job();
         curves.end_job();
         answer.add_jobs(1);
@@ -366,7 +366,7 @@ mod tests {
         } = pool;
         drop((pool, lane, sender));
         release.send(()).unwrap();
-        // The channel closes with the thread that holds the lane.
+        // The channel is closed when the thread drops the lane.
         assert_eq!(
             started.recv_timeout(LIMIT),
             Err(RecvTimeoutError::Disconnected)

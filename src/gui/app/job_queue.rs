@@ -1,5 +1,6 @@
-//! Queue for a kind of job: a lane in the job pool, whose jobs run in sequence. Equal jobs are
-//! identical: running, finished and stopped jobs are recognised by equality.
+//! Queue of a kind of job: a lane in the job pool, whose jobs run in sequence. Jobs that compare
+//! equal are treated as the same job; this is how running, finished and stopped jobs are
+//! recognised.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -14,7 +15,7 @@ use super::threads::{Fault, caught};
 /// A job's output, or the fault that ended it; a cancelled job has no ending.
 pub(super) type Ending<J> = Result<<J as Job>::Output, Fault>;
 
-/// How long an unwanted job may continue: during a drag, every output is worth showing.
+/// Time that an unwanted job may continue: during a drag, every output is worth showing.
 const CANCEL_GRACE: Duration = Duration::from_millis(60);
 
 /// Progress, and whether the job is still wanted.
@@ -113,7 +114,7 @@ impl<J: Job> Orders<J> {
     }
 }
 
-/// Orders, tools and delivery for a kind of job.
+/// Requests, tools and delivery of a kind of job.
 struct JobLane<J: Job> {
     orders: Mutex<Orders<J>>,
     /// Tools kept between jobs; `None` before the first job and during a job.
@@ -192,7 +193,7 @@ where
     }
 }
 
-/// Queue for a kind of job. Dropping it cancels the running job without waiting.
+/// Queue of a kind of job. Dropping it cancels the running job without waiting.
 pub(super) struct JobQueue<J: Job> {
     lane: Arc<JobLane<J>>,
     waker: Waker,
@@ -300,7 +301,7 @@ mod tests {
 
     use super::*;
 
-    /// Far above the time that the slowest machine needs: only a hang reaches it.
+    /// Far longer than the slowest machine needs: only a hang reaches it.
     const LIMIT: Duration = Duration::from_secs(60);
 
     #[derive(Clone, Copy, PartialEq, Eq)]
@@ -349,7 +350,7 @@ mod tests {
 
     impl Job for TestJob {
         type Tools = usize;
-        /// Number of jobs that the tools have served.
+        /// Number of jobs that these tools have run.
         type Output = usize;
 
         fn run(&self, tools: &mut usize, progress: &dyn Progress) -> Result<usize, Cancelled> {
@@ -429,7 +430,8 @@ mod tests {
         }
     }
 
-    /// Starts a pool with a single thread for long jobs: a fault that ended it would end the test.
+    /// Starts a pool with a single thread for long jobs, so that a fault that ends this thread
+    /// fails the test.
     fn pool() -> JobPool {
         JobPool::with_shared_threads(1).unwrap()
     }

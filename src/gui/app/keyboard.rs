@@ -54,7 +54,8 @@ fn active_shortcuts(ctx: &Context, state: &State) -> Vec<ActiveShortcut> {
         && !ctx.egui_wants_keyboard_input()
         && state.forms.shown.is_none()
         && !Popup::is_any_open(ctx);
-    // Escape has already removed the focus here: if a field had it, the key belonged to the field.
+    // Escape has already removed the focus here: if a field had the focus, Escape was meant for
+    // that field.
     let is_escape_taken = was_focused(ctx);
     let mut active = Vec::new();
     for entry in command_table(state) {
@@ -78,8 +79,8 @@ fn active_shortcuts(ctx: &Context, state: &State) -> Vec<ActiveShortcut> {
 ///
 /// If a frame takes long, "3", Tab and "4" arrive in the same frame, in which a single field has
 /// the focus. Events that move the focus therefore get their own frame, and text typed after them
-/// goes to a later frame. After Tab another frame passes: a widget that receives the focus
-/// backwards learns of it only in the next frame, and selects its text, to be replaced, at the end
+/// goes to a later frame. After Tab another frame passes: a widget that receives the focus by
+/// Shift+Tab is informed only in the next frame, and selects its text, to be replaced, at the end
 /// of that frame.
 #[derive(Default)]
 pub(super) struct KeyOrder {
@@ -100,7 +101,7 @@ enum Kind {
 }
 
 impl Kind {
-    /// Returns an event's kind; `None` for events that may come in any frame.
+    /// Returns the kind of an event; `None` for events that may come in any frame.
     fn from_event(event: &Event) -> Option<Self> {
         match event {
             Event::Key {
@@ -114,8 +115,8 @@ impl Kind {
         }
     }
 
-    /// Returns whether `next` may share the frame. Clicks may, since a double click is recognised
-    /// by its times.
+    /// Returns whether `next` may share the frame. Clicks may, because a double click is recognised
+    /// by the times of its events.
     fn goes_with(self, next: Self) -> bool {
         self == next && self != Self::Moving
     }
@@ -138,7 +139,7 @@ fn is_tab(event: &Event) -> bool {
     )
 }
 
-/// Returns how many events, from the first, belong to the same frame.
+/// Returns the number of leading events that belong to the same frame.
 fn count_of_frame(events: &[Event]) -> usize {
     let mut before: Option<Kind> = None;
     for (count, event) in events.iter().enumerate() {
@@ -201,7 +202,7 @@ mod tests {
         }
     }
 
-    /// Returns the event count of each frame.
+    /// Returns the number of events in each frame.
     fn frames(mut events: Vec<Event>) -> Vec<usize> {
         let mut counts = Vec::new();
         while !events.is_empty() {

@@ -38,19 +38,19 @@ const NO_WINDOW: u8 = 1;
 /// Exit status for a wrong file.
 const WRONG_FILE: u8 = 2;
 
-/// Window setup; tests use other values than the program.
+/// Window setup; tests use other values than the program does.
 #[derive(Clone)]
 pub struct Setup {
     pub engine: EngineMaker,
     /// Directory for recovery files and the recent-files list; `None` keeps neither.
     pub directory: Option<PathBuf>,
-    /// Expansion for `~` in typed paths; without it, `~` stays.
+    /// Directory that replaces `~` in typed paths; `None` leaves `~` as it is.
     pub home: Option<PathBuf>,
     /// Whether the first start offers the guided tour.
     pub offers_tour: bool,
     /// Maximum delay between a change and its copy in the recovery file.
     pub keep_after: Duration,
-    /// Interval between checks on the dataset's file.
+    /// Interval between checks of the dataset's file.
     pub look_every: Duration,
     pub preferences: Preferences,
     /// Problem found before the window was opened; shown first.
@@ -130,7 +130,7 @@ fn fail(message: &str) -> ExitCode {
     ExitCode::from(NO_WINDOW)
 }
 
-/// Path from the command line, by its use.
+/// Path from the command line, as a dataset or as models to import.
 struct Request {
     /// A dataset or a study; `None` opens the example.
     dataset: Option<PathBuf>,
@@ -176,8 +176,8 @@ fn start_reading(dataset: Option<PathBuf>) -> Result<JoinHandle<Loaded>, String>
     reading.map_err(|error| error.to_string())
 }
 
-/// Returns the reason why the window ended, unless it was closed. `kept` is the autosave, once a
-/// frame is drawn; `command` is the headless alternative.
+/// Returns the reason why the window ended, unless it was closed. `kept` is the autosave, available
+/// once a frame is drawn; `command` is the headless alternative.
 fn ending(
     run: Result<eframe::Result, Fault>,
     kept: Option<&Autosave>,
@@ -196,7 +196,7 @@ fn ending(
     }
 }
 
-/// The requested study, or else the example.
+/// Result of reading the requested file, or else the example.
 struct Loaded {
     /// The study to open, or the fault in the example.
     opened: Result<Opened, String>,
@@ -234,7 +234,8 @@ fn short_message(error: &FileError) -> String {
     shortened_message(&sanitized(&error.to_string()))
 }
 
-/// Loads a file; reports its fault on the terminal too: without a window that is the only report.
+/// Loads a file and reports its fault on the terminal too, where it is the only report if no window
+/// opens.
 fn load_and_report(path: Option<PathBuf>) -> Loaded {
     let loaded = load(path);
     if let Some(trouble) = &loaded.trouble {
@@ -254,8 +255,8 @@ fn run(
         .with_app_id(APP_ID)
         .with_inner_size([1440.0, 900.0])
         .with_min_inner_size([900.0, 560.0]);
-    // There are no gradients to smooth, and without a graphics processor dithering would cost time
-    // for every pixel.
+    // There are no colour gradients to smooth, and without a graphics processor dithering would
+    // cost time for every pixel.
     let options = NativeOptions {
         viewport,
         dithering: false,
@@ -347,7 +348,8 @@ fn repair_zoom(preferences: &Path) -> Option<String> {
     })
 }
 
-/// Returns why no window can be opened, if known beforehand: on Linux, neither Wayland nor X11.
+/// Returns why no window can be opened, if this can be seen beforehand: on Linux, neither Wayland
+/// nor X11 is available.
 fn missing_display() -> Option<String> {
     if !cfg!(target_os = "linux") {
         return None;

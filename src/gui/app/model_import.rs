@@ -1,4 +1,4 @@
-//! Importing models from files: reads them in a thread and applies the commands from the assembling
+//! Importing models from files: reads them in a thread and carries out the commands of the import
 //! view.
 
 use std::cell::Cell;
@@ -25,7 +25,7 @@ use crate::gui::state::forms::FormKind;
 /// Bytes read between two progress reports.
 const REPORT_EVERY: u64 = 16 << 20;
 
-/// Files to read: additional files, or all files again with other headings.
+/// Files to read: additional files, or all files again with other column headings.
 #[derive(Clone, Debug)]
 enum Sources {
     More(Vec<PathBuf>),
@@ -91,7 +91,7 @@ impl FolderProgress for ReadingReport {
 }
 
 impl GdcmApp {
-    /// Carries out a command from the assembling view.
+    /// Carries out a command of the import view.
     pub(super) fn assemble(&mut self, command: AssemblingCommand) {
         let bench = self
             .state
@@ -132,7 +132,7 @@ impl GdcmApp {
         }
     }
 
-    /// Reads models in a thread; tables are read with the headings given for them.
+    /// Reads models in a thread; tables are read with the column headings declared in the rules.
     fn read_models(&mut self, sources: Sources) {
         let headings = match self.import_rules() {
             Some(rules) => rules.headings,

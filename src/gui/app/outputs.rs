@@ -24,7 +24,7 @@ use crate::gui::views::figure_button::tables_in_place;
 use crate::gui::views::figures::{figure_name, figure_of};
 
 impl GdcmApp {
-    /// Writes the corrections for the conditions selected in the form.
+    /// Writes the corrections of the conditions selected in the form.
     pub(super) fn export(&mut self) {
         let Some(analysis) = self.complete_results() else {
             return;
@@ -96,7 +96,7 @@ impl GdcmApp {
         );
     }
 
-    /// Returns the current study's proven analysis, with the error bars computed so far;
+    /// Returns the proven analysis of the current study, with the error bars computed so far;
     /// reports an error if it is incomplete.
     fn complete_results(&mut self) -> Option<Arc<Analysis>> {
         let analysis = self.unless_error(self.analysis_to_write("export"))?;
@@ -106,10 +106,10 @@ impl GdcmApp {
         }
     }
 
-    /// Returns a suffix explaining missing error bars; empty if they are present.
+    /// Returns a suffix that explains missing error bars; empty if they are present.
     fn absent_bars(&self, are_present: bool) -> &'static str {
         let background = &self.state.results.background;
-        // Other work may have been stopped while the error bars continue.
+        // Other work may have been stopped while the error bars are still computed.
         let were_stopped = background.stopped && background.bars.is_none();
         if are_present {
             ""
@@ -120,8 +120,8 @@ impl GdcmApp {
         }
     }
 
-    /// Returns the `absent_bars` suffix for a view; figures show error bars as soon as they are
-    /// computed.
+    /// Returns the suffix of [`Self::absent_bars`] for a view, whose figure shows error bars once
+    /// they are computed.
     fn absent_bars_of(&self, view: View) -> &'static str {
         let shows_bars = view.figure().is_some_and(FigureKind::takes_bars)
             && !self.state.display.gains.hide_bars;
@@ -129,7 +129,7 @@ impl GdcmApp {
     }
 
     /// Returns the complete analysis for the current decisions, or a sentence that explains why
-    /// there is none. `action` is to be repeated later.
+    /// there is none and asks the engineer to repeat `action` later.
     pub(super) fn analysis_to_write(&self, action: &str) -> Result<Arc<Analysis>, String> {
         let results = &self.state.results;
         if results.stopped {
@@ -151,7 +151,7 @@ impl GdcmApp {
         }
     }
 
-    /// Copies a view's numbers to the clipboard.
+    /// Copies the values shown by a view to the clipboard.
     pub(super) fn copy_figure(&mut self, view: View) {
         let tables = match tables_in_place(&self.state, view) {
             Some(tables) => tables,
@@ -168,9 +168,9 @@ impl GdcmApp {
         ));
     }
 
-    /// Asks where to save a view; proposes the last figure's folder.
+    /// Asks where to save a view; proposes the folder of the last figure.
     pub(super) fn ask_save_figure(&mut self, view: View, format: FigureFormat) {
-        // Tables are saved as numbers, whatever the figure format.
+        // Tables are saved as CSV, whatever the figure format.
         let format = if tables_in_place(&self.state, view).is_some() {
             FigureFormat::Csv
         } else {
@@ -216,7 +216,7 @@ impl GdcmApp {
         self.written(written.map(|()| message), FormKind::SaveFigure, again);
     }
 
-    /// Returns a view's figure; reports an error if there is none yet.
+    /// Returns the figure of a view; reports an error if there is none yet.
     fn figure_of(&mut self, view: View) -> Option<Figure> {
         let figure = figure_of(&self.state, view);
         if figure.is_none() {
@@ -258,7 +258,8 @@ impl GdcmApp {
         OutputSet::new(self.dialogs.existing, self.files.inputs())
     }
 
-    /// Writes the files added by `add`, all or none, once `paths` are confirmed to be free.
+    /// Writes all files added by `add`, or none, after checking that none of `paths` would be
+    /// overwritten without consent.
     pub(super) fn write_all(
         &self,
         paths: &[&Path],
@@ -270,8 +271,8 @@ impl GdcmApp {
         outputs.persist()
     }
 
-    /// Reports the written files, asks whether `again` may overwrite files, or reports why nothing
-    /// was written.
+    /// Reports the written files, asks whether the command `again` may overwrite files, or reports
+    /// why nothing was written.
     pub(super) fn written(
         &mut self,
         written: Result<String, FileError>,
@@ -288,7 +289,8 @@ impl GdcmApp {
         }
     }
 
-    /// Reports a single saved file, asks whether `again` may overwrite it, or reports the fault.
+    /// Reports a single saved file, asks whether the command `again` may overwrite it, or reports
+    /// the fault.
     pub(super) fn saved_to(
         &mut self,
         saved: Result<(), FileError>,

@@ -1,11 +1,11 @@
-//! Threads that read files; a newer reading may replace an older reading.
+//! Threads that read files; a newer reading may replace an older one.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use gdcm_io::FolderProgress;
 
-/// The newest reading thread for a purpose, or several in parallel.
+/// The newest reading for a purpose, possibly by several threads in parallel.
 #[derive(Default)]
 pub(super) struct Reader {
     newest: u64,
@@ -14,21 +14,22 @@ pub(super) struct Reader {
 
 /// A reading under way.
 pub(super) struct Reading {
-    /// Reading number; the answer counts while this is the newest.
+    /// Number of the reading; its result is used only while no newer reading has begun.
     pub(super) number: u64,
     /// Set once the reading should stop.
     pub(super) stop: Arc<AtomicBool>,
 }
 
 impl Reader {
-    /// Starts a reading that replaces the current reading.
+    /// Starts a reading that replaces the current one.
     pub(super) fn begin(&mut self) -> Reading {
         self.give_up();
         self.stop = Arc::default();
         self.current()
     }
 
-    /// Starts a reading beside the current reading; both have the same number and stop together.
+    /// Starts a reading in addition to the current one; both have the same number and stop
+    /// together.
     pub(super) fn join(&mut self) -> Reading {
         if self.is_stopped() {
             return self.begin();
@@ -43,12 +44,12 @@ impl Reader {
         }
     }
 
-    /// Returns whether a reading's answer still counts.
+    /// Returns whether the result of the reading `number` is still used.
     pub(super) fn is_newest(&self, number: u64) -> bool {
         self.newest == number
     }
 
-    /// Stops the reading; the content read so far counts.
+    /// Stops the reading; the content read so far is used.
     pub(super) fn stop(&self) {
         self.stop.store(true, Ordering::Release);
     }
@@ -58,7 +59,7 @@ impl Reader {
         self.stop.load(Ordering::Acquire)
     }
 
-    /// Stops the reading and discards its answer, however long a drive blocks the thread.
+    /// Stops the reading and discards its result, however long a drive blocks the thread.
     pub(super) fn give_up(&mut self) {
         self.stop();
         self.newest += 1;
@@ -71,7 +72,7 @@ impl Drop for Reader {
     }
 }
 
-/// Progress for a reading that can be stopped but reports nothing.
+/// Progress of a reading that can be stopped but reports nothing.
 pub(super) struct SilentProgress(pub(super) Arc<AtomicBool>);
 
 impl FolderProgress for SilentProgress {

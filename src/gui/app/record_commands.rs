@@ -1,4 +1,4 @@
-//! Carries out the commands from the Records view. Edits are undoable.
+//! Carries out the commands of the Records view. Edits can be undone.
 
 use std::sync::Arc;
 
@@ -63,7 +63,7 @@ impl GdcmApp {
         }
     }
 
-    /// Applies an edit to a condition's records as an undoable step.
+    /// Applies an edit to the records of a condition as an undoable step.
     fn edit_records(&mut self, condition: ConditionId, command: RecordsCommand) {
         let channels = self.record_channels(condition);
         let before = self.state.records.before([condition]);
@@ -110,7 +110,7 @@ impl GdcmApp {
         self.edit_layouts(label, |id, row| change.layout_for(id, row));
     }
 
-    /// Assumes the dataset channel's unit wherever a file states none.
+    /// Assumes the unit of the dataset's channel wherever a file states none.
     fn take_dataset_units(&mut self) {
         let label = "units of the dataset's channels".to_owned();
         self.edit_layouts(label, |_, row| Some(row.layout.in_units_of_channels()));
@@ -156,7 +156,8 @@ impl GdcmApp {
         self.dispatch(SelectionCommand::SelectCondition(id));
     }
 
-    /// Resamples a condition's topics to the clock that its band requires, if that has changed.
+    /// Resamples the topics of a condition to the clock that its band requires, if that clock has
+    /// changed.
     pub(super) fn follow_band(&mut self, condition: ConditionId) {
         let [_, end] = self.identified_band(condition);
         let Some(records) = self.state.records.conditions.get(&condition) else {
@@ -171,8 +172,8 @@ impl GdcmApp {
         }
     }
 
-    /// Returns the channels expected in a condition's records: the dataset's, located as
-    /// specified when the dataset was made from records. Topics are resampled for the
+    /// Returns the channels expected in the records of a condition: those of the dataset, located
+    /// as specified when the dataset was made from records. Topics are resampled for the
     /// identification band.
     pub(super) fn record_channels(&self, condition: ConditionId) -> RecordChannels {
         let mut channels = RecordChannels::of_dataset(&self.state.study.dataset);
@@ -193,7 +194,7 @@ impl GdcmApp {
     }
 }
 
-/// A record's new layout, to be followed by similar records.
+/// New layout of a record, which similar records are to follow.
 struct LayoutChange {
     /// Condition with the edited record.
     condition: ConditionId,
@@ -207,8 +208,8 @@ struct LayoutChange {
 }
 
 impl LayoutChange {
-    /// Returns a record's new layout. Records named in the dataset follow its layout, so a
-    /// change spreads only among the named records in a condition, or only among unnamed records.
+    /// Returns the new layout of a record. Records named in the dataset follow its layout, so a
+    /// change spreads only among the named records of a condition, or only among unnamed records.
     fn layout_for(&self, id: ConditionId, row: &LaidOutRecord) -> Option<RecordLayout> {
         if Arc::ptr_eq(&row.table, &self.table) && row.layout == self.former {
             return Some(self.layout.clone());
@@ -223,8 +224,8 @@ impl LayoutChange {
     }
 }
 
-/// Changes row layouts; returns whether a row has changed. Rows that become readable may be
-/// copies of others, which are then left out.
+/// Changes the layouts of `rows`; returns whether a layout has changed. Records that become
+/// readable may be copies of others, which are then left out.
 fn change_layouts(
     rows: &mut [LaidOutRecord],
     channels: &RecordChannels,
@@ -250,7 +251,7 @@ fn change_layouts(
     is_changed
 }
 
-/// Returns an edit's undo label.
+/// Returns the undo label of an edit.
 fn edit_label(records: &ConditionRecords, command: &RecordsCommand) -> String {
     match command {
         RecordsCommand::SetKind(index, kind) => {

@@ -15,7 +15,7 @@ use crate::gui::commands::records::RecordsCommand;
 use crate::gui::state::forms::FormKind;
 use crate::gui::state::wanted_dataset::WantedDataset;
 
-/// Maximum count of reported problems.
+/// Maximum number of reported problems.
 const MOST_PROBLEMS: usize = 6;
 
 /// Sources and settings for a dataset to be made from records.
@@ -34,7 +34,7 @@ struct MadeDataset {
 }
 
 impl GdcmApp {
-    /// Returns how the displayed dataset was made from records, if it was.
+    /// Returns how the displayed dataset was made from records; `None` if it was not.
     pub(super) fn made_of_records(&self) -> Option<&DatasetOfRecords> {
         self.files
             .made_of_records
@@ -42,7 +42,7 @@ impl GdcmApp {
             .filter(|made| self.files.loaded.path() == Some(&made.path))
     }
 
-    /// Asks for a new dataset's channels, with a proposal based on the displayed record.
+    /// Asks for the channels of a new dataset, with a proposal based on the displayed record.
     pub(super) fn ask_record_dataset(&mut self) {
         let condition = self.state.condition().id();
         let Some(records) = self.state.records.conditions.get(&condition) else {
@@ -57,7 +57,7 @@ impl GdcmApp {
         self.state.forms.shown = Some(FormKind::RecordDataset);
     }
 
-    /// Makes a dataset with the requested channels from the added files, in a thread; writes and
+    /// Makes a dataset with the requested channels from the added files in a thread, writes it and
     /// opens it.
     pub(super) fn make_record_dataset(&mut self) {
         let records = &mut self.state.records;
@@ -112,11 +112,11 @@ impl GdcmApp {
 }
 
 impl DatasetRequest {
-    /// Builds a dataset from the records that contain the requested channels; fills in the units
-    /// for the channels.
+    /// Builds a dataset from the records that contain the requested channels; completes the units
+    /// of the channels.
     ///
     /// # Errors
-    /// Problems in the records, if no record is suitable, or the dataset's fault.
+    /// The problems in the records, if no record is suitable, or the fault in the dataset.
     fn make(self, progress: &SilentProgress) -> Result<MadeDataset, Vec<String>> {
         let Self {
             sources,

@@ -13,7 +13,7 @@ use super::GdcmApp;
 use crate::gui::state::records_page::RecordsPage;
 
 impl GdcmApp {
-    /// Returns a condition's identification band \[rad/s\]: its own, or the study's.
+    /// Returns the identification band of a condition \[rad/s\]: its own, or that of the study.
     pub(super) fn identified_band(&self, condition: ConditionId) -> [f64; 2] {
         let records = self.state.records.conditions.get(&condition);
         if let Some(own) = records.and_then(|records| records.band) {
@@ -63,7 +63,7 @@ impl GdcmApp {
         }
     }
 
-    /// Stores an identification's outcome, unless it was stopped in the meantime.
+    /// Stores the outcome of an identification, unless it was stopped in the meantime.
     pub(super) fn identified(
         &mut self,
         job: IdentifyJob,
@@ -86,7 +86,7 @@ impl GdcmApp {
         }
     }
 
-    /// Takes these conditions' identified models into the study.
+    /// Takes the identified models of these conditions into the study.
     pub(super) fn take_identified(&mut self, conditions: &[ConditionId], offered: OfferedModels) {
         let adopted = self.adopted_models(conditions, offered);
         if adopted.is_empty() {

@@ -52,7 +52,6 @@ impl GdcmApp {
         });
     }
 
-    /// Returns whether a visible view needs flight records.
     fn shows_records(&self) -> bool {
         let display = &self.state.display;
         let arrangement = &display.layout.arrangement;
@@ -61,7 +60,7 @@ impl GdcmApp {
             || arrangement.is_shown(View::Requirements) && is_compared
     }
 
-    /// Returns the source for records that belong to conditions.
+    /// Returns the source of the records that belong to conditions.
     fn own_records(&self) -> OwnRecords {
         OwnRecords {
             dataset: Arc::clone(&self.state.study.dataset),
@@ -92,7 +91,7 @@ impl GdcmApp {
         });
     }
 
-    /// Reads records in a thread; `sources` are the files added earlier.
+    /// Reads records in a thread; `sources` are the files and folders added earlier.
     fn read_records_in_thread(
         &mut self,
         name: String,
@@ -121,12 +120,12 @@ impl GdcmApp {
             if let Some(found) = found.and_then(|found| app.unless_error(found)) {
                 app.take_records(found, start);
             }
-            // An entry, even an empty one, prevents a repeated search.
+            // An entry, even without records, prevents a repeated search.
             app.records_of(app.state.condition().id());
         });
     }
 
-    /// Returns a condition's records, initially empty.
+    /// Returns the records of a condition, initially none.
     pub(super) fn records_of(&mut self, id: ConditionId) -> &mut ConditionRecords {
         self.state
             .records

@@ -28,7 +28,7 @@ pub(super) struct ReadRecords {
     pub(super) read_from: BTreeMap<String, PathBuf>,
 }
 
-/// Source for records that belong to conditions.
+/// Source of the records that belong to conditions.
 #[derive(Clone)]
 pub(super) struct OwnRecords {
     pub(super) dataset: Arc<Dataset>,
@@ -42,7 +42,7 @@ struct NamedRecord<'a> {
 }
 
 impl OwnRecords {
-    /// Returns whether a condition may have its own records.
+    /// Returns whether a condition may have records of its own.
     pub(super) fn has_some(&self, id: ConditionId) -> bool {
         match &self.origin {
             DatasetOrigin::EmbeddedExample => true,
@@ -189,7 +189,7 @@ impl AddedFiles {
     }
 }
 
-/// Lays out a record, following the dataset's entry for it if there is such a state.
+/// Lays out a record as the dataset describes it, or with a proposed layout without a dataset.
 fn laid_out(
     table: RecordTable,
     channels: &RecordChannels,
@@ -211,7 +211,8 @@ fn canonical_path(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_| path.to_owned())
 }
 
-/// Finds a record's file among the added paths: a path itself, or a file inside an added folder.
+/// Finds the file of a record among the added paths: a path itself, or a file inside an added
+/// folder.
 fn find_file(name: &str, paths: &[PathBuf]) -> Option<PathBuf> {
     for path in paths {
         let own_name = path.file_name().map(|name| name.to_string_lossy());

@@ -21,10 +21,10 @@ use crate::gui::state::notices::Bar;
 /// Maximum time that a closing window waits for the disk to store the latest decisions.
 pub(super) const LAST_WAIT: Duration = Duration::from_secs(2);
 
-/// Protects unsaved decisions.
+/// Protection of unsaved decisions.
 pub(super) struct Recovery {
     pub(super) autosave: Autosave,
-    /// Set once the window has drawn a frame; gives the caller that opened the window access to the
+    /// Set once the window has drawn a frame; gives the code that opened the window access to the
     /// autosave.
     pub(super) drawn: Arc<OnceLock<Autosave>>,
     /// Lost studies by offer number, until restored or discarded.
@@ -54,7 +54,7 @@ impl GdcmApp {
         }
     }
 
-    /// Keeps unsaved decisions, or clears the kept ones once saved.
+    /// Keeps unsaved decisions; clears the recovery file once they are saved.
     pub(super) fn keep_unsaved(&self) {
         if self.state.unsaved {
             let study = self.state.study.clone();
@@ -139,7 +139,7 @@ fn when(at: SystemTime, zone: &TimeZone) -> String {
         .to_string()
 }
 
-/// Returns the message for standard error if the window itself fails.
+/// Returns the message for standard error after a fault that ended the window.
 pub(super) fn end_words(fault: &str, remains: &Remains) -> String {
     let fault = format!("stopped by a fault in its window: {fault}");
     match remains {

@@ -12,12 +12,11 @@ use super::document_files::ReadFor;
 use crate::gui::state::notices::Bar;
 
 impl GdcmApp {
-    /// Watches the open dataset's file.
     pub(super) fn watch_disk(&mut self) {
         self.files.disk.watch(self.files.loaded.path());
     }
 
-    /// Reports whether the dataset's file has changed.
+    /// Offers to reload the dataset if the content of its file has changed.
     pub(super) fn file_seen(&mut self, seen: &Seen) {
         if self.files.loaded.path() != Some(&seen.path) {
             return;
@@ -74,8 +73,8 @@ impl GdcmApp {
         }
     }
 
-    /// Selects the file behind the study's dataset, after a reload, or an undo or redo across a
-    /// reload.
+    /// Selects the file that belongs to the study's dataset, after a reload, or after an undo or
+    /// redo across a reload.
     pub(super) fn follow_dataset(&mut self) {
         let dataset = self.state.study.file_dataset();
         let earlier = self

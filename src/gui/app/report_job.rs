@@ -47,7 +47,7 @@ impl GdcmApp {
         }
         self.state.forms.shown = None;
         self.work.reporting = Some(ReportJob {
-            // The live answer does not depend on the requirements and may have older ones.
+            // The live analysis does not depend on the requirements and may contain older ones.
             analysis: Arc::new(analysis.asked_with(&self.state.study.requirements)),
             records: self.state.records.history_records(),
             known: self.state.records.known_poles(),
@@ -67,7 +67,7 @@ impl GdcmApp {
         }
     }
 
-    /// Asks whether the report may overwrite a file, or reports the fault.
+    /// Asks whether the report may overwrite an existing file, or reports the fault.
     fn report_failed(&mut self, error: FileError, path: PathBuf) {
         let again = Command::Output(OutputCommand::WriteReport(path));
         self.written(Err(error), FormKind::Report, again);
@@ -91,7 +91,7 @@ pub struct ReportJob {
     pub known: KnownPoles,
     pub source: ReportSource,
     pub path: PathBuf,
-    /// Treatment for an existing file.
+    /// Treatment of an existing file.
     pub existing: Existing,
     /// Input files, which are never replaced.
     pub inputs: Vec<PathBuf>,
@@ -109,7 +109,7 @@ impl PartialEq for ReportJob {
 }
 
 impl Job for ReportJob {
-    /// The engine that caches the responses to draw.
+    /// Engine that caches the responses to draw.
     type Tools = Engine;
     type Output = Result<(), FileError>;
 

@@ -36,8 +36,8 @@ impl GdcmApp {
         }
     }
 
-    /// Restores another state of the study, and of the records beside it, from the history, if
-    /// there is such a state.
+    /// Restores another state of the study and of the records from the history, if there is such a
+    /// state.
     fn take_study(
         &mut self,
         find: impl FnOnce(&mut History<RecordsBefore>, &Study, &mut RecordsState) -> Option<Study>,
@@ -54,7 +54,7 @@ impl GdcmApp {
         }
     }
 
-    /// Updates whether the study is saved.
+    /// Updates the mark for unsaved decisions.
     pub(super) fn study_changed(&mut self) {
         self.state.notice = None;
         self.state

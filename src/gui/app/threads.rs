@@ -31,7 +31,7 @@ impl<T> Mailbox<T> {
         changed
     }
 
-    /// Waits until `take` returns a value.
+    /// Waits until `take` returns a value for the content.
     pub(super) fn wait<R>(&self, mut take: impl FnMut(&mut T) -> Option<R>) -> R {
         let mut content = self.lock();
         loop {
@@ -76,8 +76,8 @@ impl ReplySender {
 }
 
 impl GdcmApp {
-    /// Runs `work` in a thread called `name`, and lets the window take the result: `None` after a
-    /// fault, or if no thread could be started. Both are reported first.
+    /// Runs `work` in a thread called `name` and passes its result to `take`: `None` after a fault,
+    /// or if no thread could be started. Both are reported first.
     pub(super) fn in_thread<T: Send + 'static, Work, Take>(
         &self,
         name: &'static str,
@@ -151,10 +151,10 @@ impl Fault {
     }
 }
 
-/// Recorded faults not reported yet. Only the hook knows a panic's location, and another thread may
-/// catch the panic.
+/// Recorded faults that are not reported yet. Only the panic hook knows the location of a panic,
+/// and another thread may catch the panic.
 static NOTED: Mutex<Vec<Fault>> = Mutex::new(Vec::new());
-/// Maximum count of recorded faults; uncaught panics are rare.
+/// Maximum number of recorded faults; uncaught panics are rare.
 const MOST_NOTED: usize = 50;
 
 /// Records a panic's message and location; called by the process's panic hook.

@@ -20,13 +20,13 @@ struct Pointed {
 }
 
 impl GdcmApp {
-    /// Carries out a command, like a click or a key.
+    /// Carries out a command as a click or a key would.
     pub fn dispatch(&mut self, command: impl Into<Command>) {
         self.carry_out_one(command.into());
         self.ctx.request_repaint();
     }
 
-    /// Carries out the commands from a frame.
+    /// Carries out the commands of a frame.
     pub(super) fn carry_out(&mut self, commands: Vec<Command>) {
         let before = self.take_pointed();
         for command in commands {
@@ -37,7 +37,7 @@ impl GdcmApp {
         }
     }
 
-    /// Clears the elements under the pointer, which commands set anew in every frame; returns the
+    /// Clears the elements under the pointer, which commands set again in every frame; returns the
     /// former ones.
     fn take_pointed(&mut self) -> Pointed {
         let display = &mut self.state.display;
@@ -58,7 +58,7 @@ impl GdcmApp {
             && self.state.display.curves.cursor == before.cursor
     }
 
-    /// Carries out a command, without a new frame.
+    /// Carries out a command without drawing a frame.
     pub(super) fn carry_out_one(&mut self, command: Command) {
         match command {
             Command::Study(command) => self.carry_out_study(command),

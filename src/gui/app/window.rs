@@ -57,7 +57,7 @@ pub struct GdcmApp {
     pub(super) recovery: Recovery,
     /// Focus target in the next frame.
     pub(super) next_focus: Option<NextFocus>,
-    /// Last window title set.
+    /// Window title that was set last.
     title: String,
 }
 
@@ -68,8 +68,8 @@ impl GdcmApp {
         Self::with(ctx, opened, Setup::default())
     }
 
-    /// Creates the window on a dataset or a study; starts the compute threads and the threads that
-    /// watch the disk.
+    /// Creates the window on a dataset or a study; starts the compute threads and the thread that
+    /// watches the disk.
     pub fn with(ctx: &Context, opened: Opened, setup: Setup) -> std::io::Result<Self> {
         palette::apply(ctx);
         ctx.add_plugin(KeyOrder::default());
@@ -220,7 +220,7 @@ impl GdcmApp {
     }
 }
 
-/// Window width \[pt\] from which names and the full left panel fit.
+/// Minimum window width \[pt\] for full names and the full left panel.
 const WIDE: f32 = 1400.0;
 
 /// Draws conditions and models, in full or as a rail.
@@ -276,7 +276,7 @@ fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
     });
 }
 
-/// Draws the answer.
+/// Draws the right panel: verdict, result, matrix, and export.
 fn right_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     // A dragged width applies to windows in the same width class, hence two names.
     let (name, width) = if state.display.layout.is_wide {
@@ -296,8 +296,8 @@ fn right_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Ve
     });
 }
 
-/// Draws content that fills the available space without growing it, so that a panel keeps its
-/// dragged width.
+/// Draws content within the available space without growing it, so that a panel keeps its dragged
+/// width.
 fn steady_ui(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
     let room = ui.available_rect_before_wrap();
     let mut content = ui.new_child(UiBuilder::new().max_rect(room).layout(*ui.layout()));
@@ -393,7 +393,7 @@ impl eframe::App for GdcmApp {
             ctx.request_repaint();
         }
         if self.state.results.is_waiting() || self.state.results.background_since.is_some() {
-            // The markers for stale results and for work under way appear by the clock, not by an
+            // The marks of stale results and of work in progress appear after a delay, not after an
             // event.
             ctx.request_repaint_after(std::time::Duration::from_millis(160));
         }

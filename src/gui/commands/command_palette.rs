@@ -16,7 +16,7 @@ use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 
 /// Height of the list \[pt\].
 const HEIGHT: f32 = 340.0;
-/// Most rows drawn; further letters narrow a longer list.
+/// Maximum number of drawn rows; further letters narrow a longer list.
 const MOST_ROWS: usize = 60;
 
 /// Draws the field and the matching commands. Up and Down select, Enter carries out.
@@ -127,21 +127,21 @@ fn entry_ui(ui: &mut Ui, entry: &Entry, chosen: bool, palette: &Palette) -> egui
     response.on_hover_text(entry.meaning)
 }
 
-/// How well a name answers a query; a greater score is better.
+/// How well a name matches a query; a better match compares greater.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct AnswerScore {
-    /// Whether the name is no undo or redo, or the query asks for these: they are named after the
-    /// last decision, whose words they would otherwise answer.
+    /// Whether the name is not "undo" or "redo", or the query asks for these. Their names contain
+    /// the last decision, whose words would match otherwise.
     is_asked: bool,
     /// Sum of the word scores.
     words: usize,
-    /// The same sum for the command without its arguments.
+    /// Sum of the word scores of the command without its arguments.
     words_of_command: usize,
-    /// Letter count; the shorter name is better.
+    /// Number of letters; the shorter name is better.
     length: Reverse<usize>,
 }
 
-/// Scores how well a name answers a query; `None` if a word of the query is missing from it.
+/// Scores how well a name matches a query; `None` if a word of the query is missing from the name.
 ///
 /// Every word of the query must occur in the name, in any order: as a whole word (4), at the
 /// beginning of a word (3), inside a word (2), or at least as letters in the same order (1).
@@ -163,7 +163,7 @@ pub fn answer_score(name: &str, query: &str) -> Option<AnswerScore> {
     })
 }
 
-/// Returns whether a name is no undo or redo, or the query asks for it.
+/// Returns whether a name is not "undo" or "redo", or the query asks for these.
 fn is_asked(name: &str, query: &str) -> bool {
     match words_of(name).next() {
         Some(first @ ("undo" | "redo")) => {
@@ -188,8 +188,8 @@ fn word_score(name: &str, word: &str) -> Option<usize> {
     }
 }
 
-/// Returns the indices of the names that answer the query, best first; all names in their own
-/// order for an empty query.
+/// Returns the indices of the names that match the query, best first; for an empty query, all
+/// indices in order.
 pub fn answers<'a>(names: impl Iterator<Item = &'a str>, query: &str) -> Vec<usize> {
     let mut found: Vec<(AnswerScore, usize)> = names
         .enumerate()

@@ -19,7 +19,7 @@ pub fn curve_entries(state: &State) -> Vec<Entry> {
     entries
 }
 
-/// Returns an entry for each option with two choices, which switches to the other.
+/// Returns an entry for each option with two values, which switches to the other value.
 fn unit_entries(state: &State) -> Vec<Entry> {
     let curves = &state.display.curves;
     let entries = [
@@ -136,7 +136,8 @@ fn look_entries(looks: PlotStyle) -> Vec<Entry> {
     entries
 }
 
-/// Returns the entries for isolated and hidden curves, and for marked frequencies.
+/// Returns the entries that end the isolation, show hidden curves, and set or remove frequency
+/// marks.
 fn visibility_entries(state: &State) -> Vec<Entry> {
     let display = &state.display;
     let is_isolated = display.selection.isolated.is_some() || !display.curves.selected.is_empty();
@@ -151,8 +152,8 @@ fn visibility_entries(state: &State) -> Vec<Entry> {
         SelectionCommand::EndIsolation,
     );
     vec![
-        // Fields and menus lose an entry's key whether or not the entry is enabled, so it has
-        // the key only if there is something to end.
+        // Fields and menus lose the key of an entry whether or not the entry is enabled, so the
+        // entry has the key only if there is something to end.
         if is_isolated {
             isolation.free_key(Key::Escape)
         } else {

@@ -11,10 +11,10 @@ use crate::gui::state::pair_set::PairSet;
 use crate::gui::state::requirements_page::RequirementsPage;
 use crate::gui::widgets::palette::PlotStyle;
 
-/// Changes what a view shows; no result depends on it.
+/// Changes the content of a view; no result depends on it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DisplayCommand {
-    /// Selects the correction whose costs are mapped.
+    /// Selects the correction whose costs the map shows.
     MapCost(MappedCost),
     /// Selects the responses in the net-gain plots.
     ShowNetGains(PairSet),
@@ -26,11 +26,11 @@ pub enum DisplayCommand {
     ShowZeros(bool),
     /// Shows or hides error bars and bands in gain plots.
     ShowBars(bool),
-    /// Overlays a variant on the present decisions in Bode and Net gain, or removes the overlay.
+    /// Overlays a variant on the current decisions in Bode and Net gain, or removes the overlay.
     Overlay(Option<String>),
     /// Shows or hides the evidence for the schedule beside the net gains.
     ShowEvidence(bool),
-    /// Selects the models that are overlaid across conditions.
+    /// Selects the model that is drawn for every condition.
     ShowAcross(AcrossRole),
     /// Changes the assessed quantity or its form.
     Assess(AssessedFigures),

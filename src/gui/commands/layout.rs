@@ -1,4 +1,4 @@
-//! Commands about the places for views, panels and sheets.
+//! Commands about the arrangement of views, panels and sheets.
 
 use egui::ThemePreference;
 
@@ -9,7 +9,7 @@ use crate::gui::state::view::{View, ViewGroup};
 /// Shows, hides or moves a part, or moves the focus.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LayoutCommand {
-    /// Brings a plot to the front.
+    /// Brings a view to the front.
     ShowView(View),
     /// Brings a group to the front, with the view it showed last.
     ShowGroup(ViewGroup),
@@ -18,7 +18,7 @@ pub enum LayoutCommand {
     ShowInDock(View),
     /// Unfolds (`true`) or folds the dock.
     OpenDock(bool),
-    /// Restores the default layout for panels and plots.
+    /// Restores the default layout of panels and views.
     ResetLayout,
     /// Shows the left panel in full (`true`) or as a rail.
     ShowLeft(bool),

@@ -25,15 +25,15 @@ pub enum OutputCommand {
     CopyTable(TableKind),
     /// Asks for a table's path.
     AskSaveTable(TableKind),
-    /// Asks for a path for a table shown by a view.
+    /// Asks for the path of a table that a view shows.
     AskSaveShownTable(Arc<Table>),
     /// Saves a table as CSV.
     SaveTable(Arc<Table>, PathBuf),
-    /// Copies the numbers shown by a view to the clipboard as CSV.
+    /// Copies the values shown by a view to the clipboard as CSV.
     CopyFigure(View),
-    /// Asks for a path for a view's figure.
+    /// Asks for the path of a view's figure.
     AskSaveFigure(View, FigureFormat),
-    /// Saves a view's figure, in the format given by the file extension and in the given printed
+    /// Saves a view's figure in the format given by the file extension, with the given printed
     /// width.
     SaveFigure(View, ColumnWidth, PathBuf),
     /// Asks for the report's path.

@@ -36,23 +36,23 @@ pub enum RecordsCommand {
     SetRemedies(usize, Vec<(Signal, ChannelRemedy)>),
     /// Set how steps in a staircase signal are interpreted.
     SetHold(Signal, Hold),
-    /// Set the identification band \[rad/s\]; `None` takes the study's.
+    /// Set the identification band \[rad/s\]; `None` selects the band of the study.
     SetBand(Option<[f64; 2]>),
     /// Identify with these columns as recorded references that excited the loop externally
     /// (M14.15); an empty list selects the direct method.
     SetReferences(Vec<String>),
-    /// Set the orders, past windows and poles to try.
+    /// Set the model orders, past windows and poles that the search tries.
     SetSearch(SearchSpace),
     /// Expand the search settings and focus the field with this name.
     ShowAdvanced(&'static str),
     /// Draw a model's response to the same inputs, or hide it.
     ShowTimeModel(TimeModel, bool),
-    /// Assume the dataset channel's unit wherever a file states none, in the records for all
+    /// Assume the unit of the dataset's channel wherever a file states none, in the records of all
     /// conditions.
     TakeDatasetUnits,
-    /// Show a record with unclear columns, from any condition, on the Columns page.
+    /// Show a record with unclear units, from any condition, on the Columns page.
     ShowUnclear,
-    /// Make the part between two times \[s\] a record that replaces the whole.
+    /// Make the part between two times \[s\] a record of its own, used instead of the whole.
     AddPart(usize, [f64; 2]),
     /// Remove a part of a record.
     RemovePart(usize),

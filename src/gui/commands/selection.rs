@@ -15,10 +15,10 @@ pub enum SelectionCommand {
     HoverCondition(ConditionId),
     /// Describes the plot element under the pointer in the status bar, for this frame.
     Tell(String),
-    /// Shows only this model beside the representatives; repeated for the same model, shows all
-    /// again.
+    /// Shows only this model beside the representatives; a second command with the same model shows
+    /// all models again.
     Isolate(ModelId),
-    /// Shows a value's derivation, or closes it.
+    /// Shows the derivation of a value, or closes it.
     Explain(Option<ExplainTarget>),
     /// Shows all models again and clears the selection.
     EndIsolation,

@@ -2,7 +2,7 @@
 
 use gdcm_study::Edit;
 
-/// Decision about the study, or a step through their history.
+/// A decision about the study, or a step through the history of decisions.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StudyCommand {
     /// Takes a decision about the study.
@@ -11,7 +11,7 @@ pub enum StudyCommand {
     EndEdit,
     /// Undoes the last decision.
     Undo,
-    /// Removes a decision from the history if it was the last.
+    /// Removes a decision from the history if it is the last.
     Forget(Edit),
     /// Redoes the last undone decision.
     Redo,

@@ -50,7 +50,7 @@ pub(super) fn view_entries(state: &State) -> Vec<Entry> {
         .collect()
 }
 
-/// Tooltip for the steps from region to region.
+/// Tooltip of the steps from region to region.
 const PARTS: &str =
     "Plots, dock, verdict, result, matrix, settings, conditions, models; each remembers its focus";
 

@@ -1,4 +1,4 @@
-//! Advice on the next step towards a met verdict.
+//! Advice on the next step, until the verdict is met.
 
 use gdcm_method::correction::Channel;
 use gdcm_method::correction::remedy::Remedy;
@@ -36,7 +36,7 @@ impl Step {
         }
     }
 
-    /// Returns the step to the reasons for the result.
+    /// Returns the step that opens the reasons for the result.
     fn reasons(label: &str) -> Self {
         Self::new(
             label,
@@ -175,7 +175,8 @@ fn release_step(state: &State, pair: Pair) -> Step {
     )
 }
 
-/// Returns the bound that would be sufficient, if any, then the response to release.
+/// Returns the step that widens a gain bound sufficiently, if any, then the step that releases a
+/// response.
 fn gain_steps(state: &State, shown: &ConditionAnalysis) -> Vec<Step> {
     let mut steps = Vec::new();
     if let Some(remedy) = &shown.gains.remedy {
@@ -190,7 +191,7 @@ fn gain_steps(state: &State, shown: &ConditionAnalysis) -> Vec<Step> {
     steps
 }
 
-/// Returns the gain bounds with the bound that the remedy moves.
+/// Returns the gain bounds, with the bound moved that the remedy names.
 fn widened(remedy: &Remedy, shown: &ConditionAnalysis) -> Option<Value> {
     let bounds = shown.gain_bounds();
     if let Some(upper) = remedy.upper {
@@ -200,7 +201,7 @@ fn widened(remedy: &Remedy, shown: &ConditionAnalysis) -> Option<Value> {
     Some(Value::Range([lower, bounds.upper]))
 }
 
-/// Returns the steps while the phase is uncorrected or not matched.
+/// Returns the steps to take while the phase is uncorrected or not matched.
 fn phase_steps(state: &State, shown: &ConditionAnalysis) -> Vec<Step> {
     match state.study.settings.phase {
         PhaseCorrection::None => vec![Step::new(

@@ -1,4 +1,4 @@
-//! Right side of the window, from top to bottom: verdict, result, constraint matrix, card on the
+//! Right side of the window, from top to bottom: verdict, result, constraint matrix, card of the
 //! focused response, settings line, export.
 
 use egui::{
@@ -30,14 +30,15 @@ use crate::gui::widgets::palette::{
 const PADDING: f32 = 12.0;
 /// Settings line height \[pt\].
 const LINE: f32 = 36.0;
-/// Export row height \[pt\].
+/// Height of the export row \[pt\].
 const FOOT: f32 = 48.0;
-/// Least window height that shows the card on the focused response \[pt\].
+/// Minimum window height that shows the card of the focused response \[pt\].
 const LEAST_WITH_CARD: f32 = 860.0;
-/// Least window height that shows the full result; below it the result takes a single line \[pt\].
+/// Minimum window height that shows the full result; in lower windows the result takes a single
+/// line \[pt\].
 const LEAST_WITH_RESULT: f32 = 600.0;
 
-/// Draws verdict, result and matrix, or the open settings, above the export at the foot.
+/// Draws verdict, result and matrix, or the open settings, above the export row.
 pub fn answer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let verdict = Verdict::new(state);
     let foot = Frame::new().inner_margin(Margin::ZERO);
@@ -59,7 +60,7 @@ pub fn answer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
     });
     frame.show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
-        // The width is fixed here, so that wide content in a part cannot widen the next.
+        // The width is fixed here, so that wide content of one part does not widen the next part.
         let width = ui.available_width();
         region_ui(ui, Region::Verdict, |ui| {
             verdict_ui(ui, &verdict, palette, commands)
@@ -137,7 +138,7 @@ fn verdict_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette, commands: &mut 
     );
 }
 
-/// Left edges for counts and words \[pt from the row's left edge\].
+/// Left edges of counts and words \[pt from the row's left edge\].
 const COLUMNS: [f32; 2] = [46.0, 106.0];
 
 fn heads_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette) {
@@ -172,7 +173,7 @@ fn row_ui(ui: &mut Ui, row: &VerdictRow, is_all_met: bool, palette: &Palette) {
     let everywhere = VerdictRow::count_text(row.everywhere);
     let all = painted_text(ui, rect, -0.01, &everywhere, body(), palette.dim_text);
     let room = all.left() - rect.left() - COLUMNS[1] - 6.0;
-    // Without room for the band, only "matched" is shown.
+    // If the band does not fit, only "matched" is shown.
     let fits = text_width(ui, &row.words, body()) <= room;
     let words = if fits {
         row.words.as_str()
@@ -275,7 +276,7 @@ impl StepsLine<'_> {
         });
     }
 
-    /// Draws "⚠ Price: +21 dB above 12 rad/s", without "Price: " if there is little room.
+    /// Draws "⚠ Price: +21 dB above 12 rad/s", without "Price: " in a narrow panel.
     fn caution_ui(&self, ui: &mut Ui, caution: &str, palette: &Palette) {
         let width: f32 = self
             .primary
@@ -297,7 +298,7 @@ impl StepsLine<'_> {
         });
     }
 
-    /// Draws "of 19 models, first", or "of 19 models" if there is no room for all.
+    /// Draws "of 19 models, first", or only "of 19 models" in a narrow panel.
     fn note_ui(&self, ui: &mut Ui, palette: &Palette) {
         let fits = text_width(ui, self.note, small()) <= ui.available_width();
         let shown = if fits {
@@ -328,7 +329,7 @@ fn step_ui(
         .asks(step.command.clone(), commands);
 }
 
-/// Draws the settings on a single line; a click unfolds them over matrix and card.
+/// Draws the settings in a single line; a click unfolds them over matrix and card.
 fn settings_line_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let is_open = state.display.layout.settings_open;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), LINE), Sense::click());

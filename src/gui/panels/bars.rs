@@ -184,7 +184,7 @@ fn theme_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
         .asks(LayoutCommand::SetTheme(other), commands);
 }
 
-/// Draws dataset and study in mid-bar if there is room.
+/// Draws the names of dataset and study in the middle of the bar, if they fit.
 fn title_ui(ui: &mut Ui, bar: Rect, room: Rect, state: &State, palette: &Palette) {
     let edited = if state.unsaved { " · edited" } else { "" };
     let study = format!("{}{edited}", state.study_name);
@@ -307,7 +307,7 @@ fn row_ui(
     });
 }
 
-/// Draws the first few sentences and folds the others, which leaves the plots their space.
+/// Draws the first few sentences and folds the others, so that the plots keep their space.
 fn list_ui(ui: &mut Ui, sentences: &[String]) {
     const SHOWN: usize = 4;
     let (first, rest) = sentences.split_at(sentences.len().min(SHOWN));

@@ -27,9 +27,9 @@ const BAR: f32 = 40.0;
 const TITLE: f32 = 28.0;
 /// Folded dock height \[pt\].
 const FOLDED: f32 = 34.0;
-/// Least window height that unfolds the dock \[pt\].
+/// Minimum window height that unfolds the dock \[pt\].
 const LEAST_WITH_DOCK: f32 = 680.0;
-/// The dock's share in the window height.
+/// Height of the dock, as a share of the window's height.
 const DOCK_PART: f32 = 0.252;
 /// Horizontal padding \[pt\].
 const PADDING: i8 = 16;
@@ -154,9 +154,9 @@ fn groups_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
     }
 }
 
-/// Draws the views in the front group side by side, or as a menu if there is no room.
+/// Draws the views of the front group side by side, or as a menu if they do not fit.
 fn tabs_ui(ui: &mut Ui, state: &State, bar: Rect, palette: &Palette, commands: &mut Vec<Command>) {
-    /// Room for the other controls in the bar \[pt\].
+    /// Width reserved for the other controls in the bar \[pt\].
     const TOOLS: f32 = 130.0;
     let arrangement = &state.display.layout.arrangement;
     let room = bar.right() - ui.cursor().left() - TOOLS;
@@ -294,8 +294,8 @@ fn clipped_ui(
     ui.advance_cursor_after_rect(area);
 }
 
-/// Draws the view's title at the left and its tools at the right; without room, the tools move to a
-/// line below.
+/// Draws the title of the view at the left and its tools at the right; if they do not fit, the
+/// tools move to a line below.
 fn title_row_ui(
     ui: &mut Ui,
     state: &State,
@@ -303,7 +303,7 @@ fn title_row_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    /// Least title width \[pt\].
+    /// Minimum title width \[pt\].
     const LEAST: f32 = 200.0;
     let content = view_content(view);
     let width = ui.available_width();
@@ -340,7 +340,7 @@ fn tools_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    // The view bar has the front view's figure button.
+    // The figure button of the front view is in the view bar.
     if view != state.display.layout.arrangement.view() {
         figure_button_ui(ui, state, view, commands);
     }
@@ -381,7 +381,7 @@ fn dim_ui(ui: &mut Ui, palette: &Palette, text: String) {
     ui.add(Label::new(palette.dim(text)).truncate());
 }
 
-/// Draws the view below the others, folded to its bar in a low window.
+/// Draws the view in the dock, which is folded to its bar in a low window.
 fn dock_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -473,7 +473,7 @@ fn fold_ui(ui: &mut Ui, is_open: bool, palette: &Palette, commands: &mut Vec<Com
         .asks(LayoutCommand::OpenDock(!is_open), commands);
 }
 
-/// Draws a tab for each view that the dock can show, or a plain name if there is only one.
+/// Draws a tab for each view that the dock can show, or a plain name if it can show only one.
 fn dock_tabs_ui(ui: &mut Ui, state: &State, front: View, commands: &mut Vec<Command>) {
     let views: Vec<View> = View::docked(state.study.settings.phase).collect();
     for view in &views {

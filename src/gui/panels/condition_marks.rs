@@ -1,4 +1,4 @@
-//! Marks in the conditions list: open tasks, part in the schedule.
+//! Marks in the conditions list: open tasks, role in the schedule.
 
 use egui::{Rect, RichText, Stroke, Ui};
 
@@ -11,15 +11,15 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::{entries_ui, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium, small};
 
-/// A condition's open tasks and its part in the schedule.
+/// Open tasks of a condition, and its role in the schedule.
 pub(super) struct Marks {
     pub(super) condition: ConditionId,
     /// Models suggested as outliers and not rejected.
     suggested: usize,
     /// Constrained gains that are not matched.
     unmatched_gains: usize,
-    /// Constrained delays that are not matched although a decision could match them; excludes
-    /// delays that need lead while leads are not requested.
+    /// Constrained delays that are not matched although a decision could match them. Delays that
+    /// need lead do not count while leads are not requested.
     unmatched_delays: usize,
     pub(super) left_out: bool,
     held_out: bool,
@@ -60,7 +60,7 @@ impl Marks {
         marks
     }
 
-    /// Returns the end of the row's accessible name, after the flight state.
+    /// Returns the end of the row's accessible name, which follows the flight state.
     pub(super) fn after_name(&self) -> &'static str {
         if self.held_out {
             ", held out"
@@ -130,7 +130,7 @@ impl Marks {
         );
     }
 
-    /// Draws the flight state and at most three sentences: open tasks, part in the schedule, reason
+    /// Draws the flight state and at most three sentences: open tasks, role in the schedule, reason
     /// for a missing result.
     pub(super) fn tooltip_ui(&self, ui: &mut Ui, condition: &Condition, palette: &Palette) {
         let state = condition.flight_state();

@@ -31,11 +31,11 @@ use crate::gui::widgets::palette::{
 /// Right edge of the number, centre of the mark, right edge of the airspeed \[pt from the row's
 /// left edge\].
 const PLACES: [f32; 3] = [20.0, 33.0, 70.0];
-/// Left edge of the map, and its largest column spacing \[pt\].
+/// Left edge of the map, and its maximum column spacing \[pt\].
 const MAP: [f32; 2] = [88.0, 26.0];
-/// Half the cell size \[pt\].
+/// Half the width and height of a cell \[pt\].
 const HALF_CELL: [f32; 2] = [10.0, 12.0];
-/// Row heights in list and rail \[pt\].
+/// Row heights of list and rail \[pt\].
 const ROWS: [f32; 2] = [20.0, 24.0];
 
 /// Draws every condition with its airspeed and the remaining cost of its constrained responses; a
@@ -63,8 +63,8 @@ pub fn conditions_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
     });
 }
 
-/// Draws the list as a narrow strip: number, airspeed, worst constrained response; buttons open the
-/// physics and the identified models.
+/// Draws the list as a narrow strip: number, airspeed, constrained response with the highest cost;
+/// buttons open the physics and the identified models.
 pub fn rail_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing.y = 0.0;
     pin_ui(ui, palette, commands);
@@ -104,7 +104,7 @@ pub fn rail_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
     });
 }
 
-/// Draws the pin that replaces the rail by the full panel.
+/// Draws the pin that replaces the rail with the full panel.
 fn pin_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
     let (rect, response) = ui.allocate_exact_size(vec2(32.0, 32.0), Sense::click());
     let symbol = Rect::from_center_size(rect.center(), vec2(14.0, 12.0));
@@ -175,7 +175,7 @@ fn flight_state_words(state: &FlightState) -> String {
     words
 }
 
-/// Columns and their places, for a single frame.
+/// Columns and their positions, valid for a single frame.
 struct Map<'a> {
     state: &'a State,
     classes: Classes,
@@ -222,7 +222,7 @@ impl<'a> Map<'a> {
         row.left() + self.left + self.pitch * place as f32 + HALF_CELL[0]
     }
 
-    /// Paints a condition's dot, with the shape and fill of the Net gain view.
+    /// Paints the dot of a condition, with the shape and fill used in the Net gain view.
     fn paint_mark(&self, ui: &Ui, at: Pos2, flight_state: &FlightState, palette: &Palette) {
         let is_filled = self.classes.is_first_weight(flight_state);
         let (fill, stroke) = if is_filled {
@@ -392,7 +392,7 @@ impl<'a> Map<'a> {
         }
     }
 
-    /// Explains the shades below the list.
+    /// Draws the key of the shades, below the list.
     fn key_ui(&self, ui: &mut Ui, palette: &Palette) {
         let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 32.0), Sense::hover());
         let lines = [
@@ -441,13 +441,13 @@ impl<'a> Map<'a> {
     }
 }
 
-/// Returns the horizontal position for a cost on the shade bar.
+/// Returns the horizontal position of a cost on the shade bar.
 fn position_on_key(bar: Rect, cost: f32) -> f32 {
     let most = HEAT_COSTS[HEAT_COSTS.len() - 1];
     bar.left() + bar.width() * cost / most
 }
 
-/// Paints the first twelve conditions as a static picture: marks, airspeeds and costs.
+/// Paints the first twelve conditions as a picture without interaction: marks, airspeeds and costs.
 pub fn cost_picture_ui(ui: &Ui, area: Rect, state: &State, palette: &Palette) {
     const ROW: f32 = 17.0;
     let map = Map::new(state, 48.0, area.width() - 48.0);
@@ -493,7 +493,7 @@ pub fn cost_picture_ui(ui: &Ui, area: Rect, state: &State, palette: &Palette) {
     }
 }
 
-/// Paints magnitude in the left half, phase in the right half.
+/// Paints the magnitude part in the left half and the phase part in the right half.
 fn paint_cost(ui: &Ui, cell: Rect, cost: Cost, palette: &Palette) {
     let middle = cell.center().x;
     let halves = [

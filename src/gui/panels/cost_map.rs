@@ -1,5 +1,6 @@
 //! Cost map: magnitude and phase part of J for every constrained response in every condition, as
-//! shades of a single hue; with couplings, the mean over the other responses beside them.
+//! shades of a single hue. With couplings, a further column shows the mean over the other
+//! responses.
 
 use gdcm_method::fidelity::Cost;
 use gdcm_model::dataset::{ConditionId, Pair};
@@ -8,7 +9,8 @@ use gdcm_study::CouplingCorrection;
 use crate::gui::state::mapped_cost::MappedCost;
 use crate::gui::state::window_state::State;
 
-/// More constrained responses than this are merged into a column for each input.
+/// Maximum number of constrained responses with a column each; a larger number is merged into a
+/// column for each input.
 const MOST_COLUMNS: usize = 8;
 
 /// Column of the map: a constrained response, the constrained responses of an input, or all
@@ -17,12 +19,12 @@ const MOST_COLUMNS: usize = 8;
 pub struct CostColumn {
     pub head: String,
     pub pairs: Vec<Pair>,
-    /// Whether the cost is a mean over the responses; otherwise the worst response counts.
+    /// Whether the column shows the mean over its responses, otherwise the maximum.
     pub is_mean: bool,
 }
 
-/// Returns the columns of the constrained responses, in output order; with couplings also a column
-/// of the responses that these improve.
+/// Returns the columns of the constrained responses, in output order, and with couplings a column
+/// of the responses that the couplings improve.
 pub fn columns(state: &State) -> Vec<CostColumn> {
     let mut columns = held_columns(state);
     if state.study.settings.couplings != CouplingCorrection::None {
@@ -72,7 +74,7 @@ fn held_columns(state: &State) -> Vec<CostColumn> {
     columns
 }
 
-/// Returns the mapped J for a response in a condition; `None` without a result.
+/// Returns J of a response in a condition, for the mapped correction; `None` without a result.
 pub fn cost_of(state: &State, condition: ConditionId, pair: Pair) -> Option<Cost> {
     let analysis = state.analysis()?;
     if state.display.judging.mapped_cost == MappedCost::Scheduled {
@@ -88,15 +90,15 @@ pub fn cost_of(state: &State, condition: ConditionId, pair: Pair) -> Option<Cost
     }
 }
 
-/// A column's cost in a condition.
+/// Cost of a column in a condition.
 pub struct ColumnCost {
-    /// Response with the greatest J, as the sum of magnitude and phase.
+    /// Response with the greatest sum of magnitude and phase part of J.
     pub pair: Pair,
-    /// Mean or maximum over the responses, for magnitude and phase separately.
+    /// Mean or maximum over the responses, of the magnitude and the phase part separately.
     pub cost: Cost,
 }
 
-/// Returns a column's cost in a condition; `None` without a result.
+/// Returns the cost of a column in a condition; `None` without a result.
 pub fn cost_of_column(
     state: &State,
     condition: ConditionId,

@@ -1,4 +1,4 @@
-//! Sheets over the middle of the window: how a value was derived, with the menus that ask for it,
+//! Sheets over the middle of the window: the derivation of a value, with the menus that open it,
 //! and the cost of a decision.
 
 use std::collections::BTreeSet;
@@ -65,7 +65,7 @@ pub fn sheet_ui(
                         .show(ui, |ui| add(ui));
                 });
         });
-    // In its first frame the sheet still sees the click that opened it.
+    // In its first frame the sheet still receives the click that opened it.
     let is_new = ui
         .ctx()
         .data_mut(|data| !std::mem::replace(data.get_temp_mut_or_default::<bool>(id), true));
@@ -82,7 +82,7 @@ pub fn sheet_ui(
     is_closed
 }
 
-/// Draws a value's derivation in a sheet; it follows the results while it is open.
+/// Draws the derivation of a value in a sheet, updated with the results while it is open.
 pub fn derivation_sheet_ui(
     ui: &mut Ui,
     state: &State,
@@ -140,7 +140,7 @@ fn derivation_ui(ui: &mut Ui, found: &Derivation, palette: &Palette, commands: &
     });
 }
 
-/// Draws the cost for constraining or releasing the response in question.
+/// Draws the cost of constraining or releasing the response of the derived value.
 fn toggle_costs_ui(ui: &mut Ui, state: &State, asked: &ExplainTarget, palette: &Palette) {
     let (ExplainTarget::DeltaGain(condition, pair) | ExplainTarget::DeltaDelay(condition, pair)) =
         asked
@@ -200,7 +200,8 @@ pub fn question_menu_ui(
     });
 }
 
-/// Returns the label and the command that reverse a channel in a role's models, or restore it.
+/// Returns the label and the command that reverse a channel in the models of a role, or undo the
+/// reversal.
 pub fn turn_entry(state: &State, channel: Channel, role: Option<SignRole>) -> (String, Command) {
     let (inputs, outputs) = state.dataset().names_of_channels();
     let name = channel.name(&inputs, &outputs);
@@ -212,8 +213,8 @@ pub fn turn_entry(state: &State, channel: Channel, role: Option<SignRole>) -> (S
     (label, Edit::SetSign { channel, of: role }.into())
 }
 
-/// Returns the responses and channels whose gain constraints conflict, including channels of
-/// another sign or unit.
+/// Returns the responses and channels whose gain constraints conflict, including channels whose
+/// sign or unit differs.
 pub fn gain_conflict_marks(shown: &ConditionAnalysis) -> (BTreeSet<Pair>, BTreeSet<Channel>) {
     let mut pairs = BTreeSet::new();
     let mut channels = BTreeSet::new();
@@ -225,8 +226,8 @@ pub fn gain_conflict_marks(shown: &ConditionAnalysis) -> (BTreeSet<Pair>, BTreeS
     (pairs, channels)
 }
 
-/// Describes the cost of constraining or releasing a response; empty until all toggles of this
-/// result are computed.
+/// Describes the cost of constraining or releasing a response; empty until the costs of this result
+/// are computed.
 pub fn toggle_costs(state: &State, pair: Pair) -> Vec<String> {
     let Some(toggles) = state.toggles() else {
         return Vec::new();

@@ -15,7 +15,7 @@ use crate::gui::widgets::palette::Palette;
 /// Form being drawn.
 pub(super) struct Form<'a, 'c> {
     pub(super) ui: &'a mut Ui,
-    /// Whether this is its first frame.
+    /// Whether this is the form's first frame.
     pub(super) opens: bool,
     pub(super) palette: &'a Palette,
     pub(super) commands: &'c mut Vec<Command>,
@@ -51,7 +51,8 @@ impl Form<'_, '_> {
             });
     }
 
-    /// Draws the button that closes the form; its action may have to wait for the newest results.
+    /// Draws the button that closes the form, and a note if the form's action waits for the newest
+    /// results.
     pub(super) fn cancel_ui(&mut self, waits: bool) {
         self.button_ui("Cancel", false, FormCommand::ShowForm(None));
         if waits {
@@ -92,7 +93,8 @@ impl Form<'_, '_> {
         }
     }
 
-    /// Draws a button; the first button of a form without a text field has the focus when it opens.
+    /// Draws a button. `is_first` marks the first button of a form without a text field, which has
+    /// the focus when the form opens.
     pub(super) fn button_ui(&mut self, text: &str, is_first: bool, command: impl Into<Command>) {
         let response = self.ui.button(text);
         if is_first && self.opens {
@@ -119,7 +121,7 @@ impl Form<'_, '_> {
     }
 }
 
-/// Draws the planned contents of an exported file and its omissions; nothing before there are
+/// Draws the planned contents of an exported file and its omissions; draws nothing until there are
 /// results.
 pub(super) fn contents_ui(
     form: &mut Form<'_, '_>,

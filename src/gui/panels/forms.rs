@@ -149,7 +149,7 @@ fn overwrite_ui(form: &mut Form<'_, '_>, kind: FormKind, existing: &[String]) {
     form.ui.add_space(4.0);
     form.line(|form| {
         form.button_ui("Overwrite", false, FormCommand::Overwrite);
-        // Enter must not lose anything.
+        // Enter must not overwrite anything.
         form.button_ui("Cancel", true, FormCommand::ShowForm(Some(kind)));
     });
 }
@@ -203,7 +203,7 @@ fn differences_ui(form: &mut Form<'_, '_>, state: &State) {
     });
 }
 
-/// Asks why a model is rejected; a kept model is rejected on submission.
+/// Asks why a model is rejected; submitting the form rejects the model if it is still kept.
 fn reason_ui(form: &mut Form<'_, '_>, state: &mut State) {
     let Some(model) = state.forms.rejected_model.clone() else {
         return;
@@ -248,7 +248,7 @@ fn reason_ui(form: &mut Form<'_, '_>, state: &mut State) {
     });
 }
 
-/// Limit on the listed record columns.
+/// Maximum number of listed record columns.
 const MOST_COLUMNS: usize = 60;
 
 /// Draws the form for a new dataset from the open records: channels, band, path.
@@ -316,7 +316,7 @@ fn record_dataset_ui(form: &mut Form<'_, '_>, wanted: &mut WantedDataset) {
     });
 }
 
-/// Draws a text field to the end of the line; returns whether Enter was pressed in it.
+/// Draws a text field that extends to the end of the line; returns whether Enter was pressed in it.
 fn wide_field_ui(ui: &mut Ui, name: &str, text: &mut String, hint: &str) -> bool {
     let width = ui.available_width() - 8.0;
     let field = text_field_ui(ui, name, text, hint, width);

@@ -14,7 +14,7 @@ use crate::gui::widgets::controls::Asks;
 use crate::gui::widgets::focus::{Region, region_place, take_escape};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Note width \[pt\].
+/// Width of a note \[pt\].
 const WIDTH: f32 = 300.0;
 
 /// Tour step.
@@ -69,7 +69,7 @@ pub fn tour_ui(ctx: &Context, state: &State, palette: &Palette, commands: &mut V
     let Some(step) = STEPS.get(number) else {
         return;
     };
-    // The notes refer to the panels: the tour waits while these are hidden.
+    // The notes refer to the panels, so the tour waits while these are hidden.
     if state.forms.shown.is_some() || state.assembling.is_some() || state.on_start_page {
         return;
     }
@@ -138,14 +138,14 @@ fn note_ui(
 }
 
 /// Places the note right of the region, left of it, or over it if the region takes the whole width;
-/// returns the note's corner and its position.
+/// returns which corner of the note is placed, and where.
 fn beside(place: Rect, window: Rect) -> (Align2, egui::Pos2) {
     const GAP: Vec2 = vec2(12.0, 0.0);
     let room = WIDTH + 40.0;
     if window.right() - place.right() > room {
         (Align2::LEFT_TOP, place.right_top() + GAP)
     } else if place.left() - window.left() > room {
-        // A region at the foot of the window leaves no room below: the note grows upwards.
+        // A region at the foot of the window has no space below it, so the note grows upwards.
         let is_low = place.top() > window.center().y;
         if is_low {
             (Align2::RIGHT_BOTTOM, place.left_bottom() - GAP)
@@ -277,7 +277,7 @@ impl KeyRow {
     }
 }
 
-/// Returns the keys in the command table; " *" marks keys that work only without focus.
+/// Returns the keys of the command table; " *" marks keys that work only without focus.
 fn command_keys(ctx: &Context, state: &State) -> Vec<KeyRow> {
     let mut rows = Vec::new();
     for entry in command_table(state) {

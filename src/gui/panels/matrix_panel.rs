@@ -29,7 +29,7 @@ use crate::gui::widgets::controls::{entries_ui, named_switch, painted_text};
 use crate::gui::widgets::focus::{Region, region_ui};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium, small};
 
-/// Least and greatest cell height \[pt\].
+/// Minimum and maximum cell height \[pt\].
 const CELL_HEIGHTS: [f32; 2] = [34.0, 44.0];
 /// Gap between two cells \[pt\].
 const GAP: f32 = 3.0;
@@ -42,7 +42,7 @@ const FULL_COST: f64 = 60.0;
 
 /// Draws every response as a cell, within a height of `room` points. A click on the cell shows the
 /// response in the large plot; a click on its box, a double click or the space bar constrains or
-/// releases it; a right-click offers more.
+/// releases it; a right-click opens a menu.
 pub fn matrix_ui(
     ui: &mut Ui,
     state: &State,
@@ -98,7 +98,7 @@ fn key_ui(ui: &Ui, row: Rect, palette: &Palette) {
     }
 }
 
-/// Cells with the channel names above and beside them \[pt\].
+/// Cells, with the channel names above and beside them \[pt\].
 struct CellGrid {
     /// Visible height.
     room: f32,
@@ -118,7 +118,8 @@ impl CellGrid {
         );
         let (in_conflict, blamed) = state.shown().map(gain_conflict_marks).unwrap_or_default();
         let focus = state.display.selection.pair;
-        // A matrix larger than its room scrolls by itself: verdict and export stay in place.
+        // A matrix larger than the available space scrolls on its own: verdict and export keep
+        // their places.
         ScrollArea::both()
             .id_salt("constraint matrix")
             .max_height(self.room)
@@ -221,7 +222,7 @@ impl<'a> Cell<'a> {
         }
     }
 
-    /// Returns the reason why there is no G, once it is known.
+    /// Returns the reason why G is undefined; `None` if it is defined, or without a result.
     fn undefined(&self) -> Option<Undefined> {
         self.shown?.comparison.undefined[self.pair]
     }
@@ -328,7 +329,7 @@ impl<'a> Cell<'a> {
         self.paint_values(ui, rect, is_pointed, palette);
     }
 
-    /// Paints G above D \[ms\], each with the half-width of its error bar, and its part of J as an
+    /// Paints G above D \[ms\], each with the half-width of its error bar and its part of J as an
     /// underline.
     fn paint_values(&self, ui: &Ui, rect: Rect, is_pointed: bool, palette: &Palette) {
         let Some(shown) = self.shown else { return };
@@ -458,7 +459,7 @@ struct CostParts {
     after: f64,
 }
 
-/// Value in the upper or lower half cell.
+/// Value in the upper or lower half of a cell.
 struct CellValue {
     half: Rect,
     text: String,
@@ -466,7 +467,7 @@ struct CellValue {
     /// Half-width of the error bar: "±12".
     bar: Option<String>,
     underline: Option<CostParts>,
-    /// Room at the right end \[pt\].
+    /// Space reserved at the right end \[pt\].
     end_room: f32,
 }
 
@@ -478,8 +479,8 @@ impl CellValue {
         let value = painted_text(ui, line, 0.0, &self.text, self.font, color);
         if let Some(bar) = self.bar {
             let galley = ui.painter().layout_no_wrap(bar, small(), palette.dim_text);
-            // The cell has no room for a three-digit half-width beside a three-digit value:
-            // both are in the tooltip and in the card.
+            // A three-digit half-width does not fit beside a three-digit value; both are in the
+            // tooltip and in the card.
             let place = pos2(
                 line.right() - galley.size().x,
                 line.center().y - 0.5 * galley.size().y,
@@ -494,7 +495,7 @@ impl CellValue {
     }
 }
 
-/// Paints the part of J before the correction, pale, and after it; orange if it did not decrease.
+/// Paints a part of J before the correction (pale) and after it (orange unless it decreased).
 fn underline(ui: &Ui, half: Rect, parts: CostParts, palette: &Palette) {
     paint_cost_bar(ui, half, parts.before, palette.quiet_mark);
     let after_color = if is_not_reduced(parts.before, parts.after) {
@@ -505,7 +506,7 @@ fn underline(ui: &Ui, half: Rect, parts: CostParts, palette: &Palette) {
     paint_cost_bar(ui, half, parts.after, after_color);
 }
 
-/// Paints a bar of a length proportional to the cost; a tip at the end marks a cost beyond
+/// Paints a bar whose length is proportional to the cost; a tip at its end marks a cost beyond
 /// [`FULL_COST`].
 fn paint_cost_bar(ui: &Ui, half: Rect, cost: f64, color: Color32) {
     let y = half.bottom() - 2.5;

@@ -1,4 +1,4 @@
-//! Row in a bundle's list: box, star, trim or name, discontinuity ratio or order.
+//! Row in the list of a bundle: box, star, trim or name, discontinuity ratio or order.
 
 use std::collections::BTreeMap;
 
@@ -23,7 +23,7 @@ use crate::gui::widgets::controls::{
 };
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium};
 
-/// Right edges for the trim columns \[pt from the row's left edge\].
+/// Right edges of the trim columns \[pt from the row's left edge\].
 pub(super) const TRIM_ENDS: [f32; 3] = [70.0, 114.0, 154.0];
 
 /// Trim coordinates as columns.
@@ -33,7 +33,8 @@ pub(super) struct TrimColumns {
 }
 
 impl TrimColumns {
-    /// Returns `None` if a model has no trim, or if there are more coordinates than columns.
+    /// Creates the columns; `None` if a model has no trim, or if there are more coordinates than
+    /// columns.
     pub(super) fn new(models: &[Model]) -> Option<Self> {
         let mut keys: Vec<String> = Vec::new();
         for model in models {
@@ -50,7 +51,7 @@ impl TrimColumns {
         Some(Self { keys, heads })
     }
 
-    /// Returns a model's offsets, "·" for zero; `None` if all are zero.
+    /// Returns the offsets of a model, "·" for zero; `None` if all are zero.
     fn offsets(&self, model: &Model) -> Option<Vec<String>> {
         let trim = model.perturbation()?;
         if trim.values().all(|offset| *offset == 0.0) {
@@ -85,12 +86,12 @@ fn trim_head(key: &str) -> String {
     }
 }
 
-/// Discontinuity ratio that fills its bar.
+/// Discontinuity ratio at which the bar has its full length.
 const FULL_RATIO: f64 = 4.0;
 /// Full bar length \[pt\].
 const FULL_BAR: f32 = 38.0;
 
-/// Returns the bar length for a discontinuity ratio \[pt\].
+/// Returns the bar length of a discontinuity ratio \[pt\].
 fn bar_length(ratio: f64) -> f32 {
     FULL_BAR * (ratio / FULL_RATIO).clamp(0.0, 1.0) as f32
 }
@@ -102,7 +103,7 @@ pub(super) struct Neighbours<'a> {
 }
 
 impl<'a> Neighbours<'a> {
-    /// Returns the name at a place in the list, with those beside it.
+    /// Returns the name at a position in the list, and its neighbours.
     pub(super) fn new(names: &[&'a str], place: usize) -> Self {
         let above = place.checked_sub(1).map(|above| names[above]);
         let below = names.get(place + 1).copied();
@@ -124,11 +125,11 @@ pub(super) struct ModelRow<'a> {
     pointed: bool,
     /// Mean distance to the other kept models.
     score: Option<f64>,
-    /// Discontinuity ratio; physics models only.
+    /// Discontinuity ratio, for physics models only.
     ratio: Option<f64>,
     /// Reason why the model is excluded from the comparison.
     set_aside: Option<String>,
-    /// Why the model is rejected, in the engineer's words.
+    /// Reason for the rejection, in the engineer's words.
     reason: Option<String>,
 }
 
@@ -187,7 +188,7 @@ impl<'a> ModelRow<'a> {
         commands: &mut Vec<Command>,
     ) {
         let width = ui.available_width();
-        // Not focusable by Tab: its actions are on the box, on the star, and in the palette.
+        // Not reachable by Tab: its actions are on the box, on the star, and in the palette.
         let (rect, response) = ui.allocate_exact_size(vec2(width, ROW_HEIGHT), Sense::CLICK);
         let response = named(
             response,
@@ -199,7 +200,7 @@ impl<'a> ModelRow<'a> {
         }
         self.keep_ui(ui, rect, commands);
         self.star_ui(ui, rect, palette, commands);
-        // A bundle may have a thousand models: hidden rows are not painted.
+        // A bundle may contain a thousand models, so hidden rows are not painted.
         if ui.is_rect_visible(rect) {
             let value_width = self.paint_value(ui, rect, palette);
             match trims.and_then(|trims| trims.offsets(self.model)) {
@@ -330,7 +331,7 @@ impl<'a> ModelRow<'a> {
         response.on_hover_text(hint);
     }
 
-    /// Paints "set aside", the ratio with its bar, or the order; returns the width taken on the
+    /// Paints "set aside", the ratio with its bar, or the order; returns the occupied width on the
     /// right \[pt\].
     fn paint_value(&self, ui: &Ui, rect: Rect, palette: &Palette) -> f32 {
         if self.set_aside.is_some() {
@@ -352,7 +353,8 @@ impl<'a> ModelRow<'a> {
         5.0
     }
 
-    /// Paints the discontinuity ratio and its bar, with a tick at the limit for a suggestion.
+    /// Paints the discontinuity ratio and its bar, with a tick at the threshold for suggested
+    /// outliers.
     fn paint_ratio(&self, ui: &Ui, rect: Rect, ratio: f64, palette: &Palette) {
         let text_color = if self.kept {
             palette.text

@@ -17,14 +17,14 @@ use crate::gui::widgets::focus::{Region, region_ui};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium, small};
 
 /// Draws the bundles of the displayed condition in the left panel: the physics models above, the
-/// identified models folded at its foot.
+/// identified models in a foldable part below.
 pub fn models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     region_ui(ui, Region::Models, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         let is_open = state.display.layout.identified_open;
         let room = ui.available_height();
         let models = state.condition().bundle(BundleKind::Identified).len();
-        // A bundle without models takes a row that reports it.
+        // A bundle without models takes one row, with a message.
         let rows = models.max(1) as f32;
         let height = if is_open {
             (FOLD + ROW_HEIGHT * rows + 8.0).min(0.5 * room)
@@ -88,7 +88,7 @@ fn physics_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
     rows_ui(ui, state, palette, kind, commands);
 }
 
-/// Draws the actions on all models at once, above the list and always within reach.
+/// Draws the actions on all models at once, above the list so that they do not scroll.
 fn at_once_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let condition = state.condition().id();
     let choice = state.study.choice(condition);
@@ -233,8 +233,8 @@ fn heads_ui(ui: &mut Ui, trims: Option<&TrimColumns>, palette: &Palette) {
     painted_text(ui, row, -1.0, "discontinuity", small(), palette.dim_text);
 }
 
-/// Returns the names without the method that every model of an identified bundle repeats: without
-/// "CT-PBSID" if some names contain "CT-PBSID" and the others "CT-PBSID, refined".
+/// Returns the names without the method with which all of them begin: "CT-PBSID" and
+/// "CT-PBSID, refined" become "CT-PBSID" and "refined".
 fn short_names(models: &[Model]) -> Vec<&str> {
     let repeated = models
         .iter()

@@ -12,11 +12,11 @@ use crate::gui::commands::output::OutputCommand;
 use crate::gui::state::forms::{FormKind, Forms, RequirementTable};
 use crate::gui::state::window_state::State;
 
-/// Texts in a form that asks for a path.
+/// Texts of a form that asks for a path.
 struct PathWords {
     kind: FormKind,
     title: &'static str,
-    /// Accessible name for the field.
+    /// Accessible name of the field.
     field: &'static str,
     /// Placeholder in the empty field.
     hint: &'static str,
@@ -26,7 +26,7 @@ struct PathWords {
     submit: &'static str,
 }
 
-/// Every form that asks for a path and at most a choice.
+/// Every form that asks for a path and for at most one choice.
 const PATHS: [PathWords; 10] = [
     PathWords {
         kind: FormKind::Open,
@@ -147,7 +147,7 @@ pub(super) fn path_ui(form: &mut Form<'_, '_>, kind: FormKind, state: &mut State
     *forms.typed_in(kind) = path;
 }
 
-/// Returns the title with the table or the view to be saved.
+/// Returns the title, with the name of the table or view to be saved.
 fn title(words: &PathWords, forms: &Forms) -> String {
     match (words.kind, &forms.table, forms.figure) {
         (FormKind::SaveTable, Some(table), _) => {
@@ -177,7 +177,8 @@ fn export_format_ui(form: &mut Form<'_, '_>, state: &mut State, path: &mut Strin
     contents_ui(form, state, |analysis| export_contents(analysis, &request));
 }
 
-/// Returns the command that a form submits; `None` if the form lacks its object.
+/// Returns the command that a form submits; `None` if the table, the view or the study to act on is
+/// missing.
 fn path_command(kind: FormKind, forms: &Forms, path: PathBuf) -> Option<Command> {
     Some(match kind {
         FormKind::Open => Command::File(FileCommand::Open(path)),

@@ -8,11 +8,11 @@ use gdcm_model::number_format::compact;
 use crate::gui::plot::{BodeCurve, Pane, Role};
 use crate::gui::widgets::palette::{Palette, small};
 
-/// Step count over the band, equal on a logarithmic axis.
+/// Number of steps over the band, equal on a logarithmic axis.
 const STEPS: usize = 60;
 
-/// Draws both phases \[deg\] over frequency \[rad/s\], with the gap between them; only the frame if
-/// a curve is missing or does not span the band.
+/// Draws both phases \[deg\] over frequency \[rad/s\], with the gap between them; draws only the
+/// frame if a curve is missing or does not span the band.
 pub(super) fn phase_sketch_ui(
     ui: &Ui,
     plot: Rect,
@@ -42,16 +42,17 @@ struct PhaseSketch {
     /// Band ends \[rad/s\].
     min: f64,
     max: f64,
-    /// Least and greatest phase \[deg\].
+    /// Minimum and maximum phase \[deg\].
     least: f64,
     most: f64,
-    /// Phase at each step, corrected and identified model \[deg\].
+    /// Phases of the corrected and the identified model at each step \[deg\].
     corrected: Vec<f64>,
     flight: Vec<f64>,
 }
 
 impl PhaseSketch {
-    /// Returns `None` if a curve is missing or does not span the band, or if all phases are equal.
+    /// Creates the sketch; `None` if a curve is missing or does not span the band, or if all phases
+    /// are equal.
     fn new(plot: Rect, curves: &[BodeCurve], band: Band) -> Option<Self> {
         let min = band.min();
         let max = band.max();
@@ -81,7 +82,7 @@ impl PhaseSketch {
         })
     }
 
-    /// Returns the vertical position for a phase \[deg\].
+    /// Returns the vertical position of a phase \[deg\].
     fn y(&self, phase: f64) -> f32 {
         let part = ((phase - self.least) / (self.most - self.least)) as f32;
         let inner = self.plot.shrink2(vec2(0.0, 8.0));
@@ -196,7 +197,7 @@ fn grid_frequencies(min: f64, max: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Returns every 90° between two phases \[deg\].
+/// Returns the multiples of 90° between two phases \[deg\].
 fn grid_phases(least: f64, most: f64) -> Vec<f64> {
     let first = (least / 90.0).ceil() as i32;
     let last = (most / 90.0).floor() as i32;

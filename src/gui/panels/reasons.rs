@@ -1,4 +1,4 @@
-//! Sheet with reasons for the displayed result: remarks, possible causes for a lag, leads, proof.
+//! Sheet with reasons for the displayed result: remarks, possible causes of a lag, leads, proof.
 
 use egui::{Button, CollapsingHeader, Rect, RichText, Role, Ui, vec2};
 
@@ -48,7 +48,7 @@ pub fn coupling_remarks(state: &State) -> Vec<Remark> {
     }
 }
 
-/// Possible cause for a common lag; repairing the model there is better than correcting it.
+/// Possible cause of a common lag; removing the cause is better than correcting the lag.
 struct Cause {
     title: &'static str,
     symptom: &'static str,
@@ -126,7 +126,7 @@ fn causes_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
     }
 }
 
-/// Draws whether better gains exist, and how far the answer may be from the optimum.
+/// Draws whether the gains are proven optimal, and how far they may be from the optimum.
 fn proof_ui(ui: &mut Ui, shown: &ConditionAnalysis, is_proving: bool, palette: &Palette) {
     let outcome = shown.gains.proof.outcome;
     let words = match outcome {
@@ -169,7 +169,7 @@ fn remarks_ui(
     }
 }
 
-/// Hint on a button that decides for every condition.
+/// Tooltip of a button that decides for every condition.
 const EVERYWHERE: &str = "In every condition; can be undone";
 
 fn objective_ui(
@@ -216,7 +216,7 @@ fn objective_ui(
     });
 }
 
-/// Draws the lead in each constrained response and the price for each filter.
+/// Draws the lead in each constrained response and the price of each filter.
 fn lead_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &Palette) {
     if shown.compensated.is_none() {
         return;
@@ -233,7 +233,7 @@ fn lead_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &Pale
         });
 }
 
-/// Draws the off-axis benefit from worthwhile couplings, and the button that uses them.
+/// Draws the off-axis benefit of worthwhile couplings, and the button that uses them.
 fn couplings_offer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let Some((assessment, _)) = offered_couplings(state) else {
         return;

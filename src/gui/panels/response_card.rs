@@ -1,4 +1,4 @@
-//! Card on the focused response: requested values, remainders after the correction, error bars.
+//! Card of the focused response: required corrections, remaining errors, error bars.
 
 use egui::{Grid, Rect, RichText, Sense, Stroke, StrokeKind, Ui, vec2};
 
@@ -21,17 +21,17 @@ const ROW: f32 = 18.0;
 #[derive(Clone, Debug, PartialEq)]
 pub struct CardRow {
     pub name: &'static str,
-    /// Requested value, with its unit.
+    /// Required correction, with its unit.
     pub wants: String,
-    /// Remainder after the correction.
+    /// Remaining error after the correction.
     pub left: String,
     /// Half-width of the error bar, with its unit.
     pub half: String,
-    /// Whether the remainder is not reduced.
+    /// Whether the correction has hardly reduced the value; always false for the gain.
     pub is_missed: bool,
 }
 
-/// Returns gain, delay and both parts of J for a response.
+/// Returns the rows of a response: gain, delay, and both parts of J.
 pub fn card_rows(state: &State, shown: &ConditionAnalysis, pair: Pair) -> Vec<CardRow> {
     let sureness = state.sureness();
     let mut rows = Vec::new();
@@ -89,7 +89,7 @@ pub(super) fn is_not_reduced(before: f64, after: f64) -> bool {
     after > 1.0 && after > before - 0.1
 }
 
-/// Draws the card on the focused response.
+/// Draws the card of the focused response.
 pub fn card_ui(ui: &mut Ui, state: &State, palette: &Palette) {
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), CARD_HEIGHT), Sense::hover());
     ui.painter().rect_stroke(
@@ -108,7 +108,8 @@ pub fn card_ui(ui: &mut Ui, state: &State, palette: &Palette) {
     let title = format!("{}, {held}", state.dataset().pair_name(pair));
     let title_line = card_line(inner, 0);
     painted_text(ui, title_line, 0.0, &title, medium(BODY_SIZE), palette.text);
-    // Text ends at these distances from the right edge; a negative distance aligns to the right.
+    // Distances of the text ends from the right edge; negative, because the text is aligned to the
+    // right.
     let ends = [inner.width() * 0.54, inner.width() * 0.78, inner.width()]
         .map(|end| end - inner.width() - 0.01);
     let level = state
@@ -134,7 +135,7 @@ pub fn card_ui(ui: &mut Ui, state: &State, palette: &Palette) {
     }
 }
 
-/// Returns the place for a row; row 0 is the title.
+/// Returns the rectangle of a row; row 0 is the title.
 fn card_line(inner: Rect, row: usize) -> Rect {
     Rect::from_min_size(
         inner.min + vec2(0.0, ROW * row as f32),
@@ -142,7 +143,7 @@ fn card_line(inner: Rect, row: usize) -> Rect {
     )
 }
 
-/// Draws the same rows in a tooltip.
+/// Draws the rows of the card in a tooltip.
 pub fn card_grid_ui(ui: &mut Ui, state: &State, pair: Pair, palette: &Palette) {
     let Some(shown) = state.shown() else { return };
     Grid::new("card")

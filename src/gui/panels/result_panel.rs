@@ -1,4 +1,4 @@
-//! Correction in the displayed condition: gains and delays, inputs and outputs side by side.
+//! Correction in the displayed condition: gains and delays, with inputs and outputs side by side.
 
 use egui::{Color32, CursorIcon, FontId, Rect, Role, Sense, Ui, pos2, vec2};
 
@@ -23,10 +23,10 @@ use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
 
 /// Row height \[pt\].
 const ROW: f32 = 18.0;
-/// Right edges of gains and delays, as shares of a side's width.
+/// Right edges of gains and delays, as shares of the width of a side.
 const ENDS: [f32; 2] = [0.5, 0.85];
 
-/// Draws gain and delay for every channel; in a low window only the least and the greatest gain.
+/// Draws gain and delay of every channel; in a low window only the smallest and the largest gain.
 pub fn result_ui(
     ui: &mut Ui,
     state: &State,
@@ -84,8 +84,8 @@ pub fn result_ui(
     outputs.ui(ui, commands);
 }
 
-/// Draws whether better gains exist, in small text because it is the usual case; a click opens the
-/// proof.
+/// Draws whether the gains are proven optimal, in small text because they usually are; a click
+/// opens the proof.
 fn proof_ui(
     ui: &mut Ui,
     row: Rect,

@@ -15,7 +15,7 @@ use crate::gui::widgets::focus::{Region, region_ui};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
 
 /// Draws every setting that is not part of a view: first the frequently changed settings, then the
-/// others, folded.
+/// others in a foldable part.
 pub fn settings_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing.y = 4.0;
     region_ui(ui, Region::Settings, |ui| {
@@ -42,7 +42,7 @@ pub fn settings_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut
     });
 }
 
-/// Controls on a line: a setting, and those beside it.
+/// Settings in a line: the first one, and those beside it.
 type Line = Vec<&'static Setting>;
 
 fn is_frequent(line: &Line) -> bool {
@@ -93,7 +93,7 @@ fn advanced_head_ui(ui: &mut Ui, is_open: bool, palette: &Palette, commands: &mu
         .asks(LayoutCommand::ShowAdvanced(!is_open), commands);
 }
 
-/// Returns the effective settings, line by line.
+/// Returns the settings that currently have an effect, line by line.
 fn lines_of(state: &State) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
     for setting in SETTINGS {

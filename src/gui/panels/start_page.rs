@@ -1,5 +1,5 @@
-//! Start page without panels: three ways in, each named after the engineer's data, and the study
-//! behind the page.
+//! Start page, shown without panels: three ways to begin, each named after the engineer's data, and
+//! the study behind the page.
 
 use egui::{
     Align, Align2, Button, Color32, Frame, Layout, Margin, Rect, RichText, Role, ScrollArea, Sense,
@@ -22,14 +22,14 @@ use crate::gui::widgets::palette::{
     BODY_SIZE, DISPLAY_SIZE, Palette, SMALL_SIZE, TITLE_SIZE, body, medium, small,
 };
 
-/// Widths: ways in, open study, gap between them \[pt\].
+/// Widths of the ways to begin, of the open study, and of the gap between them \[pt\].
 const WIDTHS: [f32; 3] = [600.0, 460.0, 64.0];
 /// Line height in multi-line text \[pt\].
 const LINE: f32 = 20.0;
-/// Card height for a way in \[pt\].
+/// Card height of a way to begin \[pt\].
 const WAY: f32 = 72.0;
 
-/// Way to begin.
+/// A way to begin.
 struct Way {
     title: &'static str,
     words: &'static str,
@@ -64,7 +64,7 @@ fn ways() -> [Way; 3] {
     ]
 }
 
-/// Draws the three ways in as links above the example's plots.
+/// Draws the three ways to begin as links above the example's plots.
 pub fn example_line_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
     let size = vec2(ui.available_width(), 18.0);
     ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
@@ -211,7 +211,7 @@ fn way_ui(ui: &mut Ui, way: Way, is_primary: bool, palette: &Palette, commands: 
     ui.advance_cursor_after_rect(rect);
 }
 
-/// Draws the three work steps, instead of the recent files while there are none.
+/// Draws the three steps of work, in place of the recent files while there are none.
 fn steps_ui(ui: &mut Ui, palette: &Palette) {
     let steps = [
         (
@@ -315,7 +315,7 @@ fn open_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec
     });
 }
 
-/// Texts on the study behind the page.
+/// Texts about the study behind the page.
 struct StudyWords {
     title: String,
     content: String,

@@ -1,4 +1,4 @@
-//! Status bar at the window's foot: computation status, notices, remarks on the data.
+//! Status bar at the foot of the window: computation status, notices, remarks on the data.
 
 use egui::{Align, Button, Color32, Label, Layout, RichText, Ui};
 
@@ -16,8 +16,8 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::button_ui;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Draws the computation status on the left; on the right the words on the pointed item, else the
-/// newest notice, else a remark on the data.
+/// Draws the computation status on the left. On the right: the description of the element under the
+/// pointer, else the newest notice, else a remark on the data.
 pub fn status_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     ui.horizontal_centered(|ui| {
         computation_ui(ui, state, palette, commands);
@@ -85,7 +85,7 @@ fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut 
     }
 }
 
-/// Whether the live answer is up to date, and its colours.
+/// Whether the live analysis is up to date, and its colours.
 struct Status {
     text: String,
     color: Color32,
@@ -102,7 +102,7 @@ impl Status {
             return Self::colored(text, palette.warning);
         }
         if !state.results.is_stale(now) {
-            // Green text would claim that gains and phases are met.
+            // Green text would suggest that gains and phases are matched.
             return Self {
                 text: "up to date".to_owned(),
                 color: palette.dim_text,
@@ -127,7 +127,8 @@ impl Status {
     }
 }
 
-/// Describes the work besides the live answer; `None` if there is none, or not for long enough.
+/// Describes the work in addition to the live analysis; `None` if there is none, or if it has not
+/// lasted long enough.
 fn words_beside(state: &State, now: f64) -> Option<String> {
     let background = &state.results.background;
     if let Some(reading) = &state.records.reading {
@@ -153,7 +154,8 @@ fn count_models(state: &State) -> usize {
     count
 }
 
-/// Describes the work in progress besides the live answer, longest first.
+/// Describes the work in addition to the live analysis; of several jobs, the first in the order
+/// below.
 fn background_words(background: &Background, records: &RecordsState) -> String {
     if let Some((done, total)) = background.report {
         return format!("writing the report, {} % …", percent(done, total));
@@ -207,8 +209,8 @@ fn percent(done: usize, total: usize) -> usize {
     100 * done / total.max(1)
 }
 
-/// Returns why the assessment leaves out the displayed condition, or else a remark on the
-/// data.
+/// Returns why the assessment leaves out the displayed condition, or else the name of its flight
+/// state.
 fn data_remark(state: &State) -> String {
     let id = state.condition().id();
     if let Some(analysis) = state.analysis()

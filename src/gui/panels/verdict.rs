@@ -1,4 +1,5 @@
-//! Verdict: whether the corrected model holds, and the next step if it does not.
+//! Verdict: whether the constrained responses of the corrected model are matched, and the next step
+//! if they are not.
 
 use gdcm_method::correction::LeadPrice;
 use gdcm_method::correction::conflict::ConflictKind;
@@ -21,8 +22,8 @@ use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::views::used_couplings;
 
-/// Verdict on gain and phase in the constrained responses, here and in every condition, with the
-/// next steps.
+/// Verdict on gain and phase of the constrained responses, in the displayed condition and in all
+/// conditions, with the next steps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verdict {
     /// Displayed condition.
@@ -33,12 +34,12 @@ pub struct Verdict {
     pub steps: Vec<Step>,
     /// Note beside the steps.
     pub note: String,
-    /// Caution before the result is used: "Price: +21 dB above 12 rad/s".
+    /// Caution to read before the result is used: "Price: +21 dB above 12 rad/s".
     pub caution: Option<String>,
-    /// Poles within the band that the couplings in use make unstable, counted over the kept physics
-    /// models in all conditions.
+    /// Number of poles within the band that the couplings in use make unstable, over the kept
+    /// physics models of all conditions.
     pub unstable_in_band: usize,
-    /// Remark count in the sheet of reasons.
+    /// Number of remarks in the sheet of reasons.
     pub reasons: usize,
 }
 
@@ -67,7 +68,7 @@ impl MatchCount {
         Self::new(shown, &shown.delays)
     }
 
-    /// Adds the counts over all conditions with a result; `None` before the analysis.
+    /// Sums the counts over all conditions with a result; `None` without an analysis.
     fn everywhere(state: &State, count: fn(&ConditionAnalysis) -> Self) -> Option<Self> {
         let mut total = Self::default();
         for shown in state.analysis()?.conditions.values().flatten() {
@@ -79,7 +80,7 @@ impl MatchCount {
     }
 }
 
-/// Gains or phases in the constrained responses.
+/// Gains or phases of the constrained responses.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VerdictRow {
     /// "Gain" or "Phase".
@@ -90,7 +91,7 @@ pub struct VerdictRow {
     pub everywhere: Option<MatchCount>,
     /// "matched", "lags by ≈ 66 ms".
     pub words: String,
-    /// Whether all requests are met.
+    /// Whether all constrained responses are matched.
     pub is_met: bool,
 }
 
@@ -134,7 +135,7 @@ impl Verdict {
         }
     }
 
-    /// Returns a verdict with `words` instead of a result.
+    /// Returns a verdict with the message `words`, where there is no result.
     fn without_result(state: &State, words: &str) -> Self {
         Self {
             condition: state.condition().id(),
@@ -182,7 +183,7 @@ impl Verdict {
         }
     }
 
-    /// Returns whether gains and phases are met and no pole within the band became unstable.
+    /// Returns whether gains and phases are matched and no pole within the band became unstable.
     pub fn is_met(&self) -> bool {
         self.rows.iter().all(|row| row.is_met) && self.unstable_in_band == 0
     }
@@ -242,7 +243,8 @@ pub(crate) fn band_words(state: &State) -> String {
     )
 }
 
-/// "matched", "LAT → P stops at a bound", "2 share PED", "3 disagree".
+/// Formats the verdict on the gains: "matched", "LAT → P stops at a bound", "2 share PED", "3
+/// disagree".
 fn gain_words(state: &State, shown: &ConditionAnalysis) -> String {
     let Some(miss) = shown.gains.unmatched.first() else {
         return "matched".to_owned();
@@ -264,8 +266,7 @@ fn gain_words(state: &State, shown: &ConditionAnalysis) -> String {
     }
 }
 
-/// Returns "2 share PED" for responses that conflict because they have an input or output in
-/// common.
+/// Returns "2 share PED" for conflicting responses with a common input or output.
 fn shared_words(state: &State, pairs: &[Pair]) -> Option<String> {
     let [first, rest @ ..] = pairs else {
         return None;
@@ -283,8 +284,8 @@ fn shared_words(state: &State, pairs: &[Pair]) -> Option<String> {
     Some(format!("{} share {}", pairs.len(), channel.name))
 }
 
-/// Returns "lags by ≈ 66 ms" if all responses lag about equally, by the criterion for a common lead,
-/// otherwise "lags 20–110 ms"; short enough for the narrowest window.
+/// Returns "lags by ≈ 66 ms" if the lags of all responses are about equal (by the criterion for a
+/// common lead), otherwise "lags 20–110 ms"; short enough for the narrowest window.
 fn lag_words(left_ms: &mut [f64]) -> String {
     let least = left_ms.iter().copied().fold(f64::INFINITY, f64::min);
     let most = left_ms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -301,13 +302,13 @@ fn lag_words(left_ms: &mut [f64]) -> String {
     } else if most - least <= 0.5 * middle.abs() {
         format!("{verb} by ≈ {} ms", telling(middle.abs(), 0))
     } else {
-        // "-5–60" would read as two signs.
+        // "-5–60" would look like two minus signs.
         let to = if least * most < 0.0 { " to " } else { "–" };
         format!("{verb} {low}{to}{high} ms")
     }
 }
 
-/// Counts the poles within the band that the couplings in use make unstable.
+/// Returns the number of poles within the band that the couplings in use make unstable.
 fn unstable_in_band(state: &State) -> usize {
     match used_couplings(state) {
         Some(used) => used.unstable_in_band(),
@@ -321,8 +322,9 @@ struct CouplingCaution {
     words: String,
 }
 
-/// Returns the caution: missing couplings although some are requested, or the effect of couplings
-/// on poles and loop; else the lead price; else the schedule's cost in this condition.
+/// Returns the most important caution: couplings that are requested but missing or that make poles
+/// unstable; else the lead price; else any other caution about couplings; else the cost of the
+/// schedule in this condition.
 fn caution(state: &State, shown: &ConditionAnalysis) -> Option<String> {
     let couplings = coupling_caution(state);
     if let Some(caution) = &couplings
@@ -335,8 +337,8 @@ fn caution(state: &State, shown: &ConditionAnalysis) -> Option<String> {
         .or_else(|| schedule_caution(state, shown))
 }
 
-/// Returns a caution if the schedule leaves more than twice the J that the own correction leaves
-/// (M12).
+/// Returns a caution if the schedule leaves more than twice the J that the condition's own
+/// correction leaves (M12).
 fn schedule_caution(state: &State, shown: &ConditionAnalysis) -> Option<String> {
     let schedule = state.analysis()?.schedule.as_ref().ok()?;
     for caution in &schedule.cautions {
@@ -350,8 +352,8 @@ fn schedule_caution(state: &State, shown: &ConditionAnalysis) -> Option<String> 
     None
 }
 
-/// Returns the most serious remark on the couplings in use in a few words; the list of reasons
-/// holds every remark.
+/// Returns the most serious remark on the couplings in use, in a few words; the sheet of reasons
+/// contains every remark.
 fn coupling_caution(state: &State) -> Option<CouplingCaution> {
     if state.analysis()?.asked_couplings().is_err() {
         return Some(CouplingCaution {
@@ -378,7 +380,7 @@ fn coupling_caution(state: &State) -> Option<CouplingCaution> {
     })
 }
 
-/// Returns the lead price: the greatest magnitude that the filters of a constrained response add
+/// Returns the lead price: the maximum magnitude that the filters of a constrained response add
 /// above the band (M15.6); `None` up to 0.05 dB.
 fn lead_caution(shown: &ConditionAnalysis) -> Option<String> {
     let price = LeadPrice::of(&shown.compensated.as_ref()?.leads)?;
@@ -469,8 +471,7 @@ mod tests {
             (count(5, 5), count(55, 55), "matched")
         );
         assert_eq!((phase.here, phase.everywhere), (count(0, 5), count(0, 55)));
-        // The medians of D of the example's constrained responses in condition 10: 56 to 72 ms of
-        // lead.
+        // Medians of D of the example's constrained responses in condition 10: 56 to 72 ms of lead.
         assert_eq!(phase.words, "lags by ≈ 66 ms");
         assert!(!verdict.is_met() && verdict.caution.is_none());
         assert_eq!(labels(&verdict), ["Use leads", "Find the cause first"]);

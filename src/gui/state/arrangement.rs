@@ -1,4 +1,4 @@
-//! Places of the views between the side panels: the view in front of its group, a second view
+//! Arrangement of the views between the side panels: the view in front of its group, a second view
 //! beside it, and the dock below.
 
 use serde::{Deserialize, Serialize};
@@ -49,7 +49,8 @@ impl Arrangement {
         self.beside.filter(|beside| *beside != self.view())
     }
 
-    /// Returns the view in the dock; `None` if the view in front takes its room.
+    /// Returns the view in the dock; `None` if the view in front takes the space of the dock, or if
+    /// the docked view is shown above.
     pub fn dock(&self) -> Option<View> {
         let is_shown_above = self.view() == self.dock || self.beside() == Some(self.dock);
         if self.view().facts().takes_dock || is_shown_above {
@@ -68,12 +69,12 @@ impl Arrangement {
         self.dock_open = Some(is_open);
     }
 
-    /// Brings a group to the front, with the view it showed last.
+    /// Brings a group to the front, with the view that it showed last.
     pub fn show_group(&mut self, group: ViewGroup) {
         self.group = group;
     }
 
-    /// Brings a view to the front; a docked view is unfolded there instead, unless it is in
+    /// Brings a view to the front. The view in the dock is unfolded there instead, unless it is in
     /// front already.
     pub fn show(&mut self, view: View) {
         let group = view.facts().group;
@@ -110,7 +111,7 @@ impl Arrangement {
         self.view() == view || self.beside() == Some(view) || self.dock() == Some(view)
     }
 
-    /// Returns this stored arrangement if every group shows its own view.
+    /// Returns this stored arrangement; `None` unless every group shows one of its own views.
     pub fn if_whole(self) -> Option<Self> {
         for group in ViewGroup::ALL {
             if self.of_groups[group as usize].facts().group != group {

@@ -10,7 +10,7 @@ use super::assembly_columns::COLUMNS;
 use crate::gui::plot::{BodeCurve, BodeView};
 use crate::gui::widgets::tables::Sorting;
 
-/// Maximum count of undo steps.
+/// Maximum number of undo steps.
 const MOST_STEPS: usize = 200;
 
 /// Progress of reading files.
@@ -18,11 +18,11 @@ const MOST_STEPS: usize = 200;
 pub struct Reading {
     /// Current file, counted from 1.
     pub number: usize,
-    /// Total file count.
+    /// Total number of files.
     pub of: usize,
     /// Name of the current file.
     pub name: String,
-    /// Bytes read so far from the values in the current file.
+    /// Bytes of values read so far from the current file.
     pub taken: u64,
 }
 
@@ -36,22 +36,22 @@ pub struct AssemblyState {
     are_changed: bool,
     /// The requested files and folders.
     pub sources: Vec<PathBuf>,
-    /// Messages about content that could not be read.
+    /// Messages about unreadable content.
     pub faults: Vec<String>,
-    /// Messages about content that is no model.
+    /// Messages about content that is not a model.
     pub ignored: Vec<String>,
     /// Unused content of model files, a line each.
     pub unused: Vec<String>,
     /// The tables among the files, with the headings used to read them.
     pub tables: Headings,
-    /// Units needed to interpret these tables as frequency responses.
+    /// Units still needed to read these tables as frequency responses, by table.
     pub unsaid: BTreeMap<String, Vec<UnsaidUnit>>,
     /// Progress of a running read.
     pub reading: Option<Reading>,
     /// Index of the displayed model.
     pub selected: usize,
     pub sorting: Sorting,
-    /// Response of the displayed model.
+    /// Displayed response of the selected model.
     pub preview: Preview,
     /// Path of a folder or a file, as typed.
     pub source_path: String,
@@ -134,7 +134,7 @@ impl AssemblyState {
         self.assembly = self.assembly.with_rules(rules);
     }
 
-    /// Returns the tables, including this one, that need the same units under the same headings.
+    /// Returns the tables, including `file`, that need the same units under the same headings.
     pub fn tables_alike(&self, file: &str) -> Vec<&String> {
         let mut alike = Vec::new();
         for (other, headings) in &self.tables {

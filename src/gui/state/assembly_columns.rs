@@ -6,14 +6,14 @@ use gdcm_model::units::number;
 /// A column of the table.
 pub struct Column {
     pub heading: &'static str,
-    /// Share of the table's width.
+    /// Width of the column, as a share of the table's width.
     pub share: f32,
-    /// Cell text; `None` if it must be completed.
+    /// Returns the cell text; `None` if the value is still to be entered.
     pub cell: fn(&Part) -> Option<String>,
 }
 
 impl Column {
-    /// Returns the cell text; "?" if it must be completed.
+    /// Returns the cell text; "?" if the value is still to be entered.
     pub fn text(&self, part: &Part) -> String {
         (self.cell)(part).unwrap_or_else(|| "?".to_owned())
     }
@@ -78,7 +78,7 @@ fn trim_text(part: &Part) -> String {
     offsets.join(", ")
 }
 
-/// Returns the role, or "not included" for a model left out.
+/// Returns the role, or "not included" for a model that is left out.
 fn role_text(part: &Part) -> Option<String> {
     if part.row.left_out {
         return Some("not included".to_owned());

@@ -1,4 +1,4 @@
-//! Selection and form of the assessment.
+//! Selection of responses and display of the assessment.
 
 use gdcm_method::fidelity::CostAverage;
 use gdcm_method::schedule::CostChange;
@@ -11,7 +11,7 @@ pub enum AssessedPairs {
     /// On-axis responses (Figures 8 to 12).
     #[default]
     OnAxis,
-    /// All others (Figures 13 to 19).
+    /// The other responses (Figures 13 to 19).
     OffAxis,
     /// Response in focus.
     Focused,
@@ -50,7 +50,7 @@ impl CostPart {
     }
 }
 
-/// Selection and form of the assessment.
+/// Selection of responses and display of the assessment.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AssessedFigures {
     pub model: AssessedModel,

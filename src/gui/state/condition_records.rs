@@ -1,4 +1,4 @@
-//! Flight records in a condition, and the models identified from them.
+//! Flight records of a condition, and the models identified from them.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -16,27 +16,27 @@ use gdcm_sysid::identification::{
 };
 use gdcm_sysid::records::{ColumnUse, LaidOutRecord, RecordChannels, RecordSource};
 
-/// Result when a record is added.
+/// Result of adding a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AddedRecord {
     New,
-    /// It replaces the record previously read from the same file.
+    /// The record replaces the one previously read from the same file.
     ReadAgain,
-    /// It was loaded already.
+    /// The record was already loaded.
     KnownAlready,
 }
 
-/// Records in a condition, and the models identified from them.
+/// Flight records of a condition, and the models identified from them.
 #[derive(Clone, Debug, Default)]
 pub struct ConditionRecords {
     pub rows: Vec<LaidOutRecord>,
     /// Index of the displayed record.
     pub chosen: usize,
-    /// Input preparation, if changed.
+    /// Preparation of the inputs.
     pub inputs: Vec<ChannelPreparation>,
-    /// Output preparation.
+    /// Preparation of the outputs.
     pub outputs: Vec<ChannelPreparation>,
-    /// Band \[rad/s\]; `None` takes the study's.
+    /// Identification band \[rad/s\]; `None` selects the band of the study.
     pub band: Option<[f64; 2]>,
     /// Columns with recorded references that excited the loop externally (M14.15).
     pub references: Vec<String>,
@@ -47,17 +47,18 @@ pub struct ConditionRecords {
         IdentifyJob,
         Result<Arc<Identification>, IdentificationError>,
     )>,
-    /// Whether the settings have changed since.
+    /// Whether the settings have changed since the latest identification.
     pub changed: bool,
-    /// Upper band limit \[rad/s\] that sets the clock for resampled topics; `None` if unknown
-    /// for some records.
+    /// Upper band limit \[rad/s\] that sets the clock of resampled topics; `None` if unknown for
+    /// some records.
     pub clock_band_end: Option<f64>,
-    /// Records that the engineer has left out, whether or not they have parts.
+    /// Records that the engineer has left out; records that are unused only because parts replace
+    /// them are not included.
     left_out: Vec<RecordSource>,
 }
 
 impl ConditionRecords {
-    /// Creates the records for a condition in `dataset`.
+    /// Creates the records of a condition in `dataset`.
     pub fn new(rows: Vec<LaidOutRecord>, dataset: &Dataset) -> Self {
         let (inputs, outputs) = dataset.names_of_channels();
         Self {
@@ -81,10 +82,11 @@ impl ConditionRecords {
         true
     }
 
-    /// Adds a part behind its record; the whole is no longer used, because evidence counts once.
+    /// Adds a part behind its record. The whole record is no longer used, so that no sample counts
+    /// twice.
     ///
     /// # Errors
-    /// A message, if the record has no samples at that time.
+    /// A message, if the record has no samples in that time span.
     pub fn add_part(
         &mut self,
         index: usize,
@@ -135,8 +137,8 @@ impl ConditionRecords {
     }
 
     /// Adds a record unless it is already loaded. A record from a changed file replaces the earlier
-    /// one; `read_from` gives the paths of files. A different record with the same name gets a
-    /// number after its name.
+    /// one; `read_from` gives the file paths by SHA-256. A different record with the same name gets
+    /// a number after its name.
     pub fn add_row(
         &mut self,
         mut row: LaidOutRecord,
@@ -164,7 +166,7 @@ impl ConditionRecords {
         AddedRecord::New
     }
 
-    /// Numbers the name if another record has it too.
+    /// Appends a number to the record's name if another record has the same name.
     fn give_free_name(&self, row: &mut LaidOutRecord) {
         let plain = row.table.name.clone();
         let mut number = 1;
@@ -213,8 +215,8 @@ impl ConditionRecords {
             .filter(|(_, row)| row.used_flight().is_some())
     }
 
-    /// Returns the cautions about the identification, each with the rows it concerns, if any; none
-    /// once the settings have changed.
+    /// Returns the cautions about the identification, each with the rows that it concerns, if any;
+    /// none once the settings have changed.
     pub fn cautions(&self) -> impl Iterator<Item = (Vec<usize>, CautionNote)> {
         let cautions = match self.identification() {
             Some(found) if !self.changed => found.cautions.as_slice(),
@@ -234,7 +236,7 @@ impl ConditionRecords {
             .collect()
     }
 
-    /// Returns short marks, with a caution sign, for the cautions with a code.
+    /// Returns short marks, with a caution sign, for the cautions with this code.
     pub fn marks(&self, code: &'static str) -> impl Iterator<Item = String> {
         self.cautions()
             .filter(move |(_, note)| note.code == code)
@@ -257,12 +259,12 @@ impl ConditionRecords {
         self.chosen = index.min(self.rows.len().saturating_sub(1));
     }
 
-    /// Returns the row for a record number in the identification.
+    /// Returns the row of a record, given by its number in the identification.
     pub fn row_of_record(&self, record: usize) -> Option<usize> {
         self.used_rows().nth(record).map(|(index, _)| index)
     }
 
-    /// Returns the channel's preparation for editing.
+    /// Returns the preparation of a channel, for editing.
     pub fn channel_mut(&mut self, signal: &Signal) -> Option<&mut ChannelPreparation> {
         match signal.role {
             ChannelSide::Input => self.inputs.get_mut(signal.index),
@@ -270,7 +272,7 @@ impl ConditionRecords {
         }
     }
 
-    /// Returns the preparation for all channels.
+    /// Returns the preparation of all channels.
     pub fn preparation(&self) -> Preparation {
         Preparation {
             inputs: self.inputs.clone(),
@@ -279,11 +281,11 @@ impl ConditionRecords {
         }
     }
 
-    /// Creates the identification job for the current settings, over a band \[rad/s\]; `channels`
-    /// are those in the records.
+    /// Creates the identification job for the current settings and a band \[rad/s\]; `channels` are
+    /// those of the records.
     ///
     /// # Errors
-    /// A message, if no record is used, all are held out, or one lacks a reference.
+    /// A message, if no record is used, if all are held out, or if a record lacks a reference.
     pub fn job(
         &self,
         condition: ConditionId,
@@ -307,7 +309,7 @@ impl ConditionRecords {
         Ok(IdentifyJob::new(condition, request))
     }
 
-    /// Returns a record with the references added after its inputs.
+    /// Returns a record whose references are added after its inputs.
     fn with_references(
         &self,
         row: &LaidOutRecord,
@@ -333,7 +335,8 @@ impl ConditionRecords {
         }
     }
 
-    /// Returns the models to put into the condition, if an identification succeeded.
+    /// Returns the identified models to put into the condition; `None` without a successful
+    /// identification.
     pub fn adopted(
         &self,
         offered: OfferedModels,
@@ -353,8 +356,8 @@ impl ConditionRecords {
         Some(job)
     }
 
-    /// Returns these records, restored instead of `now`. Models identified since stay, marked as
-    /// results of other records.
+    /// Returns these records, restored to replace `now`. Models identified in the meantime stay,
+    /// marked as results of other records.
     pub(super) fn restored(mut self, now: Option<Self>) -> Self {
         let Some(now) = now else {
             return self;
@@ -368,7 +371,7 @@ impl ConditionRecords {
     }
 }
 
-/// Returns the message for a part without samples from `part_s` \[s\].
+/// Returns the message for a part \[s\] without samples.
 fn no_samples(whole: &LaidOutRecord, part_s: [f64; 2]) -> String {
     let [from, to] = part_s.map(number);
     let mut message = format!("{}: no samples from {from} to {to} s", whole.table.name);
@@ -381,7 +384,7 @@ fn no_samples(whole: &LaidOutRecord, part_s: [f64; 2]) -> String {
     message
 }
 
-/// Returns whether `new` is the whole record `old`, read again from the same, changed file.
+/// Returns whether `new` is the whole record `old`, read again after its file has changed.
 fn is_read_again(
     old: &LaidOutRecord,
     new: &LaidOutRecord,

@@ -21,14 +21,13 @@ pub struct CurveDisplay {
     pub phase_error: PhaseErrorUnit,
     pub hidden_roles: BTreeSet<Role>,
     pub hidden_models: BTreeSet<ModelId>,
-    /// Whole turns by which phases were shifted up by hand.
+    /// Whole turns by which the engineer shifted the phases upwards.
     pub turns: BTreeMap<(ConditionId, Pair, CurveId), i32>,
     /// Frequency under the pointer, in any plot \[rad/s\].
     pub cursor: Option<f64>,
     /// Marked frequencies \[rad/s\]: none, one or two.
     pub pinned: Vec<f64>,
-    /// Frequencies, with their names, that define the bandwidth of the displayed response
-    /// \[rad/s\].
+    /// Named frequencies \[rad/s\] that define the bandwidth of the displayed response.
     pub crossings: Vec<(&'static str, f64)>,
     /// Whether the values at the cursor are listed.
     pub lists_values: bool,
@@ -38,7 +37,7 @@ pub struct CurveDisplay {
     /// Models selected by drawing a box.
     pub selected: BTreeSet<ModelId>,
     pub shows_bands: bool,
-    /// Role drawn above all others.
+    /// Role drawn above all other roles.
     pub raised: Option<Role>,
 }
 
@@ -50,7 +49,7 @@ impl Default for CurveDisplay {
             magnitude: MagnitudeUnit::default(),
             phase: PhaseUnit::default(),
             phase_error: PhaseErrorUnit::default(),
-            // Curves with couplings alone are optional.
+            // Curves with couplings alone are hidden at first.
             hidden_roles: Self::hidden_at_first(),
             hidden_models: BTreeSet::new(),
             turns: BTreeMap::new(),
@@ -67,7 +66,7 @@ impl Default for CurveDisplay {
 }
 
 impl CurveDisplay {
-    /// Maximum count of marked frequencies; the difference between two is reported.
+    /// Maximum number of marked frequencies; the difference between two is shown.
     const MOST_PINNED: usize = 2;
 
     /// Returns the roles hidden by default: couplings alone are an intermediate step, not a result.
@@ -132,7 +131,7 @@ impl CurveDisplay {
         }
     }
 
-    /// Drops everything that refers to models in another dataset.
+    /// Drops all display options of models, when another dataset is opened.
     pub fn forget_models(&mut self) {
         self.hidden_models.clear();
         self.turns.clear();

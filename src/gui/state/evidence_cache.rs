@@ -6,7 +6,7 @@ use gdcm_method::schedule::form_comparison::{FormComparison, LeadDegreeFit};
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::Analysis;
 
-/// Evidence for every schedule form, cached as long as the analysis is the same.
+/// Evidence for every schedule form, kept until the analysis changes.
 #[derive(Debug, Default)]
 pub struct CachedEvidence {
     pub analysis: Option<Arc<Analysis>>,

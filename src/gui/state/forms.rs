@@ -21,31 +21,31 @@ pub enum RequirementTable {
 /// Form in front of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum FormKind {
-    /// Path to open.
+    /// Path of the file to open.
     Open,
-    /// New path for a study's dataset.
+    /// New path of a study's dataset.
     FindDataset,
-    /// Path for the study.
+    /// Path of the study.
     Save,
     /// Corrections to export, and the folder.
     Export,
     /// Export format for other tools, and the path.
     ExportAs,
-    /// Reason for a rejection, in words.
+    /// Reason for a rejection, in the engineer's words.
     Reason,
-    /// Path for a table.
+    /// Path of a table to save.
     SaveTable,
     /// Dataset to make from imported models.
     Models,
     /// Channels and path for a dataset made from records.
     RecordDataset,
-    /// Path and width for a figure.
+    /// Path and printed width of a figure.
     SaveFigure,
-    /// Path for the report.
+    /// Path of the report.
     Report,
-    /// Path to a table.
+    /// Path of a table to read.
     ReadRequirementTable(RequirementTable),
-    /// Path for the tolerances.
+    /// Path of the tolerances.
     WriteTolerances,
     /// Command palette, searched by name.
     Palette,
@@ -60,19 +60,19 @@ pub enum FormKind {
 /// Search in the open palette.
 #[derive(Clone, Debug, Default)]
 pub struct PaletteForm {
-    /// Search text as typed.
+    /// Typed search text.
     pub query: String,
-    /// Row carried out by Enter.
+    /// Index of the row that Enter carries out.
     pub chosen: usize,
 }
 
 /// Contents of the forms.
 #[derive(Debug, Default)]
 pub struct Forms {
-    /// Form shown.
+    /// The open form.
     pub shown: Option<FormKind>,
-    /// Form drawn last, and whether it asked to overwrite files: a change of either counts as a
-    /// newly opened form.
+    /// Form drawn last, and whether it asked to overwrite files. If either differs in the next
+    /// frame, the form counts as newly opened.
     pub drawn: Option<(FormKind, bool)>,
     /// Path or text typed into each form.
     pub typed: BTreeMap<FormKind, String>,
@@ -91,7 +91,7 @@ pub struct Forms {
     /// Export format for other tools.
     pub export_format: ExportFormat,
     pub palette: PaletteForm,
-    /// Files that the form's action would overwrite; if not empty, the form asks whether to.
+    /// Files that the form's action would overwrite; if there are any, the form asks for consent.
     pub existing: Vec<String>,
 }
 

@@ -10,18 +10,18 @@ use gdcm_study::AcrossRole;
 use crate::gui::plot::overview::OverviewView;
 use crate::gui::plot::{BodeCurve, BodeView};
 
-/// Ranges, transforms and cached curves for plots over frequency.
+/// Ranges, transforms and cached curves of the plots over frequency.
 #[derive(Debug, Default)]
 pub struct FrequencyPlots {
-    /// Ranges and transforms for the Bode plot.
+    /// Ranges and transforms of the Bode plot.
     pub bode: BodeView,
-    /// Ranges and transforms for the error plot.
+    /// Ranges and transforms of the error plot.
     pub error: BodeView,
     /// Role displayed by the plot across conditions.
     pub across_role: AcrossRole,
-    /// Ranges and transforms for the plot across conditions.
+    /// Ranges and transforms of the plot across conditions.
     pub across: BodeView,
-    /// Response and role to which that plot was last fitted.
+    /// Response and role to which the plot across conditions was last fitted.
     pub across_fitted: Option<(Pair, AcrossRole)>,
     /// Response shapes across conditions, cached between frames.
     pub across_shapes: AirspeedCache,
@@ -44,7 +44,7 @@ impl FrequencyPlots {
         self.across.request_fit();
     }
 
-    /// Fits the plots to other curves, except on axes that have been zoomed.
+    /// Fits the plots to other curves, except axes that have been zoomed.
     pub fn refit(&mut self) {
         self.bode.request_refit();
         self.error.request_refit();

@@ -10,20 +10,20 @@ use super::evidence_cache::CachedEvidence;
 use super::pair_set::PairSet;
 use crate::gui::widgets::tables::Sorting;
 
-/// Content of channel plots, net-gain plots and evidence.
+/// Content of the channel plots, the net-gain plots and the evidence.
 #[derive(Debug, Default)]
 pub struct GainDisplay {
     pub net_gain_pairs: PairSet,
-    /// Responses constrained at any time since the dataset was opened.
+    /// Responses that were constrained at any time since the dataset was opened.
     pub once_held: BTreeSet<Pair>,
     /// Responses picked by the engineer for the net-gain plots.
     pub picked_pairs: BTreeSet<Pair>,
     pub channel_values: (Measure, Across),
-    /// Transforms for the channel plots.
+    /// Ranges and transforms of the channel plots.
     pub channels: ChannelsView,
     /// Whether gain plots omit error bars and bands.
     pub hide_bars: bool,
-    /// Sorting in the evidence tables: differences, second variables, schedule forms.
+    /// Sorting of the evidence tables: differences, second variables, schedule forms.
     pub evidence_tables: [Sorting; 3],
     /// Whether the evidence for the schedule is shown beside the net gains.
     pub show_evidence: bool,

@@ -1,4 +1,4 @@
-//! Places for views, panels and sheets.
+//! Layout of views, panels and sheets.
 
 use super::arrangement::Arrangement;
 use super::opens_with::OpensWith;
@@ -8,9 +8,9 @@ use super::sheet::Sheet;
 #[derive(Debug, Default)]
 pub struct Layout {
     pub arrangement: Arrangement,
-    /// Whether the window is wide enough for full names and words.
+    /// Whether the window is wide enough for full names and texts.
     pub is_wide: bool,
-    /// Content at the next start.
+    /// Content shown at the next start.
     pub opens_with: OpensWith,
     /// Whether the left panel is shown in full; `None` follows the window width.
     pub left_open: Option<bool>,

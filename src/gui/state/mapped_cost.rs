@@ -5,7 +5,7 @@
 pub enum MappedCost {
     /// The uncorrected physics representative.
     Before,
-    /// Optimum for each condition.
+    /// Optimum of each condition.
     #[default]
     Own,
     /// The schedule, applied to the nominal model.

@@ -10,24 +10,24 @@ use gdcm_study::jobs::curve_jobs::ConditionModes;
 use gdcm_study::results::fitted_couplings::FittedCouplings;
 use gdcm_words::Table;
 
-/// Modes followed from model to model, zeros in the focused response, and pole shifts by
-/// couplings; cached as long as their inputs are the same.
+/// Modes followed from model to model, zeros of the focused response, and pole shifts due to
+/// couplings; cached until their inputs change.
 #[derive(Debug, Default)]
 pub struct CachedModes {
     pub made_of: Option<MadeOf>,
     pub table: Table,
-    /// For each row, the first model that jumps.
+    /// For each row, the first model in which the mode jumps.
     pub jumping: Vec<Option<ModelId>>,
     pub zeros: Vec<(ModelId, Vec<Complex<f64>>)>,
-    /// Pole shifts of the physics representative by couplings.
+    /// Pole shifts of the physics representative due to couplings.
     pub shifts: Vec<PoleShift>,
 }
 
-/// Inputs to the modes, the zeros and the shifts.
+/// Inputs of the modes, the zeros and the shifts.
 #[derive(Debug)]
 pub struct MadeOf {
     pub modes: Arc<ConditionModes>,
-    /// Physics model, by index, to whose modes the others' are matched.
+    /// Index of the physics model to whose modes those of the other models are matched.
     pub reference: usize,
     pub couplings: Option<Arc<FittedCouplings>>,
     /// Response and models whose zeros are shown.

@@ -1,17 +1,17 @@
 //! Messages to the engineer: notices that come and go, and bars that stay.
 
-/// Event that concerns the program or its files.
+/// Message that stays until it is closed, about the program or its files.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Bar {
     /// A computation panicked.
     Fault {
-        /// The ended work, the kept decisions, and the details to send.
+        /// The interrupted work, the decisions kept, and the details to send.
         sentence: String,
     },
     /// Decisions from an earlier window that ended without saving them.
     Recovery {
         offer: usize,
-        /// Study and date.
+        /// Study and date of the lost decisions.
         sentence: String,
     },
     /// The dataset's file has changed since it was opened.
@@ -24,7 +24,7 @@ pub enum Bar {
     },
 }
 
-/// Outcome reported by a message.
+/// Outcome that a notice reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoticeKind {
     /// Success.
@@ -33,7 +33,7 @@ pub enum NoticeKind {
     Trouble,
 }
 
-/// Message to the engineer.
+/// Short message to the engineer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Notice {
     pub kind: NoticeKind,

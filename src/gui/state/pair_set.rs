@@ -1,17 +1,17 @@
-//! Responses in the net-gain plots.
+//! Responses shown in the net-gain plots.
 
 use serde::{Deserialize, Serialize};
 
-/// Responses in the net-gain plots.
+/// Responses shown in the net-gain plots.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PairSet {
-    /// Responses constrained now or at any time since the window was opened: releasing a response
+    /// Responses constrained now or at any time since the dataset was opened: releasing a response
     /// keeps its plot.
     #[default]
     Held,
     /// Response in focus.
     Focused,
-    /// On-axis responses in the dataset.
+    /// On-axis responses of the dataset.
     OnAxis,
     All,
     /// Responses picked by the engineer.
@@ -28,7 +28,6 @@ impl PairSet {
         Self::Picked,
     ];
 
-    /// Returns the name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Held => "held",

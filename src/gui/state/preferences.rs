@@ -14,15 +14,15 @@ use crate::gui::plot::Role;
 use crate::gui::plot::quantity::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 use crate::gui::widgets::palette::PlotStyle;
 
-/// Preferences for the window. Fields missing from the text stored by an earlier version get their
+/// Preferences of the window. Fields missing from the text stored by an earlier version get their
 /// defaults.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Preferences {
     pub arrangement: Option<Arrangement>,
-    /// Content at the next start.
+    /// Content shown at the next start.
     pub opens_with: OpensWith,
-    /// Whether the left panel is shown in full, if chosen.
+    /// Whether the left panel is shown in full; `None` follows the window width.
     pub left_open: Option<bool>,
     pub frequency_unit: FrequencyUnit,
     pub magnitude: MagnitudeUnit,

@@ -14,7 +14,7 @@ pub use super::records_page::{RecordsPage, TimeModel};
 pub use super::wanted_dataset::WantedDataset;
 use crate::gui::widgets::tables::Sorting;
 
-/// Target of an undo or redo step: the records on the other side of an edit, by condition. Only the
+/// State of the records before or after an edit, to which an undo or redo step returns. Only the
 /// conditions changed by the edit are included.
 #[derive(Clone, Debug, Default)]
 pub struct RecordsBefore {
@@ -24,25 +24,25 @@ pub struct RecordsBefore {
     pub sources: Option<Vec<PathBuf>>,
 }
 
-/// Records view. Not saved: records stay in their files.
+/// State of the Records view. Not saved: records stay in their files.
 #[derive(Clone, Debug, Default)]
 pub struct RecordsState {
-    /// Records by condition; no entry means that the condition's records are not loaded yet.
+    /// Records by condition; without an entry, the records of a condition are not loaded yet.
     pub conditions: BTreeMap<ConditionId, ConditionRecords>,
     /// Whether the dataset is the example, which has embedded records.
     pub is_example: bool,
     pub page: RecordsPage,
-    /// Sorting in the table of conditions.
+    /// Sorting of the table of conditions.
     pub sorting: Sorting,
-    /// Models whose responses to the same inputs are drawn.
+    /// Models whose responses to the recorded inputs are drawn.
     pub time_models: BTreeSet<TimeModel>,
-    /// Whether dragging in the time charts selects parts.
+    /// Whether dragging in the time charts selects parts of the record.
     pub chooses_parts: bool,
     /// Input shown by the spectrogram.
     pub spectrogram: Option<usize>,
-    /// Search field to focus.
+    /// Search setting whose field is to be focused.
     pub advanced_field: Option<&'static str>,
-    /// Path to files, as typed.
+    /// Typed path of record files.
     pub path: String,
     /// The added files and folders.
     pub sources: Vec<PathBuf>,
@@ -56,7 +56,7 @@ pub struct RecordsState {
     pub faults: Vec<String>,
     /// Running and waiting identification jobs.
     pub running: Vec<IdentifyJob>,
-    /// Count of conditions requested since the queue was last empty.
+    /// Number of conditions requested since the queue was last empty.
     pub asked: usize,
 }
 
@@ -73,7 +73,7 @@ impl RecordsState {
         }
     }
 
-    /// Restores the records on the other side of an edit; returns the current ones.
+    /// Restores the records before or after an edit; returns the replaced records.
     pub fn exchange(&mut self, before: RecordsBefore) -> RecordsBefore {
         let mut now = RecordsBefore::default();
         for (id, records) in before.conditions {
@@ -90,7 +90,7 @@ impl RecordsState {
         now
     }
 
-    /// Returns the channels that lack a unit, with counts of affected records and conditions.
+    /// Returns the channels that lack a unit, with the numbers of affected records and conditions.
     pub fn open_units(&self) -> Option<OpenUnits> {
         let mut open = OpenUnits::default();
         for (id, records) in &self.conditions {
@@ -158,7 +158,7 @@ impl RecordsState {
         self.running.iter().find(|job| job.condition == condition)
     }
 
-    /// Returns the running job, once it has reported a step.
+    /// Returns the running job, once it has reported its first step.
     pub fn under_way(&self) -> Option<&IdentifyJob> {
         self.running.iter().find(|job| !job.news().step.is_empty())
     }
@@ -174,18 +174,18 @@ impl RecordsState {
 /// Missing units in all records.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct OpenUnits {
-    /// Channels with their units in the dataset.
+    /// Names of the channels, with their units in the dataset.
     pub channels: Vec<(String, String)>,
-    /// Count of affected records.
+    /// Number of affected records.
     pub records: usize,
-    /// Count of affected conditions.
+    /// Number of affected conditions.
     pub conditions: usize,
     /// The first affected condition.
     pub first: Option<ConditionId>,
 }
 
 impl OpenUnits {
-    /// Adds the channels whose unit a record lacks; returns whether there are some.
+    /// Adds the channels whose unit is missing in a record; returns whether there are any.
     fn add_channels(&mut self, problems: &[LayoutProblem]) -> bool {
         let mut is_open = false;
         for problem in problems {

@@ -7,18 +7,18 @@ use crate::gui::widgets::palette::Palette;
 /// A page of the Records view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RecordsPage {
-    /// Every channel in the selected record over time.
+    /// Every channel of the selected record over time.
     #[default]
     Histories,
-    /// Input excitation, and its highest frequency.
+    /// Excitation of the inputs, and its highest frequency.
     Inputs,
     /// The measured response with the models.
     Response,
     /// Poles over the model order.
     Stabilisation,
-    /// Poles with standard deviations, for the recommended model.
+    /// Poles of the recommended model with standard deviations.
     Poles,
-    /// Fit quality for each record and output.
+    /// Quality of fit of each record and output.
     Fit,
     /// Columns assigned to channels.
     Columns,
@@ -86,7 +86,7 @@ impl RecordsPage {
     }
 }
 
-/// A model that can be compared with a record in time.
+/// A model that can be compared with a record in the time domain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum TimeModel {
     /// The recommended identified model.
@@ -101,7 +101,6 @@ impl TimeModel {
     /// All models, in display order.
     pub const ALL: [Self; 3] = [Self::Identified, Self::Physics, Self::Corrected];
 
-    /// Returns the name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Identified => "identified",

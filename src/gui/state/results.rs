@@ -23,7 +23,7 @@ use gdcm_study::results::uncertainty::Uncertainty;
 use gdcm_study::stages::condition_curves::ConditionCurves;
 use gdcm_study::{Analysis, AssessmentTable, ConditionAnalysis};
 
-/// Uncertainty of values in the displayed condition.
+/// Uncertainty of the values in the displayed condition.
 #[derive(Clone, Copy, Debug)]
 pub struct Sureness<'a> {
     pub condition: ConditionId,
@@ -31,13 +31,13 @@ pub struct Sureness<'a> {
 }
 
 impl<'a> Sureness<'a> {
-    /// Returns the error bar for a value, and its confidence level.
+    /// Returns the error bar of a value, and its confidence level.
     pub fn bar(&self, scalar: Scalar) -> Option<(&'a ErrorBar, f64)> {
         let uncertainty = self.uncertainty?;
         Some((uncertainty.bar(self.condition, scalar)?, uncertainty.level))
     }
 
-    /// Returns the error bar's half-width: relative, for delays in \[s\].
+    /// Returns the half-width of a value's error bar: relative, or in \[s\] for delays.
     pub fn half(&self, scalar: Scalar) -> Option<f64> {
         let (bar, level) = self.bar(scalar)?;
         bar.half_width(level)
@@ -49,36 +49,36 @@ impl<'a> Sureness<'a> {
     }
 }
 
-/// Result for the displayed condition, available before the others.
+/// Result of the displayed condition, available before those of the others.
 #[derive(Clone, Debug)]
 pub struct FirstResult {
-    /// Answered request, by number.
+    /// Number of the request that produced the result.
     pub generation: u64,
-    /// Dataset behind the result.
+    /// Dataset to which the result belongs.
     pub dataset: Arc<Dataset>,
     pub condition: ConditionId,
     pub outcome: Result<ConditionAnalysis, ConditionFailure>,
 }
 
-/// Work in progress besides the live answer.
+/// Work in progress, including the live analysis.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Background {
-    /// Live answer in progress: steps done, total.
+    /// Live analysis in progress: steps done, total.
     pub analysis: Option<(usize, usize)>,
-    /// Problems whose gains are being or will be proven.
+    /// Problems whose optimality proof is running or waiting.
     pub proofs: Vec<Arc<Problem>>,
     /// Whether the costs of constraining and releasing are being computed.
     pub toggles: bool,
     /// Curves in progress: models done, total.
     pub curves: Option<(usize, usize)>,
-    /// Error bars in progress: steps done, total (for each model its response, and the analysis
-    /// with this model as the representative).
+    /// Error bars in progress: steps done, total. Each model contributes its response, and the
+    /// analysis with this model as the representative.
     pub bars: Option<(usize, usize)>,
     /// Responses to all records in progress: steps done, total.
     pub time_histories: Option<(usize, usize)>,
     /// Couplings in progress: steps done, total.
     pub couplings: Option<(usize, usize)>,
-    /// Count of jobs that the visible views wait for.
+    /// Number of jobs that the visible views wait for.
     pub views: usize,
     /// Report in progress: conditions done, total.
     pub report: Option<(usize, usize)>,
@@ -107,7 +107,7 @@ impl Background {
 #[derive(Debug, Default)]
 pub struct Results {
     pub analysis: Option<Arc<Analysis>>,
-    /// Displayed condition, if it is ahead of that analysis.
+    /// Newer result of the displayed condition, while `analysis` is older.
     pub first: Option<FirstResult>,
     /// Costs of constraining or releasing each response, with their job; see
     /// `State::toggles`.
@@ -122,49 +122,50 @@ pub struct Results {
     pub across: Option<(AcrossJob, Arc<AcrossCurves>)>,
     /// Uncertainty, with its job; see `State::uncertainty`.
     pub uncertainty: Option<(UncertaintyJob, Arc<Uncertainty>)>,
-    /// Actual or potential benefit from couplings, with the job; see `State::couplings`.
+    /// Benefit of the couplings, in use or not, with the job; see `State::couplings`.
     pub couplings: Option<(CouplingsJob, AssessedCouplings)>,
     /// Requirements, with their job; see `State::requirements`.
     pub requirements: Option<(RequirementsJob, Arc<Requirements>)>,
     /// Responses to the test input, with their job; see `State::test_answers`.
     pub test_answers: Option<(TestAnswersJob, Result<Arc<TestAnswers>, String>)>,
-    /// Record compared with the tolerances; see `State::record_history`.
+    /// Comparison of a record with the tolerances, with its job; see `State::record_history`.
     pub record_history: Option<(RecordHistoryJob, Result<Arc<RecordHistory>, String>)>,
     /// Models' responses to all records, with their job; see `State::time_histories`.
     pub time_histories: Option<(TimeHistoriesJob, Arc<TimeHistories>)>,
     pub variants: Vec<(VariantJob, Arc<Analysis>)>,
-    /// Models compared with a record in time, or the reason why not.
+    /// Comparisons of models with a record in the time domain, or the reasons for their absence.
     pub simulations: Vec<(SimulationJob, Result<Arc<Validation>, String>)>,
     pub background: Background,
-    /// Start time for the background work \[s, window clock\].
+    /// Start time of the background work \[s, window clock\].
     pub background_since: Option<f64>,
-    /// Newest request, by number.
+    /// Number of the newest request.
     pub requested: u64,
-    /// Request answered by the analysis, by number.
+    /// Number of the request that produced the analysis.
     pub received: u64,
-    /// Time at the oldest unanswered request \[s, window clock\].
+    /// Time of the oldest unanswered request \[s, window clock\].
     pub waiting_since: Option<f64>,
     /// Whether a frame with an analysis has been painted.
     pub is_painted: bool,
-    /// Computing time for the newest analysis \[ms\].
+    /// Computing time of the newest analysis \[ms\].
     pub elapsed_ms: f64,
-    /// Whether the newest request was stopped, by hand or by a fault; the displayed results then
-    /// stay older than the settings.
+    /// Whether the newest request was stopped, by hand or by a fault. The displayed results then
+    /// remain older than the settings.
     pub stopped: bool,
 }
 
 /// Age \[s\] from which results for older settings are marked as stale.
 const STALE_AFTER_S: f64 = 0.15;
-/// Duration \[s\] from which background work is reported: most jobs end before it could be read.
+/// Duration \[s\] after which background work is displayed: most jobs end before a display could be
+/// read.
 const BACKGROUND_AFTER_S: f64 = 0.5;
 
 impl Results {
-    /// Returns whether an answer is pending.
+    /// Returns whether results for the newest request are pending.
     pub fn is_waiting(&self) -> bool {
         self.is_behind() && !self.stopped
     }
 
-    /// Returns the message for a missing result.
+    /// Returns the message that explains a missing result.
     pub fn absence(&self) -> &'static str {
         if self.stopped {
             "not computed"
@@ -173,7 +174,7 @@ impl Results {
         }
     }
 
-    /// Returns the message for missing error bars.
+    /// Returns the message that explains missing error bars.
     pub fn absence_of_bars(&self) -> String {
         match self.background.bars {
             Some(progress) if !self.is_behind() => bar_words(progress),
@@ -189,8 +190,8 @@ impl Results {
         self.requested > self.received
     }
 
-    /// Returns whether the displayed condition's result has newer settings than the analysis across
-    /// all conditions.
+    /// Returns whether the result of the displayed condition has newer settings than the analysis
+    /// of all conditions.
     pub fn first_is_ahead(&self) -> bool {
         match &self.first {
             Some(first) => self.analysis.is_some() && first.generation > self.received,
@@ -198,7 +199,8 @@ impl Results {
         }
     }
 
-    /// Returns whether background work has lasted long enough at `now` to be reported.
+    /// Returns whether background work has lasted long enough at `now` \[s, window clock\] to be
+    /// displayed.
     pub fn is_background_told(&self, now: f64) -> bool {
         match self.background_since {
             Some(since) => now - since > BACKGROUND_AFTER_S,
@@ -206,7 +208,7 @@ impl Results {
         }
     }
 
-    /// Returns whether the displayed results should be marked as stale at `now` \[s of the window's
+    /// Returns whether the displayed results should be marked as stale at `now` \[s, window
     /// clock\].
     pub fn is_stale(&self, now: f64) -> bool {
         let is_late = match self.waiting_since {
@@ -217,7 +219,7 @@ impl Results {
     }
 }
 
-/// Describes how far the error bars are: completed steps, total.
+/// Describes the progress of the error bars: completed steps, total.
 pub fn bar_words(progress: (usize, usize)) -> String {
     let (done, total) = progress;
     if total == 0 {

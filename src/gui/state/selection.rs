@@ -1,20 +1,20 @@
-//! Selected and highlighted parts.
+//! Selected and highlighted elements.
 
 use gdcm_model::dataset::{ConditionId, ModelId, Pair};
 use gdcm_words::derivation::ExplainTarget;
 
-/// Parts in focus, selected or under the pointer.
+/// Elements in focus, selected or under the pointer.
 #[derive(Debug, Default)]
 pub struct Selection {
     pub condition: ConditionId,
-    /// Response in the large plot.
+    /// Response shown in the large plot.
     pub pair: Pair,
     /// Model under the pointer.
     pub hovered: Option<ModelId>,
     /// Condition under the pointer, in the list or as a dot.
     pub hovered_condition: Option<ConditionId>,
-    /// Description, in a single line, for the plot element under the pointer: nothing floats over
-    /// curves.
+    /// Description of the plot element under the pointer, in a single line of the status bar, so
+    /// that no tooltip covers curves.
     pub told: Option<String>,
     /// The only model shown beside the representatives.
     pub isolated: Option<ModelId>,

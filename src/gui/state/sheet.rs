@@ -11,7 +11,7 @@ pub enum Sheet {
     Models,
     /// Identified models, beside the rail.
     Identified,
-    /// Derivation for a value.
+    /// Derivation of a value.
     Derivation,
 }
 
@@ -26,7 +26,7 @@ impl Sheet {
         }
     }
 
-    /// Returns whether the sheet is at the right side, and its width \[pt\].
+    /// Returns whether the sheet is on the right side, and its width \[pt\].
     pub fn place(self) -> (bool, f32) {
         match self {
             Self::Reasons => (true, 380.0),

@@ -20,9 +20,9 @@ pub enum TableKind {
     PhysicsModels,
     /// Identified models in the displayed condition.
     IdentifiedModels,
-    /// G, D and J for every response.
+    /// G, D and J of every response.
     Matrix,
-    /// Gain and delay for every channel.
+    /// Gain and delay of every channel.
     Channels,
 }
 
@@ -56,7 +56,7 @@ impl TableKind {
     }
 }
 
-/// Builds the current table. Numbers have full precision; unknown numbers are empty.
+/// Builds the current table. Values have full precision; cells of missing values are empty.
 pub fn table_of(state: &State, kind: TableKind) -> Table {
     match kind {
         TableKind::Conditions => conditions(state),
@@ -67,7 +67,7 @@ pub fn table_of(state: &State, kind: TableKind) -> Table {
     }
 }
 
-/// Formats a number with full precision; empty for `None`.
+/// Formats a value with full precision; empty for `None`.
 fn digits(value: Option<f64>) -> String {
     match value {
         // Debug writes an exponent where Display would write hundreds of zeros.
@@ -80,7 +80,7 @@ fn yes_or_no(value: bool) -> String {
     if value { "yes" } else { "no" }.to_owned()
 }
 
-/// Returns the title for a table about the displayed condition.
+/// Returns the title of a table about the displayed condition.
 pub fn title(state: &State, subject: &str) -> String {
     let condition = state.condition();
     format!(
@@ -107,7 +107,7 @@ fn table_of_rows(title: String, rows: Vec<Row>) -> Table {
     table
 }
 
-/// Builds the condition table: flight state, and counts of open tasks.
+/// Builds the condition table: flight state, and numbers of open tasks.
 fn conditions(state: &State) -> Table {
     let mut rows = Vec::new();
     for condition in state.dataset().conditions() {
@@ -142,7 +142,7 @@ fn condition_row(state: &State, condition: &Condition) -> Row {
     ]
 }
 
-/// Builds the table with a bundle's models in the displayed condition.
+/// Builds the table of the models of a bundle in the displayed condition.
 fn models(state: &State, bundle: BundleKind) -> Table {
     let mut rows = Vec::new();
     for model in state.condition().bundle(bundle) {
@@ -193,11 +193,12 @@ fn title_with_bars(state: &State, kind: TableKind) -> String {
     title(state, &subject)
 }
 
-/// Half-widths of a value's error bar: relative \[%\], for delays \[ms\].
+/// Half-widths of a value's error bar: relative \[%\], or \[ms\] for delays.
 #[derive(Clone, Copy, Default)]
 struct HalfWidths {
     whole: Option<f64>,
-    /// Share from the identification: the inner bar, "for this physics model".
+    /// Half-width due to the identification alone (uncertainty for a fixed physics model); drawn as
+    /// the inner bar.
     inner: Option<f64>,
 }
 
@@ -213,7 +214,7 @@ impl HalfWidths {
     }
 }
 
-/// Converts a half-width from \[s\] or a ratio to \[ms\] or \[%\].
+/// Converts a half-width as a ratio or in \[s\] to \[%\] or \[ms\].
 fn displayed_half(scalar: Scalar, half: Option<f64>) -> Option<f64> {
     let half = half?;
     if scalar.is_delay() {
@@ -223,8 +224,8 @@ fn displayed_half(scalar: Scalar, half: Option<f64>) -> Option<f64> {
     }
 }
 
-/// Builds the table with G, D, net gain, each with error bars, net delay, and J, J_mag and J_phase
-/// before and after.
+/// Builds the table of all responses: G, D and net gain, each with its error bar; net delay; J,
+/// J_mag and J_phase before and after the correction.
 fn matrix(state: &State) -> Table {
     let pairs = state.dataset().on_axis().pairs();
     let rows = pairs.map(|pair| response_row(state, pair)).collect();
@@ -281,7 +282,7 @@ fn response_row(state: &State, pair: Pair) -> Row {
     row
 }
 
-/// Builds the table with channel gains, delays and their error bars.
+/// Builds the table of channel gains and delays with their error bars.
 fn channels(state: &State) -> Table {
     let channels = all_channels(state.dataset()).into_iter();
     let rows = channels

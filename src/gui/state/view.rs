@@ -1,4 +1,4 @@
-//! Views between the side panels: names, groups and places.
+//! Views between the side panels: names, groups and properties.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,7 +15,7 @@ pub enum ViewGroup {
     Models,
     /// Quantities over airspeed.
     Schedule,
-    /// Benefit from the correction.
+    /// Benefit of the correction.
     Judge,
 }
 
@@ -46,29 +46,29 @@ impl ViewGroup {
 pub enum View {
     /// Response in focus: magnitude and phase.
     Bode,
-    /// Its errors as used by the fit.
+    /// Errors of the response in focus, as used by the fit.
     Error,
-    /// Every response, small.
+    /// Every response, in small plots.
     Overview,
     /// A response in every condition.
     Across,
-    /// Poles and modes for every model in the condition.
+    /// Poles and modes of every model in the condition.
     Poles,
     /// Input mixing and output feedback (M16).
     Couplings,
     /// Channel gains over airspeed (Figures 3 and 4).
     Channels,
-    /// Benefit from the correction (Figures 8 to 19).
+    /// Benefit of the correction (Figures 8 to 19).
     Assessment,
     /// Sources of scatter in the gains, and the evidence for the schedule.
     Evidence,
-    /// Variants, compared with the present decisions.
+    /// Variants, compared with the current decisions.
     Compare,
     /// Qualification requirements: bandwidth, modes, summary (M17).
     Requirements,
     /// Net gains over airspeed (Figures 6 and 7).
     NetGain,
-    /// Effect and price of delay or lead in each channel, up to ten times the band.
+    /// Phase gained and price paid by delay or lead in each channel, up to ten times the band.
     Leads,
     /// Flight records in the condition, and models identified from them.
     Records,
@@ -93,7 +93,7 @@ impl View {
         Self::Requirements,
     ];
 
-    /// Returns the views that the dock can show, with the leads only if these are requested.
+    /// Returns the views that the dock can show; the leads only if the study requests them.
     pub fn docked(phase: PhaseCorrection) -> impl Iterator<Item = Self> {
         let has_leads = phase == PhaseCorrection::Lead;
         Self::ALL
@@ -106,12 +106,12 @@ impl View {
         self.facts().name
     }
 
-    /// Returns the figure kind on paper, if there is a figure.
+    /// Returns the kind of figure on paper, if the view has one.
     pub fn figure(self) -> Option<FigureKind> {
         self.facts().figure
     }
 
-    /// Returns the view's properties, the source for tabs, menus and the palette.
+    /// Returns the properties of the view, from which tabs, menus and the palette are built.
     pub fn facts(self) -> ViewFacts {
         match self {
             Self::Bode => ViewFacts {
@@ -230,22 +230,22 @@ pub struct ViewFacts {
     pub name: &'static str,
     /// Purpose, in a sentence.
     pub purpose: &'static str,
-    /// Whether the view shows results from every condition; it then reports results for older
-    /// settings.
+    /// Whether the view shows results of every condition. It then reports when these belong to
+    /// older settings.
     pub is_of_all_conditions: bool,
     pub group: ViewGroup,
     pub is_docked: bool,
-    /// Whether it takes the dock's room.
+    /// Whether the view takes the space of the dock.
     pub takes_dock: bool,
     /// Heading in the dock, if longer than the tab text.
     pub long_name: Option<&'static str>,
-    /// Figure on paper. Variants are tables and are saved as such; for records, the identified
+    /// Figure on paper. The variants have none and are saved as tables; for records, the identified
     /// models are saved.
     pub figure: Option<FigureKind>,
 }
 
 impl ViewFacts {
-    /// View in the first group without name and figure.
+    /// Properties of a view of the first group, to be completed by a name and a figure.
     const PLAIN: Self = Self {
         name: "",
         purpose: "",

@@ -13,7 +13,7 @@ use gdcm_sysid::records::{RecordChannels, RecordColumn, RecordTable};
 use super::condition_records::ConditionRecords;
 use crate::gui::widgets::controls::typed_number;
 
-/// Column meanings that are the pilot's controls; "TARG" is neither an input nor an output.
+/// Column meanings that are pilot controls. The reference "TARG" is neither an input nor an output.
 const CONTROLS: [&str; 4] = ["LON", "LAT", "PED", "COL"];
 const TARGET: &str = "TARG";
 
@@ -27,15 +27,15 @@ pub struct WantedDataset {
     /// Lower and upper band limit \[rad/s\].
     pub band: [String; 2],
     pub path: String,
-    /// Descriptions for the record columns.
+    /// Descriptions of the record columns.
     pub columns: Vec<String>,
     /// Reasons why the dataset could not be made.
     pub problems: Vec<String>,
 }
 
 impl WantedDataset {
-    /// Creates a proposal from a condition's records: the channels known from the documentation for
-    /// their system; others must be typed.
+    /// Creates a proposal from the records of a condition. It contains the channels whose role the
+    /// documentation of the logging system states; others must be typed.
     pub fn proposed(records: &ConditionRecords, band: Band, path: String) -> Self {
         let mut inputs = Vec::new();
         let mut outputs = Vec::new();
@@ -82,7 +82,8 @@ impl WantedDataset {
     }
 }
 
-/// Returns the channel side for a column, as stated in the file or known from its meaning.
+/// Returns whether a column is an input or an output, as stated in the file or known from its
+/// meaning; `None` if unknown.
 fn known_side(column: &RecordColumn) -> Option<ChannelSide> {
     if column.side.is_some() {
         return column.side;
@@ -97,7 +98,7 @@ fn known_side(column: &RecordColumn) -> Option<ChannelSide> {
     }
 }
 
-/// Adds a column's channel name, unless it is in the list.
+/// Adds the channel name of a column, unless the list contains it.
 fn add_name(names: &mut Vec<String>, column: &RecordColumn) {
     let name = column.meaning.unwrap_or(&column.name);
     if !names.iter().any(|known| known == name) {
@@ -105,8 +106,8 @@ fn add_name(names: &mut Vec<String>, column: &RecordColumn) {
     }
 }
 
-/// "topic.column \[unit\]". Topics not yet joined to a channel are separate records, named after
-/// their variables.
+/// Formats "topic.column \[unit\]". Topics that are not joined to a channel yet are separate
+/// records, named after their variables.
 fn column_description(table: &RecordTable, column: &RecordColumn) -> String {
     let mut description = String::new();
     if let Some(variable) = &table.source.variable {
@@ -119,7 +120,7 @@ fn column_description(table: &RecordTable, column: &RecordColumn) -> String {
     description
 }
 
-/// Parses a channel list; an error names the side.
+/// Parses a channel list; `side` names the list in an error message.
 fn parse_rules(side: &str, text: &str) -> Result<Vec<ChannelRule>, String> {
     let list: ChannelList = text.parse().map_err(|error| format!("{side}: {error}"))?;
     Ok(list.channels.iter().map(SaidChannel::rule).collect())

@@ -48,7 +48,7 @@ pub struct State {
     pub is_example: bool,
     /// Whether the start page covers everything else.
     pub on_start_page: bool,
-    /// Dataset behind the displayed results.
+    /// Dataset to which the displayed selection was last adapted.
     followed: Arc<Dataset>,
     /// Undo history.
     pub history: History<RecordsBefore>,
@@ -66,7 +66,7 @@ pub struct State {
     pub bars: Vec<Bar>,
     /// Recently opened and saved files, newest first.
     pub recent: Vec<RecentFile>,
-    /// File being read.
+    /// Name of the file being read.
     pub opening: Option<String>,
     pub forms: Forms,
     /// Current step in the guided tour.
@@ -129,7 +129,8 @@ impl State {
         &self.study.dataset
     }
 
-    /// Returns the displayed condition; the first condition if the dataset no longer contains it.
+    /// Returns the displayed condition, or the first condition if the dataset no longer contains
+    /// it.
     pub fn condition(&self) -> &Arc<Condition> {
         let found = self
             .study
@@ -138,12 +139,13 @@ impl State {
         found.unwrap_or(&self.study.dataset.conditions()[0])
     }
 
-    /// Returns the displayed condition's result, if it belongs to this dataset.
+    /// Returns the result of the displayed condition, if it belongs to the displayed dataset.
     pub fn shown(&self) -> Option<&ConditionAnalysis> {
         self.outcome()?.as_ref().ok()
     }
 
-    /// Returns the models suggested as outliers by a result and not rejected.
+    /// Returns the names of the models that a result suggests as outliers and that are not
+    /// rejected.
     pub fn open_suggestions(&self, result: &ConditionAnalysis) -> Vec<String> {
         let rejected = &self.study.choice(result.condition.id()).physics.rejected;
         result
@@ -153,7 +155,7 @@ impl State {
             .collect()
     }
 
-    /// Returns the displayed condition's newest outcome for this dataset.
+    /// Returns the newest outcome of the displayed condition for the displayed dataset.
     pub fn outcome(&self) -> Option<&Result<ConditionAnalysis, ConditionFailure>> {
         let condition = self.condition().id();
         if let Some(first) = &self.results.first
@@ -165,8 +167,9 @@ impl State {
         self.analysis()?.conditions.get(&condition)
     }
 
-    /// Returns whether the other conditions' results, and everything derived from them, belong to
-    /// older settings than the displayed condition's; this is reported beside each of them.
+    /// Returns whether the results of the other conditions, and everything derived from them,
+    /// belong to older settings than that of the displayed condition. Views report this beside each
+    /// such result.
     pub fn others_are_older(&self) -> bool {
         match &self.results.first {
             Some(first) => {
@@ -184,8 +187,8 @@ impl State {
         Arc::ptr_eq(dataset, &self.study.dataset)
     }
 
-    /// Returns the costs of constraining or releasing each response, if they belong to the
-    /// displayed result.
+    /// Returns the cost of constraining or releasing each response, if it belongs to the displayed
+    /// result.
     pub fn toggles(&self) -> Option<&Toggles> {
         let (job, toggles) = self.results.toggles.as_ref()?;
         if !job.is_of(self.shown()?) {
@@ -194,7 +197,7 @@ impl State {
         Some(toggles)
     }
 
-    /// Returns the displayed condition's responses, for drawing.
+    /// Returns the responses of the displayed condition, for drawing.
     pub fn curves(&self) -> Option<&Arc<ConditionCurves>> {
         let (job, curves) = self.results.curves.as_ref()?;
         if job.condition != self.condition().id() || !self.is_shown_dataset(&job.dataset) {
@@ -244,8 +247,9 @@ impl State {
         Some(requirements)
     }
 
-    /// Returns the model responses to the test input in the displayed condition, or the reason
-    /// for their absence; until they are ready, those from an older analysis in the same condition.
+    /// Returns the responses of the models to the test input in the displayed condition, or the
+    /// reason for their absence; until they are ready, those of an older analysis in the same
+    /// condition.
     pub fn test_answers(&self) -> Option<&Result<Arc<TestAnswers>, String>> {
         let (job, answers) = self.results.test_answers.as_ref()?;
         if !self.is_shown_dataset(&job.analysis.study.dataset)
@@ -257,8 +261,8 @@ impl State {
         Some(answers)
     }
 
-    /// Returns the comparison between a job's record and the tolerances, or the reason for its
-    /// absence; until it is ready, the comparison from an older analysis.
+    /// Returns the comparison of a job's record with the tolerances, or the reason for its absence;
+    /// until it is ready, the comparison of an older analysis.
     pub fn record_history(
         &self,
         job: &RecordHistoryJob,
@@ -270,7 +274,7 @@ impl State {
         Some(history)
     }
 
-    /// Returns the models' responses to all records; until they are ready, those from an older
+    /// Returns the responses of the models to all records; until they are ready, those of an older
     /// analysis with the same records.
     pub fn time_histories(&self) -> Option<&Arc<TimeHistories>> {
         let (job, histories) = self.results.time_histories.as_ref()?;
@@ -280,8 +284,8 @@ impl State {
         Some(histories)
     }
 
-    /// Returns the couplings requested by the study; if there are none, mixing and feedback, which
-    /// are then assessed.
+    /// Returns the couplings that the study requests. If it requests none, returns mixing and
+    /// feedback, whose possible benefit is then assessed.
     pub fn assessed_couplings(&self) -> CouplingCorrection {
         match self.study.settings.couplings {
             CouplingCorrection::None => CouplingCorrection::MixingAndFeedback,
@@ -289,7 +293,7 @@ impl State {
         }
     }
 
-    /// Returns the actual or potential benefit from couplings; until it is ready, the effect under
+    /// Returns the benefit of the couplings, in use or not; until it is ready, the benefit under
     /// older settings.
     pub fn couplings(&self) -> Option<&AssessedCouplings> {
         let (known, assessed) = self.results.couplings.as_ref()?;
@@ -301,7 +305,7 @@ impl State {
         Some(assessed)
     }
 
-    /// Returns a model's responses in each condition; until they are ready, those for older
+    /// Returns the responses of a model in each condition; until they are ready, those for older
     /// settings.
     pub fn across(&self) -> Option<&Arc<AcrossCurves>> {
         let (job, curves) = self.results.across.as_ref()?;
@@ -311,7 +315,7 @@ impl State {
         Some(curves)
     }
 
-    /// Returns the message for missing curves, or while curves are being renewed.
+    /// Returns the message shown when curves are missing or being recomputed.
     pub fn curves_message(&self) -> Option<&'static str> {
         let results = &self.results;
         if results.is_behind() {
@@ -325,7 +329,7 @@ impl State {
         }
     }
 
-    /// Returns whether a result is still being proven.
+    /// Returns whether the optimality proof of a result is still running.
     pub fn is_proving(&self, shown: &ConditionAnalysis) -> bool {
         self.results.background.proofs.contains(&shown.gain_problem)
     }
@@ -339,8 +343,7 @@ impl State {
         Some(analysis)
     }
 
-    /// Returns the uncertainty of the newest analysis; `None` until it is computed, besides the
-    /// live answer.
+    /// Returns the uncertainty of the newest analysis; `None` until its job is complete.
     pub fn uncertainty(&self) -> Option<&Arc<Uncertainty>> {
         let (job, uncertainty) = self.results.uncertainty.as_ref()?;
         self.analysis()?;
@@ -350,8 +353,8 @@ impl State {
         Some(uncertainty)
     }
 
-    /// Returns the uncertainty for values in the displayed condition; empty until it is computed,
-    /// or if it belongs to older settings.
+    /// Returns the uncertainty of the values in the displayed condition; empty until it is
+    /// computed, or if it belongs to older settings.
     pub fn sureness(&self) -> Sureness<'_> {
         let uncertainty = if self.others_are_older() {
             None
@@ -364,8 +367,8 @@ impl State {
         }
     }
 
-    /// Returns the newest analysis with its uncertainty, as far as computed: the basis for files
-    /// and derivations.
+    /// Returns the newest analysis with the uncertainty computed so far, as written to files and
+    /// shown in derivations.
     pub fn analysis_with_bars(&self) -> Option<Analysis> {
         let analysis = self.analysis()?.clone();
         Some(Analysis {
@@ -382,8 +385,8 @@ impl State {
         }
     }
 
-    /// Adapts the state to a replaced dataset: keeps the response in focus if it exists, otherwise
-    /// selects the first.
+    /// Adapts the state to a replaced dataset: keeps the response in focus if the dataset contains
+    /// it, otherwise selects the first response.
     pub fn follow_dataset(&mut self) {
         let dataset = &self.study.dataset;
         if Arc::ptr_eq(dataset, &self.followed) {
@@ -405,7 +408,7 @@ impl State {
         self.display.frequency.fit();
     }
 
-    /// Counts the kept models in a bundle: "14 of 19".
+    /// Formats the number of kept models in a bundle: "14 of 19".
     pub fn kept_words(&self, kind: BundleKind) -> String {
         let count = self.condition().bundle(kind).len();
         let choice = self.study.choice(self.condition().id());

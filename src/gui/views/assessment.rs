@@ -1,4 +1,4 @@
-//! Benefit from the correction in each condition.
+//! Benefit of the correction in each condition.
 
 use egui::{Align, Layout, Rect, RichText, Sense, Ui, Vec2, vec2};
 
@@ -24,7 +24,7 @@ use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 use crate::gui::widgets::tables::{TableLook, table_ui};
 
-/// Least plot size \[pt\].
+/// Minimum plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(190.0, 150.0);
 
 /// Draws the choices of the header, from right to left.
@@ -282,8 +282,8 @@ pub fn assessed_pairs(state: &State) -> Vec<Pair> {
     pairs
 }
 
-/// Builds the table: a row for each response, a column for each condition, a signed change of J in
-/// each cell.
+/// Builds the table: a row for each response, a column for each condition, and in each cell the
+/// signed change of J.
 pub fn assessment_text_table(state: &State, table: &AssessmentTable) -> Table {
     let part = state.display.judging.assessed.part;
     let conditions: Vec<(ConditionId, String)> = state
@@ -302,8 +302,8 @@ pub fn assessment_text_table(state: &State, table: &AssessmentTable) -> Table {
     )
 }
 
-/// Summarises the assessment in sentences: improved responses, the verdict on conditions held out of
-/// the schedule, and omissions.
+/// Summarises the assessment in sentences: improved responses, the verdict on the conditions held
+/// out of the schedule, and omissions.
 pub fn assessment_sentences(state: &State, table: &AssessmentTable) -> Vec<String> {
     let pairs = assessed_pairs(state);
     let marked = state

@@ -17,15 +17,16 @@ use crate::gui::state::window_state::State;
 
 /// Bar width, relative to the distance between conditions.
 const BAR: f64 = 0.6;
-/// Half the length of the line at the sum of both parts, in the same unit.
+/// Half the length of the line at the sum of both parts, relative to the distance between
+/// conditions.
 const HALF_TOTAL: f64 = 0.38;
-/// Colour strength for the phase part, relative to the magnitude part \[%\].
+/// Colour strength of the phase part, relative to the magnitude part \[%\].
 pub(super) const PHASE_PERCENT: u8 = 45;
 /// Space above and below the bars, relative to their height.
 const MARGIN: f64 = 0.12;
-/// Distance between a number and its bar, relative to the visible range.
+/// Distance between a value label and its bar, relative to the visible range.
 const NUMBER_GAP: f64 = 0.05;
-/// Value from which a number has no decimals: 9.95 rounds to 10.0.
+/// Value from which a label has no decimals: 9.95 rounds to 10.0.
 const WHOLE_FROM: f64 = 9.95;
 
 /// Plots of the change of J, one for each response.
@@ -35,7 +36,7 @@ pub(super) struct AssessmentPlots<'a> {
     pub(super) pairs: Vec<Pair>,
 }
 
-/// Change of J at a place on the condition axis.
+/// Change of J at a position on the condition axis.
 #[derive(Clone, Copy)]
 struct PlacedChange {
     at: f64,
@@ -57,8 +58,8 @@ impl PlacedChange {
         }
     }
 
-    /// Returns the value at which a part begins. The phase part is stacked on the magnitude part if
-    /// both have the same sign; otherwise they lie on either side of zero.
+    /// Returns the value at which the bar of a part begins. The phase part is stacked on the
+    /// magnitude part if both have the same sign; otherwise they lie on either side of zero.
     fn foot(&self, part: BarPart) -> f64 {
         let is_stacked =
             part == BarPart::Phase && self.change.magnitude() * self.change.phase() > 0.0;
@@ -69,7 +70,7 @@ impl PlacedChange {
         }
     }
 
-    /// Returns the end values for both parts, and zero.
+    /// Returns the end values of both parts, and zero.
     fn ends(&self) -> [f64; 3] {
         [
             self.change.magnitude(),
@@ -78,7 +79,7 @@ impl PlacedChange {
         ]
     }
 
-    /// Returns the total as a number: above the bar if positive, below if negative.
+    /// Returns the label with the total: above the bar if positive, below if negative.
     fn number(&self, range: Range) -> Note {
         let total = self.change.total();
         let furthest = if total > 0.0 { f64::max } else { f64::min };
@@ -102,8 +103,8 @@ impl AssessmentPlots<'_> {
         self.table.change(condition, pair)
     }
 
-    /// Builds a response's panel: in each condition a bar with magnitude and phase part, and a line
-    /// across at their sum.
+    /// Builds the panel of a response: in each condition a bar with magnitude and phase part, and a
+    /// line across the bar at their sum.
     pub(super) fn panel(&self, pair: Pair) -> Panel {
         let mut found = Vec::new();
         let mut left_out = Vec::new();
@@ -127,8 +128,8 @@ impl AssessmentPlots<'_> {
             .with_all(left_out.iter().map(|at| left_out_note(*at, range)))
     }
 
-    /// Returns the numbers for the displayed condition and for the largest change, unless these are
-    /// neighbours. Numbers on every bar would overlap; the status line shows the others.
+    /// Returns the value labels of the displayed condition and of the largest change, unless these
+    /// are neighbours. Labels on every bar would overlap; the status line shows the other values.
     fn numbers(&self, found: &[PlacedChange], range: Range) -> Vec<Note> {
         let largest = found
             .iter()
@@ -157,7 +158,7 @@ fn visible_range(found: &[PlacedChange]) -> Range {
         .with_margin(MARGIN, 1.0)
 }
 
-/// Returns the bars for each part: improvements, then deteriorations.
+/// Returns the bars of both parts: improvements, then deteriorations.
 fn bars(found: &[PlacedChange]) -> Vec<Bars> {
     let mut bars = Vec::new();
     for part in [BarPart::Magnitude, BarPart::Phase] {
@@ -168,7 +169,7 @@ fn bars(found: &[PlacedChange]) -> Vec<Bars> {
     bars
 }
 
-/// Returns the bars with this colour: positive changes are warnings.
+/// Returns the bars of a part in a colour: positive changes have the warning colour.
 fn bars_of_hue(found: &[PlacedChange], part: BarPart, hue: Hue) -> Bars {
     let mut bars = Vec::new();
     let mut feet = Vec::new();
@@ -229,7 +230,7 @@ fn left_out_note(at: f64, range: Range) -> Note {
     }
 }
 
-/// Returns the reason for a missing change of J.
+/// Returns why the change of J is missing.
 fn absence_reason(
     table: &AssessmentTable,
     dataset: &Dataset,

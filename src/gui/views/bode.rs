@@ -35,7 +35,7 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Draws magnitude and phase for the response in focus, for every model in the displayed condition.
+/// Draws magnitude and phase of the response in focus, for every model in the displayed condition.
 pub fn bode_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -107,8 +107,8 @@ fn drawn_curve(curves: &[BodeCurve], role: Role) -> Option<&BodeCurve> {
         .find(|curve| !curve.hidden && curve.role == role)
 }
 
-/// Returns the region where curves only illustrate the price paid for leads; `None` without leads
-/// (M15.6).
+/// Returns the region above the band, where curves only illustrate the price of leads; `None`
+/// without leads (M15.6).
 fn invalid_region(state: &State, curves: &[BodeCurve]) -> Option<InvalidRegion> {
     let leads = &state.shown()?.compensated.as_ref()?.leads;
     leads.filters().iter().find_map(|(_, filter)| *filter)?;
@@ -124,7 +124,7 @@ fn invalid_region(state: &State, curves: &[BodeCurve]) -> Option<InvalidRegion> 
     })
 }
 
-/// Returns the magnitudes with and without leads at a frequency \[dB\].
+/// Returns the corrected magnitudes with and without leads at a frequency \[dB\].
 fn lead_ends_db(corrected: &BodeCurve, curves: &[BodeCurve], omega: f64) -> Option<[f64; 2]> {
     let without = drawn_curve(curves, Role::WithoutLeads)?;
     Some([
@@ -158,12 +158,12 @@ fn missing_phase(curves: &[BodeCurve], band: Band) -> Option<BodeBand> {
     })
 }
 
-/// Remaining magnitude below which the magnitudes are called matched \[dB\].
+/// Remaining magnitude below which the magnitudes count as matched \[dB\].
 const MATCHED_DB: f64 = 0.05;
-/// Remaining delay below which the phases are called matched \[s\].
+/// Remaining delay below which the phases count as matched \[s\].
 const MATCHED_S: f64 = 0.5e-3;
 
-/// Returns the notes for magnitude and phase: J before and after the correction, and the remaining
+/// Returns the notes on magnitude and phase: J before and after the correction, and the remaining
 /// error.
 fn effect_notes(state: &State, pair: Pair) -> Option<[PaneNote; 2]> {
     let shown = state.shown()?;
@@ -193,7 +193,7 @@ fn cost_change(before: f64, after: f64) -> String {
     format!("J {} → {}", decimals(before, 1), decimals(after, 1))
 }
 
-/// Formats a remaining delay as "lags by 66 ms, 46° at 12 rad/s": the corrected model lags if
+/// Formats a remaining delay as "lags by 66 ms, 46° at 12 rad/s"; the corrected model lags if
 /// `left_s` is negative.
 fn delay_verdict(state: &State, left_s: f64) -> String {
     if left_s.abs() < MATCHED_S {
@@ -216,7 +216,8 @@ fn frequency_words(state: &State, omega: f64) -> String {
     format!("{} {}", number(unit.of_omega(omega)), unit.symbol())
 }
 
-/// Draws the errors in the response in focus: every kept physics model, and the corrected model.
+/// Draws the errors of every kept physics model and of the corrected model, in the response in
+/// focus.
 pub fn error_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -307,11 +308,11 @@ pub fn error_message(state: &State, pair: Pair) -> String {
     }
 }
 
-/// Step count in the colour key for airspeeds.
+/// Number of steps in the colour key of the airspeeds.
 const KEY_STEPS: u8 = 24;
 const KEY_SIZE: egui::Vec2 = vec2(96.0, 8.0);
 
-/// Draws the choice between models and the colour key for airspeed, from right to left.
+/// Draws the selector of the models and the colour key of the airspeed, from right to left.
 pub fn across_header_ui(
     ui: &mut Ui,
     state: &State,
@@ -346,7 +347,7 @@ fn paint_key(ui: &Ui, rect: Rect, palette: &Palette) {
     }
 }
 
-/// Draws magnitude and phase for the response in focus, with a model from every condition; a click
+/// Draws magnitude and phase of the response in focus for a model of every condition; a click
 /// selects a condition.
 pub fn across_view_ui(
     ui: &mut Ui,
@@ -390,7 +391,7 @@ pub fn across_view_ui(
     }
 }
 
-/// Fits the plot after a change of response or model, once the new curves are available.
+/// Fits the plot after another response or model was selected, once the new curves are available.
 fn fit_across(state: &mut State) {
     let asked = (
         state.display.selection.pair,
@@ -408,10 +409,10 @@ fn fit_across(state: &mut State) {
     }
 }
 
-/// Frequency count in each curve.
+/// Number of frequencies on each curve.
 const POINTS: usize = 300;
 
-/// Returns the job for the responses in the view: a model from each condition.
+/// Returns the job that computes the responses in the view: a model of each condition.
 pub fn across_job(state: &State) -> AcrossJob {
     let grid = (display_band(state.study.settings.band), POINTS);
     AcrossJob::of(
@@ -422,7 +423,7 @@ pub fn across_job(state: &State) -> AcrossJob {
     )
 }
 
-/// Returns the curves for the response in focus, with a model from each condition; empty until the
+/// Returns the curves of the response in focus for a model of each condition; empty until the
 /// responses are available.
 pub fn across_curves(state: &mut State) -> Vec<BodeCurve> {
     let Some(curves) = state.across().cloned() else {
@@ -495,8 +496,8 @@ pub fn overview_view_ui(
     }
 }
 
-/// Returns "J 75→61": J for the uncorrected physics representative, and for the fully corrected
-/// model. Empty unless both are known.
+/// Returns "J 75→61": J of the uncorrected physics representative, and of the fully corrected
+/// model. Empty unless both are available.
 fn cost_note(state: &State, pair: Pair) -> String {
     let Some(shown) = state.shown() else {
         return String::new();

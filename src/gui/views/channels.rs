@@ -14,7 +14,7 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Draws the choices between gains and delays and between airspeed and conditions, from right to
+/// Draws the selectors between gains and delays, and between airspeed and conditions, from right to
 /// left.
 pub fn channels_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let shown = state.display.gains.channel_values;
@@ -46,7 +46,7 @@ pub fn channels_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command
 const HEADING_HEIGHT: f32 = 20.0;
 const GAP: f32 = 8.0;
 
-/// Draws gain or delay for every channel over airspeed (Figures 3 and 4): inputs above, outputs
+/// Draws gain or delay of every channel over airspeed (Figures 3 and 4): inputs above, outputs
 /// below, on the same axes.
 pub fn channels_view_ui(
     ui: &mut Ui,
@@ -71,7 +71,7 @@ pub fn channels_view_ui(
         figure_ui(ui, &scene, &mut view.inputs, palette);
     }
     let rect = ui.available_rect_before_wrap();
-    // Each half gets the height required by its rows.
+    // Each half gets the height that its rows need.
     let half = vec2(rect.width(), 0.5 * rect.height());
     let [above, below] = [&inputs, &outputs].map(|figure| rows(figure, half, LEAST_PLOT) as f32);
     let middle = rect.top() + rect.height() * above / (above + below).max(1.0);
@@ -102,7 +102,7 @@ pub fn channels_view_ui(
     state.display.gains.channels = view;
 }
 
-/// Plots for all inputs, or for all outputs.
+/// Plots of all inputs, or of all outputs.
 struct ChannelPlots<'a> {
     name: &'static str,
     rect: Rect,
@@ -145,8 +145,8 @@ impl ChannelPlots<'_> {
     }
 }
 
-/// Builds a plot for each channel, inputs first: gain or delay in each condition's optimum, and the
-/// schedule.
+/// Builds a plot for each channel, inputs first: gain or delay at the optimum of each condition,
+/// and the schedule.
 pub fn channel_plots(state: &State) -> GainPlots<'_> {
     let (measure, across) = state.display.gains.channel_values;
     let mut figure = Figure::default();

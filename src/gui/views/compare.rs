@@ -109,7 +109,7 @@ fn variant_button_ui(ui: &mut Ui, verb: &str, name: &str, hint: &str) -> bool {
         .clicked()
 }
 
-/// Returns the analyses needed by the comparison.
+/// Returns the analyses that the comparison needs.
 pub fn variant_jobs(state: &State) -> Vec<VariantJob> {
     let mut jobs = Vec::new();
     for variant in &state.study.variants {
@@ -146,7 +146,7 @@ pub fn overlay_job(state: &State) -> Option<VariantJob> {
     variant_job(state, state.display.judging.overlaid.as_deref()?)
 }
 
-/// Builds the table with all decisions in which a variant differs from the current decisions.
+/// Builds the table of all decisions in which a variant differs from the current decisions.
 fn difference_table(state: &State) -> Table {
     let columns = ["variant", "decision", "in the variant", "now"];
     let mut table = Table::new("Different decisions", columns);
@@ -170,7 +170,7 @@ fn difference_table(state: &State) -> Table {
     table
 }
 
-/// Builds the table with the effects now and in each variant.
+/// Builds the table of the effects of the current decisions and of each variant.
 fn effect_table(state: &State) -> Table {
     let condition = state.condition().id();
     let title = format!("Effect in condition {condition}, and of the schedule over all conditions");
@@ -196,7 +196,7 @@ fn effect_table(state: &State) -> Table {
     table
 }
 
-/// Value compared between variants.
+/// Effect that is compared between variants.
 #[derive(Clone, Copy)]
 enum Effect {
     /// Net gain in the displayed condition.
@@ -205,7 +205,7 @@ enum Effect {
     Cost(Pair),
     /// Gain objective in the displayed condition.
     Objective,
-    /// Mean change of J over all on-axis responses and conditions, with the schedule.
+    /// Mean change of J with the schedule, over all on-axis responses and conditions.
     MeanChange,
 }
 
@@ -230,7 +230,7 @@ impl Effect {
         }
     }
 
-    /// Formats the value in an analysis; `None` where it is undefined.
+    /// Formats the effect in an analysis; `None` where it is undefined.
     fn text(self, state: &State, analysis: &Analysis) -> Option<String> {
         let condition = state.condition().id();
         match self {
@@ -255,7 +255,7 @@ impl Effect {
     }
 }
 
-/// Computes the mean change of J for the nominal models with the schedule, over the on-axis
+/// Computes the mean change of J of the nominal models with the schedule, over the on-axis
 /// responses in all assessed conditions; `None` without an assessed response.
 fn mean_change(state: &State, analysis: &Analysis) -> Option<String> {
     let measuring = state.dataset().measuring_pairs();

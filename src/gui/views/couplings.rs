@@ -29,9 +29,9 @@ use crate::gui::widgets::controls::restore_panel_size;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
 use crate::gui::widgets::tables::{Sorting, TableLook, table_grid_ui};
 
-/// Least plot size \[pt\].
+/// Minimum plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(220.0, 150.0);
-/// Initial width of words and tables, as a share of the view's width.
+/// Initial width of texts and tables, as a share of the view's width.
 const WORDS_PART: f32 = 0.56;
 
 /// Draws the choice between coupling corrections.
@@ -69,9 +69,9 @@ pub fn couplings_job(state: &State) -> CouplingsJob {
     }
 }
 
-/// Returns whether the couplings are assessed in every view. Couplings in use are assessed for their
-/// cost; unused couplings once they may be worthwhile: with matched delays or requested leads, and
-/// with enough conditions.
+/// Returns whether the couplings are assessed whichever view is shown. Couplings in use are
+/// assessed for their cost; unused couplings if they may be worthwhile: with matched delays or
+/// requested leads, and with enough conditions.
 pub fn are_couplings_judged(state: &State) -> bool {
     let settings = &state.study.settings;
     let Some(analysis) = state.analysis() else {
@@ -97,8 +97,8 @@ pub fn are_couplings_judged(state: &State) -> bool {
     is_phase_corrected && results >= LEAST_CONDITIONS
 }
 
-/// Returns the assessment and the off-axis benefit for unused couplings, if worthwhile by J in
-/// left-out conditions.
+/// Returns the assessment of unused couplings and their off-axis cost, if J in left-out conditions
+/// shows them to be worthwhile.
 pub fn offered_couplings(state: &State) -> Option<(&Arc<CouplingsAssessment>, CouplingCost)> {
     if are_couplings_used(state) || !are_couplings_judged(state) {
         return None;
@@ -112,7 +112,7 @@ pub fn offered_couplings(state: &State) -> Option<(&Arc<CouplingsAssessment>, Co
     }
 }
 
-/// Returns the assessment for couplings in use, once known.
+/// Returns the assessment of the couplings in use, once available.
 pub fn used_couplings(state: &State) -> Option<&Arc<CouplingsAssessment>> {
     if are_couplings_used(state) {
         state.couplings()?.as_ref().ok()
@@ -125,7 +125,7 @@ fn are_couplings_used(state: &State) -> bool {
     state.study.settings.couplings != CouplingCorrection::None
 }
 
-/// Draws words and tables at the left, the loop and the poles at the right.
+/// Draws texts and tables on the left, the loop and the poles on the right.
 pub fn couplings_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -161,7 +161,7 @@ pub fn couplings_view_ui(
             .auto_shrink(false)
             .show(ui, |ui| {
                 words.use_ui(ui, commands);
-                // The deciding figures come first.
+                // The costs, on which the decision depends, come first.
                 words.costs_ui(ui, commands);
                 words.remarks_ui(ui);
                 words.tables_ui(ui, commands);
@@ -193,7 +193,7 @@ pub fn couplings_view_ui(
     state.display.figures.insert(View::Couplings, view);
 }
 
-/// Words and tables about the couplings.
+/// Texts and tables about the couplings.
 struct CouplingsWords<'a> {
     state: &'a State,
     assessment: &'a CouplingsAssessment,
@@ -201,8 +201,8 @@ struct CouplingsWords<'a> {
 }
 
 impl CouplingsWords<'_> {
-    /// Draws whether the couplings are used, and the button that uses them, or removes them if they
-    /// are not worthwhile.
+    /// Draws whether the couplings are used, and the button that uses them, or that removes them if
+    /// they are not worthwhile.
     fn use_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         if !are_couplings_used(self.state) {
             let name = self.assessment.couplings.name();
@@ -269,7 +269,8 @@ impl CouplingsWords<'_> {
     /// Draws the coupling matrices, then the loop and its poles.
     fn tables_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         for table in coupling_matrix_tables(self.assessment, self.state.dataset()) {
-            // Values in parentheses are within their error bar, not distinguishable from zero.
+            // Values in parentheses lie within their error bar, so they are not distinguishable
+            // from zero.
             let look = TableLook {
                 color: &|row, column| {
                     if table.rows[row][column].starts_with('(') {
@@ -308,8 +309,8 @@ impl CouplingsWords<'_> {
             });
     }
 
-    /// Builds the loop table: in each condition, the least singular value, and the largest effect
-    /// on a constrained response at ten times the band.
+    /// Builds the loop table: in each condition, the minimum singular value, and the largest effect
+    /// on an on-axis response at ten times the band.
     fn loop_table(&self) -> Table {
         let dataset = self.state.dataset();
         let columns = [

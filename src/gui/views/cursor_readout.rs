@@ -1,4 +1,4 @@
-//! Principal curves as numbers at the pointer, at marked frequencies, or at the largest error.
+//! Values of the principal curves at the pointer, at marked frequencies, or at the largest error.
 
 use gdcm_method::fidelity::summand;
 use gdcm_model::response::wrap;
@@ -17,7 +17,7 @@ const LISTED: [Role; 4] = [
     Role::Scheduled,
 ];
 
-/// Smallest differences that are marked as a warning; J is small below both.
+/// Differences at or above these are shown as a warning; J is small below both.
 const WARNING_DB: f64 = 1.0;
 const WARNING_DEG: f64 = 10.0;
 
@@ -27,7 +27,7 @@ pub(super) struct ReadoutSource<'a> {
     pub(super) curves: &'a [BodeCurve],
     pub(super) quantity: BodeQuantity<'a>,
     pub(super) unit: FrequencyUnit,
-    /// Ends \[rad/s\].
+    /// Band limits \[rad/s\].
     pub(super) band: (f64, f64),
 }
 
@@ -42,13 +42,13 @@ struct ListedCurve<'a> {
 #[derive(Clone, Copy)]
 struct Difference {
     magnitude_db: Option<f64>,
-    /// Principal value, because a single frequency does not define turns (M4).
+    /// Principal value, because whole turns cannot be determined at a single frequency (M4).
     phase_deg: Option<f64>,
 }
 
 impl<'a> ReadoutSource<'a> {
-    /// Returns the values at the `cursor`, else at the first mark, else at the largest error within
-    /// the band \[rad/s\]. With exactly two marks, returns the changes between them.
+    /// Returns the values at `cursor`, else at the first mark, else at the largest error within the
+    /// band \[rad/s\]. With exactly two marks, returns the changes between them.
     pub(super) fn readout(&self, cursor: Option<f64>, marks: &[f64]) -> Option<Readout> {
         if let [from, to] = *marks {
             return Some(self.changes(from, to));
@@ -139,7 +139,7 @@ impl<'a> ReadoutSource<'a> {
         }
     }
 
-    /// Returns the corrected minus the identified model; `None` unless both are drawn.
+    /// Returns the difference between corrected and identified model; `None` unless both are drawn.
     fn difference(&self, omega: f64) -> Option<Difference> {
         let corrected = self.curve(Role::Corrected)?;
         let identified = self.curve(Role::IdentifiedRepresentative)?;
@@ -170,7 +170,7 @@ impl<'a> ReadoutSource<'a> {
         }
     }
 
-    /// Returns the frequency within the band \[rad/s\] with the greatest integrand of J (M4).
+    /// Returns the frequency \[rad/s\] within the band at which the integrand of J is largest (M4).
     fn largest_error(&self) -> Option<f64> {
         let (min, max) = self.band;
         let mut largest: Option<ErrorAt> = None;
@@ -183,7 +183,7 @@ impl<'a> ReadoutSource<'a> {
                 continue;
             };
             let error = summand(db, deg);
-            // Among equal errors, the highest frequency.
+            // Among equal errors, the one at the highest frequency is chosen.
             if largest.is_none_or(|largest| error.total_cmp(&largest.error).is_ge()) {
                 largest = Some(ErrorAt { omega, error });
             }
@@ -277,7 +277,7 @@ mod tests {
         assert_eq!(readout.frequency, "1.00 rad/s");
         assert_eq!(values(&readout, "nominal"), ["2.0 dB", "400°"]);
         assert_eq!(values(&readout, "identified"), ["1.0 dB", "10°"]);
-        // 400° is a turn and 30° ahead of 10°.
+        // 400° is one turn plus 40°, so 30° ahead of 10°.
         assert_eq!(
             values(&readout, "corrected − identified"),
             ["1.5 dB", "30°"]

@@ -1,5 +1,5 @@
-//! Chips above a plot over frequency: its current restrictions, each with the command that ends it
-//! or acts on the selected models.
+//! Chips above a plot over frequency: the restrictions in effect, each with the command that
+//! removes it or that acts on the selected models.
 
 use std::collections::BTreeSet;
 
@@ -13,11 +13,11 @@ use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::plot::legend::Chip;
 use crate::gui::state::window_state::State;
 
-/// Chips, each with the command for a click.
+/// Chips, each with the command carried out by a click.
 #[derive(Default)]
 pub(super) struct CurveChips {
     pub(super) chips: Vec<Chip>,
-    /// Same length and order as `chips`.
+    /// Commands, in the order of `chips`.
     pub(super) commands: Vec<Command>,
 }
 

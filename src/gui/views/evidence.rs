@@ -1,5 +1,5 @@
-//! Evidence about the net gains: sources of their scatter, significant differences, and the
-//! required form of the schedule.
+//! Evidence about the net gains: sources of their scatter, significant differences, and the form of
+//! schedule that they require.
 
 use egui::{
     Align2, Color32, FontId, Grid, Painter, Rect, Response, RichText, ScrollArea, Sense, Ui,
@@ -21,17 +21,16 @@ use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
 
 /// Bar height \[pt\].
 const BAR_HEIGHT: f32 = 15.0;
-/// Greatest table height \[pt\]; longer tables scroll.
+/// Maximum table height \[pt\]; longer tables scroll.
 const MOST_TABLE: f32 = 330.0;
-/// Label width before the bars \[pt\].
+/// Width of the labels before the bars \[pt\].
 const LABEL_WIDTH: f32 = 170.0;
-/// Text width after the bars \[pt\].
+/// Width of the texts after the bars \[pt\].
 const TEXT_WIDTH: f32 = 400.0;
-/// Least bar width \[pt\].
+/// Minimum bar width \[pt\].
 const LEAST_BAR: f32 = 60.0;
 
-/// Shows on a single screen whether the scatter at a given airspeed is due to trim, due to
-/// identification, or real.
+/// Shows whether the scatter at a given airspeed is due to trim, due to identification, or real.
 pub fn evidence_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -98,7 +97,7 @@ impl EvidencePage<'_> {
             });
     }
 
-    /// Draws a note if the schedule has a second variable that no response needs.
+    /// Draws a note if the schedule has a second variable although no response needs it.
     fn second_variable_ui(&self, ui: &mut Ui, state: &State) {
         if let Some(variable) = state.study.settings.schedule.second {
             let is_needed = self
@@ -138,7 +137,7 @@ impl EvidencePage<'_> {
         ui.add_space(6.0);
     }
 
-    /// Draws a scatter: its name, a bar divided among its sources, and its numbers.
+    /// Draws a scatter: its name, a bar divided among its sources, and its values.
     fn split_ui(&self, ui: &mut Ui, name: &str, split: Option<&VarianceDecomposition>) {
         let size = vec2(ui.available_width(), BAR_HEIGHT + 3.0);
         let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
@@ -171,7 +170,7 @@ impl EvidencePage<'_> {
         response.on_hover_text(format!("{name}: {words}"));
     }
 
-    /// Paints the shares: trim, identification and unexplained variance, from left to right.
+    /// Paints the shares of trim, identification and unexplained variance, from left to right.
     fn paint_shares(&self, painter: &Painter, bar: Rect, split: Option<&VarianceDecomposition>) {
         let Some(shares) = split.and_then(VarianceDecomposition::shares) else {
             return;
@@ -193,7 +192,7 @@ impl EvidencePage<'_> {
         sorting: &mut Sorting,
         commands: &mut Vec<Command>,
     ) {
-        /// Column with the ratio to the expected difference.
+        /// Index of the column with the ratio to the expected difference.
         const RATIO: usize = 6;
         let (table, differences) = difference_table(state.dataset(), self.uncertainty);
         heading_ui(ui, &table.title);
@@ -233,7 +232,7 @@ impl EvidencePage<'_> {
         });
     }
 
-    /// Draws the errors for each form of the schedule.
+    /// Draws the errors of each form of the schedule.
     fn forms_table_ui(
         &self,
         ui: &mut Ui,
@@ -261,8 +260,8 @@ impl EvidencePage<'_> {
     }
 }
 
-/// Returns the cells: response, conditions, relative difference, and its ratio to the expected
-/// difference.
+/// Returns the cells: response, conditions, relative difference, and the ratio of this difference
+/// to the expected one.
 fn difference_cells(state: &State, found: &AirspeedDifference) -> [String; 4] {
     let [first, second] = found.conditions;
     [
@@ -288,7 +287,7 @@ fn name_label(response: &Response, name: String) {
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, &name));
 }
 
-/// Returns the colours for trim, identification and unexplained variance.
+/// Returns the colours of trim, identification and unexplained variance.
 fn source_colors(palette: &Palette) -> [Color32; 3] {
     [palette.perturbed, palette.identified, palette.nominal]
 }
@@ -314,7 +313,7 @@ fn split_words(split: &VarianceDecomposition, level: f64) -> String {
     words
 }
 
-/// Draws a table no higher than its rows, because others follow in the same scroll area.
+/// Draws a table no higher than its rows, because other tables follow in the same scroll area.
 fn with_height_of_rows<R>(ui: &mut Ui, rows: usize, add: impl FnOnce(&mut Ui) -> R) -> R {
     let row = ui.spacing().interact_size.y + 3.0;
     let bar = ui.spacing().scroll.allocated_width();

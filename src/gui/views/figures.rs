@@ -26,7 +26,8 @@ pub fn figure_of(state: &State, view: View) -> Option<Figure> {
     } else {
         state.analysis().cloned()
     };
-    // The requirements' inputs may be newer than the analysis, which does not depend on them.
+    // The requirements of the study may be newer than those of the analysis, which does not depend
+    // on them.
     let analysis = analysis.map(|analysis| analysis.asked_with(&state.study.requirements));
     let source = condition_source(state);
     request(state, view)?.figure(analysis.as_ref(), source.as_ref())
@@ -54,7 +55,7 @@ pub fn figure_name(state: &State, view: View) -> String {
     name
 }
 
-/// Returns a view's figure request, as the command `gdcm figure` makes it.
+/// Returns the request for a view's figure, equal to that of the command `gdcm figure`.
 pub fn request(state: &State, view: View) -> Option<FigureRequest> {
     let kind = view.figure()?;
     let pairs = view_content(view).figure_pairs;
@@ -94,12 +95,12 @@ pub fn request(state: &State, view: View) -> Option<FigureRequest> {
     })
 }
 
-/// Returns the assessed couplings, once known.
+/// Returns the assessed couplings, once available.
 pub fn shown_couplings(state: &State) -> Option<Arc<CouplingsAssessment>> {
     state.couplings()?.as_ref().ok().cloned()
 }
 
-/// Returns the requirements for a figure; `None` for other figures, or until they are known.
+/// Returns the requirements for a figure; `None` for other figures, or until they are available.
 pub fn shown_requirements(state: &State, kind: FigureKind) -> Option<Arc<Requirements>> {
     if kind == FigureKind::Requirements {
         state.requirements().cloned()

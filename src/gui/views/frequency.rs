@@ -30,7 +30,7 @@ use crate::gui::widgets::palette::Palette;
 /// Plot over frequency in the displayed condition.
 pub(super) struct FrequencyPlot<'a> {
     pub(super) state: &'a State,
-    /// Scene without cursors, values and chips, which are added.
+    /// Scene without cursors, values and chips, which [`Self::ui`] adds.
     pub(super) scene: BodeScene<'a>,
     pub(super) view: &'a mut BodeView,
     pub(super) palette: &'a Palette,
@@ -99,7 +99,7 @@ impl FrequencyPlot<'_> {
     }
 }
 
-/// Returns the command for an event; `None` for events without effect on study or display.
+/// Returns the command for an event; `None` if the event changes neither study nor display.
 fn event_command(state: &State, event: BodeEvent) -> Option<Command> {
     match event {
         BodeEvent::Clicked(CurveId::Model(id)) => Some(reject_or_restore(state, id)),
@@ -113,7 +113,7 @@ fn event_command(state: &State, event: BodeEvent) -> Option<Command> {
         }
         BodeEvent::Isolated(CurveId::Model(id)) => Some(SelectionCommand::Isolate(id).into()),
         BodeEvent::BandDragged { min, max } => {
-            // A band whose ends would cross is not applied while it is dragged.
+            // A dragged band limit beyond the other limit is ignored.
             let band = Band::new(min, max).ok()?;
             Some(setting::BAND.to(band).into())
         }
@@ -152,7 +152,7 @@ fn reject_or_restore(state: &State, id: ModelId) -> Command {
 }
 
 /// Returns the command for an entry in a curve's menu; `None` if the entry concerns models but the
-/// curve is no model.
+/// curve is not a model.
 pub(super) fn wish_command(state: &State, id: CurveId, wish: CurveWish) -> Option<Command> {
     match (wish, id) {
         (CurveWish::Turn(turns), id) => {
@@ -168,7 +168,7 @@ pub(super) fn wish_command(state: &State, id: CurveId, wish: CurveWish) -> Optio
     }
 }
 
-/// Formats a curve's numbers as text: a heading, then a tab-separated line for each frequency.
+/// Formats the values of a curve as text: a heading, then a tab-separated line for each frequency.
 fn values_text(quantity: BodeQuantity<'_>, curve: &BodeCurve) -> String {
     let [magnitude, phase] = PANES.map(|pane| quantity.drawn_label(pane));
     let mut text = format!("{}\nω [rad/s]\t{magnitude}\t{phase}\n", curve.label);
@@ -180,7 +180,7 @@ fn values_text(quantity: BodeQuantity<'_>, curve: &BodeCurve) -> String {
     text
 }
 
-/// Returns the source for all curves in the displayed condition; `None` until its responses are
+/// Returns the source of all curves in the displayed condition; `None` until its responses are
 /// available.
 pub(in crate::gui) fn condition_source(state: &State) -> Option<ConditionSource<'_>> {
     let mut schedule = None;
@@ -202,7 +202,7 @@ pub(in crate::gui) fn condition_source(state: &State) -> Option<ConditionSource<
     })
 }
 
-/// Returns the choices about displayed curves, which are the same in the window and on paper.
+/// Returns the options of the displayed curves, which are the same in the window and on paper.
 pub(in crate::gui) fn bode_options(state: &State) -> BodeOptions {
     let display = &state.display;
     let curves = &display.curves;
@@ -250,8 +250,8 @@ pub(in crate::gui) fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCurv
     drawn
 }
 
-/// Returns the errors in a response, as used by the fit, in the displayed condition; empty until
-/// its responses are available.
+/// Returns the errors in a response of the displayed condition, as used by the fit; empty until the
+/// responses are available.
 pub(super) fn error_curves(state: &mut State, pair: Pair, options: &BodeOptions) -> Vec<BodeCurve> {
     let mut cache = std::mem::take(&mut state.display.frequency.errors);
     let curves = match condition_source(state) {
@@ -264,8 +264,8 @@ pub(super) fn error_curves(state: &mut State, pair: Pair, options: &BodeOptions)
     drawn
 }
 
-/// Returns the identified model among the error curves: its error is zero everywhere, and the
-/// other curves are read against it.
+/// Returns the identified model among the error curves: its error is zero everywhere, and the other
+/// curves are compared with it.
 pub(super) fn error_reference(curves: &[BodeCurve]) -> Option<CurveId> {
     for curve in curves {
         if let CurveId::Model(id) = &curve.id
@@ -277,7 +277,7 @@ pub(super) fn error_reference(curves: &[BodeCurve]) -> Option<CurveId> {
     None
 }
 
-/// Emphasises the curve under the pointer, and adds to each description the effect of a click.
+/// Emphasises the curve under the pointer, and adds the effect of a click to each description.
 fn with_interaction(
     state: &State,
     mut curves: Vec<BodeCurve>,

@@ -20,10 +20,10 @@ use crate::gui::state::pair_set::PairSet;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::toggle_ui;
 
-/// Least plot size \[pt\].
+/// Minimum plot size \[pt\].
 pub const LEAST_PLOT: Vec2 = vec2(122.0, 120.0);
 
-/// Returns the uncertainty in gains and delays, if error bars are shown.
+/// Returns the uncertainty of gains and delays; `None` if error bars are hidden or not available.
 pub fn shown_uncertainty(state: &State) -> Option<&Uncertainty> {
     if state.display.gains.hide_bars {
         None
@@ -42,7 +42,7 @@ pub struct GainPlots<'a> {
 }
 
 impl GainPlots<'_> {
-    /// Returns the scene with marks at the displayed and at the pointed condition.
+    /// Returns the scene, with marks at the displayed condition and at the one under the pointer.
     pub fn scene<'b>(
         &'b self,
         name: &'static str,
@@ -213,7 +213,7 @@ pub fn bar_words(bar: &Bar, scalar: Scalar, level: f64) -> String {
     words
 }
 
-/// Draws the switch for error bars and bands, with an accessible name.
+/// Draws the switch that shows error bars and bands.
 pub fn bars_switch_ui(ui: &mut Ui, state: &State, name: &str, commands: &mut Vec<Command>) {
     let shown = !state.display.gains.hide_bars;
     let level = 100.0 * state.study.settings.uncertainty.level;

@@ -26,14 +26,14 @@ use crate::gui::widgets::controls::{number_entry_ui, restore_panel_size};
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::tables::{Sorting, TableLook, table_grid_ui};
 
-/// Least plot size \[pt\].
+/// Minimum plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(220.0, 96.0);
-/// Least plot size for a record, with the difference from flight below it \[pt\].
+/// Minimum size of a record's plot, with the difference from flight below it \[pt\].
 const LEAST_RECORD: Vec2 = vec2(260.0, 190.0);
 /// Initial table height, as a share of the view's height.
 const TABLE_PART: f32 = 0.32;
 
-/// Draws the flown record, or the test input, and the models' responses.
+/// Draws the flight record or the test input, and the models' responses.
 pub fn histories_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -100,7 +100,7 @@ pub fn histories_ui(
     state.display.figures.insert(View::Requirements, view);
 }
 
-/// Draws the choice between this condition's records and a test input.
+/// Draws the selector between the condition's records and a test input.
 fn subject_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let records = state.records.conditions.get(&state.condition().id());
     let mut choices: Vec<(Option<usize>, &str, &str)> = Vec::new();
@@ -140,7 +140,8 @@ fn subject_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
     }
 }
 
-/// Columns with the share of time inside, the largest excess, and the trend.
+/// Indices of the columns with the share of time inside the corridor, the largest excess, and the
+/// trend.
 const SHARE: usize = 4;
 const EXCESS: usize = 5;
 const TREND: usize = 7;
@@ -179,7 +180,7 @@ impl SharesTable<'_> {
     }
 }
 
-/// Draws the test input: shape, size and duration.
+/// Draws the fields of the test input: shape, size and duration.
 fn test_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let test = state.study.requirements.test;
     let input = &state.dataset().inputs()[state.display.selection.pair.input];
@@ -224,7 +225,7 @@ fn test_number_ui(ui: &mut Ui, name: &str, value: f64, commands: &mut Vec<Comman
     number_entry_ui(ui, name, &number(value), "", 56.0, commands)?
 }
 
-/// Returns the command that changes the test input, or that reports why the input is refused.
+/// Returns the command that changes the test input, or that reports why it is refused.
 fn set_test_input(state: &State, name: &'static str, test: TestInput) -> Command {
     match test.checked() {
         Ok(test) => decided(state, name, |settings| settings.test = test),
@@ -232,7 +233,7 @@ fn set_test_input(state: &State, name: &'static str, test: TestInput) -> Command
     }
 }
 
-/// Descriptions for the plots over time.
+/// Descriptions of the plots over time.
 struct HistoryWords<'a>(&'a Figure);
 
 impl FigureWords for HistoryWords<'_> {

@@ -20,7 +20,7 @@ use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
 /// Initial table width, as a share of the view's width.
 const TABLE_PART: f32 = 0.5;
 
-/// Draws gain and phase added by leads up to ten times the band, and the channel table.
+/// Draws the gain and phase added by leads up to ten times the band, and the channel table.
 pub fn leads_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -82,8 +82,8 @@ fn figure(state: &State) -> Figure {
 }
 
 /// Builds the channel table: delay or lead, phase at the upper end of the band, replaced servo, and
-/// the gain paid above the band. The title gives the highest frequency at which the corrected model
-/// is valid. `None` without leads.
+/// the gain added above the band as the price. The title gives the highest frequency at which the
+/// corrected model is valid. `None` without leads.
 pub fn leads_table(state: &State) -> Option<Table> {
     let leads = state.shown()?.correction.leads.as_ref()?;
     let price = LeadPrice::of(leads);
@@ -108,7 +108,7 @@ pub fn leads_table(state: &State) -> Option<Table> {
     for channel in all_channels(state.dataset()) {
         let tau_s = leads.taus_s[channel];
         let filter = leads.filters()[channel];
-        // Without a filter, only a pure delay shifts the phase.
+        // Without a filter, the phase shift is due to a pure delay alone.
         let phase = match filter {
             Some(filter) => filter.phase(top),
             None => -top * tau_s.max(0.0),

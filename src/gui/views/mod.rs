@@ -92,9 +92,9 @@ pub struct ViewContent {
     pub title: ViewTitle,
     /// Controls in the header, laid out from right to left.
     pub tools: fn(&mut Ui, &State, &Palette, &mut Vec<Command>),
-    /// Tool width \[pt\]; the title takes the rest.
+    /// Width of the tools \[pt\]; the title takes the rest.
     pub tools_width: f32,
-    /// Computations needed besides the live answer.
+    /// Computations needed in addition to the live analysis.
     pub needs: fn(&State) -> Vec<Need>,
     /// Responses in the figure on paper; empty if it shows all responses or none.
     pub figure_pairs: fn(&State) -> Vec<Pair>,
@@ -119,7 +119,7 @@ pub enum ViewTitle {
     Condition,
     /// The response in focus, and the condition.
     Response,
-    /// The response in focus, for views of all conditions.
+    /// The response in focus, in views of all conditions.
     Focus,
     Words(fn(&State) -> String),
 }

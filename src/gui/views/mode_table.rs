@@ -1,4 +1,4 @@
-//! Modes in the displayed condition, in words and in a table, with their cache.
+//! Modes in the displayed condition, as text and as a table, with their cache.
 
 use std::sync::Arc;
 
@@ -82,7 +82,8 @@ impl CachedModes {
     }
 }
 
-/// Returns the nominal model and both representatives: zeros for every model would hide the poles.
+/// Returns the models whose zeros are shown: the nominal model and both representatives, because
+/// the zeros of all models would hide the poles.
 fn models_with_zeros(state: &State, modes: &ConditionModes) -> Vec<ModelId> {
     let condition = &modes.condition;
     let nominal = &condition.bundle(BundleKind::Physics)[condition.nominal()];
@@ -98,8 +99,8 @@ fn models_with_zeros(state: &State, modes: &ConditionModes) -> Vec<ModelId> {
     models
 }
 
-/// Returns the index of the physics model whose modes are followed through the others: the
-/// representative or, until it is known, the nominal model.
+/// Returns the index of the physics model whose modes are followed through the other models: the
+/// representative or, until it is available, the nominal model.
 fn reference_index(state: &State, modes: &ConditionModes) -> usize {
     let kind = BundleKind::Physics;
     if let Some(shown) = state.shown()
@@ -112,8 +113,8 @@ fn reference_index(state: &State, modes: &ConditionModes) -> usize {
     modes.condition.nominal()
 }
 
-/// Describes a mode: its values, its name, its largest participations, and for discrete-time models
-/// the meaning of the pole.
+/// Describes a mode: its values, its name, its largest participations, and the meaning of the pole
+/// of a discrete-time model.
 pub(super) fn mode_description(mode: &Mode, model: &Model) -> Vec<String> {
     let mut words = vec![mode_values(mode)];
     words.extend(mode_name(mode, model));
@@ -134,7 +135,7 @@ fn mode_values(mode: &Mode) -> String {
     words.join(", ")
 }
 
-/// Returns the damping ratio, if the mode oscillates.
+/// Returns the damping ratio; `None` unless the mode oscillates.
 fn shown_damping_ratio(mode: &Mode) -> Option<f64> {
     if mode.oscillates() {
         mode.damping_ratio
@@ -143,7 +144,7 @@ fn shown_damping_ratio(mode: &Mode) -> Option<f64> {
     }
 }
 
-/// Returns a mode's name, if its model names its states (M17.3).
+/// Returns the name of a mode; `None` unless the model names its states (M17.3).
 fn mode_name(mode: &Mode, model: &Model) -> Option<String> {
     match ModeName::of(mode, &model.states) {
         (Some(name), NamedBy::States) => Some(name.to_string()),
@@ -163,7 +164,7 @@ fn discrete_time_words(model: &Model) -> Option<String> {
     ))
 }
 
-/// Lists the states with the largest participation, at most `most`: "w 62 %, q 21 %".
+/// Lists up to `most` states with the largest participation: "w 62 %, q 21 %".
 fn participation_words(mode: &Mode, model: &Model, most: usize) -> Option<String> {
     let shares = match &mode.participation {
         Ok(shares) => shares,
@@ -181,8 +182,8 @@ fn participation_words(mode: &Mode, model: &Model, most: usize) -> Option<String
     if words.is_empty() { None } else { Some(words) }
 }
 
-/// Builds the mode table for the physics bundle: a row for each mode in the reference model,
-/// followed from model to model. Returns with it, for each row, the first model in which the mode
+/// Builds the mode table of the physics bundle: a row for each mode of the reference model,
+/// followed from model to model. Also returns, for each row, the first model in which the mode
 /// jumps.
 fn modes_table(
     state: &State,

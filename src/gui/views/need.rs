@@ -1,4 +1,4 @@
-//! Background results that a view needs besides the live answer.
+//! Background results that a view needs in addition to the live analysis.
 
 use gdcm_study::jobs::analysis_jobs::{AssessmentJob, CouplingsJob, VariantJob};
 use gdcm_study::jobs::curve_jobs::{AcrossJob, ModesJob};
@@ -7,13 +7,13 @@ use gdcm_study::jobs::requirement_jobs::{
     RecordHistoryJob, RequirementsJob, TestAnswersJob, TimeHistoriesJob,
 };
 
-/// Computation needed by a view besides the live answer.
+/// Computation that a view needs in addition to the live analysis.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Need {
-    /// Modes for all models in the condition.
+    /// Modes of all models in the condition.
     Modes(ModesJob),
     Assessment(AssessmentJob),
-    /// Responses from a model in each condition.
+    /// Responses of a model in each condition.
     Across(AcrossJob),
     Variant(VariantJob),
     /// Simulated response to a record.

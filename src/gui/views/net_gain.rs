@@ -1,4 +1,4 @@
-//! Net gains over airspeed, with the choice of the schedule.
+//! Net gains over airspeed, with the settings of the schedule.
 
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Grid, Panel, PopupCloseBehavior, RichText, Role, ScrollArea, Ui, WidgetInfo};
@@ -25,7 +25,7 @@ use crate::gui::widgets::controls::{named, restore_panel_size};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
 
-/// Width required by the controls in a single line \[pt\].
+/// Width of the controls in a single line \[pt\].
 pub const NET_GAIN_CONTROLS: f32 = 410.0;
 
 /// Describes the plots.
@@ -42,7 +42,7 @@ pub fn net_gain_words(state: &State) -> String {
     )
 }
 
-/// Draws the choices about responses and schedule, from right to left.
+/// Draws the controls of responses and schedule, from right to left.
 pub fn net_gain_header_ui(
     ui: &mut Ui,
     state: &State,
@@ -79,7 +79,7 @@ pub fn net_gain_header_ui(
     pair_set_ui(ui, state, commands);
 }
 
-/// Draws the choice between displayed responses, from right to left.
+/// Draws the selector of the displayed responses, from right to left.
 fn pair_set_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let pair = state.display.selection.pair;
     if state.display.gains.net_gain_pairs == PairSet::Picked {
@@ -104,7 +104,7 @@ fn pair_set_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     }
 }
 
-/// Draws the net gain over airspeed for each displayed response.
+/// Draws the net gain of each displayed response over airspeed.
 pub fn net_gain_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -195,7 +195,7 @@ fn evidence_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut
     state.display.gains.evidence_sorting = sorting;
 }
 
-/// Draws the settings for the schedule, line by line.
+/// Draws the settings of the schedule, line by line.
 fn schedule_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let rows = [
         &setting::SCHEDULE,
@@ -226,7 +226,7 @@ fn schedule_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
         });
 }
 
-/// Builds a plot for each displayed response: net gain at each condition's optimum, and the
+/// Builds a plot for each displayed response: net gain at the optimum of each condition, and the
 /// schedule.
 pub fn net_gain_plots(state: &State) -> GainPlots<'_> {
     let mut pairs = Vec::new();

@@ -11,8 +11,8 @@ use super::need::Need;
 use crate::gui::state::requirements_page::RequirementsPage;
 use crate::gui::state::window_state::State;
 
-/// Returns the job for the record shown over time; `None` without a record, or if a test is shown
-/// instead.
+/// Returns the job of the record shown over time; `None` without a record, or if the test input is
+/// shown instead.
 pub fn record_job(state: &State) -> Option<RecordHistoryJob> {
     let analysis = current(state)?;
     let condition = state.condition().id();
@@ -59,7 +59,7 @@ fn test_job(state: &State) -> Option<TestAnswersJob> {
     })
 }
 
-/// Returns the analysis by the current settings; `None` while it is being computed.
+/// Returns the analysis with the current settings; `None` while it is being computed.
 pub fn current(state: &State) -> Option<Arc<Analysis>> {
     state.analysis()?;
     state.results.analysis.clone()

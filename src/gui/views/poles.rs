@@ -1,4 +1,4 @@
-//! Poles in the s-plane, and a table with the physics bundle's modes.
+//! Poles in the s-plane, and a table of the modes of the physics bundle.
 
 use egui::{Panel, Ui, Vec2, vec2};
 
@@ -22,8 +22,8 @@ use crate::gui::widgets::controls::restore_panel_size;
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::tables::{TableLook, table_ui};
 
-/// Real and imaginary parts in the plot for slow modes \[rad/s\], which contains a helicopter's
-/// rigid-body modes.
+/// Ranges of real and imaginary part in the plot of slow modes \[rad/s\], which contains the
+/// rigid-body modes of a helicopter.
 const SLOW: [Range; 2] = [
     Range {
         min: -2.0,
@@ -34,7 +34,7 @@ const SLOW: [Range; 2] = [
         max: 3.2,
     },
 ];
-/// Least plot size \[pt\].
+/// Minimum plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(140.0, 130.0);
 /// Initial table height, as a share of the view's height.
 const TABLE_PART: f32 = 0.3;
@@ -52,7 +52,7 @@ pub fn poles_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) 
     }
 }
 
-/// Draws the poles for every model in the displayed condition; a click rejects or restores a model.
+/// Draws the poles of every model in the displayed condition; a click rejects or restores a model.
 pub fn poles_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -116,8 +116,8 @@ pub fn poles_view_ui(
     state.display.figures.insert(View::Poles, view);
 }
 
-/// Builds the pole figure for all models in the displayed condition, optionally with the zeros in
-/// the response in focus; `None` until they are known.
+/// Builds the pole figure of all models in the displayed condition, optionally with the zeros of
+/// the response in focus; `None` until these are available.
 pub fn poles(state: &State) -> Option<Figure> {
     let CachedModes { zeros, shifts, .. } = &state.display.poles.modes;
     let zeros_of_model = |id: &ModelId| match zeros.iter().find(|(model, _)| model == id) {
@@ -134,7 +134,7 @@ pub fn poles(state: &State) -> Option<Figure> {
     Some(figure)
 }
 
-/// Returns the figure as shown in the window: arcs at equal frequency follow the visible range, and
+/// Returns the figure as shown in the window: arcs of equal frequency follow the visible range, and
 /// the most important models have larger marks.
 fn dressed(mut figure: Figure, view: &FigureView) -> Figure {
     if let [_, slow] = &mut figure.plots[..] {
@@ -162,7 +162,7 @@ fn dressed(mut figure: Figure, view: &FigureView) -> Figure {
     figure
 }
 
-/// Returns the dot size for a legend entry, relative to the usual size. Perturbed models have
+/// Returns the dot size of a legend entry, relative to the usual size. Perturbed models have
 /// smaller dots than the nominal model and the representatives.
 fn dot_size(key: Option<&str>) -> f64 {
     const LARGE: [Role; 3] = [
@@ -179,7 +179,7 @@ fn dot_size(key: Option<&str>) -> f64 {
     }
 }
 
-/// Descriptions for the pole plots.
+/// Descriptions of the pole plots.
 struct PoleWords<'a> {
     state: &'a State,
     dots: usize,

@@ -1,4 +1,4 @@
-//! Fields for requirements: tolerances for time histories and for modes, limits in the overview
+//! Fields of the requirements: tolerances of time histories and of modes, limits of the overview
 //! (M17).
 
 use std::sync::Arc;
@@ -21,7 +21,7 @@ use crate::gui::widgets::palette::Palette;
 /// Field width \[pt\].
 const FIELD: f32 = 56.0;
 
-/// Draws the tolerances for time histories, row by row.
+/// Draws the tolerances of time histories, row by row.
 pub fn tolerances_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let table = &state.study.requirements.tolerances;
     ui.horizontal_wrapped(|ui| {
@@ -71,14 +71,14 @@ pub fn tolerances_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
     }
 }
 
-/// Returns the command that changes the tolerances for time histories.
+/// Returns the command that changes the tolerances of time histories.
 fn set_tolerances(state: &State, tolerances: ToleranceTable) -> Command {
     decided(state, "tolerances", |settings| {
         settings.tolerances = tolerances;
     })
 }
 
-/// Draws the tolerances for modes, row by row.
+/// Draws the tolerances of modes, row by row.
 pub fn mode_tolerances_ui(
     ui: &mut Ui,
     state: &State,
@@ -128,15 +128,15 @@ pub fn mode_tolerances_ui(
     }
 }
 
-/// Returns the command that changes the tolerances for modes.
+/// Returns the command that changes the tolerances of modes.
 fn set_mode_tolerances(state: &State, tolerances: ModeToleranceTable) -> Command {
     decided(state, "tolerances of modes", |settings| {
         settings.mode_tolerances = tolerances;
     })
 }
 
-/// Draws the limits beyond which the overview reports that a corrected model is far from the
-/// identified model.
+/// Draws the limits beyond which the overview reports a corrected model as far from the identified
+/// model.
 pub fn overview_limits_ui(
     ui: &mut Ui,
     state: &State,
@@ -168,20 +168,20 @@ pub fn overview_limits_ui(
     }
 }
 
-/// Returns the command that changes the limits in the overview.
+/// Returns the command that changes the limits of the overview.
 fn set_overview_limits(state: &State, limits: OverviewLimits) -> Command {
     decided(state, "limits of the overview", |settings| {
         settings.overview = limits;
     })
 }
 
-/// Field for a limit.
+/// Field of a limit.
 struct LimitField {
     /// Accessible name.
     name: String,
-    /// Factor from the stored to the displayed number.
+    /// Factor from the stored to the displayed value.
     to_shown: f64,
-    /// Factor from the typed to the stored number.
+    /// Factor from the typed to the stored value.
     to_stored: f64,
 }
 
@@ -203,7 +203,7 @@ impl LimitField {
         }
     }
 
-    /// Creates a field in milliseconds for a number stored in seconds.
+    /// Creates a field in milliseconds for a value stored in seconds.
     fn in_ms(name: impl Into<String>) -> Self {
         Self {
             to_shown: 1e3,
@@ -221,7 +221,7 @@ impl LimitField {
         }
     }
 
-    /// As [`ui`](Self::ui), for a field that may be empty.
+    /// Draws a field that may be empty, otherwise like [`ui`](Self::ui).
     fn optional_ui(&self, ui: &mut Ui, value: &mut Option<f64>, commands: &mut Vec<Command>) {
         let text = match value {
             Some(value) => self.text(*value),
@@ -233,14 +233,14 @@ impl LimitField {
         }
     }
 
-    /// Formats a stored value without the last digits, which a unit conversion introduces.
+    /// Formats a stored value, without the rounding error of the unit conversion.
     fn text(&self, value: f64) -> String {
         number((1e9 * (self.to_shown * value)).round() / 1e9)
     }
 }
 
-/// Returns the command that changes the requirements' inputs; `name` is for the history of
-/// decisions.
+/// Returns the command that changes the inputs of the requirements; `name` is used in the decision
+/// history.
 pub fn decided(
     state: &State,
     name: &'static str,

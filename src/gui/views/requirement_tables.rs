@@ -20,7 +20,7 @@ pub(super) struct PageTable<'a> {
     kind: TableKind<'a>,
 }
 
-/// Table content, which determines the cell colours.
+/// Content of a table, which determines the cell colours.
 enum TableKind<'a> {
     Bandwidth(&'a Requirements),
     Modes,
@@ -28,9 +28,9 @@ enum TableKind<'a> {
     Summary(&'a Requirements),
 }
 
-/// Columns before the numbers in the bandwidth table.
+/// Number of columns before the values in the bandwidth table.
 const BANDWIDTH_HEADS: usize = 4;
-/// Numbers in the bandwidth table, in column order.
+/// Values in the bandwidth table, in column order.
 const BANDWIDTH_NUMBERS: [&str; 5] = [
     "omega_bw_rad_s",
     "omega_phase_rad_s",
@@ -56,7 +56,7 @@ impl PageTable<'_> {
         }
     }
 
-    /// Returns the colour for a mode inside or outside its tolerance; grey without a verdict.
+    /// Returns the colour of a mode inside or outside its tolerance; grey without a verdict.
     fn mode_hue(&self, row: usize, column: usize) -> Option<Hue> {
         if !self.table.columns[column].ends_with(": tolerance") {
             return None;
@@ -71,8 +71,8 @@ impl PageTable<'_> {
         }
     }
 
-    /// Returns the colour for a mean J on either side of the acceptable limit; other columns have
-    /// no limit.
+    /// Returns the colour of a mean J within or beyond the acceptable limit; other columns have no
+    /// limit.
     fn summary_hue(&self, requirements: &Requirements, row: usize, column: usize) -> Option<Hue> {
         let finding = summary_of_row(requirements, &self.table.rows[row])?;
         let cost = match self.table.columns[column].as_str() {
@@ -131,8 +131,8 @@ pub(super) fn page_tables<'a>(state: &State, requirements: &'a Requirements) -> 
     }
 }
 
-/// Returns the tables on a page without a figure; `None` on a page with a figure, or until the
-/// requirements are known.
+/// Returns the tables of a page without a figure; `None` on a page with a figure, or until the
+/// requirements are available.
 pub fn requirement_tables(state: &State) -> Option<Vec<Table>> {
     match state.display.judging.requirements_page {
         RequirementsPage::Modes | RequirementsPage::Summary => {}

@@ -43,7 +43,7 @@ use crate::gui::widgets::tables::{TableClick, TableLook, table_grid_ui};
 /// Text above every page.
 pub(super) const NO_QUALIFICATION: &str =
     "Models, not aircraft: these numbers are no qualification (docs/requirements.md)";
-/// Least plot size \[pt\].
+/// Minimum plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(220.0, 150.0);
 /// Initial table height, as a share of the view's height.
 const TABLE_PART: f32 = 0.34;
@@ -152,7 +152,8 @@ pub fn requirements_view_ui(
     }
 }
 
-/// Draws the inputs for bandwidths: the sticks that command an attitude, and the engineer's levels.
+/// Draws the inputs of the bandwidth requirements: the sticks that command an attitude, and the
+/// engineer's levels.
 fn bandwidth_inputs_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         ui.label(palette.small("attitude command:"));
@@ -188,7 +189,7 @@ fn attitude_commands_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>)
     }
 }
 
-/// Draws the level count, and the buttons that remove the levels or read them from a file.
+/// Draws the number of levels, and the buttons that remove the levels or read them from a file.
 fn levels_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let levels = state.study.requirements.levels.all().len();
     let text = if levels == 0 {
@@ -207,14 +208,14 @@ fn levels_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
     button_ui(ui, Button::new("Levels…").small(), hint, ask, commands);
 }
 
-/// View with known requirements.
+/// View of available requirements.
 struct RequirementsView<'a> {
     requirements: &'a Requirements,
     palette: &'a Palette,
 }
 
 impl RequirementsView<'_> {
-    /// Draws the missing results, and the reservations about the others.
+    /// Draws which results are missing, and the reservations about the others.
     fn reservations_ui(&self, ui: &mut Ui) {
         let mut lines = Vec::new();
         for missing in &self.requirements.missing {
@@ -280,7 +281,7 @@ impl RequirementsView<'_> {
         state.display.figures.insert(View::Requirements, view);
     }
 
-    /// Draws the tables on the page; a click on a row shows its subject.
+    /// Draws the tables of the page; a click on a row shows its subject.
     fn tables_ui(&self, ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
         let condition = state.condition().id();
         let mut sortings = state.display.judging.requirements_sorting;
@@ -316,7 +317,7 @@ impl RequirementsView<'_> {
         state.display.judging.requirements_sorting = sortings;
     }
 
-    /// Returns the reason for a table without rows.
+    /// Returns why a table has no rows.
     fn absence_of_rows(&self, state: &State) -> &str {
         if state.display.judging.requirements_page == RequirementsPage::Modes
             && let Some(why) = self.requirements.no_modes(state.condition().id())
@@ -344,7 +345,7 @@ impl RequirementsView<'_> {
     }
 }
 
-/// Returns the clicked condition: conditions are rows in the summary and columns in the overview.
+/// Returns the clicked condition, which is a row in the summary and a column in the overview.
 fn clicked_condition(table: &Table, click: TableClick) -> Option<ConditionId> {
     if let Some(cells) = table.rows.get(click.row)
         && let Ok(id) = cells[0].parse()
@@ -354,7 +355,7 @@ fn clicked_condition(table: &Table, click: TableClick) -> Option<ConditionId> {
     table.columns[click.column].parse().ok().map(ConditionId)
 }
 
-/// Model with a bandwidth: condition, response and role.
+/// Model with a bandwidth, given by condition, response and role.
 #[derive(Clone, Copy)]
 struct BandwidthModel {
     condition: ConditionId,
@@ -376,8 +377,8 @@ impl BandwidthModel {
     }
 }
 
-/// Returns the role marked at a place \[rad/s, ms\] in a response's plot; among marks at the same
-/// place, the topmost.
+/// Returns the role of the mark at a position \[rad/s, ms\] in the plot of a response; of several
+/// marks there, the topmost.
 fn role_at(
     requirements: &Requirements,
     model: BandwidthModel,
@@ -392,8 +393,8 @@ fn role_at(
     None
 }
 
-/// Shows the response in Bode, with marks at the frequencies that define its bandwidth and phase
-/// delay.
+/// Returns the commands that show the response in Bode, with marks at the frequencies that define
+/// its bandwidth and phase delay.
 fn bode_commands(requirements: &Requirements, model: BandwidthModel) -> Vec<Command> {
     let mut commands: Vec<Command> = vec![
         SelectionCommand::SelectCondition(model.condition).into(),
@@ -417,7 +418,7 @@ fn bode_commands(requirements: &Requirements, model: BandwidthModel) -> Vec<Comm
     commands
 }
 
-/// Descriptions for the bandwidth plots.
+/// Descriptions of the bandwidth plots.
 struct BandwidthWords<'a> {
     state: &'a State,
     requirements: &'a Requirements,

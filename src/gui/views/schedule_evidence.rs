@@ -19,7 +19,7 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
 
-/// Evidence and the scheduled conditions, in the same order.
+/// Scheduled conditions, and the evidence, in the same order.
 #[derive(Clone, Copy)]
 pub(super) struct ScheduleEvidence<'a> {
     pub(super) conditions: &'a [ConditionId],
@@ -27,7 +27,7 @@ pub(super) struct ScheduleEvidence<'a> {
 }
 
 impl CachedEvidence {
-    /// Recomputes the evidence for another analysis.
+    /// Recomputes the evidence after the analysis has changed.
     pub(super) fn refresh(&mut self, state: &State) {
         let (Some(analysis), Some(_)) = (&state.results.analysis, state.analysis()) else {
             *self = Self::default();
@@ -79,7 +79,7 @@ impl FormsTable<'_> {
     }
 }
 
-/// Builds the table with each form's root mean square errors \[%\]: over the displayed responses in
+/// Builds the table of root mean square errors \[%\] of each form: over the displayed responses in
 /// fitted and in left-out conditions, then for each response in left-out conditions.
 fn forms_table(state: &State, forms: &FormComparison) -> Table {
     let pairs = net_gain_pairs(state);
@@ -114,7 +114,7 @@ fn kind_name(kind: ScheduleKind) -> String {
     }
 }
 
-/// Formats a root mean square error in `ln k` as a relative error in the gain \[%\].
+/// Formats a root mean square error in `ln k` as a relative error of the gain \[%\].
 fn percent_text(rms_ln: Option<f64>) -> String {
     match rms_ln {
         Some(rms_ln) => format!("{:.2}", 100.0 * rms_ln),
@@ -144,8 +144,8 @@ fn fit_rms_ln(form: &FormFit, pairs: &[Pair]) -> Option<f64> {
     Some((squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
 }
 
-/// Builds the table with the errors in scheduled signed delays \[ms\] for each polynomial degree:
-/// for each displayed response in fitted and in left-out conditions. `None` without leads.
+/// Builds the table of errors of the scheduled signed delays \[ms\] for each polynomial degree: for
+/// each displayed response, in fitted and in left-out conditions. `None` without leads.
 pub(super) fn lead_degrees_table(state: &State, degrees: &[LeadDegreeFit]) -> Option<Table> {
     if degrees.is_empty() {
         return None;
@@ -170,8 +170,8 @@ pub(super) fn lead_degrees_table(state: &State, degrees: &[LeadDegreeFit]) -> Op
     Some(table)
 }
 
-/// Builds the table with each condition's residuals from the current schedule, for each displayed
-/// response \[% of the scheduled gain\].
+/// Builds the table of the residuals of each condition from the current schedule, for each
+/// displayed response \[% of the scheduled gain\].
 pub(super) fn residual_table(state: &State, evidence: ScheduleEvidence<'_>) -> Option<Table> {
     let form = evidence.forms.form(state.study.settings.schedule.kind)?;
     let pairs = net_gain_pairs(state);
@@ -193,8 +193,7 @@ pub(super) fn residual_table(state: &State, evidence: ScheduleEvidence<'_>) -> O
     Some(table)
 }
 
-/// Builds the table with the schedule's coefficients, channel by channel; `None` without a
-/// schedule.
+/// Builds the table of the schedule's coefficients, channel by channel; `None` without a schedule.
 pub(super) fn coefficient_table(state: &State) -> Option<Table> {
     let schedule = state.analysis()?.schedule.as_ref().ok()?;
     let (inputs, outputs) = state.dataset().names_of_channels();

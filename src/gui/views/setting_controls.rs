@@ -1,4 +1,4 @@
-//! A control for each row in the settings table.
+//! Controls for the rows of the settings table.
 
 use egui::{Role, Slider, Ui, WidgetInfo};
 
@@ -15,7 +15,7 @@ use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::controls::{Entered, NumberField, named_switch};
 use crate::gui::widgets::palette::Palette;
 
-/// Largest value on a slider; larger values can be typed.
+/// Maximum value on a slider; larger values can be typed.
 const SLIDER_END: f64 = 1e3;
 /// Value below which a slider snaps to zero.
 const SLIDER_START: f64 = 1e-3;
@@ -23,7 +23,7 @@ const SLIDER_START: f64 = 1e-3;
 const LABEL_WIDTH: f32 = 60.0;
 const TYPED_WIDTH: f32 = 62.0;
 
-/// M15 in five steps.
+/// Summary of M15 in five steps.
 const LEADS_IN_SHORT: &str = "Delay or lead:\n\
     1  For each response, a straight line through the origin is fitted to the missing phase over the band. Its slope is a delay or, \
     if negative, a lead.\n\
@@ -32,7 +32,7 @@ const LEADS_IN_SHORT: &str = "Delay or lead:\n\
     4  The gains are then computed as without leads, for the remaining error.\n\
     5  The price is gain above the band [dB].";
 
-/// Returns the value determined by the program for an automatic setting.
+/// Returns the value that the program determines for an automatic setting.
 fn found_value(state: &State, setting: &Setting) -> Option<Value> {
     let shown = state.shown()?;
     if *setting == setting::GAIN_BOUNDS {
@@ -44,7 +44,7 @@ fn found_value(state: &State, setting: &Setting) -> Option<Value> {
     }
 }
 
-/// Draws controls for settings, and pushes the decisions taken with them.
+/// Draws the controls of settings, and pushes the decisions taken with them.
 pub struct SettingControls<'a, 'c> {
     pub ui: &'a mut Ui,
     pub state: &'a State,
@@ -57,7 +57,7 @@ impl SettingControls<'_, '_> {
         self.commands.push(setting.to(value).into());
     }
 
-    /// Reports why an entry is refused, and completes the decision.
+    /// Reports a refused entry, and completes the decision when editing ends.
     fn end(&mut self, entered: Entered) {
         if let Some(refusal) = entered.refusal {
             self.commands.push(FormCommand::Refuse(refusal).into());
@@ -79,7 +79,7 @@ impl SettingControls<'_, '_> {
         self.ui.label(self.palette.small(text));
     }
 
-    /// Draws several settings in a line, each but the first with its caption in front.
+    /// Draws several settings in a line, each except the first with its caption in front.
     pub fn controls_ui(&mut self, line: &[&'static Setting]) {
         for (place, setting) in line.iter().enumerate() {
             if place > 0 && !setting.control.caption.is_empty() {
@@ -104,7 +104,7 @@ impl SettingControls<'_, '_> {
         }
     }
 
-    /// Draws the control that fits the kind of setting.
+    /// Draws the control that suits the kind of setting.
     pub fn control_ui(&mut self, setting: &'static Setting) {
         let value = setting.value(&self.state.study.settings);
         match (setting.kind, value) {
@@ -197,8 +197,8 @@ impl SettingControls<'_, '_> {
         self.apply(setting, typed);
     }
 
-    /// Draws a box that enables a threshold, and the threshold; `initial` is its value when it is
-    /// enabled.
+    /// Draws a check box that enables a threshold, and the threshold; `initial` is the value when
+    /// it is enabled.
     fn threshold_ui(
         &mut self,
         setting: &'static Setting,
@@ -227,7 +227,7 @@ impl SettingControls<'_, '_> {
         if clicked {
             let enabled = if counts { Some(initial) } else { None };
             self.set(setting, enabled);
-            // Two clicks are two decisions.
+            // Each click is a decision of its own.
             self.commands.push(StudyCommand::EndEdit.into());
         }
         self.apply(setting, entered);
@@ -289,7 +289,7 @@ impl SettingControls<'_, '_> {
             let ends = Value::Range([low.value.unwrap_or(lower), high.value.unwrap_or(upper)]);
             match setting.check(ends) {
                 Ok(()) => self.set(setting, ends),
-                // A dragged end stops before the other end.
+                // A dragged end stops before the other end, without a message.
                 Err(_) if low.is_dragged || high.is_dragged => {}
                 Err(error) => self
                     .commands
@@ -346,7 +346,7 @@ enum Automatic {
     Off,
 }
 
-/// Creates a setting's number field in display units; the limits are in stored units.
+/// Creates the number field of a setting in display units; the limits are in stored units.
 fn number_field(
     setting: &'static Setting,
     name: &'static str,

@@ -17,7 +17,7 @@ const SIDES: [ChannelSide; 2] = [ChannelSide::Input, ChannelSide::Output];
 enum ChannelField {
     Name,
     Unit,
-    /// Unit where files do not name one.
+    /// Unit in the files, used where a file names none.
     UnitInFiles,
 }
 

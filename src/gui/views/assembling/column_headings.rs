@@ -1,4 +1,4 @@
-//! A table's column headings, and the units that neither headings nor numbers determine.
+//! Column headings of a table, and the units that follow neither from headings nor from values.
 
 use egui::{Grid, RichText, Role, Ui};
 
@@ -8,7 +8,7 @@ use crate::gui::widgets::controls::{entry_ui, named};
 use crate::gui::widgets::palette::Palette;
 
 const HEADING_WIDTH: f32 = 180.0;
-/// Maximum column count; further columns are only counted.
+/// Maximum number of displayed columns; of further columns only the number is given.
 const MOST_COLUMNS: usize = 60;
 
 /// Shows a field for each column heading; after a change the file is read again.

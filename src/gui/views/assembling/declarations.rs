@@ -66,7 +66,7 @@ impl SignScope {
     }
 }
 
-/// Shows the signs declared for a role or for all files.
+/// Shows the signs declared for a role, or for all files.
 pub(super) fn signs_ui(
     ui: &mut Ui,
     assembly: &AssemblyState,
@@ -91,7 +91,7 @@ pub(super) fn signs_ui(
         });
 }
 
-/// Shows the units and factors declared for a role; a channel has either.
+/// Shows the units and factors declared for a role; a channel has either a unit or a factor.
 pub(super) fn units_and_factors_ui(
     ui: &mut Ui,
     assembly: &AssemblyState,
@@ -185,7 +185,7 @@ fn refusal(name: &str, why: &str) -> Command {
     Command::Form(FormCommand::Refuse(format!("{name}: {why}")))
 }
 
-/// A conversion between units that units alone do not determine.
+/// A conversion between units whose factor does not follow from the units.
 #[derive(PartialEq)]
 struct Conversion {
     channel: String,
@@ -201,7 +201,7 @@ impl Conversion {
     }
 }
 
-/// Shows a factor for each declared, then each required conversion.
+/// Shows a factor for each declared conversion, then for each conversion that is still required.
 pub(super) fn conversions_ui(
     ui: &mut Ui,
     assembly: &AssemblyState,

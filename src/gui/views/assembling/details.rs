@@ -1,4 +1,4 @@
-//! Details about the displayed model: role, settings, file columns, and notes.
+//! Details of the displayed model: role, settings, file columns, and notes.
 
 use egui::{Grid, RichText, Ui};
 

@@ -1,4 +1,4 @@
-//! Text fields for the displayed model: condition, flight state, channels, sample time, trim.
+//! Text fields of the displayed model: condition, flight state, channels, sample time, trim.
 
 use egui::{Role, Ui};
 
@@ -18,7 +18,7 @@ use crate::gui::widgets::controls::{entry_ui, named, typed_number};
 
 const FIELD_WIDTH: f32 = 200.0;
 
-/// How a field's text changes a model's rule; an empty text removes the setting.
+/// How the text of a field changes the rule of a model; an empty text removes the setting.
 enum Effect {
     Text(fn(&mut RowRule) -> &mut Option<String>),
     Number(fn(&mut RowRule) -> &mut Option<f64>),
@@ -91,7 +91,7 @@ fn field_ui(
     }
     if fill_down_ui(ui, field.name) {
         commands.push(assembly.fill_down_change(assembly.selected, |rule| {
-            // The displayed text was accepted before.
+            // The displayed text was accepted before, so it cannot be refused.
             field.apply(&field.value, rule).unwrap_or_default();
         }));
     }
@@ -108,7 +108,7 @@ pub(super) fn fill_down_ui(ui: &mut Ui, name: &str) -> bool {
         .clicked()
 }
 
-/// Returns the fields for condition and flight state.
+/// Returns the fields of condition and flight state.
 fn condition_fields(part: &Part) -> Vec<Field> {
     let row = &part.row;
     vec![
@@ -209,7 +209,8 @@ fn sample_time_field(part: &Part) -> Field {
     )
 }
 
-/// Returns the method for an identified model, the offset from trim for a physics model.
+/// Returns the field of the origin: the method of an identified model, or the offset of a physics
+/// model from trim.
 fn origin_field(part: &Part) -> Field {
     let row = &part.row;
     if row.role == Some(RowRole::Identified) {
@@ -229,8 +230,8 @@ fn origin_field(part: &Part) -> Field {
     }
 }
 
-/// Returns the channels in the file's order, with names from the rule or the file; "?" for unnamed
-/// ones.
+/// Returns the channel names in the order of the file, from the rule or else from the file; "?" for
+/// unnamed channels.
 fn channel_names(labels: &[ChannelLabel], rule_names: Option<&Vec<String>>) -> String {
     if let Some(names) = rule_names {
         return names.join(", ");
@@ -264,7 +265,8 @@ fn set_signs(rule: &mut RowRule, text: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Sets units and removes factors for the same channels: a channel has either.
+/// Sets units and removes the factors of the same channels: a channel has either a unit or a
+/// factor.
 fn set_units(rule: &mut RowRule, text: &str) -> Result<(), String> {
     let units = typed_units(text)?;
     if let Some(factors) = &mut rule.factors {
@@ -274,7 +276,8 @@ fn set_units(rule: &mut RowRule, text: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Sets factors and removes units for the same channels: a channel has either.
+/// Sets factors and removes the units of the same channels: a channel has either a unit or a
+/// factor.
 fn set_factors(rule: &mut RowRule, text: &str) -> Result<(), String> {
     let factors = typed_factors(text)?;
     if let Some(units) = &mut rule.units {

@@ -19,12 +19,12 @@ use crate::gui::state::assembling::{AssemblyState, Preview};
 use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::palette::Palette;
 
-/// Points on a model's curve.
+/// Number of points on the curve of a model.
 const POINTS: usize = 300;
 /// Factor by which the curve extends beyond the comparison band on either side.
 const BEYOND: f64 = 3.0;
 
-/// Shows a response, and a choice among all responses.
+/// Shows a response, and a selector of all responses.
 pub(super) fn preview_ui(
     ui: &mut Ui,
     assembly: &mut AssemblyState,
@@ -70,7 +70,7 @@ fn response_choice_ui(ui: &mut Ui, names: &[String], place: usize, commands: &mu
     }
 }
 
-/// Computes the curve if another model or response is displayed.
+/// Computes the curve again after another model or response was selected.
 fn update(preview: &mut Preview, found: &FoundModel, place: usize, band: (f64, f64)) {
     let key = found.key();
     let mut is_same_model = false;
@@ -96,7 +96,7 @@ fn pair(found: &FoundModel, place: usize) -> Pair {
     Pair::new(place / inputs, place % inputs)
 }
 
-/// Returns "LON → Q", with the file's own names.
+/// Returns "LON → Q", with the channel names in the file.
 fn response_name(found: &FoundModel, place: usize) -> String {
     let pair = pair(found, place);
     format!(
@@ -106,7 +106,7 @@ fn response_name(found: &FoundModel, place: usize) -> String {
     )
 }
 
-/// Returns a channel's name, or its side and number.
+/// Returns the name of a channel, or its side and number.
 fn channel_name(labels: &[ChannelLabel], index: usize, side: &str) -> String {
     if let Some(label) = labels.get(index)
         && let Some(name) = &label.name
@@ -143,7 +143,7 @@ fn curve(found: &FoundModel, place: usize, band: (f64, f64)) -> Option<BodeCurve
     })
 }
 
-/// Returns a response from the file: values are stored pair after pair.
+/// Returns a response measured in the file, which stores all values of a pair together.
 fn measured_response(found: &FoundModel, place: usize) -> Option<PairResponse> {
     let response = found.response()?;
     let count = response.omega.len();
@@ -157,7 +157,7 @@ fn measured_response(found: &FoundModel, place: usize) -> Option<PairResponse> {
     })
 }
 
-/// Computes a state-space model's response over the widened band.
+/// Computes the response of a state-space model over the extended band.
 fn model_response(found: &FoundModel, pair: Pair, band: (f64, f64)) -> Option<PairResponse> {
     let [a, b, c, d] = found.draft.matrices.clone();
     let model = StateSpace::new(a?, b?, c?, d?)

@@ -8,9 +8,9 @@ use crate::gui::commands::command::Command;
 use crate::gui::state::assembling::AssemblyState;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Maximum line count; further lines are only counted.
+/// Maximum number of displayed lines; of further lines only the number is given.
 const MOST_LINES: usize = 200;
-/// Maximum count for displayed tables without models; further tables follow once these are read.
+/// Maximum number of displayed tables without models; further tables are shown once these are read.
 const MOST_TABLES: usize = 5;
 
 /// Shows a line for each incomplete item; a click displays its model.
@@ -79,7 +79,7 @@ fn without_reference_ui(ui: &mut Ui, state: &AssemblyState, palette: &Palette) {
     ui.add(Label::new(palette.small(words)).wrap());
 }
 
-/// Draws a line that displays the model `part` on a click, if it concerns one.
+/// Draws a line; if it concerns the model `part`, a click displays that model.
 fn line_ui(ui: &mut Ui, text: RichText, part: Option<usize>, commands: &mut Vec<Command>) {
     let line = ui.add(Label::new(text).sense(Sense::click()).wrap());
     if line.clicked()

@@ -24,7 +24,7 @@ impl AssemblyState {
         })
     }
 
-    /// Returns the command that changes a column heading; the other columns keep theirs.
+    /// Returns the command that changes a column heading; the other headings stay.
     pub(super) fn heading_change(&self, file: &str, column: usize, heading: &str) -> Command {
         self.rules_change(|rules| {
             let Some(present) = self.tables.get(file) else {
@@ -40,8 +40,8 @@ impl AssemblyState {
         })
     }
 
-    /// Returns the command that adds a unit to a column heading, in a table and in all tables with
-    /// the same headings.
+    /// Returns the command that adds a unit to a column heading, in this table and in all tables
+    /// with the same headings.
     pub(super) fn unit_change(&self, file: &str, column: usize, unit: &str) -> Command {
         self.rules_change(|rules| {
             for file in self.tables_alike(file) {
@@ -56,8 +56,8 @@ impl AssemblyState {
         })
     }
 
-    /// Returns the command that applies `change` to a model and to every model below it, in table
-    /// order, in the same folder.
+    /// Returns the command that applies `change` to a model and to every model below it (in table
+    /// order) in the same folder.
     pub(super) fn fill_down_change(&self, part: usize, change: impl Fn(&mut RowRule)) -> Command {
         let parts = self.assembly().parts();
         let order = self.order();
@@ -74,7 +74,7 @@ impl AssemblyState {
     }
 }
 
-/// Returns a model's folder; empty at the top.
+/// Returns the folder of a model; empty at the top level.
 fn folder(part: &Part) -> &str {
     match part.found.file().rsplit_once('/') {
         Some((folder, _)) => folder,

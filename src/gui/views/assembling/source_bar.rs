@@ -49,7 +49,7 @@ fn add_ui(ui: &mut Ui, assembly: &mut AssemblyState, commands: &mut Vec<Command>
     }
 }
 
-/// Shows the reading progress, or how many models are included.
+/// Shows the reading progress, or the number of included models.
 fn reading_ui(
     ui: &mut Ui,
     assembly: &AssemblyState,

@@ -13,7 +13,7 @@ use crate::gui::widgets::controls::{
 };
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE, small};
 
-/// Column in which incomplete models are marked.
+/// Index of the column in which incomplete models are marked.
 const FILE: usize = COLUMNS.len() - 1;
 
 /// Draws the table; only visible rows are laid out.
@@ -118,8 +118,8 @@ impl Table<'_> {
         response.asks(AssemblingCommand::Select(index), commands);
     }
 
-    /// Paints a row's texts; elided texts keep the part that distinguishes them from the rows above
-    /// and below.
+    /// Paints the texts of a row; shortened texts keep the part that distinguishes them from the
+    /// rows above and below.
     fn paint_cells(&self, ui: &Ui, rect: Rect, row: usize, part: &Part) {
         let is_incomplete = self.incomplete.contains(&self.order[row]);
         let neighbours = [
@@ -144,8 +144,8 @@ impl Table<'_> {
         }
     }
 
-    /// Returns a cell's colour: warning for unknown values and marked files, quiet for models left
-    /// out.
+    /// Returns the colour of a cell: warning for unknown values and marked files, quiet for models
+    /// that are left out.
     fn cell_color(&self, text: &str, part: &Part, is_marked: bool) -> Color32 {
         if text == "?" {
             self.palette.warning

@@ -7,7 +7,7 @@ use gdcm_model::units::number;
 
 use crate::gui::widgets::controls::typed_number;
 
-/// Returns trimmed text; `None` if nothing remains.
+/// Returns the trimmed text; `None` if it is empty.
 pub(super) fn typed_text(text: &str) -> Option<String> {
     let text = text.trim();
     if text.is_empty() {
@@ -74,7 +74,7 @@ pub(super) fn typed_trim(text: &str) -> Result<BTreeMap<String, f64>, String> {
     numbers_by_name(text, "a coordinate and a number as in \"roll_deg 5\"")
 }
 
-/// Parses names and numbers; `expected` describes an entry in the error.
+/// Parses pairs of a name and a number; `expected` describes such a pair in the error message.
 fn numbers_by_name(text: &str, expected: &str) -> Result<BTreeMap<String, f64>, String> {
     let mut numbers = BTreeMap::new();
     for part in comma_separated(text) {
@@ -86,7 +86,7 @@ fn numbers_by_name(text: &str, expected: &str) -> Result<BTreeMap<String, f64>, 
     Ok(numbers)
 }
 
-/// Returns the trimmed parts between commas, without empty ones.
+/// Returns the trimmed parts between commas, without empty parts.
 fn comma_separated(text: &str) -> impl Iterator<Item = &str> {
     text.split(',')
         .map(str::trim)

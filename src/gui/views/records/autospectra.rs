@@ -17,7 +17,7 @@ use crate::gui::widgets::palette::Palette;
 
 /// Minimum chart height \[pt\].
 const LEAST_HEIGHT: f32 = 140.0;
-/// Spectral lines averaged into one point.
+/// Number of spectral lines averaged into one point.
 const SMOOTHED: usize = 5;
 
 /// Autospectrum of each input: frequency \[rad/s\] and level \[dB of the squared unit per Hz\].
@@ -29,7 +29,7 @@ struct RecordSpectra {
 }
 
 impl RecordSpectra {
-    /// Returns an input's line: bright and thick for the chosen record.
+    /// Returns the line of an input: bright and thick for the displayed record.
     fn line(&self, input: usize, palette: &Palette) -> Option<ChartLine> {
         let points = Arc::clone(self.inputs.get(input)?);
         Some(if self.is_chosen {
@@ -50,7 +50,7 @@ impl RecordSpectra {
     }
 }
 
-/// Shows a chart for each input with its spectrum in every record, the chosen record on top.
+/// Shows a chart of each input with its spectrum in every record, the displayed record on top.
 pub(super) fn inputs_ui(ui: &mut Ui, page: Page<'_>) {
     let band = shown_band(page);
     let charts = InputCharts {
@@ -64,11 +64,11 @@ pub(super) fn inputs_ui(ui: &mut Ui, page: Page<'_>) {
         .show(ui, |ui| charts.show(ui));
 }
 
-/// Charts with an autospectrum for each record, in up to two columns.
+/// Charts of the inputs with an autospectrum of each record, in up to two columns.
 struct InputCharts<'a> {
     page: Page<'a>,
     spectra: Vec<RecordSpectra>,
-    /// Marked in every chart.
+    /// Band, marked in every chart.
     band: Band,
 }
 
@@ -112,7 +112,7 @@ impl InputCharts<'_> {
     }
 }
 
-/// Returns the identification's own band, or the study's.
+/// Returns the identification band of the condition, or that of the study.
 fn shown_band(page: Page<'_>) -> Band {
     let study_band = page.state.study.settings.band;
     match page.records.band {
@@ -121,7 +121,7 @@ fn shown_band(page: Page<'_>) -> Band {
     }
 }
 
-/// Computes the autospectra for every record with assigned columns.
+/// Computes the autospectra of every record with assigned columns.
 fn record_spectra(ui: &Ui, page: Page<'_>, band: Band) -> Vec<RecordSpectra> {
     let records = page.records;
     let mut spectra = Vec::new();
@@ -178,7 +178,7 @@ fn autospectra(flight: &FlightRecord, highest: f64) -> Autospectra {
     all
 }
 
-/// Returns the middle entry among the positive time steps \[s\]: the sample time if the clock is
+/// Returns the median of the positive time steps \[s\], which is the sample time if the clock is
 /// nearly even.
 fn middle_step(time_s: &[f64]) -> Option<f64> {
     let steps: Vec<f64> = time_s
@@ -193,7 +193,8 @@ fn zero_if_missing(value: f64) -> f64 {
     if value.is_finite() { value } else { 0.0 }
 }
 
-/// Averages spectral lines: geometric mean frequency \[rad/s\] and mean power as a level \[dB\].
+/// Averages spectral lines: geometric mean of the frequencies \[rad/s\], and mean power as a level
+/// \[dB\].
 fn smoothed_level(lines: &[[f64; 2]]) -> [f64; 2] {
     let count = lines.len() as f64;
     let mut log_omega = 0.0;

@@ -17,7 +17,7 @@ use crate::gui::widgets::choices::list_ui;
 use crate::gui::widgets::controls::number_entry_ui;
 
 const FIELD_WIDTH: f32 = 90.0;
-/// Width for values that apply to the displayed record only \[pt\].
+/// Width of the fields that apply to the displayed record only \[pt\].
 const RECORD_FIELD_WIDTH: f32 = 60.0;
 
 const HEADINGS: [(&str, &str); 6] = [
@@ -168,8 +168,8 @@ impl ChannelRow<'_> {
         }
     }
 
-    /// Shows the factor to the dataset's unit; if the unit in the file is unknown, the possible
-    /// units without a selection.
+    /// Shows the factor to the dataset's unit. If the unit in the file is unknown, shows the
+    /// possible units with none selected.
     fn factor_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let name = &self.signal.name;
         let open_units = match self.column_use {
@@ -201,7 +201,7 @@ impl ChannelRow<'_> {
         }
     }
 
-    /// Shows the time skew in every record.
+    /// Shows the time skew common to all records.
     fn skew_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let delay_s = match self.preparation {
             Some(preparation) => preparation.delay_s,
@@ -257,7 +257,7 @@ impl ChannelRow<'_> {
     }
 }
 
-/// Selects a column; returns a changed selection.
+/// Draws a selector of columns; returns a changed selection.
 fn column_ui(ui: &mut Ui, name: &str, row: &LaidOutRecord, chosen: Option<usize>) -> Option<usize> {
     let columns = (0..row.table.columns.len())
         .map(|column| (column, chosen == Some(column), column_text(row, column)));
@@ -268,7 +268,7 @@ fn column_ui(ui: &mut Ui, name: &str, row: &LaidOutRecord, chosen: Option<usize>
     list_ui(ui, name, (150.0, &text), columns)
 }
 
-/// Returns a column's name with the unit from the file; "?" if there is no such column.
+/// Returns the name of a column with its unit in the file; "?" if there is no such column.
 fn column_text(row: &LaidOutRecord, index: usize) -> String {
     let Some(column) = row.table.columns.get(index) else {
         return "?".to_owned();

@@ -13,7 +13,7 @@ use crate::gui::state::records::ConditionRecords;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
 
-/// Column with the caution count.
+/// Index of the column with the number of cautions.
 const CAUTIONS: usize = 6;
 
 /// Shows the table; a heading sorts it, a click on a row displays the condition.
@@ -59,9 +59,9 @@ pub(super) fn conditions_with_records(
         .filter(|(_, records)| records.used_rows().next().is_some())
 }
 
-/// Lists for each condition with records: model order, χ²/dof for fitted and held-out records,
-/// model and caution counts, and computing time. Before an identification the cells are empty or
-/// give the reason.
+/// Builds a table of the conditions with records: model order, χ²/dof of fitted and held-out
+/// records, numbers of models and cautions, and computing time. Before an identification, cells are
+/// empty or give the reason.
 pub fn condition_table(state: &State) -> Table {
     let columns = [
         "condition",
@@ -86,7 +86,7 @@ pub fn condition_table(state: &State) -> Table {
     table
 }
 
-/// Returns the cells from the model order on; fewer before an identification.
+/// Returns the cells from the model order on; fewer cells before an identification.
 fn outcome_cells(state: &State, id: ConditionId, records: &ConditionRecords) -> Vec<String> {
     if let Some(job) = state.records.running(id) {
         let text = if job.news().step.is_empty() {

@@ -1,4 +1,4 @@
-//! Curves for an identified response: measured points, models and their confidence bands.
+//! Curves of an identified response: measured points, models and their confidence bands.
 
 use nalgebra::Complex;
 
@@ -11,7 +11,7 @@ use gdcm_sysid::diagnostics::model_doubts::NARROW_WINDOW;
 use gdcm_sysid::identification::{Identification, IdentificationCaution, TRUSTED_COHERENCE};
 use gdcm_sysid::spectra::response_estimate::EstimatePoint;
 
-/// Points on a model's curve.
+/// Number of points on the curve of a model.
 const POINTS: usize = 200;
 /// Factor by which curves extend beyond the band.
 const BEYOND: f64 = 1.5;
@@ -24,8 +24,8 @@ pub(super) enum BodePart {
 }
 
 impl BodePart {
-    /// Returns the largest half-length drawn for bars and bands \[dB, deg\]: large uncertainties
-    /// would hide the rest.
+    /// Returns the maximum half-length of bars and bands \[dB, deg\]: longer ones would hide the
+    /// rest.
     fn most_half(self) -> f64 {
         match self {
             Self::Magnitude => 20.0,
@@ -40,7 +40,7 @@ impl BodePart {
         }
     }
 
-    /// Returns half the 95 % interval \[dB, deg\].
+    /// Returns the half-width of the 95 % interval \[dB, deg\].
     pub(super) fn half_interval(self, sd: StandardDeviation) -> f64 {
         TWO_SIDED_95
             * match self {
@@ -49,7 +49,7 @@ impl BodePart {
             }
     }
 
-    /// Returns half the 95 % interval \[dB, deg\], limited to the drawn length.
+    /// Returns the half-width of the 95 % interval \[dB, deg\], limited to the drawn length.
     pub(super) fn drawn_half_interval(self, sd: StandardDeviation) -> f64 {
         self.half_interval(sd).min(self.most_half())
     }
@@ -85,21 +85,21 @@ pub(super) struct MeasuredPoint {
     pub(super) is_trusted: bool,
 }
 
-/// Where and how responses were measured.
+/// Conditions under which responses were measured.
 #[derive(Clone, Copy)]
 pub(super) struct MeasuredBand {
     /// Identification band \[rad/s\].
     pub(super) band: [f64; 2],
-    /// Whether recorded references served as instruments (M14.15).
+    /// Whether recorded references served as instrumental variables (M14.15).
     pub(super) by_reference: bool,
 }
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct DrawnResponse {
     pub(super) measured: Vec<MeasuredPoint>,
-    /// Refined model, at its confidence band's frequencies.
+    /// Curve of the refined model, at the frequencies of its confidence band.
     pub(super) recommended: Vec<CurvePoint>,
-    /// At each point on the recommended curve.
+    /// Standard deviation at each point of the recommended curve.
     pub(super) recommended_sds: Vec<StandardDeviation>,
     pub(super) unrefined: Vec<CurvePoint>,
     /// Intervals in which the recommended model deviates from the measured points \[rad/s\]
@@ -110,7 +110,7 @@ pub(super) struct DrawnResponse {
 }
 
 impl DrawnResponse {
-    /// Returns the first model's curve, drawn while it is refined.
+    /// Returns the curve of the first model, which is drawn while that model is refined.
     pub(super) fn first_model(model: &StateSpace, band: [f64; 2], pair: Pair) -> Self {
         Self {
             unrefined: model_curve(model, band, pair, None),
@@ -118,7 +118,7 @@ impl DrawnResponse {
         }
     }
 
-    /// Returns the curves after an identification, with phases on a common branch.
+    /// Returns the curves of an identification, with phases on a common branch.
     pub(super) fn new(found: &Identification, measured_band: MeasuredBand, pair: Pair) -> Self {
         let points = &found.measured.points;
         let measured = measured_points(points, pair);
@@ -152,7 +152,7 @@ impl DrawnResponse {
         drawn
     }
 
-    /// Returns whether an error bar or a band is longer than its drawn limit.
+    /// Returns whether an error bar or a band exceeds its maximum drawn length.
     pub(super) fn has_cut_intervals(&self) -> bool {
         let measured = self.measured.iter().map(|measured| measured.sd);
         let mut sds = measured.chain(self.recommended_sds.iter().copied());
@@ -164,7 +164,7 @@ impl DrawnResponse {
     }
 }
 
-/// Returns a pair's measured points. A point is trusted if its partial coherence reaches
+/// Returns the measured points of a pair. A point is trusted if its partial coherence reaches
 /// [`TRUSTED_COHERENCE`] and its window is narrow.
 fn measured_points(points: &[EstimatePoint], pair: Pair) -> Vec<MeasuredPoint> {
     let at = (pair.output, pair.input);
@@ -226,7 +226,7 @@ fn unexcited(points: &[EstimatePoint], pair: Pair) -> Vec<[f64; 2]> {
     intervals
 }
 
-/// Computes a model's response over the band and slightly beyond.
+/// Computes the response of a model over the band and slightly beyond.
 fn model_curve(
     model: &StateSpace,
     band: [f64; 2],
@@ -237,7 +237,7 @@ fn model_curve(
     curve(model, &omega, pair, reference)
 }
 
-/// Computes a model's response at frequencies \[rad/s\]; omits values that are not finite.
+/// Computes the response of a model at frequencies \[rad/s\]; omits values that are not finite.
 fn curve(
     model: &StateSpace,
     frequencies: &[f64],
@@ -256,7 +256,7 @@ fn curve(
     shape(omega, &values, reference)
 }
 
-/// Returns magnitude and unwrapped phase, on the branch nearest to `reference`, a point on another
+/// Returns magnitude and unwrapped phase, on the branch nearest to `reference`, a point of another
 /// curve.
 fn shape(
     omega: Vec<f64>,
@@ -282,8 +282,8 @@ fn shape(
     curve
 }
 
-/// Returns the shift by whole turns that brings the phase closest to `reference` \[deg\], at the
-/// frequency nearest to that point.
+/// Returns the shift by whole turns \[deg\] that brings the phase closest to that of `reference`,
+/// at the frequency nearest to that point.
 fn branch_shift_deg(omega: &[f64], phase_deg: &[f64], reference: CurvePoint) -> f64 {
     let nearest = (0..omega.len()).min_by(|a, b| {
         let distance_a = (omega[*a] / reference.omega).ln().abs();

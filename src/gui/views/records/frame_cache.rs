@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use egui::{Id, Ui};
 
-/// Source data: kept alive with the cached value, so that its address cannot be reused.
+/// Source data of a cached value, kept alive so that its address cannot be reused.
 pub type Source = Arc<dyn Any + Send + Sync>;
 
 struct Kept<T> {
@@ -15,7 +15,7 @@ struct Kept<T> {
     value: Arc<T>,
 }
 
-/// Returns the result from `compute`, cached for these sources (compared by address) and `key`;
+/// Returns the result of `compute`, cached for these sources (compared by address) and `key`;
 /// recomputes it when either changes.
 pub fn kept<T: Send + Sync + 'static>(
     ui: &Ui,

@@ -1,4 +1,4 @@
-//! A record's channels over time, with the models' responses to the same inputs.
+//! Channels of a record over time, with the models' responses to the same inputs.
 
 use std::sync::Arc;
 
@@ -96,7 +96,7 @@ fn preparation_ui(ui: &mut Ui, page: Page<'_>) {
     }
 }
 
-/// A record's charts, inputs before outputs, in two columns.
+/// Charts of a record, inputs before outputs, in two columns.
 struct ChannelCharts<'a> {
     page: Page<'a>,
     flight: &'a Arc<FlightRecord>,
@@ -125,8 +125,8 @@ impl ChannelCharts<'_> {
         }
     }
 
-    /// Draws a channel's chart; `index` counts inputs, then outputs. The lowest chart in a column
-    /// labels the time axis.
+    /// Draws the chart of a channel; `index` counts inputs, then outputs. The lowest chart of a
+    /// column labels the time axis.
     fn channel_ui(&self, ui: &mut Ui, place: Rect, index: usize, is_lowest: bool) {
         let Page { state, palette, .. } = self.page;
         let dataset = state.dataset();
@@ -179,7 +179,8 @@ impl ChannelCharts<'_> {
             .collect()
     }
 
-    /// Returns short marks for cautions about a channel in the displayed record or in all records.
+    /// Returns short marks for the cautions about a channel, in the displayed record or in all
+    /// records.
     fn caution_marks(&self, channel: &str) -> Vec<(String, Color32)> {
         let Page {
             records, palette, ..
@@ -195,7 +196,7 @@ impl ChannelCharts<'_> {
     }
 }
 
-/// Returns a channel's time \[s\] and value as lines, broken where samples are missing.
+/// Returns the time \[s\] and value of a channel as lines, interrupted where samples are missing.
 fn recorded_points(flight: &FlightRecord, index: usize) -> Vec<Arc<[[f64; 2]]>> {
     let inputs = flight.inputs.ncols();
     let mut points = Vec::with_capacity(flight.time_s.len());
@@ -243,8 +244,8 @@ fn part_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     }
 }
 
-/// Parses a typed part \[s\]: two times on the record's clock, or with `+` before both, from its
-/// start.
+/// Parses a typed part \[s\]: two times on the record's clock, or, with `+` before both, two times
+/// from the start of the record.
 fn typed_part(text: &str, span_s: Option<[f64; 2]>) -> Option<[f64; 2]> {
     let [from, to] = numbers(text).ok()?[..] else {
         return None;
@@ -266,7 +267,8 @@ fn typed_part(text: &str, span_s: Option<[f64; 2]>) -> Option<[f64; 2]> {
     }
 }
 
-/// Shows the displayed record's time span on its clock, and from the start before it was divided.
+/// Shows the time span of the displayed record on its clock, and counted from the start of the
+/// whole record.
 fn span_ui(ui: &mut Ui, page: Page<'_>) {
     let Page {
         records, palette, ..
@@ -289,7 +291,7 @@ fn span_ui(ui: &mut Ui, page: Page<'_>) {
     ui.add(Label::new(palette.small(words)).truncate());
 }
 
-/// Lists the logging system's modes in a line.
+/// Lists the modes of the logging system in a line.
 fn modes_ui(ui: &mut Ui, modes: &[ModeSpan], palette: &Palette) {
     if modes.is_empty() {
         return;
@@ -304,7 +306,7 @@ fn modes_ui(ui: &mut Ui, modes: &[ModeSpan], palette: &Palette) {
         .on_hover_text(words);
 }
 
-/// Returns the logging system's modes, shaded lightly and darkly in turn.
+/// Returns the time spans of the logging system's modes, shaded lightly and darkly in turn.
 fn mode_spans(modes: &[ModeSpan], palette: &Palette) -> Vec<ChartSpan> {
     let mut spans = Vec::new();
     for (index, mode) in modes.iter().enumerate() {
@@ -317,7 +319,7 @@ fn mode_spans(modes: &[ModeSpan], palette: &Palette) -> Vec<ChartSpan> {
     spans
 }
 
-/// Returns the time spans that other records take from the same file.
+/// Returns the time spans of other records that are parts of the same file.
 fn part_spans(page: Page<'_>) -> Vec<ChartSpan> {
     let Page {
         records, palette, ..
@@ -340,7 +342,7 @@ fn part_spans(page: Page<'_>) -> Vec<ChartSpan> {
     spans
 }
 
-/// Returns the gaps in the displayed record which the identification bridged or cut out.
+/// Returns the gaps in the displayed record that the identification bridged or cut out.
 fn gap_spans(page: Page<'_>) -> Vec<ChartSpan> {
     let Page {
         records, palette, ..

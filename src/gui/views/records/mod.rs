@@ -1,4 +1,4 @@
-//! Flight records for the displayed condition and the models identified from them: records and
+//! Flight records of the displayed condition and the models identified from them: records and
 //! search settings on the left, a page about them on the right.
 
 mod autospectra;
@@ -49,7 +49,7 @@ pub use condition_table::condition_table;
 pub use header::records_header_ui;
 pub use simulation::simulation_jobs;
 
-/// Initial width for the record list \[pt\].
+/// Initial width of the record list \[pt\].
 const LIST_WIDTH: f32 = 340.0;
 
 /// Draws the records and their results.
@@ -87,7 +87,7 @@ pub fn records_view_ui(
                     outcome_ui(ui, page, commands);
                 });
         });
-    // Keeps a distance from the line between list and page.
+    // Keeps the content away from the line between list and page.
     let margin = Margin {
         left: 6,
         ..Margin::ZERO

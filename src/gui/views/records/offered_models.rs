@@ -1,4 +1,4 @@
-//! Menu with the identified models that can replace a condition's present ones.
+//! Menu of the identified models that can replace the present models of a condition.
 
 use egui::Ui;
 

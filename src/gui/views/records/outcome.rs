@@ -1,4 +1,4 @@
-//! Progress, summary and cautions after an identification, with a button for each known remedy.
+//! Progress, summary and cautions of an identification, with a button for each available remedy.
 
 use std::sync::Arc;
 
@@ -61,7 +61,7 @@ pub(super) fn outcome_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command
     }
 }
 
-/// Shows the share done and the present step, or the condition that is identified first.
+/// Shows the completed share and the current step, or the condition that is identified first.
 fn progress_ui(ui: &mut Ui, page: Page<'_>, job: &IdentifyJob) {
     let Page { state, palette, .. } = page;
     let news = job.news();
@@ -81,7 +81,7 @@ fn progress_ui(ui: &mut Ui, page: Page<'_>, job: &IdentifyJob) {
     }
 }
 
-/// Shows order, costs and settings behind the recommended model.
+/// Shows the order, the costs and the settings of the recommended model.
 fn summary_ui(ui: &mut Ui, found: &Identification, palette: &Palette) {
     let order = found.refined.order().unwrap_or_default();
     ui.label(RichText::new(format!("CT-PBSID, refined: order {order}")).strong());
@@ -141,8 +141,8 @@ fn remedies_ui(ui: &mut Ui, remedies: Vec<Remedy>, commands: &mut Vec<Command>) 
     });
 }
 
-/// Shows a caution about a channel with the same delay in all records, which only a physics model
-/// can reveal.
+/// Shows a caution about a channel that is delayed equally in all records, which only a comparison
+/// with a physics model can reveal.
 fn late_channel_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page {
         state,

@@ -31,7 +31,7 @@ impl<'a> Page<'a> {
         found.map(AsRef::as_ref)
     }
 
-    /// Returns the identification unless records or settings changed after it.
+    /// Returns the identification; `None` if records or settings have changed since.
     pub(super) fn current_identification(self) -> Option<&'a Arc<Identification>> {
         if self.records.changed {
             return None;
@@ -39,7 +39,7 @@ impl<'a> Page<'a> {
         self.records.identification()
     }
 
-    /// Returns the id under which a record's charts share their time axis.
+    /// Returns the id of the time axis that all charts of a record share.
     pub(super) fn time_axis() -> Id {
         Id::unique("flight record")
     }

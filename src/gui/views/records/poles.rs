@@ -11,8 +11,8 @@ use crate::gui::plot::chart::{Chart, ChartAxis, ChartMarks};
 use crate::gui::plot::chart_view::chart_ui;
 use crate::gui::widgets::palette::Palette;
 
-/// Shows pole moduli over frequency, a row for each order; crosses mark poles that agree with a
-/// pole at the order two below.
+/// Shows pole moduli over frequency, a row for each order. Crosses mark poles that agree with a
+/// pole of the model whose order is lower by two.
 pub(super) fn stabilisation_ui(ui: &mut Ui, page: Page<'_>) {
     let Page {
         state,
@@ -44,7 +44,7 @@ pub(super) fn stabilisation_ui(ui: &mut Ui, page: Page<'_>) {
     fill_with_chart(ui, &chart, palette);
 }
 
-/// Returns the poles other than 0 whose agreement with a lower order is `is_stable`.
+/// Returns the nonzero poles that agree with a pole of lower order, or those that do not.
 fn stabilisation_marks(found: &Identification, is_stable: bool, palette: &Palette) -> ChartMarks {
     let mut points = Vec::new();
     for point in &found.stabilisation {
@@ -66,7 +66,7 @@ fn stabilisation_marks(found: &Identification, is_stable: bool, palette: &Palett
     }
 }
 
-/// Shows the s-plane with an error bar on every pole.
+/// Shows the poles in the s-plane, each with an error bar.
 pub(super) fn identified_poles_ui(ui: &mut Ui, page: Page<'_>) {
     let Page {
         records, palette, ..
@@ -95,8 +95,8 @@ pub(super) fn identified_poles_ui(ui: &mut Ui, page: Page<'_>) {
     fill_with_chart(ui, &chart, palette);
 }
 
-/// Returns the poles with their 95 % intervals; undetermined ones have none, which would hide the
-/// others.
+/// Returns the poles with their 95 % intervals; undetermined poles without, because their long
+/// intervals would hide the others.
 fn pole_marks(poles: &[PoleEstimate], is_determined: bool, palette: &Palette) -> ChartMarks {
     let mut points = Vec::new();
     let mut sideways = Vec::new();

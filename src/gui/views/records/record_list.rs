@@ -12,14 +12,14 @@ use crate::gui::widgets::choices::list_ui;
 use crate::gui::widgets::controls::{Asks, elided_among, named, named_switch};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 
-/// Width for all columns except the names \[pt\].
+/// Width of all columns except the names \[pt\].
 const OTHER_COLUMNS: f32 = 124.0;
-/// Minimum width for the names \[pt\].
+/// Minimum width of the names \[pt\].
 const LEAST_NAME: f32 = 60.0;
-/// Tooltip on fit costs.
+/// Tooltip of fit costs.
 pub(super) const CHI_SQUARED: &str =
     "Cost per degree of freedom of the recommended model; 1 if only noise remains (M14, section 6)";
-/// χ²/dof above which a record's fit is bad (M14, section 6).
+/// Limit of χ²/dof above which the fit of a record is bad (M14, section 6).
 pub(super) const BAD: f64 = 1.5;
 
 const HEADINGS: [(&str, &str); 4] = [
@@ -112,8 +112,8 @@ fn box_ui(ui: &mut Ui, is_enabled: bool, is_checked: bool, label: String) -> Opt
     }
 }
 
-/// Shows a record's name, elided so that it differs from its neighbours; a click displays the
-/// record.
+/// Shows the name of a record, shortened so that it differs from its neighbours; a click displays
+/// the record.
 fn name_ui(ui: &mut Ui, page: Page<'_>, index: usize, width: f32, commands: &mut Vec<Command>) {
     let Page {
         records, palette, ..
@@ -150,7 +150,7 @@ fn name_ui(ui: &mut Ui, page: Page<'_>, index: usize, width: f32, commands: &mut
     response.asks(RecordsCommand::Choose(index), commands);
 }
 
-/// Shows a record's fit cost, and a sign if cautions concern it.
+/// Shows the fit cost of a record, and a sign if cautions concern the record.
 fn fit_ui(ui: &mut Ui, page: Page<'_>, index: usize) {
     let Page {
         records, palette, ..
@@ -174,7 +174,7 @@ fn fit_ui(ui: &mut Ui, page: Page<'_>, index: usize) {
     }
 }
 
-/// Returns χ²/dof for a record and the recommended model.
+/// Returns χ²/dof of the recommended model in a record.
 fn fit_cost(page: Page<'_>, index: usize) -> Option<f64> {
     let found = page.current_identification()?;
     let fit = found
@@ -216,7 +216,8 @@ fn kind_ui(
     });
 }
 
-/// Describes problems; several missing columns share a sentence, as do several unknown units.
+/// Describes problems; several missing columns are reported in one sentence, as are several unknown
+/// units.
 fn problem_texts(problems: &[LayoutProblem]) -> Vec<String> {
     let mut missing = ChannelProblems::default();
     let mut without_unit = ChannelProblems::default();
@@ -246,11 +247,11 @@ fn problem_texts(problems: &[LayoutProblem]) -> Vec<String> {
     texts
 }
 
-/// Problems that share a sentence.
+/// Problems that are reported in one sentence.
 #[derive(Default)]
 struct ChannelProblems<'a> {
     channels: Vec<&'a str>,
-    /// First problem's message.
+    /// Message of the first problem.
     first: Option<String>,
 }
 

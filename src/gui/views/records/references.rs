@@ -11,7 +11,7 @@ use crate::gui::commands::records::RecordsCommand;
 use crate::gui::state::records::ConditionRecords;
 use crate::gui::widgets::controls::named;
 
-/// Name under which cautions refer to this setting.
+/// Name by which cautions refer to this setting.
 pub(super) const REFERENCES: &str = "references";
 
 /// A column that may hold a reference.
@@ -56,7 +56,7 @@ pub(super) fn references_ui(
     ui.end_row();
 }
 
-/// Lists the chosen references that are no columns, then every possible column.
+/// Lists the chosen references that are not columns, then every possible column.
 fn reference_list_ui(ui: &mut Ui, records: &ConditionRecords, commands: &mut Vec<Command>) {
     let possible = possible_references(ui, records);
     for name in &records.references {
@@ -98,7 +98,7 @@ fn reference_ui(
     }
 }
 
-/// Returns the first used record's columns that may hold references, suggested ones first.
+/// Returns the columns of the first used record that may hold references, suggested ones first.
 pub(super) fn possible_references(
     ui: &Ui,
     records: &ConditionRecords,

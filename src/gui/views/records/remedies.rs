@@ -1,4 +1,4 @@
-//! Buttons that remedy the cause behind a caution.
+//! Buttons that remedy the cause of a caution.
 
 use egui::Ui;
 
@@ -18,13 +18,13 @@ use crate::gui::commands::records::RecordsCommand;
 use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::state::records::{ConditionRecords, RecordsPage};
 
-/// Lowest-frequency periods in the longest record: slightly more than five, so that rounding does
-/// not repeat the caution.
+/// Number of lowest-frequency periods in the longest record: slightly more than five, so that
+/// rounding does not cause the same caution again.
 const PERIODS: f64 = 5.001;
-/// Maximum button count for references.
+/// Maximum number of buttons for references.
 const MOST_REFERENCES: usize = 3;
 
-/// A button that removes the cause behind a caution.
+/// A button that removes the cause of a caution.
 pub(super) struct Remedy {
     pub(super) label: String,
     pub(super) command: Command,
@@ -43,7 +43,8 @@ pub(super) fn study_band_remedy() -> Remedy {
     Remedy::new("Use the study's band", RecordsCommand::SetBand(None))
 }
 
-/// Proposes another band if a failed identification needs one; `band` \[rad/s\] is the present one.
+/// Proposes another band if a failed identification needs one; `band` \[rad/s\] is the current
+/// band.
 pub(super) fn band_remedy(error: &IdentificationError, band: [f64; 2]) -> Option<Remedy> {
     let [lowest, highest] = band;
     match error {
@@ -57,7 +58,7 @@ pub(super) fn band_remedy(error: &IdentificationError, band: [f64; 2]) -> Option
     }
 }
 
-/// Returns the remedies for a caution; none if only another flight helps.
+/// Returns the remedies of a caution; none if only another flight helps.
 pub(super) fn caution_remedies(
     ui: &Ui,
     records: &ConditionRecords,
@@ -113,7 +114,7 @@ pub(super) fn caution_remedies(
     }
 }
 
-/// Returns the remedies for a caution about the records themselves.
+/// Returns the remedies of a caution about the records themselves.
 fn record_caution_remedies(records: &ConditionRecords, caution: &RecordCaution) -> Vec<Remedy> {
     match caution {
         RecordCaution::SampleHold { signal, hold_s, .. } => hold_remedies(signal, *hold_s),
@@ -129,8 +130,8 @@ fn record_caution_remedies(records: &ConditionRecords, caution: &RecordCaution) 
     }
 }
 
-/// Returns the possible reasons why a signal keeps its value for `hold_s` \[s\]; only an input can
-/// be a held command.
+/// Returns a remedy for each possible reason why a signal keeps its value for `hold_s` \[s\]; only
+/// an input can be a held command.
 fn hold_remedies(signal: &Signal, hold_s: f64) -> Vec<Remedy> {
     let name = &signal.name;
     let mut remedies = Vec::new();
@@ -151,7 +152,8 @@ fn hold_remedies(signal: &Signal, hold_s: f64) -> Vec<Remedy> {
     remedies
 }
 
-/// Offers to repair each contradicting record with a known fault, then to leave each out.
+/// Offers to repair each contradicting record whose fault is identified, then to leave each record
+/// out.
 fn contradiction_remedies(
     records: &ConditionRecords,
     contradicting: &[ContradictingRecord],
@@ -166,7 +168,7 @@ fn contradiction_remedies(
     remedies
 }
 
-/// Repairs a record's fault, in addition to earlier remedies.
+/// Repairs the fault of a record, in addition to earlier remedies.
 fn repair(records: &ConditionRecords, contradicting: &ContradictingRecord) -> Option<Remedy> {
     let row = records.row_of_record(contradicting.record)?;
     let fault = contradicting.fault.as_ref()?;
@@ -213,8 +215,8 @@ fn repair_label(fault: &RecordFault, record: &str) -> String {
     }
 }
 
-/// Removes a delay \[s\] from a channel in all records, in addition to the delay already removed
-/// when it was found.
+/// Removes a delay \[s\] from a channel in all records, in addition to the delay that was already
+/// removed when the new one was found.
 pub(super) fn remove_common_delay(
     records: &ConditionRecords,
     signal: &Signal,
@@ -241,8 +243,8 @@ fn use_band(band: [f64; 2]) -> Remedy {
     )
 }
 
-/// Raises the band's lower end until the longest record contains [`PERIODS`] periods; the frequency
-/// `once` \[rad/s\] has a single period in it.
+/// Raises the lower end of the band so that the longest record contains [`PERIODS`] periods; at the
+/// frequency `once` \[rad/s\], it contains a single period.
 fn raise_lowest_frequency(records: &ConditionRecords, once: f64) -> Option<Remedy> {
     let (job, _) = records.found.as_ref()?;
     let [_, highest] = job.request.options.band;
@@ -293,7 +295,7 @@ fn choose_order() -> Remedy {
     Remedy::new("Set an order…", RecordsCommand::ShowAdvanced(ORDERS))
 }
 
-/// Proposes the references suggested by column names, and a list with all columns.
+/// Proposes the references that column names suggest, and a list of all columns.
 fn reference_remedies(ui: &Ui, records: &ConditionRecords) -> Vec<Remedy> {
     let possible = possible_references(ui, records);
     let mut remedies = Vec::new();

@@ -14,9 +14,9 @@ use crate::gui::plot::chart_view::chart_ui;
 use crate::gui::widgets::controls::{named, painted_text, text_width};
 use crate::gui::widgets::palette::{Palette, small};
 
-/// Band \[rad/s\] for models without a job.
+/// Band \[rad/s\] of models without a job.
 const UNKNOWN_BAND: [f64; 2] = [0.1, 10.0];
-/// Half height marked about the curve where it deviates from the measured points.
+/// Half the height of the mark about the curve, where it deviates from the measured points.
 const MARK_DB: f64 = 2.0;
 const MARK_DEG: f64 = 15.0;
 
@@ -54,8 +54,8 @@ pub(super) fn response_ui(ui: &mut Ui, page: Page<'_>) {
     chart_ui(ui, place, &phase, palette);
 }
 
-/// Returns the curves for the pair in focus: while a model is refined, its first version; otherwise
-/// the finished identification, if any.
+/// Returns the curves of the pair in focus: those of the first model while it is refined, otherwise
+/// those of the finished identification, if any.
 fn drawn_response(ui: &Ui, page: Page<'_>) -> Option<Arc<DrawnResponse>> {
     let Page { state, records, .. } = page;
     let pair = state.display.selection.pair;
@@ -89,8 +89,8 @@ fn frequency_axis(page: Page<'_>) -> ChartAxis {
     ChartAxis::Frequency(page.state.display.curves.unit)
 }
 
-/// Returns short marks for cautions about the displayed response: its pair, input or output, or all
-/// responses.
+/// Returns short marks for the cautions about the displayed response: about its pair, its input or
+/// output, or all responses.
 fn caution_marks(page: Page<'_>) -> Vec<&'static str> {
     let dataset = page.state.dataset();
     let pair = page.state.display.selection.pair;
@@ -135,8 +135,8 @@ fn caution_spans(page: Page<'_>) -> Vec<ChartSpan> {
     spans
 }
 
-/// Returns the intervals \[rad/s\] to which a caution refers: the band's lower end for short
-/// records, the ends of `band` that no input excites.
+/// Returns the intervals \[rad/s\] to which a caution refers: the lower end of the band for short
+/// records, or the ends of `band` that no input excites.
 fn doubtful_intervals(note: &CautionNote, band: [f64; 2]) -> Vec<[f64; 2]> {
     match (note.code, note.band_rad_s) {
         ("short", Some(ends)) => vec![ends],
@@ -145,7 +145,7 @@ fn doubtful_intervals(note: &CautionNote, band: [f64; 2]) -> Vec<[f64; 2]> {
     }
 }
 
-/// Adds a response's curves, bands and points to a chart.
+/// Adds the curves, bands and points of a response to a chart.
 fn add_response(chart: &mut Chart<'_>, drawn: &DrawnResponse, part: BodePart, palette: &Palette) {
     chart.group = Some(Id::unique("identified response"));
     chart.bands.push(confidence_band(drawn, part, palette));
@@ -220,7 +220,7 @@ fn interval_mark(
     }
 }
 
-/// Returns the measured points with their 95 % intervals: filled if trusted.
+/// Returns the measured points with their 95 % intervals; trusted points are filled.
 fn measured_marks(
     drawn: &DrawnResponse,
     part: BodePart,
@@ -247,7 +247,7 @@ fn measured_marks(
     }
 }
 
-/// Sample length in the legend \[pt\].
+/// Length of a line sample in the legend \[pt\].
 const SAMPLE: f32 = 18.0;
 
 struct LegendEntry {
@@ -302,7 +302,7 @@ fn legend_entries(drawn: &DrawnResponse, palette: &Palette) -> Vec<LegendEntry> 
 }
 
 impl LegendEntry {
-    /// Draws sample and label in a piece, so that no line break separates them.
+    /// Draws sample and label without a line break between them.
     fn show(&self, ui: &mut Ui, palette: &Palette) {
         let words = text_width(ui, self.text, small());
         let (rect, response) =

@@ -16,7 +16,7 @@ use crate::gui::widgets::controls::entry_ui;
 use crate::gui::widgets::palette::Palette;
 
 const FIELD_WIDTH: f32 = 150.0;
-/// Name under which cautions refer to the model orders.
+/// Name by which cautions refer to the model orders.
 pub(super) const ORDERS: &str = "orders";
 
 /// A list setting; the identification tries every entry.
@@ -70,7 +70,7 @@ impl SearchList {
     }
 }
 
-/// Shows the settings under a heading; an empty field leaves the choice to the identification.
+/// Shows the settings under a heading; with an empty field, the identification chooses the values.
 ///
 /// Opens the heading and focuses the field named `focused`, once.
 pub(super) fn search_settings_ui(
@@ -151,7 +151,7 @@ fn field_ui(ui: &mut Ui, name: &str, value: &str, hint: &str, palette: &Palette)
     text
 }
 
-/// Returns a field's accessible name.
+/// Returns the accessible name of a field.
 fn field_name(name: &str) -> String {
     format!("Identification: {name}")
 }

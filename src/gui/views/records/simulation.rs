@@ -1,4 +1,4 @@
-//! Comparison between models and a record in the time domain: selection, responses and fit.
+//! Comparison of models with a record in the time domain: selection, responses and fit.
 
 use std::sync::Arc;
 
@@ -25,7 +25,7 @@ pub(super) struct Simulated<'a> {
     pub(super) model: TimeModel,
     /// Line colour.
     pub(super) color: Color32,
-    /// Its response, or the reason why there is none; `None` during the computation.
+    /// Response of the model, or the reason for its absence; `None` while it is being computed.
     pub(super) result: Option<&'a Result<Arc<Validation>, String>>,
 }
 
@@ -38,14 +38,14 @@ impl Simulated<'_> {
         }
     }
 
-    /// Formats an output's fit \[%\]; `None` if unknown.
+    /// Formats the fit of an output \[%\]; `None` if it is not available.
     pub(super) fn fit_words(&self, output: usize) -> Option<String> {
         let fits = &self.validation()?.fit_percent;
         let fit = fits.get(output).copied().flatten()?;
         Some(format!("{fit:.1} %"))
     }
 
-    /// Returns Theil's coefficient for an output; `None` if unknown.
+    /// Returns Theil's coefficient of an output; `None` if it is not available.
     fn theil(&self, output: usize) -> Option<f64> {
         self.validation()?.theil.get(output).copied().flatten()
     }
@@ -61,7 +61,7 @@ impl Simulated<'_> {
         ui.add(Label::new(RichText::new(words).size(SMALL_SIZE).color(color)).wrap());
     }
 
-    /// Returns an output's lines, one per window, each from its own initial state.
+    /// Returns the lines of an output, one per window, each from its own initial state.
     pub(super) fn lines(&self, ui: &Ui, output: usize) -> Vec<ChartLine> {
         let Some(Ok(validation)) = self.result else {
             return Vec::new();
@@ -83,7 +83,7 @@ impl Simulated<'_> {
     }
 }
 
-/// Returns time \[s\] and simulated output, a line for each window.
+/// Returns time \[s\] and simulated output, as a line for each window.
 fn simulated_points(validation: &Validation, output: usize) -> Vec<Arc<[[f64; 2]]>> {
     let mut lines = Vec::new();
     for window in &validation.windows {
@@ -155,8 +155,8 @@ pub(super) fn simulated<'a>(state: &'a State, palette: &Palette) -> Vec<Simulate
     models
 }
 
-/// Returns a model's state space; `None` if the model is unavailable or not in plain continuous
-/// time.
+/// Returns the state space of a model; `None` if the model is unavailable or not in continuous time
+/// without delays.
 fn state_space(state: &State, records: &ConditionRecords, model: TimeModel) -> Option<StateSpace> {
     if model == TimeModel::Identified {
         return records.identification()?.refined.state_space().cloned();
@@ -207,7 +207,7 @@ pub(super) fn time_models_ui(
     }
 }
 
-/// Theil's coefficient below which a model is good (M14, section 6).
+/// Limit of Theil's coefficient below which a model is good (M14, section 6).
 const GOOD_THEIL: f64 = 0.25;
 
 /// Shows fit tables: by record, by output, and in time.
@@ -257,7 +257,7 @@ fn frequency_fit_ui(ui: &mut Ui, page: Page<'_>, found: &Identification) {
         });
 }
 
-/// Shows fit and Theil's coefficient for the displayed record, by output and selected model.
+/// Shows fit and Theil's coefficient of each output and selected model, for the displayed record.
 fn time_fit_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page {
         state,
@@ -298,7 +298,7 @@ fn time_fit_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     ));
 }
 
-/// Formats Theil's coefficient, in the warning colour unless the model is good.
+/// Formats Theil's coefficient, in the warning colour unless it is below [`GOOD_THEIL`].
 fn theil_text(theil: Option<f64>, palette: &Palette) -> RichText {
     let Some(theil) = theil else {
         return RichText::new("–").color(palette.dim_text);

@@ -13,7 +13,7 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::{Asks, button_ui, is_entered, text_field_ui};
 use crate::gui::widgets::palette::Palette;
 
-/// Shows the commands that add records, and questions about the added ones.
+/// Shows the commands that add records, and questions about the added records.
 pub(super) fn source_ui(
     ui: &mut Ui,
     page: Page<'_>,
@@ -50,7 +50,7 @@ fn add_ui(ui: &mut Ui, path: &mut String, commands: &mut Vec<Command>) {
     });
 }
 
-/// Asks once for all missing units, over all conditions.
+/// Asks once about the missing units of all conditions.
 fn open_units_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let Some(open) = state.records.open_units() else {
         return;

@@ -1,4 +1,4 @@
-//! An input's spectrogram, above the channel charts.
+//! Spectrogram of an input, above the channel charts.
 
 use std::sync::Arc;
 
@@ -41,8 +41,8 @@ pub(super) fn spectrogram_choice_ui(ui: &mut Ui, page: Page<'_>, commands: &mut 
     }
 }
 
-/// Shows the selected input's spectrogram up to twice the band's upper end, on the same time axis
-/// as the charts.
+/// Shows the spectrogram of the selected input up to twice the upper band limit, on the time axis
+/// of the charts.
 pub(super) fn spectrogram_ui(ui: &mut Ui, page: Page<'_>, flight: &Arc<FlightRecord>) {
     let Page {
         state,
@@ -87,8 +87,8 @@ pub(super) fn spectrogram_ui(ui: &mut Ui, page: Page<'_>, flight: &Arc<FlightRec
     chart_ui(ui, area, &chart, palette);
 }
 
-/// Computes an input's spectrogram up to `highest` \[rad/s\] and uploads its picture; `None`
-/// if the record is too short or sampled too slowly.
+/// Computes the spectrogram of an input up to `highest` \[rad/s\] and uploads its picture; `None`
+/// if the record is too short or its sample rate too low.
 fn paint(
     ui: &Ui,
     flight: &FlightRecord,
@@ -110,7 +110,7 @@ fn paint(
 }
 
 /// Returns an image with a pixel for each window (across) and frequency (up), shaded from the
-/// background at the floor to the identified models' colour at 0 dB.
+/// background colour at the lowest level to the identified models' colour at 0 dB.
 fn picture(spectrogram: &Spectrogram, palette: &Palette) -> ColorImage {
     let levels = &spectrogram.levels;
     let mut pixels = Vec::with_capacity(levels.len() * Spectrogram::ROWS);

@@ -294,7 +294,7 @@ impl<'p> ReadingBudget<'p> {
         if self.stop.load(Ordering::Relaxed) {
             return Err(VariableFault::Stopped);
         }
-        // The caller has done some work since its last call.
+        // At least one step: a caller that only checks for a stop passes 0.
         let work = self.work.get().saturating_add(steps.max(1));
         if work > self.most_work {
             return Err(VariableFault::TooMuchWork {

@@ -43,7 +43,7 @@ const FORMAT: Format = Format {
 
 /// File extension of a study.
 pub const STUDY_EXTENSION: &str = "gdcm-study.json";
-/// Replaces the path of the dataset if a study uses the embedded example.
+/// Name of the dataset in a study of the embedded example, which has no path.
 const EMBEDDED: &str = "embedded example";
 
 /// A study with its dataset, and the changes of the dataset since the study was saved.

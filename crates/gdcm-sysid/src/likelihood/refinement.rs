@@ -107,7 +107,7 @@ impl Fit {
 
     fn step(&mut self, likelihood: &Likelihood) {
         let before = self.cost;
-        // A failure ends the refinement.
+        // If this step fails, the gain stays 0, which ends the refinement.
         self.gain = 0.0;
         let Some(systems) = self.systems(likelihood) else {
             return;

@@ -19,6 +19,7 @@ use gdcm_model::units::neper_to_db;
 use super::feedback::Feedback;
 use crate::likelihood::blocks::{Block, BlockModel};
 use crate::likelihood::covariance::ParameterCovariance;
+use crate::likelihood::linear_model::LinearModel;
 
 /// Half-width of a two-sided 95 % confidence interval, in standard deviations.
 pub const TWO_SIDED_95: f64 = 1.96;
@@ -306,10 +307,7 @@ mod tests {
         let noise = NoiseCovariance::from_measured(&measured).unwrap();
         let whitened =
             |lines: &Spectrum| SpectralLines::new(&lines.between(lowest, highest), &noise).unwrap();
-        let likelihood = &Likelihood {
-            segments: wide.iter().map(whitened).collect(),
-            executor: &Sequential,
-        };
+        let likelihood = &Likelihood::new(wide.iter().map(whitened).collect(), &Sequential);
         let poles = numbers(&known["poles_a"]);
         let pasts = whole_numbers(&known["pasts"]);
         let orders = whole_numbers(&known["orders"]);

@@ -26,6 +26,7 @@ use gdcm_model::statistics::median;
 
 use crate::likelihood::blocks::BlockModel;
 use crate::likelihood::gram_matrix::scale_columns;
+use crate::likelihood::linear_model::LinearModel;
 use crate::spectra::local_polynomial::local_polynomial;
 use crate::spectra::response_estimate::ResponseEstimate;
 use crate::spectra::spectrum::{LineRange, Spectrum};

@@ -9,6 +9,7 @@ use gdcm_model::simulation::FlightRecord;
 use super::cautions::IdentificationCaution;
 use super::record_fits::{RecordFit, RecordFits};
 use crate::likelihood::blocks::BlockModel;
+use crate::likelihood::linear_model::LinearModel;
 use crate::likelihood::refinement::Fit;
 use crate::options::Options;
 use crate::spectra::local_polynomial::local_polynomial;

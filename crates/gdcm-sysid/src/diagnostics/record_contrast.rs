@@ -28,6 +28,7 @@ use super::record_fault::{ContradictingRecord, RecordFault};
 use crate::likelihood::blocks::BlockModel;
 use crate::likelihood::cost::{Likelihood, SegmentCost, SpectralLines, whiten};
 use crate::likelihood::gram_matrix::pseudo_inverse_root;
+use crate::likelihood::linear_model::LinearModel;
 use crate::likelihood::normal_system::{NormalSystem, gradient_along, system_of_record};
 use crate::likelihood::refinement::Fit;
 use crate::options::Options;
@@ -225,6 +226,7 @@ impl<'a> RecordContrasts<'a> {
     /// Computes `h` and `S` of a fault in a record; `None` if they are not finite.
     fn sums(&self, record: usize, fault: &RecordFault) -> Option<FaultSums> {
         let model = &self.fit.model;
+        let resolvents = self.likelihood.resolvents(model);
         let mut with_residual = 0.0;
         let mut square = 0.0;
         let mut with_parameters = DVector::zeros(model.parameters());
@@ -234,7 +236,7 @@ impl<'a> RecordContrasts<'a> {
                 continue;
             }
             let effect = residual_effect(fault, lines, spectrum, model);
-            let column = lines.without_transient(model, &effect)?;
+            let column = lines.without_transient(model, &resolvents, &effect)?;
             with_residual += column.dotc(&part.residual).re;
             square += column.norm_squared();
             let along = SegmentCost {

@@ -5,6 +5,7 @@ use nalgebra::{Complex, DMatrix};
 use crate::likelihood::blocks::BlockModel;
 use crate::likelihood::cost::{Likelihood, SegmentCost};
 use crate::likelihood::covariance::ParameterCovariance;
+use crate::likelihood::linear_model::LinearModel;
 use crate::subspace::search_extent::parameters_of_order;
 
 /// Fit of the recommended model to a record.

@@ -18,6 +18,7 @@ use crate::diagnostics::record_contrast::RecordContrast;
 use crate::diagnostics::record_fits::RecordFit;
 use crate::identification_error::IdentificationError;
 use crate::likelihood::blocks::BlockModel;
+use crate::likelihood::linear_model::LinearModel;
 use crate::likelihood::models_without_record::ModelWithoutRecord;
 use crate::options::Options;
 use crate::spectra::preparation::RecordUse;

@@ -61,14 +61,12 @@ pub(crate) fn known_records(known: &Value) -> Likelihood<'static> {
                     omega: numbers(&known["w"]),
                     inputs: complex_matrix(&known["U"]).transpose(),
                     outputs: complex_matrix(&known["Y"]).transpose(),
+                    hats: Vec::new(),
                 };
                 let weights = vec![DMatrix::identity(2, 2); spectrum.omega.len()];
                 SpectralLines::weighted(&spectrum, weights)
             });
-    Likelihood {
-        segments: segments.collect(),
-        executor: &Sequential,
-    }
+    Likelihood::new(segments.collect(), &Sequential)
 }
 
 /// Evaluates the response of a model at a frequency \[rad/s\].

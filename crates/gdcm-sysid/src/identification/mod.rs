@@ -19,6 +19,8 @@ pub(crate) mod order;
 pub(crate) mod prepared_data;
 #[cfg(test)]
 mod real_flight_tests;
+#[cfg(test)]
+mod refined_known_answers_tests;
 
 pub use crate::diagnostics::cautions::IdentificationCaution;
 pub use crate::identification_error::IdentificationError;

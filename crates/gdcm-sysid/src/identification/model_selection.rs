@@ -151,10 +151,7 @@ impl<'a> Reweighing<'a> {
             };
             segments.push(reweighed);
         }
-        let likelihood = Likelihood {
-            segments,
-            executor: likelihood.executor,
-        };
+        let likelihood = Likelihood::new(segments, likelihood.executor);
         let start = Fit::start(&likelihood, fit.model.clone())?;
         Some(Self {
             likelihood,

@@ -26,6 +26,7 @@ use super::prepared_data::PreparedData;
 use crate::identification_error::IdentificationError;
 use crate::likelihood::blocks::BlockModel;
 use crate::likelihood::cost::Likelihood;
+use crate::likelihood::linear_model::LinearModel;
 use crate::likelihood::refinement::{Fit, LEAST_GAIN};
 
 /// Maximum order at which the search begins.

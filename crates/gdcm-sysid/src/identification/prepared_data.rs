@@ -412,7 +412,7 @@ fn weigh<'a>(
             SpectralLines::new(spectrum, &noise).ok_or(IdentificationError::OutputsDepend)?;
         segments.push(lines);
     }
-    Ok(Likelihood { segments, executor })
+    Ok(Likelihood::new(segments, executor))
 }
 
 /// Returns an error for a band whose highest line is above half the sampling frequency.

@@ -13,6 +13,8 @@ use nalgebra::{Complex, DMatrix, DVector};
 use gdcm_model::dataset::StateSpace;
 use gdcm_model::response::schur_form::SchurForm;
 
+use super::linear_model::LinearModel;
+
 /// Maximum imaginary part over modulus of a real eigenvalue: the error of the Schur iteration.
 const REAL: f64 = 1e-9;
 
@@ -77,11 +79,6 @@ pub(crate) struct BlockModel {
 }
 
 impl BlockModel {
-    /// Counts the states n.
-    pub(crate) fn order(&self) -> usize {
-        self.b.nrows()
-    }
-
     /// Counts the parameters: n (1 + inputs + outputs) + outputs x inputs.
     pub(crate) fn parameters(&self) -> usize {
         self.order() * (1 + self.b.ncols() + self.c.nrows()) + self.d.len()
@@ -195,9 +192,22 @@ impl BlockModel {
     pub(crate) fn place_of_d(&self, output: usize, input: usize) -> usize {
         self.order() * (1 + self.b.ncols() + self.c.nrows()) + output * self.d.ncols() + input
     }
+}
 
-    /// Computes `(j omega - A)^-1 x` in place.
-    pub(crate) fn resolve(&self, omega: f64, x: &mut [Complex<f64>]) {
+impl LinearModel for BlockModel {
+    fn b(&self) -> &DMatrix<f64> {
+        &self.b
+    }
+
+    fn c(&self) -> &DMatrix<f64> {
+        &self.c
+    }
+
+    fn d(&self) -> &DMatrix<f64> {
+        &self.d
+    }
+
+    fn resolve(&self, omega: f64, x: &mut [Complex<f64>]) {
         let s = Complex::new(0.0, omega);
         for (first, block) in self.rows() {
             match block {
@@ -213,8 +223,7 @@ impl BlockModel {
         }
     }
 
-    /// Computes `C (j omega - A)^-1`, outputs x n, into `cr`, column after column.
-    pub(crate) fn output_resolvent(&self, omega: f64, cr: &mut [Complex<f64>]) {
+    fn output_resolvent(&self, omega: f64, cr: &mut [Complex<f64>]) {
         let s = Complex::new(0.0, omega);
         let outputs = self.c.nrows();
         let c = self.c.as_slice();
@@ -240,13 +249,6 @@ impl BlockModel {
                 }
             }
         }
-    }
-
-    /// Computes `C (j omega - A)^-1 B + D`, outputs x inputs.
-    pub(crate) fn response(&self, omega: f64) -> DMatrix<Complex<f64>> {
-        let mut cr = DMatrix::zeros(self.c.nrows(), self.order());
-        self.output_resolvent(omega, cr.as_mut_slice());
-        cr * self.b.map(Complex::from) + self.d.map(Complex::from)
     }
 }
 

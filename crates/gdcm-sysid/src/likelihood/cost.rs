@@ -1,31 +1,32 @@
 //! Cost of a model over the spectral lines of the records, with the transients eliminated (M14.4).
 //!
 //! ```text
-//! J = sum_r sum_k | W_k (Y_r - G U_r - C (j omega - A)^-1 tau_r - c1_r/(j omega) - c0_r) |^2
+//! J = sum_r sum_k | W_k (Y_r - G U_r - C (j omega - A)^-1 tau_r - c1_r/(j omega) - c0_r - gaps) |^2
+//! gaps = sum_q c_q e_o b_q (missing output o) + sum_q c_q G_j b_q (missing input j)    (M14.21)
 //!
-//! 1  for each record: orthonormal bases of the columns W (real parts) and W/omega
-//!    (imaginary parts), which eliminate c0 and c1
-//! 2  T = W C (j omega - A)^-1, e0 = W (Y - G U), both less their projections on these bases
-//! 3  tau = argmin |e0 - T tau|^2 from the scaled columns' Gram matrix,
+//! 1  T = W [C (j omega - A)^-1, I, I/(j omega), e_o b_q, G_j b_q],   e0 = W (Y - G U)
+//! 2  c = argmin |e0 - T c|^2 for real c, from the Gram matrix of the scaled columns,
 //!    eigenvalues below 1e-12 times the largest dropped
-//! 4  e = e0 - T tau,   J_r = |e|^2
+//! 3  e = e0 - T c,   J_r = |e|^2
 //! ```
 //!
-//! Nothing is simulated, so unstable models have a cost like any other. tau, c1 and c0 absorb the
+//! Nothing is simulated, so unstable models have a cost like any other. tau, c0 and c1 absorb the
 //! trim, the drift, the step at the record's end, and its initial and final states. `J` per
 //! degree of freedom is 1 for an adequate model, because W whitens the noise: its real and
 //! imaginary parts have unit variance.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
+use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::executor::{Executor, each};
 
-use super::blocks::BlockModel;
 use super::gram_matrix::pseudo_inverse_root;
+use super::linear_model::{FrequencyTable, LinearModel, OutputResolvents};
 use super::noise_covariance::NoiseCovariance;
+use crate::spectra::gap_hat::GapHat;
 use crate::spectra::spectrum::Spectrum;
 
-/// Eigenvalues of a transient's Gram matrix below this share of the largest are dropped.
+/// Eigenvalues of the nuisance columns' Gram matrix below this share of the largest are dropped.
 pub(crate) const DEPENDENT: f64 = 1e-12;
 
 /// Whitened spectral lines of a segment.
@@ -39,12 +40,13 @@ pub(crate) struct SpectralLines {
     pub(crate) inputs: DMatrix<Complex<f64>>,
     /// `W Y`, outputs x lines.
     pub(crate) outputs: DMatrix<Complex<f64>>,
-    /// `W` at each line, lower triangular.
-    pub(crate) weights: Vec<DMatrix<f64>>,
-    /// Orthonormal basis of `W c0` in real parts, (outputs lines) x outputs.
-    constant: DMatrix<f64>,
-    /// Orthonormal basis of `W c1 / (j omega)` in imaginary parts, (outputs lines) x outputs.
-    drift: DMatrix<f64>,
+    /// `W` at each line, outputs x outputs, lower triangular.
+    pub(crate) weights: Vec<DMatrix<Complex<f64>>>,
+    /// Factor on the weights relative to other records: the inverse root of the factor on their
+    /// noise power.
+    pub(crate) scale: f64,
+    /// Missing samples.
+    pub(crate) hats: Vec<GapHat>,
 }
 
 /// Contribution of a segment to the cost.
@@ -54,6 +56,8 @@ pub(crate) struct SegmentCost {
     pub(crate) cost: f64,
     /// `tau_r`.
     pub(crate) transient: DVector<f64>,
+    /// `c_q` of each hat.
+    pub(crate) hat_values: Vec<f64>,
     /// `e`, outputs x lines.
     pub(crate) residual: DMatrix<Complex<f64>>,
 }
@@ -72,19 +76,12 @@ impl SpectralLines {
     }
 
     /// Whitens a spectrum with given lower triangular weights.
-    pub(crate) fn weighted(spectrum: &Spectrum, weights: Vec<DMatrix<f64>>) -> Self {
-        let (outputs, lines) = spectrum.outputs.shape();
-        let mut whitened = DMatrix::zeros(outputs, lines);
-        let mut constant = DMatrix::zeros(outputs * lines, outputs);
-        let mut drift = DMatrix::zeros(outputs * lines, outputs);
+    pub(crate) fn weighted(spectrum: &Spectrum, weights: Vec<DMatrix<Complex<f64>>>) -> Self {
+        let mut whitened = DMatrix::zeros(spectrum.outputs.nrows(), spectrum.outputs.ncols());
         for (k, weight) in weights.iter().enumerate() {
             whiten(weight, spectrum.outputs.column(k).as_slice(), |o, value| {
                 whitened[(o, k)] = value
             });
-            constant.rows_mut(k * outputs, outputs).copy_from(weight);
-            drift
-                .rows_mut(k * outputs, outputs)
-                .copy_from(&(weight / spectrum.omega[k]));
         }
         Self {
             record: spectrum.record,
@@ -92,18 +89,19 @@ impl SpectralLines {
             inputs: spectrum.inputs.clone(),
             outputs: whitened,
             weights,
-            constant: constant.qr().q(),
-            drift: drift.qr().q(),
+            scale: 1.0,
+            hats: spectrum.hats.clone(),
         }
     }
 
     /// Returns the same lines with the noise power multiplied by `factor`.
     pub(crate) fn with_noise(&self, factor: f64) -> Self {
         let share = 1.0 / factor.sqrt();
-        let weights = self.weights.iter().map(|weight| weight * share).collect();
+        let weights = self.weights.iter().map(|weight| weight.scale(share));
         Self {
             outputs: self.outputs.scale(share),
-            weights,
+            weights: weights.collect(),
+            scale: self.scale * share,
             ..self.clone()
         }
     }
@@ -116,104 +114,214 @@ impl SpectralLines {
     }
 
     /// Computes the contribution of the segment to the cost; `None` if it is not finite.
-    pub(crate) fn cost(&self, model: &BlockModel) -> Option<SegmentCost> {
+    pub(crate) fn cost(
+        &self,
+        model: &impl LinearModel,
+        resolvents: &OutputResolvents,
+    ) -> Option<SegmentCost> {
         let outputs = self.outputs.nrows();
         let mut state = vec![Complex::default(); model.order()];
         let mut output = vec![Complex::default(); outputs];
-        self.eliminate(model, |k, cr, e0| {
+        let columns = NuisanceColumns::new(self, model, resolvents);
+        columns.eliminate(|k, cr, e0| {
             let input = self.inputs.column(k);
-            multiply(&model.b, input.as_slice(), &mut state);
-            multiply(&model.d, input.as_slice(), &mut output);
+            multiply(model.b(), input.as_slice(), &mut state);
+            multiply(model.d(), input.as_slice(), &mut output);
             for (column, x) in cr.chunks_exact(outputs).zip(&state) {
                 for (c, y) in column.iter().zip(&mut output) {
                     *y += c * x;
                 }
             }
             whiten(&self.weights[k], &output, |o, value| {
-                e0[o] = self.outputs[(o, k)] - value
+                e0[o] = self.outputs[(o, k)] - value;
             });
         })
     }
 
-    /// Removes trim, drift and the transient of `model` from a whitened column, outputs x lines.
+    /// Removes trim, drift, the transient of `model` and the missing samples from a whitened
+    /// column, outputs x lines.
     ///
     /// Returns `None` if the result is not finite.
     pub(crate) fn without_transient(
         &self,
-        model: &BlockModel,
+        model: &impl LinearModel,
+        resolvents: &OutputResolvents,
         column: &DMatrix<Complex<f64>>,
     ) -> Option<DMatrix<Complex<f64>>> {
-        let left = self.eliminate(model, |k, _, e0| {
-            e0.copy_from_slice(column.column(k).as_slice())
-        })?;
+        let columns = NuisanceColumns::new(self, model, resolvents);
+        let left = columns.eliminate(|k, _, e0| e0.copy_from_slice(column.column(k).as_slice()))?;
         Some(left.residual)
     }
 
-    /// Eliminates trim, drift and the transient of `model` from `e0` (steps 2 to 4).
+    /// Returns `U` with the missing samples of the inputs completed, inputs x lines.
+    pub(crate) fn completed_inputs(&self, hat_values: &[f64]) -> DMatrix<Complex<f64>> {
+        let mut inputs = self.inputs.clone();
+        for (hat, value) in self.hats.iter().zip(hat_values) {
+            if hat.side == ChannelSide::Input {
+                let mut row = inputs.row_mut(hat.channel);
+                for (input, line) in row.iter_mut().zip(&hat.lines) {
+                    *input += line * *value;
+                }
+            }
+        }
+        inputs
+    }
+
+    /// Returns the diagonal of the projector on the nuisance columns at each line: the mean over
+    /// the outputs of the share that the transient takes, between 0 and 1 (M14.20).
+    pub(crate) fn transient_shares(
+        &self,
+        model: &impl LinearModel,
+        resolvents: &OutputResolvents,
+    ) -> Option<Vec<f64>> {
+        let columns = NuisanceColumns::new(self, model, resolvents);
+        columns.shares()
+    }
+}
+
+/// The nuisance columns `T` of a segment in real form: a row for the real and a row for the
+/// imaginary part of each output at each line.
+///
+/// Order of the columns: tau, c0, c1, hats, and a last column for the vector to be fitted.
+struct NuisanceColumns<'s> {
+    lines: &'s SpectralLines,
+    /// `C (j omega - A)^-1` at each line.
+    resolvents: Vec<&'s [Complex<f64>]>,
+    /// Number of states.
+    order: usize,
+    /// Number of nuisance columns.
+    count: usize,
+    matrix: DMatrix<f64>,
+}
+
+impl<'s> NuisanceColumns<'s> {
+    fn new(
+        lines: &'s SpectralLines,
+        model: &impl LinearModel,
+        resolvents: &'s OutputResolvents,
+    ) -> Self {
+        let outputs = lines.outputs.nrows();
+        let order = model.order();
+        let count = order + 2 * outputs + lines.hats.len();
+        let mut columns = Self {
+            lines,
+            resolvents: resolvents.at_lines(&lines.omega),
+            order,
+            count,
+            matrix: DMatrix::zeros(2 * outputs * lines.omega.len(), count + 1),
+        };
+        columns.fill_transient();
+        for number in 0..lines.hats.len() {
+            columns.fill_hat(number, model);
+        }
+        columns
+    }
+
+    /// Writes the values of a column at a line.
+    fn put(&mut self, k: usize, column: usize, output: usize, value: Complex<f64>) {
+        let row = 2 * (k * self.lines.outputs.nrows() + output);
+        self.matrix[(row, column)] = value.re;
+        self.matrix[(row + 1, column)] = value.im;
+    }
+
+    /// Fills the columns of tau, c0 and c1.
+    fn fill_transient(&mut self) {
+        let outputs = self.lines.outputs.nrows();
+        for (k, &omega) in self.lines.omega.iter().enumerate() {
+            let weight = &self.lines.weights[k];
+            let cr = self.resolvents[k];
+            for (state, values) in cr.chunks_exact(outputs).enumerate() {
+                whiten(weight, values, |o, value| self.put(k, state, o, value));
+            }
+            let integrator = Complex::new(0.0, -1.0 / omega);
+            for column in 0..outputs {
+                for o in column..outputs {
+                    let value = weight[(o, column)];
+                    self.put(k, self.order + column, o, value);
+                    self.put(k, self.order + outputs + column, o, value * integrator);
+                }
+            }
+        }
+    }
+
+    /// Fills the column of a hat: `W e_o b_q` for an output, `W G_j b_q` for an input.
+    fn fill_hat(&mut self, number: usize, model: &impl LinearModel) {
+        let outputs = self.lines.outputs.nrows();
+        let column = self.order + 2 * outputs + number;
+        let hat = &self.lines.hats[number];
+        for (k, line) in hat.lines.iter().enumerate() {
+            let mut effect = vec![Complex::default(); outputs];
+            match hat.side {
+                ChannelSide::Output => effect[hat.channel] = *line,
+                ChannelSide::Input => {
+                    let b = model.b().column(hat.channel);
+                    let d = model.d().column(hat.channel);
+                    for (o, value) in effect.iter_mut().enumerate() {
+                        let states = self.resolvents[k].chunks_exact(outputs).zip(b.iter());
+                        let g: Complex<f64> = states.map(|(cr, b)| cr[o] * *b).sum();
+                        *value = (g + d[o]) * line;
+                    }
+                }
+            }
+            whiten(&self.lines.weights[k], &effect, |o, value| {
+                self.put(k, column, o, value)
+            });
+        }
+    }
+
+    /// Fits the columns to a vector by least squares (steps 2 and 3).
     ///
     /// `fill(k, cr, e0)` receives the index of a line and `C (j omega - A)^-1` at this line, and
     /// writes `e0` at the line.
     fn eliminate(
-        &self,
-        model: &BlockModel,
+        mut self,
         mut fill: impl FnMut(usize, &[Complex<f64>], &mut [Complex<f64>]),
     ) -> Option<SegmentCost> {
-        let (outputs, lines) = self.outputs.shape();
-        let order = model.order();
-        // Real and imaginary parts of [T e0]; rows are the outputs at each line.
-        let mut real = DMatrix::zeros(outputs * lines, order + 1);
-        let mut imaginary = DMatrix::zeros(outputs * lines, order + 1);
-        let mut cr = vec![Complex::default(); outputs * order];
+        let (outputs, lines) = self.lines.outputs.shape();
         let mut e0 = vec![Complex::default(); outputs];
-        for (k, (&omega, weight)) in self.omega.iter().zip(&self.weights).enumerate() {
-            model.output_resolvent(omega, &mut cr);
-            fill(k, &cr, &mut e0);
-            for (state, values) in cr.chunks_exact(outputs).enumerate() {
-                whiten(weight, values, |o, value| {
-                    real[(k * outputs + o, state)] = value.re;
-                    imaginary[(k * outputs + o, state)] = value.im;
-                });
-            }
+        for k in 0..lines {
+            fill(k, self.resolvents[k], &mut e0);
             for (o, value) in e0.iter().enumerate() {
-                real[(k * outputs + o, order)] = value.re;
-                imaginary[(k * outputs + o, order)] = value.im;
+                self.put(k, self.count, o, *value);
             }
         }
-        project_out(&self.constant, &mut real);
-        project_out(&self.drift, &mut imaginary);
-        let transient = fit_transient(&real, &imaginary)?;
-        let real = residual_of(&real, &transient);
-        let imaginary = residual_of(&imaginary, &transient);
-        let cost = real.norm_squared() + imaginary.norm_squared();
+        let gram = self.matrix.transpose() * &self.matrix;
+        let count = self.count;
+        let root = pseudo_inverse_root(gram.view((0, 0), (count, count)).into_owned(), DEPENDENT)?;
+        let fitted = &root * (root.transpose() * gram.view((0, count), (count, 1)));
+        let left = self.matrix.column(count) - self.matrix.columns(0, count) * &fitted;
+        let cost = left.norm_squared();
         if !cost.is_finite() {
             return None;
         }
-        let residual = real
-            .iter()
-            .zip(imaginary.iter())
-            .map(|(re, im)| Complex::new(*re, *im));
+        let residual = left
+            .as_slice()
+            .chunks_exact(2)
+            .map(|parts| Complex::new(parts[0], parts[1]));
         Some(SegmentCost {
             cost,
-            transient,
+            transient: fitted.rows(0, self.order).column(0).into_owned(),
+            hat_values: fitted
+                .rows(self.order + 2 * outputs, self.lines.hats.len())
+                .iter()
+                .copied()
+                .collect(),
             residual: DMatrix::from_iterator(outputs, lines, residual),
         })
     }
-}
 
-/// Computes `tau = argmin |e0 - T tau|^2` from `[T e0]` in real and imaginary parts.
-fn fit_transient(real: &DMatrix<f64>, imaginary: &DMatrix<f64>) -> Option<DVector<f64>> {
-    let order = real.ncols() - 1;
-    let mut gram = real.transpose() * real;
-    gram.gemm(1.0, &imaginary.transpose(), imaginary, 1.0);
-    let root = pseudo_inverse_root(gram.view((0, 0), (order, order)).into_owned(), DEPENDENT)?;
-    let transient = &root * (root.transpose() * gram.view((0, order), (order, 1)));
-    Some(DVector::from_column_slice(transient.as_slice()))
-}
-
-/// Returns `e0 - T tau` for the real or imaginary part of `[T e0]`.
-fn residual_of(part: &DMatrix<f64>, transient: &DVector<f64>) -> DVector<f64> {
-    let order = transient.len();
-    part.column(order) - part.columns(0, order) * transient
+    /// Computes the mean diagonal of `T (T'T)^+ T'` over the rows of each line.
+    fn shares(self) -> Option<Vec<f64>> {
+        let columns = self.matrix.columns(0, self.count);
+        let gram = columns.transpose() * columns;
+        let projected = columns * pseudo_inverse_root(gram, DEPENDENT)?;
+        let rows = 2 * self.lines.outputs.nrows();
+        let mut shares = Vec::with_capacity(self.lines.omega.len());
+        for k in 0..self.lines.omega.len() {
+            shares.push(projected.rows(k * rows, rows).norm_squared() / rows as f64);
+        }
+        Some(shares)
+    }
 }
 
 /// The segments to which a model is fitted.
@@ -221,11 +329,28 @@ fn residual_of(part: &DMatrix<f64>, transient: &DVector<f64>) -> DVector<f64> {
 pub(crate) struct Likelihood<'a> {
     /// Segments, by record and time.
     pub(crate) segments: Vec<SpectralLines>,
+    /// The frequencies of all segments.
+    pub(crate) table: FrequencyTable,
     /// Runs the segments' work.
     pub(crate) executor: &'a dyn Executor,
 }
 
-impl Likelihood<'_> {
+impl<'a> Likelihood<'a> {
+    /// Gathers segments, by record and time.
+    pub(crate) fn new(segments: Vec<SpectralLines>, executor: &'a dyn Executor) -> Self {
+        let table = FrequencyTable::new(segments.iter().map(|segment| segment.omega.as_slice()));
+        Self {
+            segments,
+            table,
+            executor,
+        }
+    }
+
+    /// Computes `C (j omega - A)^-1` of a model at all lines.
+    pub(crate) fn resolvents(&self, model: &impl LinearModel) -> OutputResolvents<'_> {
+        self.table.output_resolvents(model, self.executor)
+    }
+
     /// Returns `N`, the degrees of freedom at this model order.
     pub(crate) fn freedom(&self, order: usize) -> usize {
         self.segments
@@ -236,14 +361,17 @@ impl Likelihood<'_> {
 
     /// Computes the contribution of each segment to the cost; `None` if a contribution is not
     /// finite.
-    pub(crate) fn parts(&self, model: &BlockModel) -> Option<Vec<SegmentCost>> {
-        each(self.executor, &self.segments, |segment| segment.cost(model))
-            .into_iter()
-            .collect()
+    pub(crate) fn parts(&self, model: &impl LinearModel) -> Option<Vec<SegmentCost>> {
+        let resolvents = self.resolvents(model);
+        each(self.executor, &self.segments, |segment| {
+            segment.cost(model, &resolvents)
+        })
+        .into_iter()
+        .collect()
     }
 
     /// Computes `J`, summed in segment order.
-    pub(crate) fn cost(&self, model: &BlockModel) -> Option<f64> {
+    pub(crate) fn cost(&self, model: &impl LinearModel) -> Option<f64> {
         Some(self.parts(model)?.iter().map(|part| part.cost).sum())
     }
 
@@ -265,13 +393,14 @@ impl Likelihood<'_> {
             .collect();
         Self {
             segments,
+            table: self.table.clone(),
             executor: self.executor,
         }
     }
 }
 
 /// Computes `y = A x`.
-fn multiply(a: &DMatrix<f64>, x: &[Complex<f64>], y: &mut [Complex<f64>]) {
+pub(crate) fn multiply(a: &DMatrix<f64>, x: &[Complex<f64>], y: &mut [Complex<f64>]) {
     y.fill(Complex::default());
     for (column, x) in a.column_iter().zip(x) {
         for (a, y) in column.iter().zip(y.iter_mut()) {
@@ -282,7 +411,7 @@ fn multiply(a: &DMatrix<f64>, x: &[Complex<f64>], y: &mut [Complex<f64>]) {
 
 /// Computes `W x` for a lower triangular `W` and passes its entries to `take` in turn.
 pub(crate) fn whiten(
-    weight: &DMatrix<f64>,
+    weight: &DMatrix<Complex<f64>>,
     x: &[Complex<f64>],
     mut take: impl FnMut(usize, Complex<f64>),
 ) {
@@ -293,10 +422,4 @@ pub(crate) fn whiten(
         }
         take(o, sum);
     }
-}
-
-/// Subtracts the projection on an orthonormal basis from every column.
-fn project_out(basis: &DMatrix<f64>, columns: &mut DMatrix<f64>) {
-    let products = basis.transpose() * &*columns;
-    columns.gemm(-1.0, basis, &products, 1.0);
 }

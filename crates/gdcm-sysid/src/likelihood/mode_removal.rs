@@ -11,6 +11,7 @@
 use nalgebra::{DMatrix, dmatrix};
 
 use super::blocks::{Block, BlockModel};
+use super::linear_model::LinearModel;
 use crate::spectra::response_estimate::ResponseEstimate;
 
 /// Effect of the removal of a mode.

@@ -1,6 +1,6 @@
 //! The noise covariance over frequency, and the weights that follow from it (M14.2, M14.4).
 
-use nalgebra::DMatrix;
+use nalgebra::{Complex, DMatrix};
 
 use crate::spectra::interpolation::Neighbours;
 use crate::spectra::response_estimate::{EstimatePoint, ResponseEstimate};
@@ -12,18 +12,43 @@ const ADDED: f64 = 1e-4;
 /// Minimum noise variance over output power; even exact data have rounding errors.
 const FLOOR: f64 = 1e-16;
 
+/// `Cv` at a frequency.
+pub(crate) struct NoisePoint {
+    /// \[rad/s\].
+    pub(crate) omega: f64,
+    /// Hermitian, outputs x outputs.
+    pub(crate) covariance: DMatrix<Complex<f64>>,
+}
+
 /// `Cv(omega)`, the noise covariance of a line, outputs x outputs.
 ///
-/// The covariances of the measured response are smoothed over five neighbours, interpolated
-/// linearly in log frequency, and constant beyond the ends (M14.2).
+/// Given at some frequencies, interpolated linearly in log frequency, and constant beyond the ends.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NoiseCovariance {
     log_omega: Vec<f64>,
-    covariances: Vec<DMatrix<f64>>,
+    /// Hermitian.
+    covariances: Vec<DMatrix<Complex<f64>>>,
 }
 
 impl NoiseCovariance {
-    /// Smooths the covariances of a measured response; `None` if it has no points.
+    /// Gathers Hermitian covariances, ascending by frequency \[rad/s\]; `None` if there are none.
+    pub(crate) fn new(points: Vec<NoisePoint>) -> Option<Self> {
+        if points.is_empty() {
+            return None;
+        }
+        let mut covariance = Self {
+            log_omega: Vec::with_capacity(points.len()),
+            covariances: Vec::with_capacity(points.len()),
+        };
+        for point in points {
+            covariance.log_omega.push(point.omega.ln());
+            covariance.covariances.push(point.covariance);
+        }
+        Some(covariance)
+    }
+
+    /// Smooths the covariances of a measured response over five neighbours; `None` if it has no
+    /// points (M14.2).
     #[must_use]
     pub fn from_measured(measured: &ResponseEstimate) -> Option<Self> {
         let points = &measured.points;
@@ -32,13 +57,15 @@ impl NoiseCovariance {
         }
         Some(Self {
             log_omega: points.iter().map(|point| point.omega.ln()).collect(),
-            covariances: (0..points.len()).map(|k| smoothed(points, k)).collect(),
+            covariances: (0..points.len())
+                .map(|k| smoothed(points, k).map(Complex::from))
+                .collect(),
         })
     }
 
     /// Returns `Cv` at `omega` \[rad/s\].
     #[must_use]
-    pub fn at(&self, omega: f64) -> DMatrix<f64> {
+    pub fn at(&self, omega: f64) -> DMatrix<Complex<f64>> {
         let Neighbours {
             before,
             after,
@@ -54,11 +81,11 @@ impl NoiseCovariance {
     /// covariance is not positive definite: the noise is 1e8 times stronger in one combination of
     /// outputs than in another.
     #[must_use]
-    pub fn weight(&self, omega: f64) -> Option<DMatrix<f64>> {
+    pub fn weight(&self, omega: f64) -> Option<DMatrix<Complex<f64>>> {
         let lower = self.at(omega).scale(0.5).cholesky()?.unpack();
         let inverse =
             lower.solve_lower_triangular(&DMatrix::identity(lower.nrows(), lower.nrows()))?;
-        if inverse.iter().all(|w| w.is_finite()) {
+        if inverse.iter().all(|w| w.re.is_finite() && w.im.is_finite()) {
             Some(inverse)
         } else {
             None

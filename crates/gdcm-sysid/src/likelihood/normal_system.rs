@@ -6,7 +6,8 @@
 //!    B_ij        v = (W C R)_i      s = U_j
 //!    C_oi, D_oj  v = W e_o          s = X_i, U_j
 //!    tau_i, c1_o, c0_o: v = (W C R)_i, W e_o, W e_o, s = 1, 1/(j omega), 1
-//!    R = (j omega - A)^-1,  X = R (B U + tau)
+//!    missing samples: v = W e_o or W G_j, s = b_q (M14.21)
+//!    R = (j omega - A)^-1,  X = R (B U + tau),  U with the missing samples completed
 //! 1  J'J[p, q] = sum_k Re(v_p^H v_q  s_p^* s_q): a product of two matrices,
 //!    (pairs of v) x (lines) times (lines) x (pairs of s)
 //! 2  transient eliminated: G = J'J - J'T (T'T)^+ T'J
@@ -18,11 +19,14 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
+use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::executor::each;
 
 use super::blocks::{Block, BlockModel};
 use super::cost::{DEPENDENT, Likelihood, SegmentCost, SpectralLines, whiten};
 use super::gram_matrix::{pseudo_inverse_root, scale_columns};
+use super::linear_model::LinearModel;
+use crate::spectra::gap_hat::GapHat;
 
 /// `G` and `g`: a step `d` changes the cost by `-2 g'd + d'G d`.
 #[derive(Clone, Debug)]
@@ -155,7 +159,7 @@ struct BlockColumn {
 
 /// Vectors and scalars of a segment, and the Gram matrix built from them.
 ///
-/// Order of the columns: the parameters, then tau, c1, c0.
+/// Order of the columns: the parameters, then tau, c1, c0, missing samples.
 struct Gram<'a> {
     model: &'a BlockModel,
     lines: &'a SpectralLines,
@@ -180,13 +184,14 @@ impl<'a> Gram<'a> {
         let mut resolvent_scalars = DMatrix::zeros(inputs + 1, count);
         let mut weight_scalars = DMatrix::zeros(order + inputs + 2, count);
         let mut cr = vec![Complex::default(); outputs * order];
+        let inputs_completed = lines.completed_inputs(&part.hat_values);
         for (k, &omega) in lines.omega.iter().enumerate() {
             model.output_resolvent(omega, &mut cr);
             for (i, column) in cr.chunks_exact(outputs).enumerate() {
                 let mut to = resolvent.column_mut(k * order + i);
                 whiten(&lines.weights[k], column, |o, value| to[o] = value);
             }
-            let input = lines.inputs.column(k);
+            let input = inputs_completed.column(k);
             resolvent_scalars
                 .view_mut((0, k), (inputs, 1))
                 .copy_from(&input);
@@ -200,7 +205,7 @@ impl<'a> Gram<'a> {
             weight_scalars[(order + inputs, k)] = Complex::new(0.0, -1.0 / omega);
             weight_scalars[(order + inputs + 1, k)] = Complex::from(1.0);
         }
-        let size = model.parameters() + order + 2 * outputs;
+        let size = model.parameters() + order + 2 * outputs + lines.hats.len();
         Self {
             model,
             lines,
@@ -219,6 +224,7 @@ impl<'a> Gram<'a> {
         self.add_weight();
         self.add_resolvent_with_weight();
         self.add_blocks();
+        self.add_hats();
         self.add_gradient();
         let size = self.matrix.nrows();
         let parameters = self.model.parameters();
@@ -285,7 +291,7 @@ impl<'a> Gram<'a> {
         let column = self.resolvent.column(k * self.model.order() + i);
         let weight = &self.lines.weights[k];
         (o..column.len())
-            .map(|below| column[below] * weight[(below, o)])
+            .map(|below| column[below] * weight[(below, o)].conj())
             .sum()
     }
 
@@ -332,39 +338,27 @@ impl<'a> Gram<'a> {
         }
     }
 
-    /// Adds the products of `C`, `D`, c1 and c0 with themselves: `W'W` is real.
+    /// Computes `(W e_left)^H W e_right` at line `k`, for `left <= right`.
+    fn weight_square(&self, k: usize, outputs: IndexPair) -> Complex<f64> {
+        let weight = &self.lines.weights[k];
+        (outputs.right..weight.nrows())
+            .map(|below| weight[(below, outputs.left)].conj() * weight[(below, outputs.right)])
+            .sum()
+    }
+
+    /// Adds the products of `C`, `D`, c1 and c0 with themselves.
     fn add_weight(&mut self) {
-        let count = self.lines.omega.len();
-        let output_count = self.model.c.nrows();
-        let outputs = ordered_pairs(output_count);
-        let mut left = DMatrix::<f64>::zeros(outputs.len(), count);
-        for (k, weight) in self.lines.weights.iter().enumerate() {
-            for (row, output) in outputs.iter().enumerate() {
-                left[(row, k)] = (output.right..output_count)
-                    .map(|below| weight[(below, output.left)] * weight[(below, output.right)])
-                    .sum();
-            }
-        }
-        let scalar_pairs = ordered_pairs(self.weight_scalars.nrows());
-        let mut right = DMatrix::<f64>::zeros(scalar_pairs.len(), count);
-        for (k, scalars) in self.weight_scalars.column_iter().enumerate() {
-            for (row, pair) in scalar_pairs.iter().enumerate() {
-                let s = scalars[pair.left];
-                let t = scalars[pair.right];
-                right[(row, k)] = s.re * t.re + s.im * t.im;
-            }
-        }
-        let products = left * right.transpose();
+        let outputs = ordered_pairs(self.model.c.nrows());
+        let left = self.line_products(outputs.len(), |k, row| self.weight_square(k, outputs[row]));
+        let scalars = self.weight_scalars.nrows();
+        let scalar_pairs = all_pairs(scalars, scalars);
+        let products =
+            left * scalar_products(&self.weight_scalars, &self.weight_scalars, &scalar_pairs);
         for (row, output) in outputs.iter().enumerate() {
             for (column, scalar) in scalar_pairs.iter().enumerate() {
                 self.put(
                     self.weight_column(output.left, scalar.left),
                     self.weight_column(output.right, scalar.right),
-                    products[(row, column)],
-                );
-                self.put(
-                    self.weight_column(output.left, scalar.right),
-                    self.weight_column(output.right, scalar.left),
                     products[(row, column)],
                 );
             }
@@ -454,6 +448,72 @@ impl<'a> Gram<'a> {
         }
     }
 
+    /// Returns the whitened column of a missing sample, outputs x lines.
+    fn hat_column(&self, hat: &GapHat) -> DMatrix<Complex<f64>> {
+        let order = self.model.order();
+        let mut column = DMatrix::zeros(self.model.c.nrows(), hat.lines.len());
+        for (k, line) in hat.lines.iter().enumerate() {
+            let weight = &self.lines.weights[k];
+            let mut to = column.column_mut(k);
+            match hat.side {
+                ChannelSide::Output => to.copy_from(&weight.column(hat.channel)),
+                ChannelSide::Input => {
+                    let d = self.model.d.column(hat.channel).map(Complex::from);
+                    to.copy_from(&(weight * d));
+                    let vectors = self.resolvent.columns(k * order, order);
+                    to += vectors * self.model.b.column(hat.channel).map(Complex::from);
+                }
+            }
+            to *= *line;
+        }
+        column
+    }
+
+    /// Adds the products of the missing samples with all columns.
+    fn add_hats(&mut self) {
+        let order = self.model.order();
+        let outputs = self.model.c.nrows();
+        let first = self.matrix.nrows() - self.lines.hats.len();
+        let columns: Vec<_> = self
+            .lines
+            .hats
+            .iter()
+            .map(|hat| self.hat_column(hat))
+            .collect();
+        let resolvent_parts = parts(&self.resolvent_scalars);
+        let weight_parts = parts(&self.weight_scalars);
+        let blocks = self.block_columns();
+        for (number, column) in columns.iter().enumerate() {
+            let place = first + number;
+            let vectors = self.line_products(order, |k, i| {
+                self.resolvent.column(k * order + i).dotc(&column.column(k))
+            });
+            let weights = self.line_products(outputs, |k, o| {
+                self.lines.weights[k].column(o).dotc(&column.column(k))
+            });
+            let by_resolvent = &vectors * &resolvent_parts;
+            for i in 0..order {
+                for s in 0..self.resolvent_scalars.nrows() {
+                    self.put(place, self.resolvent_column(i, s), by_resolvent[(i, s)]);
+                }
+            }
+            let by_weight = weights * &weight_parts;
+            for o in 0..outputs {
+                for s in 0..self.weight_scalars.nrows() {
+                    self.put(place, self.weight_column(o, s), by_weight[(o, s)]);
+                }
+            }
+            let by_states = &vectors * weight_parts.columns(0, order);
+            for (p, block) in blocks.iter().enumerate() {
+                let product = by_states[(block.vector, block.scalar)] * block.sign;
+                self.put(place, p, product);
+            }
+            for (other, second) in columns.iter().enumerate() {
+                self.put(place, first + other, column.dotc(second).re);
+            }
+        }
+    }
+
     /// Adds `J'e`.
     fn add_gradient(&mut self) {
         let order = self.model.order();
@@ -480,7 +540,7 @@ impl<'a> Gram<'a> {
             }
             for o in 0..outputs {
                 let output_gradient: Complex<f64> = (o..outputs)
-                    .map(|below| e[below] * weight[(below, o)])
+                    .map(|below| e[below] * weight[(below, o)].conj())
                     .sum();
                 for s in 0..order + inputs {
                     let place = self.weight_column(o, s);
@@ -593,13 +653,19 @@ mod tests {
         let known = &answers()["likelihood_noise_free"];
         let mut likelihood = known_records(known);
         for segment in &mut likelihood.segments {
-            let weight = |k: usize| nalgebra::dmatrix![1.0 + 0.1 * (k as f64).sin(), 0.0; 0.4, 2.0 + (k as f64).cos()];
+            let weight = |k: usize| {
+                let real = nalgebra::dmatrix![1.0 + 0.1 * (k as f64).sin(), 0.0; 0.4, 2.0 + (k as f64).cos()];
+                let mut weight = real.map(Complex::from);
+                weight[(1, 0)].im = 0.3;
+                weight
+            };
             let spectrum = Spectrum {
                 record: segment.record,
                 duration_s: 40.0,
                 omega: segment.omega.clone(),
                 inputs: segment.inputs.clone(),
                 outputs: segment.outputs.clone(),
+                hats: Vec::new(),
             };
             *segment =
                 SpectralLines::weighted(&spectrum, (0..segment.omega.len()).map(weight).collect());
@@ -634,7 +700,7 @@ mod tests {
         let likelihood = known_records(known);
         let model = known_start(known);
         let segment = &likelihood.segments[0];
-        let part = segment.cost(&model).unwrap();
+        let part = segment.cost(&model, &likelihood.resolvents(&model)).unwrap();
         let system = Gram::new(segment, &model, &part).system().unwrap();
         // Columns of the dense Jacobian by differences of W (G U + C R tau), exact up to rounding
         // in B and D.

@@ -14,6 +14,7 @@ use gdcm_model::progress::{Cancelled, Shares};
 
 use super::blocks::BlockModel;
 use super::cost::{Likelihood, SegmentCost};
+use super::linear_model::LinearModel;
 use super::normal_system::{NormalSystem, normal_systems};
 use crate::subspace::search_extent::parameters_of_order;
 

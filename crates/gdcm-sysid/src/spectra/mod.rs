@@ -13,6 +13,7 @@ pub mod caution_note;
 pub(crate) mod channel_quality;
 mod clock;
 pub mod cut_off;
+pub mod gap_hat;
 pub mod gaps;
 pub(crate) mod instrument;
 pub(crate) mod interpolation;

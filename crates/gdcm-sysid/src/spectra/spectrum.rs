@@ -8,6 +8,8 @@ use gdcm_model::executor::{Executor, each};
 use gdcm_model::simulation::Segment;
 use gdcm_numerics::{FourierPlanner, FourierTransform};
 
+use super::gap_hat::GapHat;
+
 /// Minimum frequency of the used lines of a segment, in units of its first line, which contains the
 /// drift: they start with the second (M14.12).
 const FIRST_LINE: f64 = 1.5;
@@ -33,6 +35,8 @@ pub struct Spectrum {
     pub inputs: DMatrix<Complex<f64>>,
     /// `Y`, outputs x lines.
     pub outputs: DMatrix<Complex<f64>>,
+    /// Missing samples of the channels; empty for a segment without gaps.
+    pub hats: Vec<GapHat>,
 }
 
 impl Spectrum {
@@ -47,6 +51,7 @@ impl Spectrum {
             omega: self.omega[from..to].to_vec(),
             inputs: self.inputs.columns(from, to - from).into_owned(),
             outputs: self.outputs.columns(from, to - from).into_owned(),
+            hats: self.hats.iter().map(|hat| hat.between(from..to)).collect(),
         }
     }
 }
@@ -106,6 +111,7 @@ fn spectrum(segment: &Segment, highest: f64, plan: &FourierTransform) -> Spectru
         duration_s,
         inputs: transform(&segment.inputs, omega.len(), factor, plan),
         outputs: transform(&segment.outputs, omega.len(), factor, plan),
+        hats: Vec::new(),
         omega,
     }
 }

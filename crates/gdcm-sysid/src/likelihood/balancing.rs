@@ -1,0 +1,166 @@
+//! Balanced coordinates over the lines used, and the removal of states in them (M14.19).
+//!
+//! ```text
+//! Wc = Re sum X X^H,         X = (j omega - A)^-1 B U
+//! Wo = Re sum (W C R)^H W C R,   R = (j omega - A)^-1
+//! 1  Wc = L L'
+//! 2  L' Wo L = U S^2 U',  descending
+//! 3  T = L U S^(-1/2),  T^-1 = S^(1/2) U' L^-1:   T^-1 Wc T^-T = T' Wo T = S
+//! ```
+//!
+//! B. C. Moore, "Principal component analysis in linear systems: controllability, observability,
+//! and model reduction", IEEE Trans. Automat. Contr. 26, 1981, with sums over the measured lines
+//! instead of integrals.
+
+use nalgebra::{Complex, DMatrix, DVector};
+
+use gdcm_model::executor::each;
+
+use super::cost::{Likelihood, SpectralLines, multiply, whiten};
+use super::dense_model::DenseModel;
+use super::linear_model::{LinearModel, OutputResolvents};
+
+/// Share of the mean of a Gramian's diagonal that is added to it: a state that the lines do not
+/// excite or show remains in the model.
+const FLOOR: f64 = 1e-14;
+
+/// The sums of a segment.
+struct Gramians {
+    /// `Wc`.
+    controllability: DMatrix<f64>,
+    /// `Wo`.
+    observability: DMatrix<f64>,
+}
+
+impl Gramians {
+    fn zeros(order: usize) -> Self {
+        Self {
+            controllability: DMatrix::zeros(order, order),
+            observability: DMatrix::zeros(order, order),
+        }
+    }
+
+    /// Sums over the lines of a segment.
+    fn of_segment(
+        lines: &SpectralLines,
+        model: &DenseModel,
+        resolvents: &OutputResolvents,
+    ) -> Self {
+        let order = model.order();
+        let outputs = model.c().nrows();
+        let count = lines.omega.len();
+        // Real and imaginary parts side by side; the sums are then real products.
+        let mut states = DMatrix::zeros(order, 2 * count);
+        let mut rows = DMatrix::zeros(2 * outputs * count, order);
+        let mut x = vec![Complex::default(); order];
+        for (k, cr) in resolvents.at_lines(&lines.omega).into_iter().enumerate() {
+            multiply(model.b(), lines.inputs.column(k).as_slice(), &mut x);
+            model.resolve(lines.omega[k], &mut x);
+            for (state, value) in x.iter().enumerate() {
+                states[(state, 2 * k)] = value.re;
+                states[(state, 2 * k + 1)] = value.im;
+            }
+            for (state, column) in cr.chunks_exact(outputs).enumerate() {
+                whiten(&lines.weights[k], column, |o, value| {
+                    let row = 2 * (k * outputs + o);
+                    rows[(row, state)] = value.re;
+                    rows[(row + 1, state)] = value.im;
+                });
+            }
+        }
+        Self {
+            controllability: &states * states.transpose(),
+            observability: rows.transpose() * &rows,
+        }
+    }
+}
+
+/// Transforms a model to balanced coordinates; `None` if an iteration does not converge.
+pub(crate) fn balanced(likelihood: &Likelihood, model: &DenseModel) -> Option<DenseModel> {
+    let resolvents = likelihood.resolvents(model);
+    let of_segments = each(likelihood.executor, &likelihood.segments, |lines| {
+        Gramians::of_segment(lines, model, &resolvents)
+    });
+    let mut sums = Gramians::zeros(model.order());
+    for gramians in of_segments {
+        sums.controllability += gramians.controllability;
+        sums.observability += gramians.observability;
+    }
+    let lower = with_floor(sums.controllability).cholesky()?.unpack();
+    let middle = lower.transpose() * with_floor(sums.observability) * &lower;
+    let eigen = middle.try_symmetric_eigen(f64::EPSILON, 10_000)?;
+    let mut places: Vec<usize> = (0..model.order()).collect();
+    places.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+    let directions = eigen.eigenvectors.select_columns(&places);
+    // S^(1/2), from the eigenvalues of S^2.
+    let roots = DVector::from_iterator(
+        places.len(),
+        places
+            .iter()
+            .map(|&place| eigen.eigenvalues[place].max(f64::MIN_POSITIVE).powf(0.25)),
+    );
+    let mut transformation = &lower * &directions;
+    for (mut column, root) in transformation.column_iter_mut().zip(roots.iter()) {
+        column.unscale_mut(*root);
+    }
+    let mut inverse = directions.transpose() * lower.clone().try_inverse()?;
+    for (mut row, root) in inverse.row_iter_mut().zip(roots.iter()) {
+        row.scale_mut(*root);
+    }
+    model.in_coordinates(&transformation, &inverse)
+}
+
+/// Scales nothing, but adds a small share of the mean to the diagonal.
+fn with_floor(mut gramian: DMatrix<f64>) -> DMatrix<f64> {
+    let order = gramian.nrows();
+    let added = FLOOR * gramian.trace() / order as f64 + f64::MIN_POSITIVE;
+    for state in 0..order {
+        gramian[(state, state)] += added;
+    }
+    gramian
+}
+
+/// Returns the two models that remain when the last `count` states of a balanced model are removed:
+/// without and with their static part. Empty if no state would remain.
+///
+/// ```text
+/// A = [A11 A12; A21 A22]
+/// without: (A11, B1, C1, D)
+/// with:    (A11 - A12 A22^-1 A21, B1 - A12 A22^-1 B2, C1 - C2 A22^-1 A21, D - C2 A22^-1 B2)
+/// ```
+pub(crate) fn without_last_states(model: &DenseModel, count: usize) -> Vec<DenseModel> {
+    let order = model.order();
+    if count >= order {
+        return Vec::new();
+    }
+    let kept = order - count;
+    let a = model.a();
+    let a11 = a.view((0, 0), (kept, kept));
+    let b1 = model.b().rows(0, kept);
+    let c1 = model.c().columns(0, kept);
+    let mut remaining: Vec<DenseModel> = DenseModel::new(
+        a11.into_owned(),
+        b1.into_owned(),
+        c1.into_owned(),
+        model.d().clone(),
+    )
+    .into_iter()
+    .collect();
+    if let Some(inverse) = a
+        .view((kept, kept), (count, count))
+        .into_owned()
+        .try_inverse()
+    {
+        let from_removed = a.view((0, kept), (kept, count)) * &inverse;
+        let shown = model.c().columns(kept, count) * inverse;
+        let to_removed = a.view((kept, 0), (count, kept));
+        let driven = model.b().rows(kept, count);
+        remaining.extend(DenseModel::new(
+            a11 - &from_removed * to_removed,
+            b1 - from_removed * driven,
+            c1 - &shown * to_removed,
+            model.d() - shown * driven,
+        ));
+    }
+    remaining
+}

@@ -1,0 +1,259 @@
+//! Levenberg-Marquardt descent over all entries of `A`, `B`, `C`, `D` (M14.19).
+//!
+//! ```text
+//! lambda = 1e-3
+//! for each step, in balanced coordinates:
+//! 1  G, g;  stop if delta^2 = g' G^+ g < limit k phi,  phi = J/(N - k)
+//! 2  (G + lambda diag G) d = g;  while J does not fall: lambda = max(6 lambda, 1e-7), at most 10 times
+//! 3  rho = decrease / (2 g'd - d'G d):
+//!       lambda /= 10 for rho > 0.75, /= 3 for rho > 0.4, unchanged for rho > 0.15, *= 4 otherwise
+//! ```
+//!
+//! delta is the Newton decrement: at 0.02 k phi the remaining distance is 14 % of the standard
+//! deviation of the parameters. A relative decrease of `J` as a limit would stop in a valley.
+
+use nalgebra::{DMatrix, DVector};
+
+use gdcm_model::progress::{Cancelled, Shares};
+
+use super::balancing::balanced;
+use super::cost::{Likelihood, SegmentCost};
+use super::dense_model::DenseModel;
+use super::dense_system::dense_system;
+use super::gram_matrix::scale_columns;
+use super::linear_model::LinearModel;
+use super::normal_system::NormalSystem;
+use crate::subspace::search_extent::parameters_of_order;
+
+/// Limit on the Newton decrement over `k phi` at a minimum.
+pub(crate) const CONVERGED: f64 = 0.02;
+/// Limit on the Newton decrement over `k phi` before the noise is measured again.
+pub(crate) const NEARLY_CONVERGED: f64 = 0.2;
+/// Maximum number of steps of a descent.
+const LARGEST_STEPS: usize = 40;
+/// Damping of the first step.
+const FIRST_DAMPING: f64 = 1e-3;
+/// Factor on the damping after a failure.
+const DAMPING_FACTOR: f64 = 6.0;
+/// Minimum damping after a failure.
+const LEAST_FAILED_DAMPING: f64 = 1e-7;
+/// Minimum damping: it takes the place of the pseudo-inverse in the directions that only change the
+/// coordinates.
+const LEAST_DAMPING: f64 = 1e-8;
+/// Maximum number of failures of a step.
+const FAILURES: usize = 10;
+/// Share of the total progress that is reported for a step.
+const SHARE: f64 = 0.01;
+
+/// A model and its cost.
+#[derive(Clone, Debug)]
+pub(crate) struct DenseFit {
+    pub(crate) model: DenseModel,
+    /// Contribution of each segment to the cost.
+    pub(crate) parts: Vec<SegmentCost>,
+    /// `J`.
+    pub(crate) cost: f64,
+    /// Newton decrement at the model over `k phi`; infinite before it is computed.
+    pub(crate) decrement: f64,
+    damping: f64,
+}
+
+impl DenseFit {
+    /// Evaluates a model; `None` if its cost is not finite.
+    pub(crate) fn start(likelihood: &Likelihood, model: DenseModel) -> Option<Self> {
+        let parts = likelihood.parts(&model)?;
+        let cost = parts.iter().map(|part| part.cost).sum::<f64>();
+        if !cost.is_finite() {
+            return None;
+        }
+        Some(Self {
+            model,
+            parts,
+            cost,
+            decrement: f64::INFINITY,
+            damping: FIRST_DAMPING,
+        })
+    }
+
+    /// Returns the number of states.
+    pub(crate) fn order(&self) -> usize {
+        self.model.order()
+    }
+
+    /// Returns `k`, the number of parameters without changes of coordinates.
+    pub(crate) fn parameters(&self) -> usize {
+        let (outputs, inputs) = self.model.d().shape();
+        parameters_of_order(self.order(), inputs, outputs)
+    }
+
+    /// Returns `phi = J/(N - k)`; `None` if the parameters leave no degrees of freedom.
+    pub(crate) fn dispersion(&self, likelihood: &Likelihood) -> Option<f64> {
+        let spare = likelihood
+            .freedom(self.order())
+            .checked_sub(self.parameters())?;
+        if spare == 0 {
+            return None;
+        }
+        Some(self.cost / spare as f64)
+    }
+
+    /// Descends until the Newton decrement is below `limit` times `k phi`, or no step lowers the
+    /// cost; `Err` if cancelled.
+    pub(crate) fn descended(
+        mut self,
+        likelihood: &Likelihood,
+        limit: f64,
+        progress: &Shares,
+    ) -> Result<Self, Cancelled> {
+        for step in 1..=LARGEST_STEPS {
+            progress.advance(SHARE, &format!("order {}, step {step}", self.order()))?;
+            if !self.step(likelihood, limit) {
+                break;
+            }
+        }
+        Ok(self)
+    }
+
+    /// Takes a step; returns whether a further one may be worthwhile.
+    fn step(&mut self, likelihood: &Likelihood, limit: f64) -> bool {
+        let Some(dispersion) = self.dispersion(likelihood) else {
+            return false;
+        };
+        self.balance(likelihood);
+        let Some(system) = dense_system(likelihood, &self.model, &self.parts) else {
+            return false;
+        };
+        let scaled = ScaledSystem::new(system);
+        let unit = self.parameters() as f64 * dispersion;
+        self.decrement = scaled
+            .decrement()
+            .map_or(f64::INFINITY, |square| square / unit);
+        if std::env::var("TRACE").is_ok() { println!("  n {} J {:.4} dec {:.4} lambda {:.2e}", self.order(), self.cost, self.decrement, self.damping); }
+        if self.decrement < limit {
+            return false;
+        }
+        for _ in 0..=FAILURES {
+            if self.try_step(likelihood, &scaled) {
+                return true;
+            }
+            self.damping = (DAMPING_FACTOR * self.damping).max(LEAST_FAILED_DAMPING);
+        }
+        self.damping = FIRST_DAMPING;
+        false
+    }
+
+    /// Transforms the model to balanced coordinates, in which the transients have other values.
+    fn balance(&mut self, likelihood: &Likelihood) {
+        let Some(model) = balanced(likelihood, &self.model) else {
+            return;
+        };
+        // The response is the same; costs that differ by more than rounding point to an
+        // ill-conditioned transformation.
+        if let Some(fit) = Self::start(likelihood, model)
+            && (fit.cost - self.cost).abs() <= 1e-6 * self.cost
+        {
+            self.model = fit.model;
+            self.parts = fit.parts;
+        }
+    }
+
+    /// Tries the step of the present damping; returns whether it lowered the cost.
+    fn try_step(&mut self, likelihood: &Likelihood, system: &ScaledSystem) -> bool {
+        let damping = self.damping.max(LEAST_DAMPING);
+        let Some(direction) = system.solve(damping) else {
+            return false;
+        };
+        let predicted = system.predicted_decrease(&direction);
+        let (outputs, inputs) = self.model.d().shape();
+        let order = self.order();
+        let step = DMatrix::from_column_slice(
+            order + outputs,
+            order + inputs,
+            system.unscaled(&direction).as_slice(),
+        );
+        let Some(model) = self.model.stepped(&step) else {
+            return false;
+        };
+        let Some(stepped) = Self::start(likelihood, model) else {
+            return false;
+        };
+        if stepped.cost >= self.cost {
+            return false;
+        }
+        let ratio = (self.cost - stepped.cost) / predicted;
+        self.model = stepped.model;
+        self.parts = stepped.parts;
+        self.cost = stepped.cost;
+        self.damping = damping * damping_factor(ratio);
+        true
+    }
+}
+
+/// Returns the factor on the damping after a step with this ratio of actual to predicted decrease.
+fn damping_factor(ratio: f64) -> f64 {
+    if ratio > 0.75 {
+        0.1
+    } else if ratio > 0.4 {
+        1.0 / 3.0
+    } else if ratio > 0.15 {
+        1.0
+    } else {
+        4.0
+    }
+}
+
+/// A normal system with columns scaled to unit length.
+struct ScaledSystem {
+    matrix: DMatrix<f64>,
+    gradient: DVector<f64>,
+    scales: DVector<f64>,
+}
+
+impl ScaledSystem {
+    fn new(system: NormalSystem) -> Self {
+        let mut matrix = system.matrix;
+        let scales = scale_columns(&mut matrix);
+        Self {
+            gradient: system.gradient.component_mul(&scales),
+            matrix,
+            scales,
+        }
+    }
+
+    /// Solves `(G + lambda diag G) d = g` in scaled columns; `None` if the matrix is not positive
+    /// definite or the solution not finite.
+    fn solve(&self, damping: f64) -> Option<DVector<f64>> {
+        let mut damped = self.matrix.clone();
+        for (k, scale) in self.scales.iter().enumerate() {
+            damped[(k, k)] = if *scale > 0.0 { 1.0 + damping } else { 1.0 };
+        }
+        let solution = damped.cholesky()?.solve(&self.gradient);
+        if solution.iter().all(|entry| entry.is_finite()) {
+            Some(solution)
+        } else {
+            None
+        }
+    }
+
+    /// Returns the square of the Newton decrement, `g' G^+ g`.
+    fn decrement(&self) -> Option<f64> {
+        let mut damping = LEAST_DAMPING;
+        for _ in 0..FAILURES {
+            if let Some(step) = self.solve(damping) {
+                return Some(self.gradient.dot(&step));
+            }
+            damping *= DAMPING_FACTOR;
+        }
+        None
+    }
+
+    /// Returns `2 g'd - d'G d`, the decrease of the cost that the quadratic model predicts.
+    fn predicted_decrease(&self, direction: &DVector<f64>) -> f64 {
+        2.0 * self.gradient.dot(direction) - direction.dot(&(&self.matrix * direction))
+    }
+
+    /// Converts a step from scaled columns to parameters.
+    fn unscaled(&self, direction: &DVector<f64>) -> DVector<f64> {
+        direction.component_mul(&self.scales)
+    }
+}

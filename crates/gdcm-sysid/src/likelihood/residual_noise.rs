@@ -1,0 +1,187 @@
+//! The noise covariance from the residuals of a model (M14.20).
+//!
+//! ```text
+//! 1  e(omega): residual of each record, transient removed, in output units
+//!    h(omega): share of the line taken by the transient, at most 0.9
+//! 2  at 24 log-spaced frequencies, over the lines of all records:
+//!       C = sum a e e^H / sum a (1 - h - k/N)
+//!       a = (1 + cos(pi x / w)) / 2,  x = ln(omega/omega_0),  |x| < w
+//!       N real values in all lines, k parameters
+//!       w = 0.25, times 1.2 until nu = (sum b)^2 / sum b^2 >= 8 l,  b = a (1 - h - k/N)
+//! 3  C <- (nu C + l diag C) / (nu + l),  plus 1e-4 of its diagonal
+//! ```
+//!
+//! The noise that the local polynomial method measures has too few degrees of freedom in short
+//! pieces, and is too small beside lightly damped modes; a wrong model that follows the noise then
+//! costs less than the right one.
+
+use std::f64::consts::PI;
+
+use nalgebra::{Complex, DMatrix};
+
+use gdcm_model::executor::each;
+use gdcm_model::response::frequency_response::log_spaced;
+
+use super::cost::{Likelihood, SegmentCost, SpectralLines};
+use super::linear_model::LinearModel;
+use super::noise_covariance::{NoiseCovariance, NoisePoint};
+use crate::subspace::search_extent::parameters_of_order;
+
+/// Number of frequencies.
+const POINTS: usize = 24;
+/// Maximum share of a line that the transient is said to take.
+const LARGEST_SHARE: f64 = 0.9;
+/// First half-width of the Hann weight, in ln omega.
+const HALF_WIDTH: f64 = 0.25;
+/// Factor on the half-width while there are too few degrees of freedom.
+const WIDENING: f64 = 1.2;
+/// Minimum degrees of freedom for each output.
+const FREEDOM_AN_OUTPUT: f64 = 8.0;
+/// Share of the diagonal added to it.
+const ADDED: f64 = 1e-4;
+
+/// Residual of a line in output units, and its weight in the covariance.
+struct ResidualLine {
+    log_omega: f64,
+    /// `e`.
+    residual: Vec<Complex<f64>>,
+    /// `1 - h - k/N`: the share of the noise power that is left in the residual.
+    left: f64,
+}
+
+/// Computes the noise covariance of a model's residuals; `parts` are its segment costs.
+///
+/// `None` if there are no more values than parameters, or an iteration does not converge.
+pub(crate) fn residual_noise(
+    likelihood: &Likelihood,
+    model: &impl LinearModel,
+    parts: &[SegmentCost],
+) -> Option<NoiseCovariance> {
+    let outputs = model.c().nrows();
+    let parameters = parameters_of_order(model.order(), model.b().ncols(), outputs);
+    let lines: usize = likelihood.segments.iter().map(|lines| lines.omega.len()).sum();
+    let values = 2 * outputs * lines;
+    if values <= parameters {
+        return None;
+    }
+    let taken_by_model = parameters as f64 / values as f64;
+    let resolvents = likelihood.resolvents(model);
+    let segments = likelihood.segments.iter().zip(parts);
+    let lines_of_segments = each(likelihood.executor, segments, |(segment, part)| {
+        let shares = segment.transient_shares(model, &resolvents)?;
+        residual_lines(segment, part, &shares, taken_by_model)
+    });
+    let mut lines: Vec<ResidualLine> = Vec::new();
+    for lines_of_segment in lines_of_segments {
+        lines.extend(lines_of_segment?);
+    }
+    lines.sort_by(|a, b| a.log_omega.total_cmp(&b.log_omega));
+    let lowest = lines.first()?.log_omega.exp();
+    let highest = lines.last()?.log_omega.exp();
+    let mut points = Vec::with_capacity(POINTS);
+    for omega in log_spaced(lowest, highest, POINTS) {
+        points.push(NoisePoint {
+            omega,
+            covariance: covariance_around(&lines, omega.ln(), outputs),
+        });
+    }
+    NoiseCovariance::new(points)
+}
+
+/// Returns the lines of a segment (step 1); `None` if a weight has no inverse.
+fn residual_lines(
+    segment: &SpectralLines,
+    part: &SegmentCost,
+    shares: &[f64],
+    taken_by_model: f64,
+) -> Option<Vec<ResidualLine>> {
+    let mut lines = Vec::with_capacity(shares.len());
+    for (k, (&omega, weight)) in segment.omega.iter().zip(&segment.weights).enumerate() {
+        // Without the record's own noise level.
+        let whitened = part.residual.column(k).scale(segment.scale);
+        let residual = weight.solve_lower_triangular(&whitened)?;
+        lines.push(ResidualLine {
+            log_omega: omega.ln(),
+            residual: residual.iter().copied().collect(),
+            left: 1.0 - shares[k].min(LARGEST_SHARE) - taken_by_model,
+        });
+    }
+    Some(lines)
+}
+
+/// Computes the covariance around a frequency (steps 2 and 3); `lines` is ascending.
+fn covariance_around(
+    lines: &[ResidualLine],
+    log_omega: f64,
+    outputs: usize,
+) -> DMatrix<Complex<f64>> {
+    let wanted = FREEDOM_AN_OUTPUT * outputs as f64;
+    let mut half_width = HALF_WIDTH;
+    let mut sums = WeightedSums::new(lines, log_omega, half_width, outputs);
+    let whole = lines[lines.len() - 1].log_omega - lines[0].log_omega;
+    while sums.freedom() < wanted && half_width < 2.0 * whole {
+        half_width *= WIDENING;
+        sums = WeightedSums::new(lines, log_omega, half_width, outputs);
+    }
+    let freedom = sums.freedom();
+    let prior = outputs as f64;
+    let mut covariance = sums.products.unscale(sums.left);
+    for row in 0..outputs {
+        for column in 0..outputs {
+            if row != column {
+                covariance[(row, column)] *= freedom / (freedom + prior);
+            }
+        }
+    }
+    for o in 0..outputs {
+        let variance = covariance[(o, o)].re;
+        covariance[(o, o)] = Complex::from(variance * (1.0 + ADDED) + f64::MIN_POSITIVE);
+    }
+    covariance
+}
+
+/// Sums over the lines around a frequency.
+struct WeightedSums {
+    /// `sum a e e^H`.
+    products: DMatrix<Complex<f64>>,
+    /// `sum b`.
+    left: f64,
+    /// `sum b^2`.
+    left_squared: f64,
+}
+
+impl WeightedSums {
+    fn new(lines: &[ResidualLine], log_omega: f64, half_width: f64, outputs: usize) -> Self {
+        let mut sums = Self {
+            products: DMatrix::zeros(outputs, outputs),
+            left: 0.0,
+            left_squared: 0.0,
+        };
+        let first = lines.partition_point(|line| line.log_omega <= log_omega - half_width);
+        for line in &lines[first..] {
+            let x = line.log_omega - log_omega;
+            if x >= half_width {
+                break;
+            }
+            let weight = 0.5 * (1.0 + (PI * x / half_width).cos());
+            let left = weight * line.left;
+            sums.left += left;
+            sums.left_squared += left * left;
+            for (column, second) in line.residual.iter().enumerate() {
+                for (row, first) in line.residual.iter().enumerate() {
+                    sums.products[(row, column)] += first * second.conj() * weight;
+                }
+            }
+        }
+        sums
+    }
+
+    /// Returns `nu`, the degrees of freedom.
+    fn freedom(&self) -> f64 {
+        if self.left_squared > 0.0 {
+            self.left * self.left / self.left_squared
+        } else {
+            0.0
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! Missing samples as unknowns of the likelihood (M14.21).
+//!
+//! ```text
+//! true signal = signal filled by a straight line + sum_q c_q hat_q
+//! hat_q: linear B-splines, zero at both ends of the gap, at most pi/(2 whi) apart
+//!     count = ceil(2 whi (gap + dt) / pi), at most one a sample
+//! b_q(omega) = dt / sqrt(T) sum_n hat_q(n) e^(-j omega n dt)
+//! ```
+
+use std::f64::consts::PI;
+use std::ops::Range;
+
+use nalgebra::Complex;
+
+use gdcm_model::dataset::channel::ChannelSide;
+
+/// Spectral lines of a hat function in a gap of a channel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GapHat {
+    /// Whether an input or an output misses the samples.
+    pub side: ChannelSide,
+    /// Index of the channel on its side, counted from 0.
+    pub channel: usize,
+    /// `b_q` at each line of the spectrum.
+    pub lines: Vec<Complex<f64>>,
+}
+
+impl GapHat {
+    /// Returns the hat at the lines with these indices.
+    pub(crate) fn between(&self, lines: Range<usize>) -> Self {
+        Self {
+            side: self.side,
+            channel: self.channel,
+            lines: self.lines[lines].to_vec(),
+        }
+    }
+}
+
+/// Missing samples of a channel within a segment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChannelGap {
+    /// Whether an input or an output misses the samples.
+    pub side: ChannelSide,
+    /// Index of the channel on its side, counted from 0.
+    pub channel: usize,
+    /// Indices of the missing samples; neither the first nor the last sample of the segment.
+    pub samples: Range<usize>,
+}
+
+/// The sampling of a segment and the highest line used.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct HatGrid {
+    /// `dt` \[s\].
+    pub(crate) sample_time_s: f64,
+    /// `T` \[s\].
+    pub(crate) duration_s: f64,
+    /// `whi` \[rad/s\].
+    pub(crate) highest: f64,
+}
+
+impl ChannelGap {
+    /// Returns the number of hats that describe the missing samples.
+    pub(crate) fn hat_count(&self, grid: HatGrid) -> usize {
+        let missing = self.samples.len();
+        let gap_s = (missing + 1) as f64 * grid.sample_time_s;
+        let wanted = (2.0 * grid.highest * gap_s / PI).ceil() as usize;
+        wanted.clamp(1, missing.max(1))
+    }
+
+    /// Computes the lines of all hats at `omega` \[rad/s\].
+    pub(crate) fn hats(&self, grid: HatGrid, omega: &[f64]) -> Vec<GapHat> {
+        let count = self.hat_count(grid);
+        // The knots divide the interval from the last sample before the gap to the first after it.
+        let interval = (self.samples.len() + 1) as f64;
+        let spacing = interval / (count + 1) as f64;
+        let factor = grid.sample_time_s / grid.duration_s.sqrt();
+        let mut hats = Vec::with_capacity(count);
+        for hat in 1..=count {
+            let centre = hat as f64 * spacing;
+            let mut lines = vec![Complex::default(); omega.len()];
+            for sample in self.samples.clone() {
+                let position = (sample + 1 - self.samples.start) as f64;
+                let height = 1.0 - (position - centre).abs() / spacing;
+                if height <= 0.0 {
+                    continue;
+                }
+                let time_s = sample as f64 * grid.sample_time_s;
+                for (line, omega) in lines.iter_mut().zip(omega) {
+                    *line += Complex::from_polar(factor * height, -omega * time_s);
+                }
+            }
+            hats.push(GapHat {
+                side: self.side,
+                channel: self.channel,
+                lines,
+            });
+        }
+        hats
+    }
+}

@@ -1,5 +1,5 @@
-//! Conflicts and remedies in words. All sentences about them are here; the facts are
-//! [`ConflictKind`] and [`Remedy`].
+//! Descriptions of conflicts and remedies. This module contains all sentences about them; the facts
+//! are in [`ConflictKind`] and [`Remedy`].
 
 use gdcm_model::units::{s_to_ms, telling, told_apart};
 
@@ -9,7 +9,7 @@ use super::quantity::Quantity;
 use super::remedy::Remedy;
 
 impl Conflict {
-    /// Describes the conflict and its possible resolutions, with these channel names.
+    /// Describes the conflict and its possible resolutions, with the given channel names.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         ConflictText {
             conflict: self,
@@ -19,7 +19,7 @@ impl Conflict {
         .sentence()
     }
 
-    /// Describes a loop that agrees within the tolerance; empty for any other conflict.
+    /// Describes a loop whose deviation is within the tolerance; empty for any other conflict.
     pub fn agreement_words(&self, inputs: &[String], outputs: &[String]) -> String {
         let ConflictKind::Loop { mismatch } = self.kind else {
             return String::new();
@@ -34,7 +34,7 @@ impl Conflict {
 }
 
 impl Remedy {
-    /// Describes the remedies; empty where there is none.
+    /// Describes the remedies; empty if there are none.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         let unit = if self.quantity.is_gain() { "" } else { " s" };
         let mut ways = Vec::new();
@@ -55,7 +55,7 @@ impl Remedy {
     }
 }
 
-/// Names the values compared around a loop.
+/// Returns the name of the values that are compared around a loop.
 fn loop_values(quantity: Quantity) -> &'static str {
     if quantity.is_gain() {
         "ratios"
@@ -64,7 +64,7 @@ fn loop_values(quantity: Quantity) -> &'static str {
     }
 }
 
-/// Formats a loop's mismatch, given in dB or in seconds.
+/// Formats the deviation of a loop, which is in dB or in seconds; seconds are displayed in ms.
 fn mismatch_size(quantity: Quantity, mismatch: f64) -> String {
     if quantity.is_gain() {
         format!("{} dB", telling(mismatch.abs(), 1))
@@ -73,17 +73,17 @@ fn mismatch_size(quantity: Quantity, mismatch: f64) -> String {
     }
 }
 
-/// Formats a time \[s\] in milliseconds.
 fn milliseconds(time_s: f64) -> String {
     telling(s_to_ms(time_s), 1)
 }
 
-/// Formats a limit and an asked value \[s\] in milliseconds, with enough digits to differ.
+/// Formats a limit and a prescribed value, both in s, in milliseconds, with enough digits to
+/// distinguish them.
 fn limit_and_asked_ms(limit_s: f64, asked_s: f64) -> (String, String) {
     told_apart(s_to_ms(limit_s), s_to_ms(asked_s), 1)
 }
 
-/// A conflict with the channel names.
+/// A conflict and the channel names for its description.
 struct ConflictText<'a> {
     conflict: &'a Conflict,
     inputs: &'a [String],
@@ -91,10 +91,10 @@ struct ConflictText<'a> {
 }
 
 impl ConflictText<'_> {
-    /// Remedies for insufficient lead, besides another bound.
+    /// Remedies for insufficient lead other than a change of the bounds.
     const MORE_LEAD: &'static str = "a larger R_max or a smaller n gives more";
 
-    /// Composes "entries cannot be held: limit; remedies".
+    /// Composes the sentence "ENTRIES cannot be held: LIMIT; REMEDIES."
     fn sentence(&self) -> String {
         let conflict = self.conflict;
         let entries = pair_names(&conflict.entries, self.inputs, self.outputs);
@@ -157,7 +157,7 @@ impl ConflictText<'_> {
         format!("{entries} {cannot}: {limit} {release}.")
     }
 
-    /// Describes a net value above the upper bound, doubled or squared.
+    /// Describes a net value above its maximum: twice the upper bound, or its square for gains.
     fn above_upper(&self, channels: (Channel, Channel), asked: f64, upper: f64) -> String {
         let first = self.symbol(channels.0);
         let second = self.symbol(channels.1);
@@ -180,7 +180,7 @@ impl ConflictText<'_> {
         )
     }
 
-    /// Describes a net value below the lower bound, doubled or squared.
+    /// Describes a net value below its minimum: twice the lower bound, or its square for gains.
     fn below_lower(&self, channels: (Channel, Channel), asked: f64, lower: Option<f64>) -> String {
         let first = self.symbol(channels.0);
         let second = self.symbol(channels.1);
@@ -208,7 +208,7 @@ impl ConflictText<'_> {
         }
     }
 
-    /// Describes a gain ratio above the ratio between the bounds.
+    /// Describes a ratio of gains above the ratio of the bounds.
     fn ratio_too_great(&self, greater: Channel, lesser: Channel, asked: f64) -> String {
         let greater = self.symbol(greater);
         let lesser = self.symbol(lesser);
@@ -220,7 +220,7 @@ impl ConflictText<'_> {
         )
     }
 
-    /// Describes a delay difference above the difference between the bounds.
+    /// Describes a difference of delays above the difference of the bounds.
     fn difference_too_great(
         &self,
         greater: Channel,
@@ -248,7 +248,7 @@ impl ConflictText<'_> {
         )
     }
 
-    /// Symbol of a channel's value: "k_LON", "tau_P".
+    /// Returns the symbol of a channel's value: "k_LON", "tau_P".
     fn symbol(&self, channel: Channel) -> String {
         let symbol = if self.conflict.quantity.is_gain() {
             "k"

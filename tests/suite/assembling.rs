@@ -401,7 +401,7 @@ fn a_folder_of_matrices_without_names_is_made_a_dataset_by_rules_from_the_shell(
     assert!(
         second
             .error
-            .contains("caution: no names of channels in the file"),
+            .contains("caution: channels without names in the file"),
         "{}",
         second.error
     );
@@ -1071,7 +1071,7 @@ fn a_response_whose_name_says_no_channels_makes_no_dataset_and_one_that_does_is_
     assert!(
         ended
             .error
-            .contains("frf_r_ped_run2.csv: no input of the measured response"),
+            .contains("frf_r_ped_run2.csv: the measured response has no input of the dataset"),
         "{}",
         ended.error
     );

@@ -142,7 +142,7 @@ fn channels_taken_by_position_and_what_is_not_used_are_said() {
     assert_eq!(bench(&window).assembly().cautions().len(), 1);
     assert!(
         window
-            .query_by_label_contains("caution: no names of channels in the file")
+            .query_by_label_contains("caution: channels without names in the file")
             .is_some()
     );
     assert!(

@@ -25,7 +25,8 @@ impl Conflict {
             return String::new();
         };
         format!(
-            "{} form a loop: their {} agree to {}, and count as agreeing; each is held at its nearest consistent value.",
+            "{} form a loop: their {} agree to {}, which is accepted; each is held at its nearest \
+            consistent value.",
             pair_names(&self.entries, inputs, outputs),
             loop_values(self.quantity),
             mismatch_size(self.quantity, mismatch)
@@ -45,12 +46,15 @@ impl Remedy {
             ways.push(format!("a lower bound of {lower}{unit}"));
         }
         for &pair in &self.free {
-            ways.push(format!("freeing {}", pair_name(pair, inputs, outputs)));
+            ways.push(format!("releasing {}", pair_name(pair, inputs, outputs)));
         }
         if ways.is_empty() {
             String::new()
         } else {
-            format!("Any one of these lets all be held: {}.", ways.join("; "))
+            format!(
+                "Any one of these changes allows all responses to be held: {}.",
+                ways.join("; ")
+            )
         }
     }
 }
@@ -92,7 +96,7 @@ struct ConflictText<'a> {
 
 impl ConflictText<'_> {
     /// Remedies for insufficient lead other than a change of the bounds.
-    const MORE_LEAD: &'static str = "a larger R_max or a smaller n gives more";
+    const MORE_LEAD: &'static str = "increase R_max or reduce n";
 
     /// Composes the sentence "ENTRIES cannot be held: LIMIT; REMEDIES."
     fn sentence(&self) -> String {
@@ -119,7 +123,7 @@ impl ConflictText<'_> {
             ConflictKind::Unclear => return format!("{entries} {cannot}; {release}."),
             ConflictKind::BelowLower { asked, .. } if conflict.is_lone_lead() => {
                 return format!(
-                    "{entries} needs {} ms of lead: a delay cannot give it; {release}.",
+                    "{entries} needs {} ms of lead, which a delay cannot provide; {release}.",
                     milliseconds(-asked)
                 );
             }
@@ -165,8 +169,8 @@ impl ConflictText<'_> {
         if self.conflict.quantity.is_gain() {
             let (most, asked) = told_apart(bound.powi(2), asked, 3);
             return format!(
-                "with gains <= {bound:.3} the product {first} {second} is at most {most}, not {asked}; set the upper bound to \
-                 {upper} or"
+                "with gains <= {bound:.3} the product {first} {second} is at most {most}, but \
+                {asked} is required; set the upper bound to {upper} or"
             );
         }
         let (most, asked) = limit_and_asked_ms(2.0 * bound, asked);
@@ -176,7 +180,8 @@ impl ConflictText<'_> {
             ""
         };
         format!(
-            "{first} and {second} give at most {most} ms{kind} together, not {asked}; set the upper bound to {upper} s or"
+            "{first} and {second} together give at most {most} ms{kind}, but {asked} ms are \
+            required; set the upper bound to {upper} s or"
         )
     }
 
@@ -190,18 +195,20 @@ impl ConflictText<'_> {
                 let (least, asked) = told_apart(bound.powi(2), asked, 3);
                 let lower = lower.unwrap_or(bound);
                 format!(
-                    "with gains >= {bound:.3} the product {first} {second} is at least {least}, not {asked}; set the lower bound \
-                     to {lower} or"
+                    "with gains >= {bound:.3} the product {first} {second} is at least {least}, \
+                    but {asked} is required; set the lower bound to {lower} or"
                 )
             }
             Quantity::Delay => format!(
-                "{first} and {second} would have to give {} ms of lead together, and a delay cannot;",
+                "{first} and {second} together would have to give {} ms of lead, which a delay \
+                cannot provide;",
                 milliseconds(-asked)
             ),
             Quantity::SignedDelay => {
                 let (most, asked) = limit_and_asked_ms(-2.0 * bound, -asked);
                 format!(
-                    "R_max lets {first} and {second} give {most} ms of lead together, not {asked}: {}, or",
+                    "R_max limits {first} and {second} to {most} ms of lead together, but {asked} \
+                    ms are required; {}, or",
                     Self::MORE_LEAD
                 )
             }
@@ -216,7 +223,8 @@ impl ConflictText<'_> {
         let high = self.conflict.bounds.upper;
         let (most, asked) = told_apart(high / low, asked, 3);
         format!(
-            "with {greater} <= {high:.3} and {lesser} >= {low:.3} their ratio is at most {most}, not {asked}"
+            "with {greater} <= {high:.3} and {lesser} >= {low:.3} their ratio is at most {most}, \
+            but {asked} is required"
         )
     }
 
@@ -235,8 +243,9 @@ impl ConflictText<'_> {
         if self.conflict.quantity == Quantity::SignedDelay {
             let (most, asked) = limit_and_asked_ms(high - low, asked);
             return format!(
-                "{greater} cannot be {asked} ms above {lesser}: with at most {} ms of lead and {} ms of delay a channel the \
-                 difference is at most {most} ms; set the upper bound to {upper} s; {}, or",
+                "{greater} cannot exceed {lesser} by {asked} ms: with at most {} ms of lead and \
+                {} ms of delay in each channel, the difference is at most {most} ms; set the \
+                upper bound to {upper} s, {}, or",
                 milliseconds(-low),
                 milliseconds(high),
                 Self::MORE_LEAD
@@ -244,7 +253,8 @@ impl ConflictText<'_> {
         }
         let (most, asked) = limit_and_asked_ms(high, asked);
         format!(
-            "{greater} cannot be {asked} ms above {lesser} with delays <= {most} ms; set the upper bound to {upper} s or"
+            "{greater} cannot exceed {lesser} by {asked} ms with delays <= {most} ms; set the \
+            upper bound to {upper} s or"
         )
     }
 

@@ -84,7 +84,8 @@ impl CorrectedModelError {
                 delay_s,
                 sample_time_s,
             } => format!(
-                "the delay of {}, {} s, is {} samples of {} s; in discrete time only whole samples are exact",
+                "the delay of {}, {} s, is {} samples of {} s; in discrete time it must be a \
+                whole number of samples",
                 channel.name(inputs, outputs),
                 number(*delay_s),
                 // Round to 1e-6 samples: shows the fraction of a sample, but no rounding error.
@@ -95,12 +96,14 @@ impl CorrectedModelError {
                 sample_time_s,
                 longest_s,
             } => format!(
-                "the sample time of {} s is too long for the lead filters; at most {} s, half of their lag, is allowed",
+                "the sample time of {} s is too long for the lead filters; the maximum is {} s, \
+                half of their lag time constant",
                 number(*sample_time_s),
                 number(*longest_s)
             ),
             Self::TooManyStates { states } => format!(
-                "the model with its delays as states needs {states} states; at most {MOST_STATES} are written"
+                "the model with its delays as states needs {states} states; at most {MOST_STATES} \
+                are supported"
             ),
             Self::Matrices(error) => error.to_string(),
         }

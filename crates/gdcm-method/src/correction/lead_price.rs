@@ -68,8 +68,8 @@ impl LeadPrice {
     }
 
     /// Describes the frequency limit, and the gain of each channel with a filter: "not valid above
-    /// 12 rad/s: at 120 rad/s the leads add +9.1 dB on LON, +11.3 dB on Q; a response gets the
-    /// gains of its input and its output" (the sum in dB).
+    /// 12 rad/s: at 120 rad/s the leads add +9.1 dB on LON, +11.3 dB on Q; the gain of a response
+    /// increases by the sum for its input and output".
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         let mut gains = Vec::new();
         for (channel, &gain_db) in self.gains_db.iter() {
@@ -82,7 +82,8 @@ impl LeadPrice {
             return self.limit_words();
         }
         format!(
-            "{}: at {} rad/s the leads add {}; a response gets the gains of its input and its output",
+            "{}: at {} rad/s the leads add {}; the gain of a response increases by the sum for \
+            its input and output",
             self.limit_words(),
             number(self.above_rad_s()),
             gains.join(", ")

@@ -106,13 +106,13 @@ pub enum ProblemError {
     #[error("alpha is {alpha}; it must be a number from 0 to 1e12")]
     Alpha { alpha: f64 },
     /// The quadratic program for the delays was not solved.
-    #[error("the quadratic program of the delays was not solved: {reason}")]
+    #[error("the quadratic program for the delays was not solved: {reason}")]
     Program {
         /// Status reported by the solver.
         reason: String,
     },
     /// The search was stopped by its caller.
-    #[error("search for the optimum stopped")]
+    #[error("the search for the optimum was stopped")]
     Stopped,
 }
 

@@ -103,7 +103,7 @@ impl Sensitivity {
             ActiveConstraint::LowerBound(_) if self.quantity == Quantity::Delay => {
                 format!("0: {step} ms of lead")
             }
-            ActiveConstraint::LowerBound(_) => format!("at its greatest lead: {step} ms more"),
+            ActiveConstraint::LowerBound(_) => format!("at its maximum lead: {step} ms more"),
             ActiveConstraint::UpperBound(_) => {
                 format!("on its upper bound: raising the bound by {step} ms")
             }
@@ -389,14 +389,16 @@ impl Toggle {
                 format!("holding {pair} costs {saved:.1} % of the objective")
             } else {
                 format!(
-                    "freeing {pair} would raise the objective by {percent:.1} %: others are then held better"
+                    "releasing {pair} would raise the objective by {percent:.1} %, because other \
+                    responses could then be held more closely"
                 )
             }
         } else if self.matched_after {
             format!("holding {pair} would change the objective by {percent:+.1} %")
         } else {
             format!(
-                "{pair} cannot be held besides the held responses; trying changes the objective by {percent:+.1} %"
+                "{pair} cannot be held in addition to the held responses; the attempt would \
+                change the objective by {percent:+.1} %"
             )
         }
     }

@@ -40,14 +40,14 @@ impl Outcome {
     pub fn words(self) -> String {
         match self {
             Outcome::Proven { .. } => {
-                "Proven: no gains within the bounds that hold the held responses are better."
+                "Proven: no gains within the bounds that satisfy the held responses are better."
                     .to_owned()
             }
             Outcome::NotProven { gap, limit } => {
                 let ended = match limit {
-                    Limit::Work => "at its budget of work",
-                    Limit::Memory => "at its budget of memory",
-                    Limit::Rounding => "where rounding decides",
+                    Limit::Work => "because its work budget was exhausted",
+                    Limit::Memory => "because its memory budget was exhausted",
+                    Limit::Rounding => "because of rounding errors",
                 };
                 let percent = 100.0 * gap;
                 format!(
@@ -132,7 +132,8 @@ impl Unmatched {
         let (target, delta) = told_apart(s_to_ms(-self.target), s_to_ms(-self.delta), 1);
         let left = telling(self.phase_left_deg(omega_top).abs(), 0);
         format!(
-            "{pair} gets {target} of the {delta} ms of lead it wants; {left}° of phase error remain at {omega_top} rad/s."
+            "{pair} gets {target} of the {delta} ms of lead that it needs; a phase error of \
+            {left}° remains at {omega_top} rad/s."
         )
     }
 
@@ -141,14 +142,14 @@ impl Unmatched {
         let size_ms = telling(excess_ms.abs(), 1);
         let why = if self.why.is_lone_lead() && self.why.entries == [self.pair] {
             let lead_ms = telling(excess_ms, 1);
-            format!("{pair} needs {lead_ms} ms of lead: a delay cannot give it")
+            format!("{pair} needs {lead_ms} ms of lead, which a delay cannot provide")
         } else if excess_ms > 0.0 {
             format!("{pair} gets {size_ms} ms more delay than it needs")
         } else {
             format!("{pair} lacks {size_ms} ms of delay")
         };
         let left = telling(self.phase_left_deg(omega_top).abs(), 0);
-        format!("{why}; {left}° of phase error remain at {omega_top} rad/s.")
+        format!("{why}; a phase error of {left}° remains at {omega_top} rad/s.")
     }
 }
 

@@ -195,8 +195,8 @@ const WORST_CONDITION: f64 = 1e6;
 pub enum CoupledModelError {
     /// The algebraic loop through the feed-through is singular or nearly so.
     #[error(
-        "the feedback cannot be closed through its feed-through: the condition number of I − D K is {}, and at most \
-         {WORST_CONDITION:e} is allowed",
+        "the loop through the feed-through cannot be closed: the condition number of I − D K is \
+        {}, and at most {WORST_CONDITION:e} is allowed",
         number(*condition_number)
     )]
     AlgebraicLoop {
@@ -205,7 +205,7 @@ pub enum CoupledModelError {
     },
     /// The model and the couplings have different numbers of channels.
     #[error(
-        "it has {} outputs and {} inputs, and the couplings have {} and {}", found[0], found[1], expected[0], expected[1]
+        "the model has {} outputs and {} inputs, but the couplings have {} and {}", found[0], found[1], expected[0], expected[1]
     )]
     Channels {
         /// Number of outputs and inputs of the model.

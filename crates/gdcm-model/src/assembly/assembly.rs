@@ -212,8 +212,8 @@ impl Assembly {
             sides.push(format!("{side}s taken as {}", names.join(", ")));
         }
         format!(
-            "no names of channels in the file: {}, by their position in the dataset; check the order, or name them under \"models\" in \
-             the rules: {}",
+            "channels without names in the file: {}, by their position in the dataset; check the \
+            order, or name the channels under \"models\" in the rules (files: {})",
             sides.join(" and "),
             files.join(", ")
         )

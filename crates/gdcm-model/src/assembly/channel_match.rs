@@ -186,7 +186,7 @@ impl ChannelMatcher<'_> {
             && declared_unit != file_unit
         {
             found.notes.push(format!(
-                "{}: declared to be in {declared_unit}, although the file says {file_unit}",
+                "{}: the declared unit {declared_unit} replaces the unit {file_unit} in the file",
                 rule.name
             ));
         }
@@ -213,7 +213,10 @@ impl ChannelMatcher<'_> {
         if factor != 1.0 {
             used.words = Some(format!("{} {unit} → {} (× {factor})", rule.name, rule.unit));
         } else if file_unit.is_none() {
-            used.words = Some(format!("{} taken to be in {unit}", rule.name));
+            used.words = Some(format!(
+                "{}: unit {unit}, since the file gives none",
+                rule.name
+            ));
         }
         used
     }
@@ -245,7 +248,10 @@ impl ChannelMatcher<'_> {
         }
         let note = match (declared, name) {
             (None, Some(name)) => {
-                format!("{}: sign reversed, from its name \"{name}\"", rule.name)
+                format!(
+                    "{}: sign reversed, because of its name \"{name}\"",
+                    rule.name
+                )
             }
             _ => format!("{}: sign reversed (× -1), as declared", rule.name),
         };

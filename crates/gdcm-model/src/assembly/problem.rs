@@ -12,7 +12,7 @@ use crate::units::number;
 /// A missing or contradictory fact about a model, a condition or the dataset.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ProblemKind {
-    #[error("no model is included; add files that hold models")]
+    #[error("no model is included; add files with models, or include a model that is left out")]
     NoModels,
     /// The dataset has no inputs, or no outputs.
     #[error("the dataset has no {0}; define them")]
@@ -21,10 +21,11 @@ pub enum ProblemKind {
     #[error("{0}: choose a unit")]
     NoUnit(String),
     /// Dataset channel whose unit in a file is given neither by the file nor by the rules.
-    #[error("{0}: choose its unit in files without units")]
+    #[error("{0}: choose the unit that it has in files without units")]
     UnitOfFile(String),
     #[error(
-        "{channel} has the unit \"{from}\" in the file and \"{to}\" in the dataset: there is no factor between them; enter one"
+        "{channel} has the unit \"{from}\" in the file and \"{to}\" in the dataset, which cannot \
+        be converted; enter a factor"
     )]
     Conversion {
         channel: String,
@@ -41,7 +42,8 @@ pub enum ProblemKind {
     },
     /// Channel whose name in the file does not determine its sign.
     #[error(
-        "{channel} is called {found} in the file, which can be positive the other way: enter its sign, 1 or -1 (\"signs\" in the rules)"
+        "{channel} is called {found} in the file, which may be positive in the opposite \
+        direction; enter its sign, 1 or -1 (\"signs\" in the rules)"
     )]
     Sign {
         channel: String,
@@ -50,15 +52,19 @@ pub enum ProblemKind {
     },
     /// Model that looks discrete-time but has no sample time.
     #[error(
-        "all its poles lie inside the unit circle and {near} of {poles} near 1, as in a discrete-time model, but it has no sample time: \
-         enter it in s, or 0 for a continuous-time model (--sample-time)"
+        "all poles lie inside the unit circle and {near} of {poles} near 1, as in a discrete-time \
+        model, but the model has no sample time; enter it in s, or 0 for a continuous-time model \
+        (--sample-time)"
     )]
     NoSampleTime { near: usize, poles: usize },
     /// Part of the file name that looks like a trim offset but matches no pattern.
-    #[error("\"{0}\" in its name is not understood: enter the trim offset")]
+    #[error(
+        "\"{0}\" in its name looks like a trim offset but matches no pattern; enter the trim \
+        offset"
+    )]
     TrimPart(String),
     /// Several model channels match the same dataset channel.
-    #[error("two {side}s of the model can be {channel}: {found}; choose one of them")]
+    #[error("several {side}s of the model match {channel}: {found}; choose one of them")]
     AmbiguousChannel {
         side: ChannelSide,
         channel: String,
@@ -66,7 +72,10 @@ pub enum ProblemKind {
         found: String,
     },
     /// Channels without names whose count differs from the dataset's.
-    #[error("the model has {found} {side}s without names, the dataset has {expected}; name them")]
+    #[error(
+        "the model has {found} {side}s without names, but the dataset has {expected}; name \
+        them under \"models\" in the rules"
+    )]
     Unnamed {
         side: ChannelSide,
         expected: usize,
@@ -74,9 +83,11 @@ pub enum ProblemKind {
     },
     /// Measured response with no dataset channel among its inputs, or among its outputs.
     #[error(
-        "no {side} of the measured response is in the dataset ({known}): {}. Name it in its headings, \"mag Q/LON [dB]\" (--headings, or \
-         \"headings\" in the rules), or in the rules: under \"models\", \"inputs\": [\"LON\"], \"outputs\": [\"Q\"]; or leave it out",
-        if found.is_empty() { "neither the file nor its name gives one".to_owned() } else { format!("it has {found}") }
+        "the measured response has no {side} of the dataset ({known}): {}. Name it in the \
+        headings, \"mag Q/LON [dB]\" (--headings, or \"headings\" in the rules), or under \
+        \"models\" in the rules: \"inputs\": [\"LON\"], \"outputs\": [\"Q\"]; or leave the \
+        response out",
+        if found.is_empty() { "neither the file nor its name names one".to_owned() } else { format!("it has {found}") }
     )]
     ResponseUnmatched {
         side: ChannelSide,
@@ -86,8 +97,9 @@ pub enum ProblemKind {
     },
     /// Measured response whose channels appear only in an ambiguous file or variable name.
     #[error(
-        "the name \"{name}\" does not give one output and one input: {error}. Name them in the headings, \"mag Q/LON [dB]\" (--headings, or \
-         \"headings\" in the rules), or in the rules: under \"models\", \"inputs\": [\"LON\"], \"outputs\": [\"Q\"]"
+        "the name \"{name}\" does not identify one output and one input: {error}. Name them in \
+        the headings, \"mag Q/LON [dB]\" (--headings, or \"headings\" in the rules), or under \
+        \"models\" in the rules: \"inputs\": [\"LON\"], \"outputs\": [\"Q\"]"
     )]
     ResponseName {
         /// File or variable name.

@@ -31,7 +31,8 @@ pub enum DatasetError {
         name: String,
     },
     #[error(
-        "conditions: duplicate id {id} (conditions number {first} and {second}); ids must differ"
+        "conditions: duplicate id {id} (positions {first} and {second} in the list); ids must \
+        differ"
     )]
     DuplicateId {
         id: ConditionId,

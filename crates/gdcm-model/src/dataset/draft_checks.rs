@@ -289,7 +289,7 @@ impl Checker {
             && model.order() != *order
         {
             let words = format!(
-                "order says {order}, the matrices have {} states",
+                "the stated order is {order}, but the matrices have {} states",
                 model.order()
             );
             self.warnings.push(Warning {
@@ -315,7 +315,7 @@ impl Checker {
         }
         if order > 0 && !names.is_empty() {
             let words = format!(
-                "{} names for {order} states: they are left out",
+                "{} state names for {order} states; the names are ignored",
                 names.len()
             );
             self.warnings.push(Warning { place, words });

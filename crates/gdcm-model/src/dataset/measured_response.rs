@@ -57,7 +57,8 @@ pub enum MeasuredResponseError {
     },
     /// Valid band that starts below zero, or ends before it starts.
     #[error(
-        "valid_band_rad_s, output {output}, input {input}: expected two rising frequencies from 0, found {} and {}",
+        "valid_band_rad_s, output {output}, input {input}: expected a first and a last frequency, \
+        not negative and in ascending order, found {} and {}",
         number(band[0]), number(band[1])
     )]
     ValidBand {

@@ -88,7 +88,7 @@ impl Provenance {
         parts.extend(self.made.as_ref().map(|date| format!("made {date}")));
         parts.extend(self.sha256.as_ref().map(|hash| format!("SHA-256 {hash}")));
         if !self.records.is_empty() {
-            parts.push(format!("the records {}", self.records.join(", ")));
+            parts.push(format!("from the records {}", self.records.join(", ")));
         }
         parts.extend(self.note.clone());
         if !self.unused.is_empty() {

@@ -170,7 +170,8 @@ pub struct Timing {
 /// Error for an invalid sample time or delay.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TimingError {
-    #[error("sample_time_s: expected a positive number of seconds (none at all for continuous time), found {}", number(*.0))]
+    #[error("sample_time_s: expected a positive number of seconds (omit it for continuous time), \
+        found {}", number(*.0))]
     SampleTime(f64),
     #[error("{list}: expected {expected} delays, one for each channel, found {found}")]
     Count {
@@ -359,7 +360,7 @@ mod timing_tests {
     #[test]
     fn invalid_sample_times_and_delays_are_named() {
         let error = |timing: Timing| timing.checked(1, 2).unwrap_err().to_string();
-        assert!(error(timing(Some(0.0), &[])).contains("none at all for continuous time"));
+        assert!(error(timing(Some(0.0), &[])).contains("omit it for continuous time"));
         assert!(error(timing(Some(f64::INFINITY), &[0.0; 2])).contains("sample_time_s"));
         assert_eq!(
             error(timing(None, &[0.0])),

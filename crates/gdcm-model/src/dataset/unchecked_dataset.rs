@@ -183,7 +183,8 @@ pub enum DraftFault {
     )]
     TimedResponse,
     #[error(
-        "a physics model needs matrices A, B, C, D; a measured response is for identified models"
+        "a physics model needs matrices A, B, C, D; only an identified model can be a measured \
+        response"
     )]
     MeasuredPhysics,
     #[error(transparent)]

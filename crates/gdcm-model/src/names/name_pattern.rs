@@ -33,7 +33,7 @@ pub struct NamePattern {
 /// Error for a text that is not a valid name pattern.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PatternError {
-    #[error("{} is not a regular expression: {}", quoted(pattern), shortened(&sanitized(reason)))]
+    #[error("{} is not a valid regular expression: {}", quoted(pattern), shortened(&sanitized(reason)))]
     Syntax {
         pattern: String,
         /// Message of the regular-expression parser.
@@ -58,7 +58,7 @@ impl NamePattern {
         if pattern.len() > LONGEST_PATTERN {
             return Err(PatternError::Syntax {
                 pattern: pattern.to_owned(),
-                reason: format!("it is longer than {LONGEST_PATTERN} letters"),
+                reason: format!("it is longer than {LONGEST_PATTERN} bytes"),
             });
         }
         let regex = RegexBuilder::new(pattern)

@@ -109,7 +109,7 @@ pub enum ResponseNameError {
         /// Channels in the spelling of the text, separated by commas.
         found: String,
     },
-    #[error("\"{word}\" beside {channel} may change the channel")]
+    #[error("the word \"{word}\" next to {channel} may change its meaning")]
     OtherChannel {
         word: String,
         /// Channel in the spelling of the text.

@@ -52,8 +52,8 @@ pub struct Mode {
 /// sensors.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "the pole cannot be distinguished from a neighbour: a relative change of A by 1e-16 moves it {movement:.0e} times as far, so \
-     the shares of the states are meaningless"
+    "the pole cannot be distinguished from a neighbouring pole: a relative change of 1e-16 in A \
+    moves it {movement:.0e} times as far, so that its state participation is meaningless"
 )]
 pub struct NearDefective {
     /// Displacement of the pole per unit change in A.
@@ -65,7 +65,7 @@ pub struct NearDefective {
 pub enum ModesError {
     #[error("{0}")]
     TooLarge(LargeEntry),
-    #[error("the eigenvalues of its matrix A were not found: the iteration does not converge")]
+    #[error("the eigenvalues of the matrix A were not found: the iteration does not converge")]
     NotConverged,
 }
 

@@ -12,7 +12,8 @@ pub const LARGEST_ENTRY: f64 = 1e75;
 /// An entry of a model's matrices beyond [`LARGEST_ENTRY`].
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "its matrix {matrix} has {value:e} in row {row}, column {column}, beyond the limit {LARGEST_ENTRY:e} of computations"
+    "its matrix {matrix} has {value:e} in row {row}, column {column}; the limit for computations \
+    is {LARGEST_ENTRY:e}"
 )]
 pub struct LargeEntry {
     /// `A`, `B`, `C` or `D`.

@@ -44,7 +44,7 @@ pub enum ZerosError {
     NoResponse,
     #[error("the zeros were not found: the eigenvalue iteration does not converge")]
     NotConverged,
-    #[error("the model has no output number {} or no input number {}", pair.output + 1, pair.input + 1)]
+    #[error("the model has no output {} or no input {}", pair.output + 1, pair.input + 1)]
     OutsideModel { pair: Pair },
 }
 
@@ -495,7 +495,7 @@ mod tests {
             transmission_zeros(&gain, Pair::new(1, 0))
                 .unwrap_err()
                 .to_string()
-                .contains("output number 2")
+                .contains("no output 2")
         );
     }
 

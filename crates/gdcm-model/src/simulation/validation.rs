@@ -106,22 +106,21 @@ pub struct Validation {
 /// Error for a model that cannot be compared with flight records in the time domain.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ValidationError {
-    #[error("there is no record to compare the model with")]
+    #[error("no record is available for the comparison with the model")]
     NoSegments,
     /// The inputs or outputs differ from those of a segment; index of its record, counted from 0.
-    #[error("record {} has other channels than the model", .0 + 1)]
+    #[error("the channels of record {} differ from those of the model", .0 + 1)]
     ChannelsDiffer(usize),
     /// A model that cannot be discretised, or whose poles cannot be computed.
-    #[error(
-        "the model cannot be simulated: its matrices do not fit each other or hold values that are not finite"
-    )]
+    #[error("the model cannot be simulated: its poles or its discretisation could not be computed")]
     NotSimulated,
-    #[error("windows must last longer than 0 s")]
+    #[error("the window length must be positive")]
     NoWindow,
     /// Too few samples for the estimate of an initial state; window length \[s\].
     #[error(
-        "too short to compare in time: windows of {0:.2} s, the record or {TIME_CONSTANTS} time constants of the \
-         model's fastest diverging mode, hold too few samples for its initial state"
+        "too short to compare in time: windows of {0:.2} s (limited by the record, or to \
+        {TIME_CONSTANTS} time constants of the model's fastest diverging mode) contain too few \
+        samples to estimate the initial state"
     )]
     TooShort(f64),
     #[error("the simulated outputs are not finite")]

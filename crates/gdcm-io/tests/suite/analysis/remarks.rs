@@ -115,6 +115,6 @@ fn a_tolerance_decides_whether_a_loop_of_held_gains_agrees() {
     assert!(
         said.iter()
             .any(|remark| remark.kind == RemarkKind::Good
-                && remark.text.contains("count as agreeing"))
+                && remark.text.contains("which is accepted"))
     );
 }

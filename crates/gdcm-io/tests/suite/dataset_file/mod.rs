@@ -189,7 +189,7 @@ fn an_order_that_the_matrices_do_not_have_is_a_caution() {
     assert_eq!(
         cautions,
         [
-            "condition 10 (number 2 in the file), identified model \"sweeps\" (number 1): order says 12, the matrices have 2 states"
+            "condition 10 (number 2 in the file), identified model \"sweeps\" (number 1): the stated order is 12, but the matrices have 2 states"
         ]
     );
 }
@@ -229,7 +229,7 @@ fn names_of_states_are_kept_where_there_is_one_for_each() {
         panic!("{:?}", wrong.cautions)
     };
     assert!(
-        caution.contains("1 names for 2 states: they are left out"),
+        caution.contains("1 state names for 2 states; the names are ignored"),
         "{caution}"
     );
 }

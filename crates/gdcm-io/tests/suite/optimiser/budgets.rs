@@ -74,7 +74,7 @@ fn a_budget_of_work_too_small_for_the_proof_is_admitted() {
     let words = solution.proof.outcome.words();
     let percent = 100.0 * gap;
     let told = format!(
-        "gains that are up to {percent:.2} % better may exist; the search ended at its budget of work."
+        "gains that are up to {percent:.2} % better may exist; the search ended because its work budget was exhausted."
     );
     assert_eq!(words, format!("Not proven: {told}"));
 }
@@ -103,7 +103,7 @@ fn a_budget_of_memory_too_small_for_the_proof_is_admitted() {
             .proof
             .outcome
             .words()
-            .ends_with("the search ended at its budget of memory.")
+            .ends_with("the search ended because its memory budget was exhausted.")
     );
 }
 

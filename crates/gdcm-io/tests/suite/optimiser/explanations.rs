@@ -79,8 +79,8 @@ fn a_product_above_the_bounds_is_explained() {
     );
     assert_eq!(
         conflict.words(&names(&INPUTS), &names(&OUTPUTS)),
-        "LAT → P cannot be held: with gains <= 1.400 the product k_LAT k_P is at most 1.960, not 2.500; set the upper bound to 1.59 \
-         or release it."
+        "LAT → P cannot be held: with gains <= 1.400 the product k_LAT k_P is at most 1.960, but 2.500 is required; set \
+         the upper bound to 1.59 or release it."
     );
     assert!(is_matched(&bounded(&problem, 0.7, 1.59)));
     assert!(!is_matched(&bounded(&problem, 0.7, 1.58)));
@@ -132,8 +132,8 @@ fn two_entries_that_share_an_input_are_explained_by_their_ratio() {
     };
     assert_eq!(
         conflict.words(&names(&INPUTS), &names(&OUTPUTS)),
-        "PED → R and PED → NY cannot both be held: with k_NY <= 1.400 and k_R >= 0.700 their ratio is at most 2.000, not 2.500; \
-         set the upper bound to 1.75, or the lower bound to 0.56, or release one of them."
+        "PED → R and PED → NY cannot both be held: with k_NY <= 1.400 and k_R >= 0.700 their ratio is at most 2.000, but 2.500 is \
+         required; set the upper bound to 1.75, or the lower bound to 0.56, or release one of them."
     );
     assert!(
         is_matched(&bounded(&problem, 0.7, 1.75)) && !is_matched(&bounded(&problem, 0.7, 1.74))
@@ -279,7 +279,10 @@ fn what_disagrees_by_little_is_told_to_the_digits_that_show_it() {
         },
     );
     let words = solved_within(&problem, BUDGET).conflicts[0].words(&inputs, &outputs);
-    assert!(words.contains("is at most 1.9600, not 1.9601;"), "{words}");
+    assert!(
+        words.contains("is at most 1.9600, but 1.9601 is required;"),
+        "{words}"
+    );
 }
 
 #[test]
@@ -340,7 +343,7 @@ fn an_answer_is_put_into_words_from_its_proof_to_its_remedies() {
     let outputs = names(&OUTPUTS);
     assert_eq!(
         solution.proof.outcome.words(),
-        "Proven: no gains within the bounds that hold the held responses are better."
+        "Proven: no gains within the bounds that satisfy the held responses are better."
     );
     // The ratio of 2.5 is cut to 2 by the factor 1.25, half of it (0.97 dB) to each side.
     let misses: Vec<String> = solution
@@ -357,7 +360,8 @@ fn an_answer_is_put_into_words_from_its_proof_to_its_remedies() {
     );
     assert_eq!(
         solution.remedy.unwrap().words(&inputs, &outputs),
-        "Any one of these lets all be held: an upper bound of 1.75; a lower bound of 0.56; freeing PED → R; freeing PED → NY."
+        "Any one of these changes allows all responses to be held: an upper bound of 1.75; a lower bound of 0.56; releasing PED → R; \
+         releasing PED → NY."
     );
 }
 
@@ -378,7 +382,7 @@ fn a_delay_that_would_have_to_be_negative_is_explained_as_lead() {
     assert!((miss.phase_left_deg(12.0) - 0.408_f64.to_degrees()).abs() <= 1e-12);
     assert_eq!(
         miss.words(12.0, &names(&INPUTS), &names(&OUTPUTS)),
-        "LAT → P needs 34.0 ms of lead: a delay cannot give it; 23° of phase error remain at 12 rad/s."
+        "LAT → P needs 34.0 ms of lead, which a delay cannot provide; a phase error of 23° remains at 12 rad/s."
     );
     assert_eq!(solution.remedy.unwrap().upper, None);
 }

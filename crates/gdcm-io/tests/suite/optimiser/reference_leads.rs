@@ -206,10 +206,10 @@ fn a_bound_on_the_gain_of_the_filters_is_met_and_explained() {
     let told = solution.unmatched[0].words(12.0, &inputs, &outputs)
         + &solution.conflicts[0].words(&inputs, &outputs);
     for part in [
-        "of lead it wants",
-        "R_max lets",
+        "of lead that it needs",
+        "R_max limits",
         "191.2 ms of lead together",
-        "a larger R_max or a smaller n",
+        "increase R_max or reduce n",
     ] {
         assert!(told.contains(part), "{told}");
     }

@@ -22,7 +22,7 @@ impl Executor for Sequential {
     }
 }
 
-/// An argument and its result; its task replaces the one by the other.
+/// An argument, and the result that its task computes from it.
 struct Piece<S, T> {
     /// Taken by the task when it begins.
     argument: Option<S>,

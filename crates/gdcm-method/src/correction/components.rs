@@ -25,7 +25,7 @@ pub(crate) struct Constraints {
     pub(crate) range: Interval,
 }
 
-/// A constrained entry.
+/// A constrained entry and its prescribed sum.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ConstrainedSum {
     pub(crate) pair: Pair,

@@ -310,7 +310,7 @@ impl Problem {
         fit + self.alpha * departures
     }
 
-    /// Iterates over the entries that count in the objective (`w = 1`).
+    /// Iterates over the entries that count in the objective (`w = 1`), each with its delta.
     pub(crate) fn fit_entries(&self) -> impl Iterator<Item = Entry> + '_ {
         self.delta.iter().filter_map(|(pair, delta)| {
             if self.fitted[pair] {
@@ -321,7 +321,7 @@ impl Problem {
         })
     }
 
-    /// Iterates over the constrained entries.
+    /// Iterates over the constrained entries, each with its delta.
     pub(crate) fn constrained_entries(&self) -> impl Iterator<Item = Entry> + '_ {
         self.constrained
             .marked()

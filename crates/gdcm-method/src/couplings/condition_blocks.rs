@@ -45,7 +45,7 @@ pub(super) struct ConditionBlocks {
 /// Products of the unknowns of M in one input column with one another and with the unknowns of K.
 #[derive(Clone)]
 pub(super) struct ColumnBlocks {
-    /// One row for each factor `t_b`, multiplied by `t_0 = 1`.
+    /// One row for each product `t_0 t_b`, where `t_0 = 1`.
     pub(super) products: PairProducts,
     pub(super) right: DVector<f64>,
 }

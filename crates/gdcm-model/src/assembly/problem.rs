@@ -161,7 +161,7 @@ pub enum ProblemKind {
         bundle: &'static str,
         name: String,
     },
-    /// Physics model given as measured data.
+    /// Measured data given the role of a physics model, which needs matrices.
     #[error("a {} model needs matrices; this is measured data", .0.word())]
     MeasuredPhysics(RowRole),
     /// Measured parts of one model with different frequency grids.

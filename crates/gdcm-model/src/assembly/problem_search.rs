@@ -107,7 +107,7 @@ fn row_problems(part: &Part) -> Vec<ProblemKind> {
 /// at least half of them (two or more) lie near 1. As continuous-time poles, those near 1 would be
 /// modes that diverge within about a second.
 fn missing_sample_time(part: &Part) -> Option<ProblemKind> {
-    /// Real part above which a pole counts as near 1.
+    /// Real part above which a pole is regarded as near 1.
     const NEAR: f64 = 0.5;
     /// Maximum magnitude of a pole; above 1 to admit unstable modes.
     const OUTSIDE: f64 = 1.05;

@@ -67,9 +67,7 @@ pub struct DatasetHeader {
     pub name: String,
     /// Content and source of the data.
     pub description: String,
-    /// Input channels, in order.
     pub inputs: Vec<Channel>,
-    /// Output channels, in order.
     pub outputs: Vec<Channel>,
     /// On-axis responses (M1).
     pub on_axis: PairTable<bool>,
@@ -113,12 +111,12 @@ impl Dataset {
         &self.header.description
     }
 
-    /// Returns the input channels, in order.
+    /// Returns the input channels, in the order of the model inputs.
     pub fn inputs(&self) -> &[Channel] {
         &self.header.inputs
     }
 
-    /// Returns the output channels, in order.
+    /// Returns the output channels, in the order of the model outputs.
     pub fn outputs(&self) -> &[Channel] {
         &self.header.outputs
     }

@@ -27,7 +27,7 @@ pub struct MeasuredResponse {
 pub struct Estimate {
     /// Number of independent averages.
     pub averages: Option<f64>,
-    /// Window length \[s\].
+    /// Length of an averaging window \[s\].
     pub window_s: Option<f64>,
 }
 

@@ -98,7 +98,7 @@ impl Provenance {
     }
 }
 
-/// A model of a bundle.
+/// A physics model or an identified model: its dynamics, and their origin and source.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model {
     /// Name, unique in its bundle.

@@ -196,8 +196,8 @@ impl Timing {
         *self == Self::default()
     }
 
-    /// Returns the Nyquist frequency `pi / T` \[rad/s\], from which on a discrete-time model has no
-    /// response; `None` in continuous time.
+    /// Returns the Nyquist frequency `pi / T` \[rad/s\], at and above which a discrete-time model
+    /// has no response; `None` in continuous time.
     pub fn nyquist_rad_s(&self) -> Option<f64> {
         let sample_time_s = self.sample_time_s?;
         Some(std::f64::consts::PI / sample_time_s)

@@ -18,7 +18,7 @@ pub struct ChannelRule {
 }
 
 impl ChannelRule {
-    /// Creates a channel with an unknown unit.
+    /// Creates a channel with an unknown unit and without aliases.
     pub fn named(name: impl Into<String>) -> Self {
         Self {
             name: name.into(),

@@ -21,10 +21,10 @@ const OFFSET: &str = "by_";
 ///
 /// | group | holds |
 /// |---|---|
-/// | `condition`, `airspeed_kt`, `altitude`, `altitude_ft` | the value of this name |
-/// | `weight`, `mass_kg`, `method`, `name` | the value of this name |
+/// | `condition`, `airspeed_kt`, `altitude`, `altitude_ft` | the value of the field with the same name |
+/// | `weight`, `mass_kg`, `method`, `name` | the value of the field with the same name |
 /// | `by_roll_deg`, `by_...` | trim offset in `roll_deg`, ... (`+5`, `-5`, `p5`, `m5`) |
-/// | `nominal`, `perturbed`, `identified` | any text; sets this role |
+/// | `nominal`, `perturbed`, `identified` | any text; sets the role of this name |
 #[derive(Clone, Debug)]
 pub struct NamePattern {
     regex: Regex,

@@ -320,7 +320,7 @@ fn only_channel(
     })
 }
 
-/// Splits a text into runs of letters and digits.
+/// Splits a text into words, which consist of letters and digits.
 fn words_of(text: &str) -> Vec<Word<'_>> {
     let mut words = Vec::new();
     let mut start = None;

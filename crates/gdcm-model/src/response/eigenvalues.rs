@@ -168,7 +168,7 @@ pub fn modes(model: &StateSpace) -> Result<Vec<Mode>, ModesError> {
 /// states.
 ///
 /// # Errors
-/// As [`modes`].
+/// [`ModesError`], as in [`modes`].
 pub fn modes_of(dynamics: &Dynamics) -> Result<Vec<Mode>, ModesError> {
     match dynamics {
         Dynamics::StateSpace(model) => modes(model),

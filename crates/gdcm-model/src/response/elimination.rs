@@ -682,8 +682,8 @@ mod tests {
 
     #[test]
     fn a_chain_coupled_by_1e_minus_55_neither_overflows_nor_loses_its_coupling() {
-        // The inverse coupling is 1e55 per step: without shrinking, the fifth step would overflow
-        // the square of a pivot.
+        // The inverse coupling is 1e55 per step: without the factor `h` of an interchange, the
+        // square of a pivot would overflow in the fifth step.
         let weak = 1e-55;
         let a = DMatrix::from_fn(8, 8, |row, column| match row.abs_diff(column) {
             0 => -1.0,

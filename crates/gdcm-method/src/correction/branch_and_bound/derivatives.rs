@@ -2,7 +2,7 @@
 
 use super::rounded::Rounded;
 
-/// Value, slope and curvature at a point.
+/// Value, slope and curvature of a function at a point.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Derivatives {
     pub(crate) value: Rounded,

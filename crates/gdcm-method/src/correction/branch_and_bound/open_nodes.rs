@@ -48,8 +48,7 @@ impl OpenNodes {
     /// Creates an empty heap for nodes with `scales` scales each, in at most `bytes` bytes; at
     /// least one node is always stored.
     pub(super) fn new(scales: usize, bytes: usize) -> Self {
-        // `32`: twice the overhead of an allocation. `3 *`: the heap doubles its memory when it
-        // grows.
+        // `32`: the overhead of two allocations. `3 *`: the heap doubles its memory when it grows.
         let node_bytes = DifferenceBounds::bytes(scales)
             + scales * size_of::<f64>()
             + 32

@@ -189,8 +189,7 @@ impl<'a> Search<'a> {
         }
         let known = self.minima.len();
         let value = self.objective.value(&start);
-        // A minimum to be listed lies below the cutoff; a start in its vicinity lies slightly above
-        // at most.
+        // A minimum to be listed lies below the cutoff; a start near it may lie slightly above.
         if value < self.best || (value < NEAR * self.cutoff() && !self.has_minimum_in(&region)) {
             self.descend(&start);
         }

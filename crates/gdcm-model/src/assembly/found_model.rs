@@ -120,6 +120,7 @@ impl FoundModel {
         self
     }
 
+    /// Returns the measured response; `None` for a model given by matrices.
     pub fn response(&self) -> Option<&ResponseDraft> {
         self.draft.response.as_ref()
     }

@@ -1,4 +1,4 @@
-//! Why a flight condition cannot be identified.
+//! Reasons why a flight condition cannot be identified.
 
 use gdcm_model::progress::Cancelled;
 use gdcm_model::simulation::Signal;
@@ -13,7 +13,7 @@ pub const HIGHEST_ORDER: usize = 60;
 /// Maximum past window that may be requested.
 pub const LONGEST_PAST: usize = 60;
 
-/// Why a flight condition cannot be identified.
+/// Reason why a flight condition cannot be identified.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum IdentificationError {
     /// The records cannot be prepared.
@@ -82,14 +82,14 @@ pub enum IdentificationError {
     OnlyReferences,
     #[error("record {} is to be held out, but there are only {records}", record + 1)]
     HeldOutMissing {
-        /// Counted from 0.
+        /// Index of the record, counted from 0.
         record: usize,
         records: usize,
     },
     /// All records are held out or unusable.
     #[error("no record remains to fit a model to: hold out fewer")]
     NothingToFit,
-    /// Inputs that copy each other.
+    /// Some inputs depend linearly on each other.
     #[error("{} move together in every record: leave out all but one, or move them independently", names(.0))]
     InputsDepend(Vec<Signal>),
     /// The covariance of the noise of the outputs is singular.

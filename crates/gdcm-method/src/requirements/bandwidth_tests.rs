@@ -317,7 +317,7 @@ fn values_above_the_band_are_marked_or_with_leads_refused() {
     );
 }
 
-/// Evaluates the last known answer, measured at 60 frequencies up to `top` \[rad/s\].
+/// Evaluates the last reference case, measured at 60 frequencies up to `top` \[rad/s\].
 fn measured_bandwidth(top: f64) -> Bandwidth {
     let [.., short] = attitudes();
     let omega = log_spaced(0.5, top, 60);
@@ -377,7 +377,7 @@ fn a_zero_response_is_refused() {
 
 #[test]
 fn a_model_and_its_correction_are_evaluated_exactly() {
-    // 5 / (s + 3) is the rate of the third known answer without its servo; the 60 ms delay comes
+    // 5 / (s + 3) is the rate of the third reference case without its servo; the 60 ms delay comes
     // from the correction and the model.
     let lag = StateSpace::new(dmatrix![-3.0], dmatrix![5.0], dmatrix![1.0], dmatrix![0.0]).unwrap();
     let timing = Timing {
@@ -427,7 +427,7 @@ fn uniform_bands(omega: Vec<f64>, sd_db: f64, sd_deg: f64) -> ModelBands {
     ModelBands::new(omega, sd_db, sd_deg).unwrap()
 }
 
-/// Evaluates the last known answer with its phase turned by `turn_deg`, and an uncertainty band.
+/// Evaluates the last reference case with its phase shifted by `turn_deg`, and an uncertainty band.
 fn turned_bandwidth(turn_deg: f64, bands: &ModelBands) -> Bandwidth {
     let [.., short] = attitudes();
     let turn = Complex::from_polar(1.0, turn_deg.to_radians());

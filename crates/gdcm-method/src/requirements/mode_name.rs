@@ -155,7 +155,7 @@ impl ModeName {
             return None;
         }
         match (longitudinal > lateral, mode.oscillates()) {
-            // Also for two real poles, into which the oscillation can split.
+            // `_`: also for two real poles, into which the oscillation can split.
             (true, _) if shares.sum(&["u", "theta"]) > shares.sum(&["w", "q"]) => {
                 Some(Self::Phugoid)
             }

@@ -38,7 +38,7 @@ impl PhaseLine {
         })
     }
 
-    /// Whether the two points suffice: the departure is at most 10 deg.
+    /// Returns whether the two points suffice: the departure is at most 10 deg.
     pub fn is_straight(&self) -> bool {
         self.departure_deg <= STRAIGHT_DEG
     }

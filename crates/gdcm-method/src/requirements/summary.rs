@@ -347,7 +347,7 @@ mod tests {
             outputs: &outputs(),
         };
         let summary = Summary::of(&source);
-        // 20 W_g 2^2, by M4.
+        // 20 W_g 2^2 = 80, by M4.
         assert_eq!((summary.cost.on_axis, summary.muad.on_axis), (None, None));
         assert!((summary.cost.all.unwrap() - 80.0).abs() < 1e-12);
     }

@@ -7,7 +7,7 @@ use gdcm_model::dataset::StateSpace;
 use gdcm_model::simulation::FirstOrderHold;
 use gdcm_model::units::number;
 
-/// Time history of a test input.
+/// Shape of a test input over time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum TestInputShape {
@@ -59,7 +59,7 @@ impl Default for TestInput {
     }
 }
 
-/// A test as written in files.
+/// A test as written in a file, before its numbers are checked.
 #[derive(Deserialize)]
 struct TestInputText {
     shape: TestInputShape,
@@ -84,7 +84,7 @@ impl TestInput {
     /// Returns the test if its size and duration are valid.
     ///
     /// # Errors
-    /// [`TestInputError::Numbers`].
+    /// [`TestInputError::Numbers`] otherwise.
     pub fn checked(self) -> Result<Self, TestInputError> {
         let duration_s = self.duration_s;
         let is_duration = duration_s.is_finite() && duration_s > 0.0 && duration_s <= LONGEST_S;

@@ -67,8 +67,8 @@ pub struct ToleranceCheck {
     trend: Moments,
 }
 
-/// Sums over flown and simulated samples, each less its mean: flown squared, simulated squared,
-/// flown times simulated.
+/// Sums over the samples, after subtraction of the means: flown squared, simulated squared, flown
+/// times simulated.
 type Moments = Vector3<f64>;
 
 fn moments(flown: &[f64], simulated: &[f64]) -> Moments {

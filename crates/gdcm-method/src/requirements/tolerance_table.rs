@@ -63,14 +63,14 @@ pub enum ToleranceError {
         quoted(quantity)
     )]
     NoChannelName {
-        /// Counted from 1.
+        /// Index of the row, counted from 1.
         row: usize,
         quantity: String,
     },
     /// A tolerance is not finite, or not above zero.
     #[error("tolerance {row}, {}: expected {name} above zero, found {}", quoted(quantity), number(*found))]
     NotPositive {
-        /// Counted from 1.
+        /// Index of the row, counted from 1.
         row: usize,
         quantity: String,
         /// `absolute` or `relative`.
@@ -101,7 +101,7 @@ pub enum ToleranceError {
         channel: String,
         unit: String,
     },
-    /// The tolerance's unit does not fit the output.
+    /// The unit of the tolerance cannot be converted to the output's unit.
     #[error(
         "{} is not compared: the tolerance is in {}, and {} is in {}",
         quoted(quantity),
@@ -156,7 +156,7 @@ impl Tolerance {
         }
     }
 
-    /// Returns text such as "±10 % or ±3 deg/s".
+    /// Describes the tolerance, for example "±10 % or ±3 deg/s".
     pub fn words(&self) -> String {
         let absolute = format!("±{} {}", number(self.absolute), self.unit);
         match self.relative {
@@ -168,8 +168,8 @@ impl Tolerance {
     /// Converts the tolerance to its output's units.
     ///
     /// # Errors
-    /// [`ToleranceError`] if there is no such output, an integrated output is not a rate, or units
-    /// do not fit.
+    /// [`ToleranceError`] if there is no such output, an integrated output is not a rate, or the
+    /// units cannot be converted.
     pub fn of_outputs(&self, outputs: &[Channel]) -> Result<ChannelTolerance, ToleranceError> {
         let quantity = self.quantity.clone();
         let channel = self.channel.clone();

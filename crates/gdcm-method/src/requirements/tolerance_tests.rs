@@ -189,7 +189,7 @@ fn lag(gain: f64) -> StateSpace {
     StateSpace::new(dmatrix![-2.0], dmatrix![gain], dmatrix![1.0], dmatrix![0.0]).unwrap()
 }
 
-/// Checks the lag of this gain against a flown window.
+/// Simulates a lag with this gain, and checks it against a flown window.
 fn check_lag(gain: f64, flown: &Segment) -> RecordCheck {
     let validation = validate(
         &lag(gain),

@@ -1,4 +1,4 @@
-//! Coefficients or values as a table.
+//! A schedule's coefficients or lookup values as a table.
 
 use super::channel_schedule::Schedule;
 use super::lead_schedule::LeadSchedule;

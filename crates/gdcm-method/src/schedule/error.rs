@@ -5,7 +5,7 @@ use super::second_variable::SecondVariable;
 /// Reason why there is no schedule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ScheduleError {
-    /// No condition was chosen, or none could be solved.
+    /// No condition was chosen, or no chosen condition has a correction.
     #[error("no schedule: no condition that could be solved is chosen for it")]
     NoCondition,
     #[error("no schedule with {0}: a condition chosen for it has no {0}")]

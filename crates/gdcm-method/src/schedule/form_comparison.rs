@@ -17,7 +17,7 @@ pub const SCHEDULE_KINDS: [ScheduleKind; 5] = [
     ScheduleKind::Table,
 ];
 
-/// Distance between a condition's own gain and the scheduled gain.
+/// Difference between a condition's own gain and the scheduled gain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Residual {
     /// `ln k - ln k_scheduled`.
@@ -104,7 +104,7 @@ impl FormFit {
     }
 }
 
-/// Fits of all forms.
+/// Fits of all forms of the schedule.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FormComparison {
     /// Airspeed by condition \[kt\], in the order of the residuals.
@@ -114,7 +114,7 @@ pub struct FormComparison {
 }
 
 impl FormComparison {
-    /// Returns the fit of a form.
+    /// Returns the fit of a form; `None` if the form was not fitted.
     pub fn form(&self, kind: ScheduleKind) -> Option<&FormFit> {
         self.kinds.iter().find(|form| form.kind == kind)
     }
@@ -123,11 +123,11 @@ impl FormComparison {
 /// Computes residuals and leave-one-condition-out errors (M11) for every form of the schedule;
 /// `settings` gives the regressed quantity and the cluster tolerance.
 ///
-/// Each condition is left out in turn: the schedule of the others, evaluated at the omitted
-/// airspeed (beyond their range the end value), is compared with the condition's own gain.
+/// Each condition is left out in turn. The schedule of the others, evaluated at the omitted
+/// airspeed (beyond their range, its end value), is compared with the condition's own gain.
 ///
 /// # Errors
-/// [`ScheduleError`] if the schedule of all conditions does not exist.
+/// [`ScheduleError`] if no schedule can be fitted to all conditions.
 pub fn compare_forms(
     points: &[ScheduledPoint<'_>],
     settings: ScheduleSettings,
@@ -161,9 +161,10 @@ fn pair_table<T>(points: &[ScheduledPoint<'_>], value: impl FnMut(Pair) -> T) ->
 /// Scheduled corrections at the conditions.
 struct Predictions {
     degree: Option<usize>,
-    /// From the schedule of all conditions.
+    /// Corrections by the schedule of all conditions.
     scheduled: Vec<ChannelCorrection>,
-    /// From the schedule of the other conditions; `None` if that schedule does not exist.
+    /// Correction of each condition by the schedule of the other conditions; `None` if that
+    /// schedule does not exist.
     unseen: Vec<Option<ChannelCorrection>>,
 }
 
@@ -222,8 +223,8 @@ impl Predictions {
     }
 }
 
-/// Returns the root mean square distance \[s\] between the conditions' own net signed delays and
-/// the predicted ones.
+/// Returns the root mean square difference \[s\] between the conditions' own net signed delays and
+/// the predicted delays.
 fn delay_rms_s<'a>(
     points: &[ScheduledPoint<'_>],
     predictions: impl IntoIterator<Item = &'a ChannelCorrection>,
@@ -240,16 +241,17 @@ fn delay_rms_s<'a>(
     (sum / points.len() as f64).sqrt()
 }
 
-/// Distance between scheduled signed delays and the conditions' own: root mean squares \[s\].
+/// Root mean square differences \[s\] between the conditions' own signed delays and the scheduled
+/// ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeadFit {
-    /// Over all conditions.
+    /// With the schedule of all conditions.
     pub rms_s: f64,
-    /// Over predictions from the schedule of the other conditions; `None` for the only condition.
+    /// With predictions from the schedule of the other conditions; `None` for the only condition.
     pub left_out_rms_s: Option<f64>,
 }
 
-/// Fit of the signed delays by polynomials of a degree.
+/// Fit of the signed delays by polynomials of one degree.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeadDegreeFit {
     pub degree: usize,
@@ -323,11 +325,12 @@ mod tests {
         .unwrap();
         let [mean, line, parabola, cubic, table] =
             SCHEDULE_KINDS.map(|kind| &found.form(kind).unwrap().pairs[Pair::new(1, 0)]);
-        // Least squares over five points, condition number below 5.
+        // Least squares over five points with a condition number below 5.
         assert!(parabola.rms_ln().unwrap() < 1e-14 && cubic.rms_ln().unwrap() < 1e-14);
         assert!(line.rms_ln().unwrap() > 0.01);
         assert!(mean.rms_ln().unwrap() > line.rms_ln().unwrap());
-        // Inside the range; beyond the others' range the end value applies with any degree.
+        // Condition 2 is inside the range of the others. Beyond that range the end value applies,
+        // with any degree.
         assert!(parabola.left_out[2].unwrap().ln.abs() < 1e-14);
         let step = gains[4] / gains[3];
         let last = parabola.left_out[4].unwrap();

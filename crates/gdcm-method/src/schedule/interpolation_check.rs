@@ -22,8 +22,8 @@ impl Schedule {
         Ok(schedule)
     }
 
-    /// Whether interpolation between the conditions is unreliable: a gain overshoots there, or is
-    /// not positive.
+    /// Returns whether interpolation between the conditions is unreliable: a gain overshoots there,
+    /// or is not positive.
     pub fn interpolation_fails(&self) -> bool {
         self.cautions.iter().any(|caution| {
             matches!(
@@ -50,7 +50,7 @@ impl Schedule {
         cautions
     }
 
-    /// Whether all gains are positive over the airspeed range.
+    /// Returns whether all gains are positive over the airspeed range.
     fn is_positive(&self) -> bool {
         (0..=STEPS).all(|step| {
             let correction = self.at(self.step_kt(step));

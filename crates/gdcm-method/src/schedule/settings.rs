@@ -55,7 +55,7 @@ pub enum DelayScheduling {
 }
 
 impl From<bool> for DelayScheduling {
-    /// Converts the flag from older program versions.
+    /// Converts the flag that older program versions wrote.
     fn from(flag: bool) -> Self {
         if flag { Self::Always } else { Self::Never }
     }
@@ -67,7 +67,7 @@ impl<'de> Deserialize<'de> for DelayScheduling {
     }
 }
 
-/// Reads a word, or the flag from older program versions.
+/// Reads a word, or the flag that older program versions wrote.
 struct DelaySchedulingVisitor;
 
 impl Visitor<'_> for DelaySchedulingVisitor {
@@ -97,9 +97,9 @@ impl Visitor<'_> for DelaySchedulingVisitor {
 pub struct ScheduleSettings {
     pub kind: ScheduleKind,
     pub quantity: ScheduledQuantity,
-    /// Whether this schedule has delays too, as decided by [`DelayScheduling`] for its conditions.
-    /// Older program versions read this field from study settings; it is `true` there if delays are
-    /// always scheduled.
+    /// Whether this schedule includes delays, as determined by [`DelayScheduling`] for its
+    /// conditions. Older program versions read this field from study settings; there it is `true`
+    /// only if delays are always scheduled.
     pub delays: bool,
     /// Polynomial degree of signed delays, 0 to [`HIGHEST_DEGREE`]; 0 by default, because servo,
     /// sensor and computing lags do not depend on airspeed (M15.5).

@@ -21,8 +21,8 @@ pub struct Bar {
     pub value: f64,
     /// Variance from the unknown trim, `s_phys^2`; `None` if no other physics model is kept.
     pub trim: Option<VarianceComponent>,
-    /// Variance from the identification, `s_id^2`; `None` without a second identified model in any
-    /// condition and without a reported error.
+    /// Variance from the identification, `s_id^2`; `None` if no condition has a second identified
+    /// model and no standard error is available from coherence or a model's band.
     pub identification: Option<VarianceComponent>,
     pub source: IdentificationSource,
     /// Number of substitutions for which the value does not exist.
@@ -94,7 +94,8 @@ impl Bar {
         }
     }
 
-    /// Describes missing parts, a missing spread, and a source other than the models' spread.
+    /// Returns remarks on missing parts, a missing spread, and a source other than the models'
+    /// spread.
     pub fn remarks(&self) -> Vec<&'static str> {
         let mut remarks = Vec::new();
         if self.trim.is_none() {

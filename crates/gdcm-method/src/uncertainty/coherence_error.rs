@@ -30,8 +30,8 @@ impl Measurement {
         2.0 * self.averages
     }
 
-    /// Computes the standard deviation of `ln |H|`, equal to that of `arg H` \[rad\], `epsilon = C
-    /// sqrt(1 - gamma^2) / (|gamma| sqrt(2 n_d))`.
+    /// Computes the standard deviation of `ln |H|`, which is also the standard deviation of `arg H`
+    /// \[rad\]: `epsilon = C sqrt(1 - gamma^2) / (|gamma| sqrt(2 n_d))`.
     ///
     /// J. S. Bendat and A. G. Piersol, *Random Data*, 4th ed. 2010, chapter 9.
     pub fn deviation(&self, coherence: f64) -> f64 {

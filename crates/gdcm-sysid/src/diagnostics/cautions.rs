@@ -71,7 +71,7 @@ pub enum IdentificationCaution {
         signal: Signal,
         /// Share of the variance of the output above the cut-off \[%\].
         percent: f64,
-        /// \[rad/s\].
+        /// Cut-off frequency \[rad/s\].
         cut_off: f64,
     },
     /// The overall residual is larger than the noise.
@@ -107,7 +107,7 @@ pub enum IdentificationCaution {
         /// The larger `F` of the records; 1 is agreement.
         contrast: f64,
     },
-    /// Gusts and noise went into the inputs through the feedback.
+    /// The feedback carried gusts and noise into the inputs.
     #[error("{}", feedback_text(*level, *share))]
     Feedback {
         level: FeedbackLevel,
@@ -126,7 +126,7 @@ pub enum IdentificationCaution {
     LeavesPoints {
         output: Signal,
         input: Signal,
-        /// \[rad/s\].
+        /// Lower and upper frequency \[rad/s\].
         band: [f64; 2],
         /// Mean squared distance over the variance of the points; 12 is the limit.
         strength: f64,
@@ -156,32 +156,32 @@ pub enum IdentificationCaution {
         /// Cost per degree of freedom with the model free to move within its uncertainty.
         normalised: f64,
     },
-    /// Records were weighed by their noise; the value is the ratio of the largest to the smallest
-    /// cost per degree of freedom before.
+    /// The records were reweighted by their noise; the value is the ratio of the largest to the
+    /// smallest cost per degree of freedom before reweighting.
     #[error("the records differ in noise by a factor of {0:.1}: they were weighed accordingly")]
     Reweighed(f64),
     /// The held-out records cannot be compared with the model in time.
     #[error("the model was not compared with the held-out records in time: {0}")]
     NotValidated(ValidationError),
-    /// An unstable pole above the lines used.
+    /// The model has an unstable pole above the highest spectral line used.
     #[error(
         "the model has an unstable pole of {:.0} rad/s, above the lines used (to {highest:.0} rad/s): it is an artefact, and the model \
          was not simulated in time",
         pole.norm()
     )]
     Unstable {
-        /// \[rad/s\].
+        /// The unstable pole \[rad/s\].
         pole: Complex<f64>,
-        /// Highest line used \[rad/s\].
+        /// Highest spectral line used \[rad/s\].
         highest: f64,
     },
-    /// Outputs and inputs whose responses are not identified.
+    /// Output and input of each response that is not identified.
     #[error("{} not identified: one standard deviation is over 3 dB", responses_are(.0))]
     PairsNotIdentified(Vec<[Signal; 2]>),
 }
 
 impl IdentificationCaution {
-    /// Whether the effects of some inputs cannot be separated.
+    /// Returns whether the effects of some inputs cannot be separated.
     pub(crate) fn is_of_collinear_inputs(&self) -> bool {
         matches!(
             self,
@@ -189,7 +189,7 @@ impl IdentificationCaution {
         )
     }
 
-    /// Whether another caution is a mere consequence of this one.
+    /// Returns whether another caution is a mere consequence of this one.
     ///
     /// The residual of a contradicting record is not due to its noise; and if the sign of a channel
     /// is reversed, no input seems to be swept in the mean over the records.
@@ -268,7 +268,7 @@ impl IdentificationCaution {
     }
 }
 
-/// Whether the fault of a record is a reversed sign.
+/// Returns whether the fault of a record is a reversed sign.
 fn has_turned_sign(record: &ContradictingRecord) -> bool {
     matches!(record.fault, Some(RecordFault::Gain(_, factor)) if factor < 0.0)
 }

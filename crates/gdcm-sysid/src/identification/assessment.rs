@@ -25,8 +25,8 @@ use crate::options::Options;
 
 /// Number of frequencies in the bands.
 const BAND_POINTS: usize = 60;
-/// Upper end of the suggested narrower band over the present end, used if the highest order is too
-/// low.
+/// Ratio of the upper end of the suggested band to the present upper end; the band is suggested if
+/// the highest order is too low.
 const NARROWER: f64 = 0.7;
 /// Standard deviation above which a response is not identified \[dB\].
 const NOT_IDENTIFIED_DB: f64 = 3.0;
@@ -50,7 +50,7 @@ impl Uncertainty {
     }
 }
 
-/// Assesses the recommended model.
+/// The recommended model, with the data for its assessment.
 pub(super) struct Assessment<'a> {
     pub(super) records: &'a [FlightRecord],
     pub(super) options: &'a Options,
@@ -61,7 +61,7 @@ pub(super) struct Assessment<'a> {
 /// The recommended model with its uncertainty, its fits and all doubts.
 pub(super) struct AssessedModel {
     pub(super) uncertainty: Uncertainty,
-    /// Models without each record.
+    /// Models fitted without one record each.
     pub(super) without: Vec<ModelWithoutRecord>,
     pub(super) fits: RecordFits,
     /// Contradiction between each fitted record and the others (M14.16).
@@ -105,8 +105,8 @@ impl Assessment<'_> {
         })
     }
 
-    /// Whether no reference was used. With a reference there is no feedback to measure, and all
-    /// records are measured through the same reference.
+    /// Returns whether no reference was used. With a reference there is no feedback to measure, and
+    /// all records are measured through the same reference.
     fn is_direct(&self) -> bool {
         self.options.references == 0
     }
@@ -233,7 +233,7 @@ impl Assessment<'_> {
         cautions
     }
 
-    /// Returns an unstable pole above the lines used.
+    /// Returns an unstable pole above the highest spectral line used, if there is one.
     fn unstable_pole(&self) -> Option<Complex<f64>> {
         fast_unstable_pole(&self.refinement.fit.model, self.options.highest())
     }
@@ -266,7 +266,8 @@ impl Assessment<'_> {
     }
 }
 
-/// Reports gusts and noise that the feedback brought into the inputs.
+/// Returns the caution about gusts and noise that the feedback carried into the inputs; `None`
+/// without a visible effect.
 fn feedback_caution(feedback: Option<&Feedback>) -> Option<IdentificationCaution> {
     let feedback = feedback?;
     let level = feedback.level();

@@ -77,12 +77,12 @@ pub(crate) struct BlockModel {
 }
 
 impl BlockModel {
-    /// Counts the states n.
+    /// Returns the number of states, n.
     pub(crate) fn order(&self) -> usize {
         self.b.nrows()
     }
 
-    /// Counts the parameters: n (1 + inputs + outputs) + outputs x inputs.
+    /// Returns the number of parameters: n (1 + inputs + outputs) + outputs x inputs.
     pub(crate) fn parameters(&self) -> usize {
         self.order() * (1 + self.b.ncols() + self.c.nrows()) + self.d.len()
     }
@@ -162,8 +162,8 @@ impl BlockModel {
         StateSpace::new(a, self.b.clone(), self.c.clone(), self.d.clone()).ok()
     }
 
-    /// Returns the model after a step in its parameters: those of the blocks, then `B`, `C`, `D`
-    /// row by row.
+    /// Returns the model after a step in its parameters: the parameters of the blocks, then `B`,
+    /// `C`, `D` row by row.
     pub(crate) fn stepped(&self, step: &DVector<f64>) -> Self {
         let mut stepped = self.clone();
         let mut steps = step.iter();

@@ -72,7 +72,7 @@ fn smoothed(points: &[EstimatePoint], k: usize) -> DMatrix<f64> {
     let mut sum = points[k].noise.scale(0.0);
     let mut weights = 0.0;
     for (weight, neighbour) in SMOOTHING.iter().zip(k..) {
-        // Neighbours before the first point do not exist.
+        // Skip neighbours before the first point, which do not exist.
         let Some(neighbour) = neighbour.checked_sub(reach) else {
             continue;
         };

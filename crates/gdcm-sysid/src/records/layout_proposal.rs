@@ -211,7 +211,7 @@ impl Proposer<'_> {
         uses
     }
 
-    /// Uses the only candidate; no candidate or several are a problem.
+    /// Returns the only candidate; adds a problem if there is no candidate, or more than one.
     fn only_candidate(
         &mut self,
         side: ChannelSide,
@@ -380,7 +380,7 @@ impl Proposer<'_> {
     }
 }
 
-/// Whether a name has a sign mark: "-az", "az (down)".
+/// Returns whether a name has a sign mark: "-az", "az (down)".
 fn has_sign_mark(name: &str) -> bool {
     without_sign_mark(name) != name.trim()
 }

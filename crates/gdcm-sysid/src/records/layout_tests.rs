@@ -179,7 +179,7 @@ fn a_unit_that_fits_only_one_way_is_taken_and_an_ambiguous_unit_is_a_problem() {
         // No helicopter turns at 40 rad/s: the samples are in degrees per second.
         ("", 40.0, "rad/s", degree),
         ("deg/s", 6.9, "deg/s", 1.0),
-        // Zero has no unit.
+        // Samples of zero do not determine a unit.
         ("", 0.0, "deg/s", 1.0),
         // An unknown unit is not converted.
         ("", 6.9, "furlong", 1.0),

@@ -209,7 +209,7 @@ impl RecordChannels {
     }
 }
 
-/// Returns the unit of a channel's samples: the user's, else the one in the file; `None` if
+/// Returns the unit of a channel's samples: given by the user, or else by the file; `None` if
 /// unknown, as after a user-defined factor other than ±1.
 fn unit_of_samples(
     conversion: Option<&SaidConversion>,

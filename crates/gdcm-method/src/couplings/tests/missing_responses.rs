@@ -127,7 +127,7 @@ fn an_input_column_is_skipped_where_flight_lacks_a_fed_back_output() {
         (found.coefficients, found.not_fed_back),
         (expected.coefficients, vec![])
     );
-    // A mixing alone needs no other response in the column.
+    // A mixing alone does not need the other responses of the column.
     lacking.kind = CouplingKind::Mixing;
     unusable.kind = CouplingKind::Mixing;
     unusable.conditions[0].usable = PairTable::from_fn(3, 2, |pair| pair != Pair::new(2, 1));

@@ -48,7 +48,7 @@ pub enum IdentificationError {
          unknowns in a first-order model: log longer or more records, widen the band, or leave out channels"
     )]
     TooFewFigures {
-        /// Real values in the lines.
+        /// Number of real values in the lines.
         figures: usize,
         needed: usize,
         /// Number of unknowns of a first-order model.

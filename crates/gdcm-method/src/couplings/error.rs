@@ -50,7 +50,7 @@ pub enum CouplingError {
         /// Index of the input, counted from 1.
         input: usize,
         airspeed_kt: f64,
-        /// `M_ii` at that airspeed.
+        /// `M_ii` at `airspeed_kt`.
         factor: f64,
     },
     #[error(transparent)]

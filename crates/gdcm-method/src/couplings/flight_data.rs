@@ -14,7 +14,8 @@ use crate::correction::Channels;
 use crate::correction::leads::LeadDesign;
 use crate::uncertainty::spread::Measurement;
 
-/// Returns the mean signed delay by channel \[s\] over the conditions; `None` without conditions.
+/// Returns the mean signed delay of each channel \[s\] over the conditions; `None` without
+/// conditions.
 pub fn mean_delays_s(conditions: &[Channels<f64>]) -> Option<Channels<f64>> {
     let count = conditions.len() as f64;
     let first = conditions.first()?;

@@ -186,8 +186,8 @@ impl CouplingCondition {
             .all(|input| self.physics.curve(Pair::new(output, input))[k].is_finite())
     }
 
-    /// Returns the numbers of outputs, inputs and frequencies by table; tables without frequencies
-    /// count as having `points`.
+    /// Returns the numbers of outputs, inputs and frequencies of each table; tables without
+    /// frequencies count as having `points`.
     fn table_shapes(&self, points: usize) -> Vec<[usize; 3]> {
         let mut shapes = vec![
             table_shape(self.physics.curves(), points),

@@ -103,8 +103,8 @@ impl<'a> WeightedCondition<'a> {
         &self.flight[(k * self.inputs + input) * self.outputs..][..self.outputs]
     }
 
-    /// Computes `q^2` by output in an input column at frequency `k`, given `H_c = coupled` from the
-    /// last pass; returns false if every weight is zero.
+    /// Computes `q^2` for each output of an input column at frequency `k`, given `H_c = coupled`
+    /// from the last pass; returns false if every weight is zero.
     pub(super) fn squared_weights(
         &self,
         k: usize,

@@ -306,7 +306,7 @@ struct Crossing {
 }
 
 impl Crossing {
-    /// Orders crossings along the edge; equal ones by constraint.
+    /// Orders crossings along the edge; ties by constraint index.
     fn compare(&self, other: &Self) -> Ordering {
         self.step
             .total_cmp(&other.step)
@@ -314,8 +314,8 @@ impl Crossing {
     }
 }
 
-/// Returns the constraint at the first crossing where the doubled accumulated changes reach `rise`:
-/// a weighted median, found by bisection rather than by sorting.
+/// Returns the constraint at the first crossing where twice the accumulated changes reach `rise`: a
+/// weighted median, found by bisection rather than by sorting.
 fn crossing_at(mut crossings: Vec<Crossing>, rise: f64) -> Option<usize> {
     let mut left = crossings.as_mut_slice();
     let mut risen = 0.0;
@@ -447,7 +447,8 @@ impl Vertex {
         edges
     }
 
-    /// Returns every constraint's deviation, exactly zero for those that define the vertex.
+    /// Returns every constraint's deviation, exactly zero for the constraints that define the
+    /// vertex.
     fn deviations(&self, fit: &Fit<'_>) -> Vec<f64> {
         let mut deviations: Vec<f64> = (0..fit.count())
             .map(|constraint| fit.deviation(constraint, &self.weights))

@@ -42,8 +42,8 @@ pub struct ModeTrack {
 /// Returns the track of each mode of `models[reference]`, in its order; a conjugate pair has one
 /// track, unless a model matches it with two poles that are not a pair.
 ///
-/// The poles of each model are matched to those of the reference with the minimum sum of s-plane
-/// distances (an assignment problem). No tracks if the reference has no modes.
+/// The poles of each model are matched to the poles of the reference with the minimum sum of
+/// s-plane distances (an assignment problem). No tracks if the reference has no modes.
 pub fn mode_tracks(models: &[&[Mode]], reference: usize) -> Vec<ModeTrack> {
     let Some(reference_modes) = models.get(reference).copied() else {
         return Vec::new();

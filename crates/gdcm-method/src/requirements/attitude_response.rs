@@ -38,11 +38,7 @@ pub enum AttitudeResponseError {
         quoted(output),
         quoted(unit)
     )]
-    NotAnAttitude {
-        /// Output name.
-        output: String,
-        unit: String,
-    },
+    NotAnAttitude { output: String, unit: String },
     /// No two neighbouring frequencies have a finite nonzero response.
     #[error("there is no response between {} and {} rad/s", number(*from), number(*to))]
     NoResponse {
@@ -257,8 +253,8 @@ fn first_run(polar: &[Option<Polar>]) -> Range<usize> {
     start..start + length
 }
 
-/// A model with its response on the search frequencies and, at equal ratios, up to twice the
-/// highest search frequency: a phase delay needs `2 omega_180`.
+/// A model with its response on the search frequencies, which are continued in equal ratios up to
+/// twice the highest search frequency: a phase delay needs `2 omega_180`.
 pub struct SampledModel {
     prepared: PreparedModel,
     omega: Vec<f64>,

@@ -52,7 +52,6 @@ pub struct BandwidthSettings {
     pub command: CommandType,
     /// The identified or measured band \[rad/s\].
     pub band: Band,
-    /// Treatment of values above the band.
     pub above_band: AboveBand,
 }
 
@@ -62,9 +61,9 @@ pub struct BandwidthSettings {
 pub enum BandwidthRule {
     /// The 45 deg phase margin.
     Phase,
-    /// The 6 dB gain margin, which occurs at the lower frequency.
+    /// The 6 dB gain margin, if it occurs at a lower frequency than the phase margin.
     Gain,
-    /// The phase margin, with an unknown gain margin: an upper bound of the bandwidth.
+    /// The phase margin, because no gain margin was found: an upper bound of the bandwidth.
     PhaseGainUnknown,
 }
 
@@ -81,7 +80,6 @@ pub struct Bandwidth {
     pub omega_bw: Result<Metric, NoMetric>,
     /// The margin that sets the bandwidth; `None` without a bandwidth.
     pub rule: Option<BandwidthRule>,
-    /// Phase delay \[s\].
     pub phase_delay_s: Result<Metric, NoMetric>,
     /// Phase data from which the phase delay is computed; `None` without a phase delay.
     pub phase_line: Option<PhaseLine>,

@@ -35,7 +35,6 @@ pub enum NoMetric {
     /// The phase never falls through the level.
     #[error("no crossing of {} deg up to {} rad/s", number(*level_deg), number(*up_to))]
     NoCrossing {
-        /// Phase level \[deg\].
         level_deg: f64,
         /// Highest frequency searched \[rad/s\].
         up_to: f64,
@@ -44,7 +43,6 @@ pub enum NoMetric {
     /// below the band.
     #[error("no crossing of {} deg: the phase is below it from {from:.3} rad/s on", number(*level_deg))]
     BelowFromStart {
-        /// Phase level \[deg\].
         level_deg: f64,
         /// Lowest band frequency \[rad/s\].
         from: f64,

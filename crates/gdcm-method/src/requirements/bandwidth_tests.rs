@@ -224,7 +224,8 @@ fn slow_modes_below_the_band_move_neither_branch_nor_crossings() {
     );
     assert!((value(turned.omega_180) / value(plain.omega_180) - 1.0).abs() < 0.1);
     assert!((value(turned.omega_bw) / value(plain.omega_bw) - 1.0).abs() < 0.2);
-    // A phase that dips through -135 deg only below the band has its crossing within the band.
+    // A phase that falls through -135 deg below the band but rises above it again has its crossing
+    // within the band.
     let dipping = rate_bandwidth(
         |s| short(s) * (s * s + 0.001 * s + 0.04) / (s * s + 0.001 * s + 0.0225),
         &rate,
@@ -277,7 +278,7 @@ fn a_flat_magnitude_has_no_gain_margin_and_no_bandwidth() {
         ));
     }
     let commanded = rate_bandwidth(delay, &settings(CommandType::Attitude));
-    // -135 deg with a 0.2 s delay.
+    // Frequency at which a delay of 0.2 s has a phase of -135 deg.
     assert!((value(commanded.omega_bw) - 0.75 * PI / 0.2).abs() < 1e-9);
 }
 
@@ -413,8 +414,8 @@ fn a_model_and_its_correction_are_evaluated_exactly() {
         (interpolated.omega_gain, exact.omega_gain),
         (interpolated.phase_delay_s, exact.phase_delay_s),
     ] {
-        // Cubic through four points 1.5 % apart: the error is the fourth power of the spacing times
-        // the phase of the delay.
+        // Cubic interpolation through four points 1.5 % apart: the error is of the order of the
+        // fourth power of the spacing, times the phase of the delay.
         let difference = (value(interpolated) / value(exact) - 1.0).abs();
         assert!(difference > 0.0 && difference < 1e-7, "{difference}");
     }
@@ -472,7 +473,7 @@ fn magnitude_deviations_move_the_gain_crossing_only() {
     let bands = uniform_bands(log_spaced(0.1, 48.0, 400), 0.05, 0.0);
     let found = turned_bandwidth(0.0, &bands);
     assert_eq!(found.omega_180.unwrap().deviation, Some(0.0));
-    // At 2.4 rad/s |Theta| falls by about 20 dB a decade and more: 0.05 sqrt(2) dB move the
+    // At 2.4 rad/s |Theta| falls by at least about 20 dB per decade: 0.05 sqrt(2) dB move the
     // frequency by less than 1 %.
     let deviation = found.omega_gain.unwrap().deviation.unwrap();
     assert!(

@@ -26,7 +26,7 @@ pub struct LevelBoundary {
 #[serde(try_from = "Vec<LevelBoundary>")]
 pub struct LevelBoundaries(Vec<LevelBoundary>);
 
-/// Reasons why boundaries cannot be drawn.
+/// Reasons why a level boundary is invalid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LevelBoundaryError {
     #[error("boundary {entry}: expected a name, found none")]

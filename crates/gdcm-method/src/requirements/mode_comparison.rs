@@ -74,7 +74,6 @@ pub struct ModeRow {
     /// Name of the mode; `None` if neither states nor frequency determine a name.
     pub name: Option<ModeName>,
     pub named_by: NamedBy,
-    /// The identified mode.
     pub flown: ComparedMode,
     /// Standard deviations of `flown`; `None` if the identification result is unavailable.
     pub deviation: Option<ModeValues>,
@@ -85,7 +84,6 @@ pub struct ModeRow {
     pub tolerance: Option<ModeTolerance>,
     /// The counterpart in each model; `None` for an unpaired mode.
     pub models: Vec<Option<ComparedMode>>,
-    /// The verdict on each model.
     pub verdicts: Vec<ModeVerdict>,
 }
 
@@ -145,7 +143,7 @@ pub fn compare_modes(
     rows
 }
 
-/// A model with its partners of the flown modes.
+/// A model, and the partner of each flown mode among its modes.
 struct PairedModel<'a> {
     model: ModelModes<'a>,
     /// Partner of the flown mode in each row; `None` if unpaired.

@@ -109,7 +109,6 @@ fn state_kind(name: &str) -> Option<&'static str> {
 struct KindShares<'a> {
     /// Index and participation of each participating state.
     shares: &'a [(usize, f64)],
-    /// State names.
     states: &'a [String],
 }
 

@@ -23,7 +23,7 @@ use crate::fidelity::mode_tracks::least_total;
 
 /// Maximum s-plane distance within a pair, relative to the larger modulus.
 pub const LARGEST_PAIR_DISTANCE: f64 = 0.5;
-/// Minimum likeness within a pair.
+/// Minimum likeness `c` of the shapes within a pair.
 pub const LEAST_PAIR_LIKENESS: f64 = 0.5;
 /// Cost of a flown mode without a partner: equal to the cost of the worst admissible pair.
 const UNPAIRED_COST: f64 = LARGEST_PAIR_DISTANCE + 1.0 - LEAST_PAIR_LIKENESS;
@@ -94,7 +94,7 @@ fn pair_cost(flown: &Mode, model: &Mode, scales: &[f64], least_rad_s: f64) -> Op
     }
 }
 
-/// Returns `s_i` by output; zero if no flown mode has a residue in the output.
+/// Returns `s_i` for each output; zero if no flown mode has a residue in the output.
 fn output_scales(flown: &[Mode], least_rad_s: f64) -> Vec<f64> {
     let mut squares: Vec<f64> = Vec::new();
     for mode in flown {

@@ -83,7 +83,6 @@ pub enum ToleranceError {
         quoted(channel)
     )]
     NoChannel {
-        /// Quantity in the table.
         quantity: String,
         /// The output that the dataset lacks.
         channel: String,
@@ -96,7 +95,6 @@ pub enum ToleranceError {
         quoted(unit)
     )]
     NotARate {
-        /// Quantity in the table.
         quantity: String,
         channel: String,
         unit: String,
@@ -110,7 +108,6 @@ pub enum ToleranceError {
         quoted(compared_unit)
     )]
     Unit {
-        /// Quantity in the table.
         quantity: String,
         channel: String,
         unit: String,
@@ -122,7 +119,6 @@ pub enum ToleranceError {
 /// A tolerance in its output's units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelTolerance {
-    /// Output index.
     pub output: usize,
     /// Whether the integral of the output is compared.
     pub integrated: bool,

@@ -5,13 +5,10 @@
 pub struct Airspeeds {
     /// Airspeed by condition \[kt\].
     pub values_kt: Vec<f64>,
-    /// Mean \[kt\].
     pub mean_kt: f64,
     /// Half the range \[kt\]; zero if all conditions have the same airspeed.
     pub half_range_kt: f64,
-    /// Minimum airspeed \[kt\].
     pub min_kt: f64,
-    /// Maximum airspeed \[kt\].
     pub max_kt: f64,
     /// Conditions, by index, grouped by airspeed in rising order: the airspeeds in a cluster lie
     /// within the tolerance from neighbour to neighbour (M11b).

@@ -58,9 +58,9 @@ pub struct ScheduledCost {
 }
 
 impl ScheduledCost {
-    /// Ratio between scheduled and own J above which a caution is raised.
+    /// Ratio of `scheduled` to `own` above which a caution is raised.
     const NOTABLE_RATIO: f64 = 2.0;
-    /// Scheduled J below which no caution is raised: 1 corresponds to an error of 0.2 dB.
+    /// `scheduled` below which no caution is raised: 1 corresponds to an error of 0.2 dB.
     const LEAST_NOTABLE: f64 = 1.0;
 
     /// Returns whether the scheduled J is above 1 and more than twice the condition's own J.

@@ -27,7 +27,6 @@ pub(super) const STEPS: u32 = 100;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Schedule {
     pub settings: ScheduleSettings,
-    /// The conditions' airspeeds.
     pub airspeeds: Airspeeds,
     /// Each channel's gain, or its logarithm.
     pub gains: Channels<Regression>,
@@ -54,7 +53,7 @@ impl Schedule {
     ///
     /// # Errors
     /// [`ScheduleError`] without conditions, if a condition lacks the second variable, or if its
-    /// effect cannot be separated from that of airspeed.
+    /// effect cannot be separated from the effect of airspeed.
     pub(super) fn fit(
         points: &[ScheduledPoint<'_>],
         settings: ScheduleSettings,

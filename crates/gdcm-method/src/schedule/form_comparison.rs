@@ -44,7 +44,7 @@ impl Residual {
 /// A gain's residuals under a form of the schedule, by condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FitResiduals {
-    /// `None` if the scheduled gain is not positive.
+    /// Residual of each condition; `None` if the scheduled gain is not positive.
     pub residuals: Vec<Option<Residual>>,
     /// Residual of each condition against the schedule fitted without that condition; `None` for
     /// the only condition.
@@ -255,7 +255,7 @@ pub struct LeadFit {
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeadDegreeFit {
     pub degree: usize,
-    /// Fit by response, for its net signed delay.
+    /// Fit of each response's net signed delay.
     pub pairs: PairTable<LeadFit>,
 }
 
@@ -297,7 +297,7 @@ mod tests {
     use crate::correction::leads::{ChannelLeads, LeadDesign, LeadSettings};
     use crate::schedule::test_points::{correction, points};
 
-    /// Corrections with an input gain, and two output gains: its reciprocal times 2, and 1.
+    /// Corrections with these input gains and two output gains: 2 divided by the input gain, and 1.
     fn corrections(gains: &[f64]) -> Vec<ChannelCorrection> {
         gains
             .iter()
@@ -408,7 +408,7 @@ mod tests {
         let points = points(&[60.0, 90.0, 120.0], &corrections, 0.02);
         let found = compare_lead_degrees(&points, ScheduleSettings::default());
         assert_eq!(found.len(), 1 + HIGHEST_DEGREE);
-        // Distance from the others' mean: 3/2 times the distance from the mean of all.
+        // The distance from the mean of the others is 3/2 times the distance from the mean of all.
         let mean = &found[0].pairs[Pair::new(0, 0)];
         assert!((mean.left_out_rms_s.unwrap() / mean.rms_s - 1.5).abs() < 1e-12);
         // The output's signed delay is constant, so the sum has the input's residuals:

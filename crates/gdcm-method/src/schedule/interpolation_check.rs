@@ -12,7 +12,7 @@ impl Schedule {
     ///
     /// # Errors
     /// [`ScheduleError`] without conditions, if a condition lacks the second variable, or if its
-    /// effect cannot be separated from that of airspeed.
+    /// effect cannot be separated from the effect of airspeed.
     pub fn of(
         points: &[ScheduledPoint<'_>],
         settings: ScheduleSettings,

@@ -82,7 +82,7 @@ impl SecondTerm {
     }
 }
 
-/// Scales the range to -1 to 1.
+/// Maps `value` linearly, so that the range becomes -1 to 1.
 fn scaled(value: f64, [least, greatest]: [f64; 2]) -> f64 {
     (2.0 * value - least - greatest) / (greatest - least)
 }

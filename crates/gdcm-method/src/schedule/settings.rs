@@ -40,7 +40,7 @@ pub enum ScheduledQuantity {
 /// Net delay \[s\] in a constrained response above which delays are scheduled automatically (M11).
 pub const NOTABLE_DELAY_S: f64 = 5e-4;
 
-/// Whether the schedule has delays besides gains (M11).
+/// Choice whether the schedule includes delays besides gains (M11).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DelayScheduling {
@@ -48,9 +48,7 @@ pub enum DelayScheduling {
     /// a scheduled condition.
     #[default]
     Automatic,
-    /// Delays are always scheduled.
     Always,
-    /// Delays are never scheduled.
     Never,
 }
 
@@ -91,7 +89,7 @@ impl Visitor<'_> for DelaySchedulingVisitor {
     }
 }
 
-/// Settings of a schedule.
+/// Form, degree and variables of a gain schedule (M11, M13.7).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "ScheduleEntry", into = "ScheduleEntry")]
 pub struct ScheduleSettings {
@@ -158,7 +156,7 @@ impl TryFrom<ScheduleEntry> for ScheduleSettings {
 }
 
 impl ScheduleEntry {
-    /// Joins form and degree.
+    /// Combines form and degree into a schedule kind.
     fn schedule_kind(&self) -> Result<ScheduleKind, String> {
         match (&self.kind, self.degree) {
             (FormEntry::Table, _) => Ok(ScheduleKind::Table),

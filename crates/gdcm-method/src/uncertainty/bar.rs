@@ -8,7 +8,7 @@ use super::variance_component::{VarianceComponent, satterthwaite};
 pub enum IdentificationSource {
     /// Spread among the identified models, pooled with the other conditions (M13.2).
     Spread,
-    /// Coherence of the measured response, where its error exceeds the spread.
+    /// Coherence of the measured response, where the resulting standard error exceeds the spread.
     Coherence,
     /// Confidence band of the identified model, where it exceeds the spread.
     ModelBand,
@@ -19,7 +19,7 @@ pub enum IdentificationSource {
 pub struct Bar {
     /// Value with both representatives, `q_0`.
     pub value: f64,
-    /// Variance from the unknown trim, `s_phys^2`; `None` if no other physics model is kept.
+    /// Variance due to the unknown trim, `s_phys^2`; `None` if no other physics model is kept.
     pub trim: Option<VarianceComponent>,
     /// Variance from the identification, `s_id^2`; `None` if no condition has a second identified
     /// model and no standard error is available from coherence or a model's band.

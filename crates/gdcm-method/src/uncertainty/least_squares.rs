@@ -16,8 +16,8 @@ use super::variance_component::{VarianceComponent, satterthwaite};
 /// before it.
 const DEPENDENT: f64 = 1e-9;
 
-/// Maximum number of columns in a design; a lookup table over more airspeeds has neither a split
-/// nor bands.
+/// Maximum number of columns in a design; a lookup table over more airspeeds has neither a variance
+/// split nor bands.
 pub const MOST_COLUMNS: usize = 200;
 
 /// Design matrix `X` with full column rank, n conditions by r columns, stored as `Q R`.

@@ -11,7 +11,7 @@ use super::variance_component::{VarianceComponent, pooled};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReportedUncertainty {
     pub part: VarianceComponent,
-    /// Coherence, or confidence band.
+    /// Source of the standard error: coherence or confidence band.
     pub source: IdentificationSource,
 }
 

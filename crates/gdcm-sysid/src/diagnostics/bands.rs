@@ -136,7 +136,7 @@ struct ResponsePoint {
     output_resolvent: DMatrix<Complex<f64>>,
     /// `R B`, n x inputs.
     states: DMatrix<Complex<f64>>,
-    /// Mean squares of `Re ln(H_n'/H_n)` and `Im ln(H_n'/H_n)`.
+    /// Mean squares of `Re ln(H_n'/H_n)` (real part) and `Im ln(H_n'/H_n)` (imaginary part).
     order_variance: DMatrix<Complex<f64>>,
 }
 

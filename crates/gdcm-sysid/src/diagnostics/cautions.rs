@@ -137,7 +137,7 @@ pub enum IdentificationCaution {
         narrower[1]
     )]
     OrderLimit {
-        /// The highest order.
+        /// The highest order tried.
         order: usize,
         /// A suggested narrower band \[rad/s\].
         narrower: [f64; 2],
@@ -330,7 +330,7 @@ fn responses_are(pairs: &[[Signal; 2]]) -> String {
     format!("{} {verb}", listed(&names))
 }
 
-/// Writes which records contradict each other, and their possible faults.
+/// Describes which records contradict each other, and their possible faults.
 fn contradiction_text(records: &[ContradictingRecord], contrast: f64) -> String {
     let agreement = format!("(F {contrast:.0}; 1 is agreement)");
     match records {

@@ -30,7 +30,7 @@ use crate::spectra::local_polynomial::local_polynomial;
 use crate::spectra::response_estimate::ResponseEstimate;
 use crate::spectra::spectrum::{LineRange, Spectrum};
 
-/// Sample time of the predictor times the upper band end \[rad\].
+/// Product of the predictor's sample time and the upper band end \[rad\].
 const STEP: f64 = 0.25;
 /// Minimum number of past samples in the predictor.
 const LEAST_PAST: usize = 6;
@@ -344,8 +344,8 @@ impl Predictor {
         error
     }
 
-    /// Converts the lines of the errors to the effect of noise and gusts on the outputs (step 3);
-    /// `None` where the predictor is singular.
+    /// Converts the spectral lines of the prediction errors to the effect of noise and gusts on the
+    /// outputs (step 3); `None` where the predictor is singular.
     fn add_memory(&self, spectrum: &mut Spectrum, step_s: f64) -> Option<()> {
         let outputs = self.coefficients.ncols();
         let channels = self.inputs + outputs;

@@ -71,7 +71,8 @@ pub(super) struct AssessedModel {
 }
 
 impl Assessment<'_> {
-    /// Computes covariance, bands, models without each record, fits, doubts and the validation.
+    /// Computes covariance, bands, models fitted without one record each, fits, doubts and the
+    /// validation.
     pub(super) fn assess(&self, progress: &Shares) -> Result<AssessedModel, IdentificationError> {
         let Refinement {
             fit, likelihood, ..
@@ -175,7 +176,7 @@ impl Assessment<'_> {
 
     /// Compares the records with each other; `None` with a reference.
     ///
-    /// The fit before reweighing is used, because the weights hide which record is wrong.
+    /// The fit before reweighting is used, because the weights hide which record is wrong.
     fn contrasts(&self) -> Result<Option<RecordContrasts<'_>>, IdentificationError> {
         if !self.is_direct() {
             return Ok(None);

@@ -68,7 +68,7 @@ pub struct Identification {
     pub output_costs: Vec<f64>,
     /// Comparison of the recommended model with the held-out records in time.
     pub validation: Option<Validation>,
-    /// Used parts of every record.
+    /// Parts of every record that were used.
     pub record_uses: Vec<RecordUse>,
     /// Indices of output and input of each response with a standard deviation over 3 dB in the
     /// middle of the band.

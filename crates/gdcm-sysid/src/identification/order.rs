@@ -260,8 +260,8 @@ impl Comparison<'_> {
         Ok(())
     }
 
-    /// Removes a real pole from the model of the next order, or a pair from that of the order after
-    /// it, and returns the result with the lower cost.
+    /// Removes a real pole from the model one order higher, or a complex pair from the model two
+    /// orders higher, and returns the result with the lower cost.
     fn cheapest_from_above(&self, order: usize) -> Option<Fit> {
         let mut starts = Vec::new();
         for size in [1, 2] {

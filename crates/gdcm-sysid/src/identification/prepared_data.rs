@@ -49,7 +49,7 @@ const PERIODS_AN_INPUT: f64 = 3.0;
 
 /// Records, prepared, transformed and weighted.
 pub(crate) struct PreparedData<'a> {
-    /// Used parts of every record.
+    /// Parts of every record that are used.
     pub(crate) record_uses: Vec<RecordUse>,
     /// Factors from scaled units to record units.
     pub(crate) scales: Scales,
@@ -518,7 +518,8 @@ fn check_inputs(segments: &[Segment], options: &Options) -> Result<(), Identific
     Err(IdentificationError::InputsDepend(involved))
 }
 
-/// Keeps the cautions about model channels: a reference may move like an input.
+/// Keeps only the cautions about channels of the model: a reference may move together with an
+/// input.
 fn model_cautions(cautions: Vec<RecordCaution>, options: &Options) -> Vec<IdentificationCaution> {
     let mut kept = Vec::new();
     for caution in cautions {

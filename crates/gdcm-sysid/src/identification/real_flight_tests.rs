@@ -657,7 +657,7 @@ fn the_quadrotor_is_identified_from_its_binary_sequence() {
         &Unobserved,
     )
     .unwrap();
-    // Independent numpy code (M14.14): 35.9, 30.8 and 22.6 dB.
+    // Reference results from independent numpy code (M14.14): 35.9, 30.8 and 22.6 dB.
     for (found, expected) in magnitudes_db(&found).into_iter().zip([35.9, 30.8, 22.6]) {
         assert!((found - expected).abs() < 0.7, "{found} dB, not {expected}");
     }

@@ -13,7 +13,8 @@ use nalgebra::{Complex, DMatrix, DVector};
 use gdcm_model::dataset::StateSpace;
 use gdcm_model::response::schur_form::SchurForm;
 
-/// Maximum imaginary part over modulus of a real eigenvalue: the error of the Schur iteration.
+/// Maximum ratio of imaginary part to modulus of an eigenvalue that counts as real: the error of
+/// the Schur iteration.
 const REAL: f64 = 1e-9;
 
 /// The free parameters of a block.
@@ -298,7 +299,7 @@ impl Modes {
             let pole = schur.t[(at, at)];
             let vector = schur.eigenvector(at);
             let largest = vector[vector.icamax()];
-            // Rotated so that its largest entry is real.
+            // Rotate the vector so that its largest entry is real.
             let vector = vector * (largest.conj() / largest.norm());
             if pole.im.abs() <= REAL * pole.norm() {
                 modes.real.push(RealMode {

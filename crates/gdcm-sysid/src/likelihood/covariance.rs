@@ -25,7 +25,7 @@ const UNKNOWN: f64 = 1e3;
 /// Maximum standard deviation of a determined pole, relative to its modulus.
 const DETERMINED: f64 = 0.5;
 
-/// Parameter covariance.
+/// Covariance of the model parameters, and their information matrix.
 #[derive(Clone, Debug)]
 pub(crate) struct ParameterCovariance {
     /// `phi G^+`.

@@ -454,7 +454,7 @@ impl<'a> Gram<'a> {
         }
     }
 
-    /// Adds `J'e`.
+    /// Adds the gradient `J'e`.
     fn add_gradient(&mut self) {
         let order = self.model.order();
         let inputs = self.model.b.ncols();

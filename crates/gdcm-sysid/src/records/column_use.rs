@@ -11,7 +11,6 @@ use super::record_table::{RecordColumn, RecordTable};
 /// A record's column, used as a channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColumnUse {
-    /// Column index.
     pub column: usize,
     /// Channel units per column unit; negative for the opposite sign.
     pub factor: f64,

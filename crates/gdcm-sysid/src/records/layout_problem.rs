@@ -189,7 +189,7 @@ pub enum LayoutCaution {
     /// The record repeats another record under a different name.
     #[error("same samples as {first}: left out, because evidence counts once")]
     Copy {
-        /// The earlier record's name.
+        /// Name of the earlier record.
         first: String,
     },
     /// Samples are missing.

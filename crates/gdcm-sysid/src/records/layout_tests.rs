@@ -221,7 +221,7 @@ fn the_user_s_unit_of_a_channel_applies_to_files_without_units() {
     );
 }
 
-/// Problems with another time column.
+/// Problems of the record with this column as its time.
 fn problems_with_time(time: RecordColumn) -> Vec<LayoutProblem> {
     let mut table = record();
     table.columns[1] = time;

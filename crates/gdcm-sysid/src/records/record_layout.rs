@@ -97,8 +97,8 @@ impl RecordLayout {
     }
 
     /// Applies the changes between two layouts of `from` to this layout of `table`, channel by
-    /// channel: transfers the user's edits to another record with the same column names.
-    /// Remedies, which belong to one record, stay as they are.
+    /// channel: transfers the user's edits to another record with the same column names. Remedies,
+    /// which belong to one record, are not changed.
     #[must_use]
     pub fn following(
         &self,

@@ -9,7 +9,8 @@ use gdcm_model::units::{number, telling};
 pub enum CouplingError {
     /// No condition has a response that both of its representatives contain.
     #[error(
-        "no response of the {conditions} conditions is known for both the physics model and flight"
+        "no coupling fit: none of the {conditions} conditions has a response that is available in \
+        both its physics and its identified representative"
     )]
     NothingToFit { conditions: usize },
     /// Fewer conditions than error bars need.

@@ -190,7 +190,7 @@ pub fn left_out_fits(
         let portion = Portion::new(
             &shares,
             1.0 / count as f64,
-            "mixing and feedback without each condition",
+            "leave-one-out fits of mixing and feedback",
         );
         let fit = fit_couplings(&problem.without(index), &Sequential, &portion)?;
         portion.finish()?;

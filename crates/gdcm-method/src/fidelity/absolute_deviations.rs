@@ -11,9 +11,9 @@ use gdcm_numerics::{CscMatrix, DefaultSettings, convex_program};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FitError {
     /// The linear program did not reach its optimum.
-    #[error("least absolute deviations fit not solved: {status}")]
+    #[error("the least-absolute-deviations fit failed ({status})")]
     NotSolved { status: String },
-    #[error("least absolute deviations fit cancelled")]
+    #[error("the least-absolute-deviations fit was cancelled")]
     Cancelled,
 }
 

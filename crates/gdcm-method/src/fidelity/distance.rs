@@ -242,17 +242,21 @@ pub struct CoordinateWeight {
 pub enum DiscontinuityError {
     /// The bundle is too small for a fit.
     #[error(
-        "outliers are suggested in bundles of at least {LEAST_MODELS} physics models; this bundle has {found}"
+        "outliers are suggested only in bundles of at least {LEAST_MODELS} physics models; this \
+        bundle has {found}"
     )]
     TooFewModels {
         /// Number of models in the bundle.
         found: usize,
     },
     /// A model has no perturbation data.
-    #[error("outliers cannot be suggested: model \"{model}\" gives no perturbation")]
+    #[error("outliers cannot be suggested: model \"{model}\" has no perturbation data")]
     NoPerturbation { model: String },
     /// Every perturbation coordinate is zero: all models were linearised at the same trim.
-    #[error("outliers cannot be suggested: every perturbation is zero")]
+    #[error(
+        "outliers cannot be suggested: every perturbation is zero, so all models have the \
+        same trim"
+    )]
     AllZero,
     #[error("outliers cannot be suggested: {0}")]
     Fit(#[from] FitError),

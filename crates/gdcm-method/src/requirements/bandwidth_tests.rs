@@ -188,7 +188,7 @@ fn a_phase_that_never_falls_through_a_level_has_no_crossing() {
     assert_eq!(found.omega_180, Err(no_crossing));
     assert_eq!(
         no_crossing.to_string(),
-        "no crossing of -180 deg up to 48 rad/s"
+        "the phase does not fall through -180 deg up to 48 rad/s"
     );
     assert!(found.phase_delay_s.is_err() && found.omega_gain.is_err());
     assert_eq!(found.phase_line, None);

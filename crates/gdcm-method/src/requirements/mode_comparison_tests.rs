@@ -279,7 +279,7 @@ fn a_table_of_modes_comes_back_as_it_was_and_a_wrong_row_is_refused() {
         .to_string();
     assert!(
         words.starts_with(
-            "tolerance of modes 1, \"long term\": expected damping_ratio above zero, found 0"
+            "mode tolerance 1, \"long term\": expected damping_ratio above zero, found 0"
         ),
         "{words}"
     );

@@ -40,7 +40,7 @@ pub struct ModeToleranceTable(Vec<ModeTolerance>);
 
 /// A tolerance that is not above zero.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("tolerance of modes {row}, {}: expected {name} above zero, found {}", quoted(response), number(*found))]
+#[error("mode tolerance {row}, {}: expected {name} above zero, found {}", quoted(response), number(*found))]
 pub struct ModeToleranceError {
     /// Index of the row, counted from 1.
     pub row: usize,

@@ -31,10 +31,11 @@ pub struct TestInput {
 /// Reasons why a model has no response to a test.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TestInputError {
-    #[error("the model has {inputs} inputs, found no input {}", input + 1)]
+    #[error("there is no input {}: the model has {inputs} inputs", input + 1)]
     NoInput { input: usize, inputs: usize },
     /// The size is not finite, or the duration is not above zero and at most 600 s.
-    #[error("test input: expected a size, and a duration above 0 s up to {LONGEST_S} s; found {} and {} s", number(*size), number(*duration_s))]
+    #[error("test input: expected a finite size and a duration greater than 0 s and at most \
+        {LONGEST_S} s, found {} and {} s", number(*size), number(*duration_s))]
     Numbers { size: f64, duration_s: f64 },
     /// The model is in discrete time, or has channel delays that are not states.
     #[error(
@@ -264,7 +265,7 @@ mod tests {
             .unwrap_err()
             .to_string();
         assert!(
-            endless.contains("a duration above 0 s up to 600 s"),
+            endless.contains("a duration greater than 0 s and at most 600 s"),
             "{endless}"
         );
     }

@@ -24,7 +24,7 @@ pub use super::tolerance_table::{ChannelTolerance, Tolerance, ToleranceError, To
 pub enum ToleranceCheckError {
     #[error("there are no samples to compare")]
     NoSamples,
-    #[error("expected {flown} simulated samples, as many as flown, found {simulated}")]
+    #[error("expected as many simulated samples as flown samples ({flown}), found {simulated}")]
     Lengths { flown: usize, simulated: usize },
     /// A sample is missing or not finite.
     #[error("the {origin} sample at {time_s:.2} s is missing or not finite")]

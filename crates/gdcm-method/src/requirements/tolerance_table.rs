@@ -89,7 +89,8 @@ pub enum ToleranceError {
     },
     /// An output to be integrated is not a rate.
     #[error(
-        "{} is not compared: it integrates a rate (deg/s, rad/s), and the unit of {} is {}",
+        "{} is not compared: it is the integral of a rate in deg/s or rad/s, but the unit of {} \
+        is {}",
         quoted(quantity),
         quoted(channel),
         quoted(unit)
@@ -101,7 +102,7 @@ pub enum ToleranceError {
     },
     /// The unit of the tolerance cannot be converted to the output's unit.
     #[error(
-        "{} is not compared: the tolerance is in {}, and {} is in {}",
+        "{} is not compared: the tolerance is in {}, but {} is in {}",
         quoted(quantity),
         quoted(unit),
         quoted(channel),

@@ -305,7 +305,7 @@ fn a_tolerance_that_fits_no_channel_is_refused() {
     };
     assert_eq!(
         in_g.of_outputs(&outputs()).unwrap_err().to_string(),
-        "\"bank angle\" is not compared: the tolerance is in \"g\", and \"P\" is in \"deg/s\""
+        "\"bank angle\" is not compared: the tolerance is in \"g\", but \"P\" is in \"deg/s\""
     );
 }
 

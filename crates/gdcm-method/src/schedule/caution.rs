@@ -94,7 +94,8 @@ impl ScheduleCaution {
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         match self {
             ScheduleCaution::DegreeLowered { asked, clusters } => format!(
-                "degree {asked} takes {} distinct airspeeds, the conditions have {clusters}: the degree is lowered to {}",
+                "degree {asked} needs {} distinct airspeeds, but the conditions have only \
+                {clusters}: the degree is lowered to {}",
                 asked + 1,
                 clusters - 1
             ),
@@ -117,7 +118,8 @@ impl ScheduleCaution {
                 tau_s,
                 elsewhere_s,
             } => format!(
-                "{}: {} ms in condition {condition} against {} ms elsewhere: not schedulable over airspeed",
+                "{}: the signed delay is {} ms in condition {condition}, but on average {} ms in \
+                the other conditions; it cannot be scheduled over airspeed",
                 channel.name(inputs, outputs),
                 signed(s_to_ms(*tau_s), 0),
                 signed(s_to_ms(*elsewhere_s), 0)

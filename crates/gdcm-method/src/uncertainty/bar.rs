@@ -99,19 +99,22 @@ impl Bar {
     pub fn remarks(&self) -> Vec<&'static str> {
         let mut remarks = Vec::new();
         if self.trim.is_none() {
-            remarks.push("trim not included");
+            remarks.push("uncertainty of the trim not included");
         }
         if self.identification.is_none() {
-            remarks.push("identification not included");
+            remarks.push("uncertainty of the identification not included");
         }
         if self.parts().next().is_some() && self.variance() == 0.0 {
             remarks.push("the bundle has no spread");
         }
         match self.source {
             IdentificationSource::Spread => {}
-            IdentificationSource::Coherence => remarks.push("identification from the coherence"),
+            IdentificationSource::Coherence => remarks.push(
+                "identification part from the \
+                coherence",
+            ),
             IdentificationSource::ModelBand => {
-                remarks.push("identification from the model's own band")
+                remarks.push("identification part from the model's confidence band")
             }
         }
         remarks
@@ -168,7 +171,10 @@ mod tests {
         };
         assert_eq!(
             alone.remarks(),
-            ["trim not included", "identification not included"]
+            [
+                "uncertainty of the trim not included",
+                "uncertainty of the identification not included"
+            ]
         );
         assert_eq!(alone.interval(0.9), None);
     }

@@ -283,13 +283,13 @@ pub struct SecondVariableEffect {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SecondVariableError {
     /// A condition lacks the variable, or all values are equal.
-    #[error("the conditions do not have two values of it")]
+    #[error("the conditions must have at least two different values")]
     NotVaried,
     /// The variable is a function of airspeed in these conditions.
-    #[error("its effect and that of airspeed cannot be separated")]
+    #[error("its effect cannot be separated from the effect of airspeed")]
     NotToldApart,
     /// The fit has too few degrees of freedom.
-    #[error("there are too few conditions to separate it from airspeed")]
+    #[error("there are too few conditions to separate its effect from the effect of airspeed")]
     TooFewConditions,
 }
 

@@ -82,7 +82,7 @@ impl Assessment<'_> {
             .systems(likelihood)
             .ok_or_else(|| self.data.no_model())?;
         let uncertainty = self.uncertainty(&systems)?;
-        progress.next(0.88, "models without each record")?;
+        progress.next(0.88, "models fitted without one record each")?;
         let without = without_each_record(likelihood, fit, &systems);
         progress.next(0.93, "validation")?;
         let covariance = &uncertainty.covariance;

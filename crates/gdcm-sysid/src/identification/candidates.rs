@@ -180,7 +180,7 @@ impl<'r> Ranking<'r> {
     fn rank_pole(&self, number: usize) -> Result<Vec<Candidate>, Cancelled> {
         let executor = self.likelihood.executor;
         let poles = &self.settings.poles;
-        let step = format!("pole {} of {}", number + 1, poles.len());
+        let step = format!("Laguerre pole {} of {}", number + 1, poles.len());
         self.progress
             .advance(self.share, &format!("{step}, projections"))?;
         let projections = Projections {

@@ -26,7 +26,10 @@ pub struct SaidChannel {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ChannelListError {
     /// Text between commas that is not a channel.
-    #[error("expected CHANNEL or CHANNEL=COLUMN, as P or P [deg/s]=roll_rate, found \"{0}\"")]
+    #[error(
+        "expected CHANNEL or CHANNEL=COLUMN, for example P or P [deg/s]=roll_rate, found \
+        \"{0}\""
+    )]
     NoChannel(String),
     /// Duplicate channel.
     #[error("duplicate channel {0}")]

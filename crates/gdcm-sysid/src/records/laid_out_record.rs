@@ -110,7 +110,7 @@ impl LaidOutRecord {
             }
             if remedy != ChannelRemedy::NONE {
                 notes.push(format!(
-                    "{name}: times {}, delay of {} s removed, from the dataset",
+                    "{name}: multiplied by {}, delay of {} s removed, as stored in the dataset",
                     remedy.factor, remedy.delay_s
                 ));
                 remedies.insert(name.clone(), remedy);

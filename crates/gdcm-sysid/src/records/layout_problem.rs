@@ -60,7 +60,7 @@ pub enum LayoutProblem {
         found: String,
     },
     /// Several columns match this channel.
-    #[error("several columns can be the {side} {channel}: {found}; choose one")]
+    #[error("several columns match the {side} {channel}: {found}; choose one")]
     SeveralColumns {
         side: ChannelSide,
         channel: String,
@@ -69,7 +69,8 @@ pub enum LayoutProblem {
     },
     /// The columns have no names.
     #[error(
-        "the file has {found} columns without names; give the column number of each channel, as in {channel}=#2"
+        "the file has {found} columns without names; give the column number of each channel, for \
+        example {channel}=#2"
     )]
     Unnamed {
         /// Name of the first channel, for the example in the message.
@@ -90,8 +91,8 @@ pub enum LayoutProblem {
     },
     /// Neither file nor samples determine the unit.
     #[error(
-        "the file does not give the unit of {channel} (column {column}), and its samples can be in {units}; choose it \
-         with --unit \"{channel}={unit}\" or on page Columns"
+        "the file does not give the unit of {channel} (column {column}), and its samples can be \
+        in {units}; choose the unit with --unit \"{channel}={unit}\" or on page Columns"
     )]
     UnsaidUnit {
         channel: String,
@@ -187,7 +188,7 @@ pub enum LayoutCaution {
     #[error("{first} and {second} have the same samples")]
     Same { first: String, second: String },
     /// The record repeats another record under a different name.
-    #[error("same samples as {first}: left out, because evidence counts once")]
+    #[error("same samples as {first}: left out, so that no measurement counts twice")]
     Copy {
         /// Name of the earlier record.
         first: String,

@@ -197,7 +197,7 @@ impl Proposer<'_> {
         let mut uses = Vec::with_capacity(rules.len());
         if is_unmatched && marked.len() == rules.len() && !rules.is_empty() {
             self.notes.push(format!(
-                "the file marks {} columns as {side}s under other names: taken in order",
+                "the file marks {} columns with other names as {side}s: assigned in order",
                 rules.len()
             ));
             for (rule, column) in rules.iter().zip(marked) {
@@ -259,7 +259,7 @@ impl Proposer<'_> {
         let reason = if marked_alias.is_some() {
             "as requested"
         } else {
-            "by its name"
+            "as its name indicates"
         };
         self.notes.push(format!(
             "{}: sign of column {} reversed, {reason}",
@@ -364,8 +364,8 @@ impl Proposer<'_> {
                     format!(" (× {})", number(used.factor))
                 };
                 format!(
-                    "column {quoted}, taken to be in {only}: the file does not say, \
-                     and no other unit is possible{factor}"
+                    "column {quoted}, assumed to be in {only}: the file gives no unit, and the \
+                    samples are plausible in no other unit{factor}"
                 )
             }
             _ => format!("column {quoted} unchanged: the file gives no unit"),

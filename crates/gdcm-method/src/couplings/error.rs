@@ -59,7 +59,7 @@ pub enum CouplingError {
 }
 
 impl CouplingError {
-    /// Describes the error; names the reversed input, whose index the error text gives.
+    /// Describes the error, with the name of a reversed input instead of its index.
     pub fn words(&self, inputs: &[String]) -> String {
         match self {
             Self::ReversedInput {

@@ -243,8 +243,8 @@ impl CouplingBars {
     }
 }
 
-/// Computes the jackknife standard deviation of each matrix entry from the leave-one-out matrices,
-/// of which there is at least one.
+/// Computes the jackknife standard deviation of each matrix entry from the leave-one-out matrices;
+/// needs at least one matrix.
 fn jackknife(without: &[DMatrix<f64>]) -> DMatrix<f64> {
     let count = without.len() as f64;
     let (rows, columns) = without[0].shape();

@@ -225,8 +225,7 @@ mod tests {
             turn: 0.0,
         };
         let cost = mismatch.cost(&omega, GainDelay::new(1.0, -0.07), CostAverage::Median);
-        // Square of what is missing from the whole turn at the median frequency, 6 rad/s: e^-160
-        // squared.
+        // At the median frequency, 6 rad/s, the phase misses a whole turn by e^-160 turns.
         assert!(cost.phase < 1e-20, "{cost:?}");
         let delays = mismatch
             .phase_difference(&omega)

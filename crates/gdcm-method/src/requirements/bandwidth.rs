@@ -63,7 +63,8 @@ pub enum BandwidthRule {
     Phase,
     /// The 6 dB gain margin, if it occurs at a lower frequency than the phase margin.
     Gain,
-    /// The phase margin, because no gain margin was found: an upper bound of the bandwidth.
+    /// The phase margin, because there is no gain margin without `omega_180`: an upper bound of
+    /// the bandwidth.
     PhaseGainUnknown,
 }
 

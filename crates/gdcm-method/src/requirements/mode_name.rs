@@ -246,7 +246,7 @@ mod tests {
             named(pair.clone(), &["act_lon", "act_lon_dot"])[0],
             (None, NamedBy::States)
         );
-        // Two identical actuators cannot be separated; frequency is not used if states are known.
+        // Two identical actuators cannot be separated; frequency is not used if states are named.
         let twice = dmatrix![-6.0, 5.0, 1.0, 0.0; -5.0, -6.0, 0.0, 1.0; 0.0, 0.0, -6.0, 5.0; 0.0, 0.0, -5.0, -6.0];
         assert_eq!(
             named(twice, &["act_lon", "act_lon_dot", "act_lat", "act_lat_dot"])[0],

@@ -109,10 +109,9 @@ impl Bar {
         }
         match self.source {
             IdentificationSource::Spread => {}
-            IdentificationSource::Coherence => remarks.push(
-                "identification part from the \
-                coherence",
-            ),
+            IdentificationSource::Coherence => {
+                remarks.push("identification part from the coherence");
+            }
             IdentificationSource::ModelBand => {
                 remarks.push("identification part from the model's confidence band")
             }

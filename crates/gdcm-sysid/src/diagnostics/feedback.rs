@@ -50,8 +50,8 @@ const SURE: f64 = 0.4;
 const LEAST_SHARE: f64 = 0.05;
 /// Fed-back share from which the bands are widened (M14.17).
 const WIDENED: f64 = 0.04;
-/// Maximum relative difference between the sample time of a segment and that of the first segment,
-/// for the segment to be used.
+/// Segments are used if their sample time differs from the first segment's by less than this
+/// share.
 const ALIKE: f64 = 0.01;
 
 /// Minimum `b` and `z` of a feedback level.

@@ -45,9 +45,10 @@ impl RecordLayout {
     /// 1  time     topic stamps; the user's sample time or column; the column named like
     ///             a time; the file's sample time
     /// 2  channel  by name, or by aliases if it has some (column_candidates); if no input has a
-    ///             candidate and the file marks as many inputs, those in order (outputs likewise)
+    ///             candidate and the file marks equally many inputs: the marked columns in order
+    ///             (the same for outputs)
     /// 3  factor   the user's; from the file's unit; from the rule's unit for files without units;
-    ///             from the only unit that fits the samples; else open
+    ///             from the only unit in which the samples are plausible; else open
     /// 4  sign     by the mark in the alias or in the column name: -R, az (down); a channel NZ from
     ///             a column az needs the user's decision
     /// ```

@@ -168,7 +168,7 @@ fn a_unit_that_no_file_says_is_refused_with_the_option_that_says_it_and_never_ch
         let ended = identify(&records, &[]);
         assert_eq!(ended.status, 2, "{ended:?}");
         for words in [
-            "error: bare: the file does not give the unit of P (column \"P\"), and its samples can be in rad/s or deg/s; choose it \
+            "error: bare: the file does not give the unit of P (column \"P\"), and its samples can be in rad/s or deg/s; choose the unit \
              with --unit \"P=rad/s\"",
             "error: bare: the file does not give the unit of Q",
             "error: 1 of 2 records cannot be used",
@@ -201,9 +201,9 @@ fn a_unit_that_no_file_says_is_refused_with_the_option_that_says_it_and_never_ch
         ended.error
     );
     assert!(
-        ended
-            .error
-            .contains("note: bare: LON: column \"LON\", taken to be in %: the file does not say"),
+        ended.error.contains(
+            "note: bare: LON: column \"LON\", assumed to be in %: the file gives no unit"
+        ),
         "{ended:?}"
     );
     let outputs = ["--outputs", "P [deg/s],Q [deg/s]"];
@@ -431,7 +431,7 @@ fn what_cannot_be_is_refused_with_the_place_and_nothing_is_written() {
         &["--hold-out: every record is held out"],
     )
     .assert_reported("same samples as ")
-    .assert_reported("left out, because evidence counts once");
+    .assert_reported("left out, so that no measurement counts twice");
 }
 
 /// Arguments of an identification of a sweep, without its directory.
@@ -662,7 +662,8 @@ fn units_that_were_said_once_are_kept_by_the_dataset_with_its_records() {
     let (kept, told) = identified("said/late.json", &[], "kept");
     assert_eq!(said, kept, "{told}");
     assert!(
-        told.contains("Q: times 57.29") && told.contains("removed, from the dataset"),
+        told.contains("Q: multiplied by 57.29")
+            && told.contains("removed, as stored in the dataset"),
         "{told}"
     );
     // The command line overrides it.

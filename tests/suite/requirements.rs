@@ -187,8 +187,9 @@ fn what_leads_make_above_the_band_is_refused_and_not_given() {
         .filter_map(|finding| Some((finding["role"].as_str()?, finding["absent"].as_object()?)));
     let refused = reasons.filter(|(_, absent)| {
         absent.values().any(|why| {
-            why.as_str()
-                .is_some_and(|why| why.starts_with("rests on the leads above the band"))
+            why.as_str().is_some_and(|why| {
+                why.starts_with("the value depends on lead filters above the band")
+            })
         })
     });
     let roles: Vec<&str> = refused.map(|(role, _)| role).collect();

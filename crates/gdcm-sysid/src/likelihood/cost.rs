@@ -33,7 +33,7 @@ pub(crate) const DEPENDENT: f64 = 1e-12;
 pub(crate) struct SpectralLines {
     /// Index of the record, counted from 0.
     pub(crate) record: usize,
-    /// \[rad/s\].
+    /// Frequencies \[rad/s\].
     pub(crate) omega: Vec<f64>,
     /// `U`, inputs x lines.
     pub(crate) inputs: DMatrix<Complex<f64>>,
@@ -221,7 +221,6 @@ fn residual_of(part: &DMatrix<f64>, transient: &DVector<f64>) -> DVector<f64> {
 pub(crate) struct Likelihood<'a> {
     /// Segments, by record and time.
     pub(crate) segments: Vec<SpectralLines>,
-    /// Runs the segments' work.
     pub(crate) executor: &'a dyn Executor,
 }
 
@@ -255,7 +254,7 @@ impl Likelihood<'_> {
         records
     }
 
-    /// Returns the segments without those of a record.
+    /// Returns the likelihood without the segments of a record.
     pub(crate) fn without(&self, record: usize) -> Self {
         let segments = self
             .segments

@@ -522,7 +522,7 @@ fn airspeeds_a_hair_apart_are_one_point_of_the_schedule() {
     assert_eq!(written["airspeed_tolerance_kt"], 2.0);
     let cautions = texts(&written["cautions"]);
     assert!(
-        cautions[0].contains("degree 2 takes 3 distinct airspeeds, the conditions have 2"),
+        cautions[0].contains("degree 2 needs 3 distinct airspeeds, but the conditions have only 2"),
         "{cautions:?}"
     );
 }

@@ -189,7 +189,10 @@ fn the_schedule_of_the_example_holds_the_mean_signed_delay_of_each_channel() {
         "{hidden:?}"
     );
     let words = hidden.concat();
-    assert!(words.contains("not schedulable over airspeed"), "{words}");
+    assert!(
+        words.contains("cannot be scheduled over airspeed"),
+        "{words}"
+    );
 }
 
 fn schedule_names() -> (Vec<String>, Vec<String>) {

@@ -125,7 +125,7 @@ fn every_condition_out_of_the_schedule_leaves_corrections_without_one() {
     assert!(written["schedule"].is_null());
     assert_eq!(
         written["assessment"]["left_out"][0]["why"],
-        "no schedule: no condition that could be solved is chosen for it"
+        "no schedule: none of the conditions chosen for it has a correction"
     );
 }
 

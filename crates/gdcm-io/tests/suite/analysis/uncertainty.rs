@@ -590,7 +590,7 @@ fn one_model_left_says_what_is_not_included() {
     };
     assert_eq!(
         (bar(1).trim, bar(1).remarks()),
-        (None, vec!["trim not included"])
+        (None, vec!["uncertainty of the trim not included"])
     );
     assert!(
         bar(1).half_width(0.9).unwrap() > 0.0,
@@ -621,7 +621,7 @@ fn without_a_second_identified_model_anywhere_the_bar_is_of_the_trim_only() {
         .unwrap();
     assert_eq!(
         (bar.identification, bar.remarks()),
-        (None, vec!["identification not included"])
+        (None, vec!["uncertainty of the identification not included"])
     );
     assert_eq!(bar.degrees_of_freedom(), Some(4.0));
 }

@@ -540,7 +540,9 @@ fn progress_goes_forward_to_its_end_and_shows_a_first_model() {
         "{heard:?}"
     );
     assert!(
-        heard.iter().any(|(_, what)| what == "pole 1 of 1, past 6"),
+        heard
+            .iter()
+            .any(|(_, what)| what == "Laguerre pole 1 of 1, past 6"),
         "{heard:?}"
     );
     assert_eq!(heard.last().unwrap().0, 1000);

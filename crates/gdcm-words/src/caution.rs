@@ -207,7 +207,7 @@ fn first_names(names: &[String]) -> String {
     }
 }
 
-/// Lists numbers of omitted frequencies: "31 of PED → P, 12 of COL → Q, and some of 5 more".
+/// Lists the numbers of omitted frequencies: "31 of PED → P, 12 of COL → Q, and some of 5 more".
 fn left_out_words(left_out: &[(Pair, usize)], pair_name: &impl Fn(Pair) -> String) -> String {
     let mut parts: Vec<String> = left_out
         .iter()

@@ -3,7 +3,7 @@
 use gdcm_model::units::{s_to_ms, telling};
 use gdcm_study::results::channel_time_skew::ChannelTimeSkew;
 
-/// Returns the finding in words; `channel` is the name of the channel, `physics` that of the
+/// Returns the finding in words; `channel` and `physics` are the names of the channel and of the
 /// physics model.
 pub fn time_skew_text(skew: &ChannelTimeSkew, channel: &str, physics: &str) -> String {
     let delay_ms = telling(s_to_ms(skew.delay_s.abs()), 0);

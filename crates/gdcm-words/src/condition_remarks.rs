@@ -54,7 +54,7 @@ pub fn remarks(
     remarks
 }
 
-/// Repeats the schedule's cautions that concern the condition.
+/// Returns the cautions of the schedule that concern the condition, as remarks.
 fn schedule_remarks(study: &Study, result: &ConditionAnalysis, schedule: &Schedule) -> Vec<Remark> {
     let (inputs, outputs) = study.dataset.names_of_channels();
     let mut remarks = Vec::new();
@@ -67,8 +67,8 @@ fn schedule_remarks(study: &Study, result: &ConditionAnalysis, schedule: &Schedu
     remarks
 }
 
-/// Reports suspected sign and unit differences first, because they can be mistaken for other
-/// effects; then the reversed channels.
+/// Returns remarks on suspected sign and unit differences, and then on the reversed channels. The
+/// suspicions come first because the differences can be mistaken for other effects.
 fn sign_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let mut remarks = Vec::new();
     for doubt in &result.doubts {
@@ -125,7 +125,7 @@ fn matched_gains_remark(study: &Study, result: &ConditionAnalysis) -> Remark {
     Remark::good("gains-matched", text)
 }
 
-/// Reports the loops that agree within the tolerance.
+/// Returns a remark on the loops that agree within the tolerance.
 fn agreement_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let (inputs, outputs) = study.dataset.names_of_channels();
     let loops = result.gains.agreeing.iter().chain(&result.delays.agreeing);
@@ -139,8 +139,8 @@ fn agreement_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
         .collect()
 }
 
-/// Reports that coherence weights are used and exclude no frequency. Excluded frequencies are
-/// reported by a caution instead (M4a).
+/// Returns a remark if coherence weights are used and exclude no frequency. A caution reports
+/// excluded frequencies instead (M4a).
 fn coherence_remark(result: &ConditionAnalysis) -> Option<Remark> {
     let has_exclusions = result
         .cautions
@@ -169,7 +169,7 @@ fn coherence_remark(result: &ConditionAnalysis) -> Option<Remark> {
     ))
 }
 
-/// Reports the constrained responses that the correction moves away from flight.
+/// Returns a remark on the constrained responses that the correction moves away from flight.
 fn worse_remark(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     let negligible = match study.settings.phase {
         PhaseCorrection::Lead => 0.0,
@@ -201,7 +201,8 @@ fn worse_remark(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     Some(Remark::caution("held-farther", text).repeated(Repeated::Farther(pairs)))
 }
 
-/// Reports how many unconstrained responses the leads move away from flight (M15.6).
+/// Returns a remark on the number of unconstrained responses that the leads move away from flight
+/// (M15.6).
 fn others_worse_remark(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     if study.settings.phase != PhaseCorrection::Lead {
         return None;
@@ -258,7 +259,7 @@ fn delay_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     remarks
 }
 
-/// Reports the constrained responses with a negative D, which no delay can match.
+/// Returns a remark on the constrained responses with a negative D, which no delay can match.
 fn needed_lead_remark(study: &Study, result: &ConditionAnalysis, held: usize) -> Option<Remark> {
     let needed: Vec<(Pair, String)> = result
         .delays
@@ -285,8 +286,8 @@ fn needed_lead_remark(study: &Study, result: &ConditionAnalysis, held: usize) ->
     Some(Remark::caution("needs-lead", text).repeated(Repeated::NeedsLead(needed)))
 }
 
-/// Lists the details of the solution: other minima, the error at the upper end of the band due to
-/// each missed delay, and the sensitivity to constraints and active bounds.
+/// Lists the details of the solution: other minima, the phase error at the upper end of the band
+/// due to each missed delay, and the sensitivity to constraints and active bounds.
 pub fn details(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
     /// Maximum relative sensitivity of the objective that is not listed.
     const NOTABLE: f64 = 1e-3;

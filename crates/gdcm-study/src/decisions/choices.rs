@@ -34,7 +34,7 @@ pub struct ConditionChoice {
     pub identified: BundleChoice,
     pub scheduled: bool,
     /// Whether the condition is held out: it is analysed and assessed, but not used in the fit of
-    /// the schedule, so that it can validate the schedule.
+    /// the schedule, which it can therefore validate.
     pub held_out: bool,
 }
 

@@ -17,7 +17,6 @@ use super::study::Study;
 #[derive(Clone, Debug, PartialEq)]
 pub enum Edit {
     Reject(ModelId),
-    /// Rejects a model, with a reason.
     RejectBecause {
         model: ModelId,
         reason: String,
@@ -43,13 +42,13 @@ pub enum Edit {
         condition: ConditionId,
         scheduled: bool,
     },
-    /// Excludes a condition from the fit of the schedule, so that it can validate the schedule, or
+    /// Excludes a condition from the fit of the schedule, so that it can validate the schedule; or
     /// includes it again.
     SetHeldOut {
         condition: ConditionId,
         held_out: bool,
     },
-    /// Constrains exactly the dataset's on-axis responses.
+    /// Constrains the on-axis responses of the dataset, and releases all others.
     ConstrainOnAxis,
     /// Constrains or releases a response.
     Hold(Pair, bool),

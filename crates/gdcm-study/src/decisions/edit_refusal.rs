@@ -69,7 +69,7 @@ pub enum EditRefusal {
     NoResponse { pair: Pair },
 }
 
-/// Checks the length of a text, in characters.
+/// Returns an error if `text` has more than `most` characters.
 pub(crate) fn check_length(what: &'static str, text: &str, most: usize) -> Result<(), EditRefusal> {
     let found = text.chars().count();
     if found > most {

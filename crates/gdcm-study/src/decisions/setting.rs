@@ -141,7 +141,7 @@ pub static ALPHA_DELAY: Setting = row(
 )
 .at(Place::Slider, "α delays", "α delays");
 
-/// Phase correction.
+/// Phase correction: none, by delays, or by signed delays that lead filters realise where negative.
 pub static PHASE: Setting = row(
     ["phase correction", "phase", "--phase"],
     "How the phase is corrected: not at all, by delays, or by a delay or a lead filter a channel",
@@ -161,7 +161,8 @@ pub static PHASE: Setting = row(
 )
 .at(Place::Top, "Phase", "Phase correction");
 
-/// The D to which the delays are fitted.
+/// Source of the D to which the delays are fitted: median of phase over frequency, or line over the
+/// band (M15.2).
 pub static DELAY_FROM: Setting = row(
     ["delay estimate", "delay_from", "--delay-from"],
     "Which D the delays are fitted to: the median of phase over frequency, or a straight line over the band",
@@ -177,7 +178,8 @@ pub static DELAY_FROM: Setting = row(
 .at(Place::Beside, "Delay estimate", "Delay estimate")
 .where_it(|study| study.settings.phase == PhaseCorrection::Delay);
 
-/// Order of the lead filters.
+/// Order of the lead filters: 2 leaves the gain within the band nearly unchanged, 1 raises it
+/// (M15.3).
 pub static LEAD_ORDER: Setting = row(
     ["order of the lead filters", "lead.order", "--lead-order"],
     "Order of every lead filter (M15.3)",
@@ -246,7 +248,7 @@ pub static COUPLINGS: Setting = row(
 )
 .at(Place::Top, "Couplings", "Couplings");
 
-/// The comparison band.
+/// Comparison band \[rad/s\].
 pub static BAND: Setting = row(
     ["frequency band", "band_rad_s", "--band"],
     "Band of comparison [rad/s]; drag its lines in the plot too",
@@ -362,7 +364,7 @@ pub static COST_AVERAGE: Setting = row(
 )
 .at(Place::Line, "Method", "Average in J");
 
-/// The gain objective.
+/// Gain objective: squared errors of the ratios, eq. (7), or squared errors in dB.
 pub static GAIN_OBJECTIVE: Setting = row(
     [
         "objective of the gains",
@@ -389,7 +391,7 @@ pub static GAIN_OBJECTIVE: Setting = row(
 )
 .at(Place::Beside, "", "Objective of the gains");
 
-/// The models from which G is computed.
+/// Models from which G is computed: the two representatives, or all pairs of kept models.
 pub static GAIN_SOURCE: Setting = row(
     ["source of G", "gain_from", "--gain-from"],
     "What G is taken from: the two representatives, or the mean over all pairs of kept models",
@@ -502,7 +504,7 @@ pub static HALF_OVERLAP: Setting = row(
     },
 );
 
-/// Form of the schedule.
+/// Form of the schedule in airspeed: a polynomial of degree 0 to 3, or a lookup table.
 pub static SCHEDULE: Setting = row(
     ["schedule", "schedule.kind", "--degree"],
     "Degree of the schedule's polynomial in airspeed, 0 to 3, or a lookup table",
@@ -524,7 +526,7 @@ pub static SCHEDULE: Setting = row(
 )
 .at(Place::Top, "Schedule", "Schedule");
 
-/// Quantity scheduled with airspeed.
+/// Scheduled quantity: `ln k`, or the gain itself.
 pub static SCHEDULED_QUANTITY: Setting = row(
     ["scheduled quantity", "schedule.of", "--schedule-of"],
     "What is regressed on airspeed",

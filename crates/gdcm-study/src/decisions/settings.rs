@@ -36,7 +36,8 @@ pub enum PhaseCorrection {
     Lead,
 }
 
-/// Correction of the physics models' couplings and modes, before that of the channels (M16).
+/// Correction of the couplings and modes of the physics models, applied before the channel
+/// correction (M16).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CouplingCorrection {
@@ -231,7 +232,7 @@ impl<R> Settings<R> {
 }
 
 impl Settings {
-    /// Returns a dataset's initial settings.
+    /// Returns the settings of a new study of `dataset`.
     pub fn of(dataset: &Dataset) -> Self {
         let none = PairTable::filled(dataset.outputs().len(), dataset.inputs().len(), false);
         Self {

@@ -46,7 +46,7 @@ impl Study {
         Ok(())
     }
 
-    /// Replaces the present decisions by those of a variant.
+    /// Replaces the present decisions with the decisions of a variant.
     pub(crate) fn take_variant(&mut self, name: &str) -> Result<(), EditRefusal> {
         let index = self.variant_index(name)?;
         let Variant {

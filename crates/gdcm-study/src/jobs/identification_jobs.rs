@@ -33,7 +33,7 @@ pub struct IdentificationRequest {
 }
 
 impl IdentificationRequest {
-    /// Builds the request from the `records` in use; those whose guess has `held_out` set are
+    /// Builds the request from those `records` that are in use. Records marked as held out are
     /// excluded from the identification and used for validation.
     ///
     /// # Errors
@@ -69,7 +69,7 @@ impl IdentificationRequest {
         })
     }
 
-    /// Identifies models.
+    /// Identifies models from the records of the request.
     ///
     /// # Errors
     /// The errors of [`identify`].

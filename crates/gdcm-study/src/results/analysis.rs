@@ -39,7 +39,7 @@ pub enum NotAssessed {
 }
 
 impl NotAssessed {
-    /// Returns the stable code.
+    /// Returns the stable code, for programs and tests.
     pub fn code(&self) -> &'static str {
         match self {
             Self::NotAnalysed => "not-analysed",
@@ -118,7 +118,8 @@ impl Analysis {
     }
 }
 
-/// A condition's result.
+/// Result of the analysis of a condition: comparison of its models, optimal gains and delays,
+/// cautions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionAnalysis {
     /// The analysed condition; the order of its models applies to all results below.
@@ -130,9 +131,9 @@ pub struct ConditionAnalysis {
     /// Representatives, G and D, with the couplings on the physics models where there are any
     /// (M16.3).
     pub comparison: Arc<Comparison>,
-    /// The gain problem.
+    /// Optimisation problem of the gains, eq. (7).
     pub gain_problem: Arc<Problem>,
-    /// The delay problem, with signed delays if requested.
+    /// Optimisation problem of the delays, eq. (11), or of signed delays, if requested (M15.4).
     pub delay_problem: Arc<Problem>,
     /// Optimal gains, eq. (7).
     pub gains: Arc<Solution>,

@@ -88,7 +88,7 @@ impl AssessmentChoice {
     }
 }
 
-/// A condition's assessment.
+/// Assessment of a condition: J before and after the correction, response by response.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssessedCondition {
     pub condition: ConditionId,
@@ -114,7 +114,7 @@ pub enum MissingCost {
 }
 
 impl MissingCost {
-    /// Returns the stable code.
+    /// Returns the stable code, for programs and tests.
     pub fn code(self) -> &'static str {
         match self {
             Self::NetGainNotPositive => "net-gain-not-positive",

@@ -22,7 +22,8 @@ pub enum Caution {
     /// A model is excluded from distances, suggestions and representatives (M5b).
     SetAside {
         model: BundleModel,
-        /// The measuring responses that the model lacks and another model of its bundle has.
+        /// Responses that the model lacks and another model of its bundle has, among the on-axis
+        /// responses, or all responses if none is on-axis.
         lacks: Vec<Pair>,
         /// The missing responses that are zero wherever they have values.
         zero: Vec<Pair>,
@@ -88,7 +89,7 @@ impl Caution {
         }
     }
 
-    /// Returns the stable code.
+    /// Returns the stable code, for programs and tests.
     pub fn code(&self) -> &'static str {
         match self {
             Caution::HeldButUndefined { .. } => "held-but-undefined",
@@ -110,7 +111,8 @@ impl Caution {
         matches!(self, Caution::SetAside { model, .. } if model.bundle == bundle && model.name == name)
     }
 
-    /// Returns the response to consider ignoring in the objective.
+    /// Returns the response that the caution suggests ignoring in the objective; `None` if it
+    /// suggests none.
     pub fn offers_to_ignore(&self) -> Option<Pair> {
         match self {
             Caution::UnusualGain { pair, .. } => Some(*pair),
@@ -205,7 +207,7 @@ pub enum Undefined {
 }
 
 impl Undefined {
-    /// Returns the stable code.
+    /// Returns the stable code, for programs and tests.
     pub fn code(self) -> &'static str {
         match self {
             Self::Zero(_) => "response-zero",

@@ -139,7 +139,8 @@ impl BandwidthFinding {
         self.phase_delay_s = phase_delay;
         self.rule = bandwidth.rule;
         self.gain_limited = bandwidth.is_gain_limited();
-        // Where leads invalidate the phase delay, the line behind it is invalid too.
+        // If leads invalidate the phase delay, the line from which it would be computed is not
+        // stored.
         if let (Some(line), Some(_)) = (bandwidth.phase_line, phase_delay) {
             self.phase_departure_deg = Some(line.departure_deg);
             self.phase_delay_of_line = !line.is_straight();
@@ -237,7 +238,7 @@ impl PairCorrection {
         has_leads: false,
     };
 
-    /// Returns `None` where the net gain is not positive.
+    /// Returns the effect of a correction on a response; `None` where the net gain is not positive.
     fn from_correction(correction: &ChannelCorrection, pair: Pair) -> Option<Self> {
         let has_leads = Channel::of(pair)
             .into_iter()
@@ -279,7 +280,7 @@ struct ConditionBandwidths<'a> {
     physics: usize,
     /// The physics representative and the models that replace it in swaps.
     plain: BTreeMap<usize, EvaluatedModel<'a>>,
-    /// The same models with the couplings, where they have matrices; empty without couplings.
+    /// The models in `plain` with the couplings, where they have matrices; empty without couplings.
     coupled: BTreeMap<usize, EvaluatedModel<'a>>,
     identified: EvaluatedModel<'a>,
     swaps: &'a [ModelSwap],

@@ -12,7 +12,7 @@ use gdcm_model::dataset::{BundleKind, Model, StateSpace};
 use super::analysis::{Analysis, ConditionAnalysis};
 use super::assessment_table::AssessedCorrection;
 
-/// Role of a model in the requirements on a condition.
+/// Model version that is checked against the requirements in a condition.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RequirementRole {
@@ -58,10 +58,10 @@ impl RequirementRole {
 /// Why the model of a role cannot be simulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RoleModelError {
-    /// The model is a measured response.
+    /// The model is a measured response, without matrices.
     #[error("\"{model}\" is a measured response: without matrices it answers to no record")]
     Measured { model: String },
-    /// The model is discrete-time.
+    /// The model is discrete-time; only continuous-time models are simulated.
     #[error("\"{model}\" acts in discrete time: records are simulated in continuous time")]
     Discrete { model: String },
     #[error(transparent)]

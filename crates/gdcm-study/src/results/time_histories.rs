@@ -56,7 +56,7 @@ pub struct HistoryRecords {
 }
 
 impl HistoryRecords {
-    /// Collects the `records` in use.
+    /// Collects those `records` of a condition that are in use, with their preparation.
     pub fn of<'r>(
         condition: ConditionId,
         records: impl IntoIterator<Item = &'r LaidOutRecord>,
@@ -129,7 +129,7 @@ impl ToleranceFinding {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HistoryFinding {
     pub condition: ConditionId,
-    /// Its true airspeed \[kt\].
+    /// True airspeed of the condition \[kt\].
     pub airspeed_kt: f64,
     pub record: String,
     /// Whether the record was excluded from the models' identification.
@@ -142,7 +142,7 @@ pub struct HistoryFinding {
     pub samples: usize,
     /// Number of windows that contain these samples.
     pub windows: usize,
-    /// Longest window \[s\].
+    /// Length of the longest window \[s\].
     pub window_s: f64,
     /// Weighted rms error (M17.4) \[deg, deg/s, ft/s, ft/s^2\]; `None` where no output has such a
     /// unit.
@@ -352,7 +352,8 @@ fn missing_history(condition: Option<ConditionId>, why: String) -> MissingFindin
     }
 }
 
-/// Reports the analysed conditions without records.
+/// Returns the analysed conditions without records, or a single entry for all if there are no
+/// records.
 fn without_records(analysis: &Analysis, records: &[HistoryRecords]) -> Vec<MissingFinding> {
     if records.iter().all(|condition| condition.records.is_empty()) {
         return vec![missing_history(

@@ -69,7 +69,7 @@ struct ConditionKey {
     bands: Option<Arc<ModelBands>>,
 }
 
-/// Number of averages assumed for measured responses that do not state it.
+/// Averaging assumed for measured responses that do not state it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Averaging {
     averages: Option<f64>,

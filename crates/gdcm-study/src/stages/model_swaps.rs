@@ -100,7 +100,7 @@ struct SwapKey {
     /// Settings of the analysis, except those that affect no swap.
     settings: Settings,
     measuring: PairTable<bool>,
-    /// Representatives: the reference for phase branches.
+    /// The representatives, which determine the phase branches.
     representatives: ModelPair,
     couplings: Option<Arc<FittedCouplings>>,
 }

@@ -22,9 +22,9 @@ pub enum TimeBase {
     Topics,
 }
 
-/// Maximum plausible step in a manoeuvre \[s\].
+/// Maximum plausible time between two samples of a manoeuvre \[s\].
 pub(super) const LONGEST_STEP_S: f64 = 1.5;
-/// Minimum plausible step in a flight recorder \[s\].
+/// Minimum plausible time between two samples of a flight recorder \[s\].
 const SHORTEST_STEP_S: f64 = 5e-5;
 /// Minimum step accepted for a guessed unit \[s\].
 const SHORTEST_GUESSED_STEP_S: f64 = 2e-4;
@@ -33,7 +33,7 @@ const SECONDS_A_DAY: f64 = 86_400.0;
 /// Rank of a column as the time column; the smallest rank is the most likely.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct TimeRank {
-    /// Whether the column mostly repeats or decreases; such a column is a time by name only.
+    /// Whether the column mostly repeats or decreases, so that at most its name suggests a time.
     mostly_falls: bool,
     by_name: u8,
     column: usize,
@@ -89,7 +89,7 @@ impl TimeBase {
         }
     }
 
-    /// Returns a time base from a stamp column.
+    /// Returns the time base of a stamp column, in the unit that [`StampUnit`] determines.
     pub(super) fn from_column(table: &RecordTable, column: usize) -> Self {
         TimeBase::Column {
             column,
@@ -104,7 +104,8 @@ impl TimeBase {
         format!("time from column {quoted}, in {}{}", unit.name, unit.reason)
     }
 
-    /// Finds the time column by its name, or as the first, rising column in a table without names.
+    /// Finds the time column by its name; in a table without column names, the first column if it
+    /// mostly increases.
     pub(super) fn find(table: &RecordTable) -> Option<usize> {
         let best = (0..table.columns.len())
             .filter_map(|column| TimeRank::new(table, column))
@@ -162,7 +163,8 @@ impl StampUnit {
         Self::seconds(" (the file does not say the unit)".to_owned())
     }
 
-    /// Returns a time unit, in its usual spelling, from its name.
+    /// Returns the time unit with this name, in its usual spelling; `None` if the name is not a
+    /// time unit.
     fn from_name(name: &str) -> Option<Self> {
         let unit = PhysicalUnit::of(name)?;
         if unit.dimension != Dimension::Time {
@@ -293,7 +295,8 @@ mod tests {
         for (name, unit, step, expected) in [
             ("t", Some("ms"), 20.0, 1e-3),
             ("time_ms", None, 20.0, 1e-3),
-            // The name determines the unit; the checks reject such steps.
+            // The unit in the name applies although the steps are implausible; later checks reject
+            // them.
             ("time_s", None, 20.0, 1.0),
             ("t", None, 0.02, 1.0),
             ("t", None, 20.0, 1e-3),

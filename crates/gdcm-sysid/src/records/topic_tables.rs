@@ -15,7 +15,7 @@ use super::record_table::{RecordColumn, RecordSource, RecordTable, TopicClock, s
 use super::time_base::{TimeBase, median_step};
 use super::topic_names::{are_from_one_file, common_prefix, log_key, logs_of_topics, topic_names};
 
-/// Uninformative names of a topic's only column next to its stamps.
+/// Uninformative names for the only value column of a topic.
 const PLAIN: [&str; 8] = [
     "value", "values", "data", "signal", "signals", "x", "y", "val",
 ];
@@ -193,7 +193,7 @@ impl TopicJoiner<'_> {
             .collect()
     }
 
-    /// Whether a channel has no column or several columns.
+    /// Whether a channel has no column, or several candidate columns.
     fn lacks_channels(&self, table: &RecordTable) -> bool {
         let proposal = RecordLayout::proposed(table, self.channels, self.time);
         proposal.problems.iter().any(|problem| {
@@ -206,7 +206,8 @@ impl TopicJoiner<'_> {
         })
     }
 
-    /// Joins a group to one record, or else the topics of each log to a record.
+    /// Joins a group into one record or, if that would not be complete, the topics of each log into
+    /// a record.
     fn join_group(&mut self, group: &[usize]) {
         let topics = self.tables_at(group);
         if self.keep_if_complete(group, join_topics(&topics)) {

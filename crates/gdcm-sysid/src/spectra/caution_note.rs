@@ -2,7 +2,7 @@
 
 use gdcm_model::simulation::Signal;
 
-/// A caution as stored in files.
+/// A caution as stored in files, with machine-readable subject.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CautionNote {
     /// Stable code, for programs.
@@ -20,7 +20,7 @@ pub struct CautionNote {
 }
 
 impl CautionNote {
-    /// A note about all records.
+    /// Creates a note about all records, without text.
     pub(crate) fn new(code: &'static str) -> Self {
         Self {
             code,

@@ -12,11 +12,11 @@
 use gdcm_model::simulation::{FlightRecord, Signal};
 use gdcm_model::statistics::{median, quantile};
 
-/// Maximum step between two samples of a flat run, over the mean step.
+/// Maximum step between two samples of a flat run, relative to the mean step.
 const FLAT: f64 = 1e-3;
 /// Minimum length of a run at a limit, in samples.
 const SHORTEST: f64 = 5.0;
-/// Minimum length of a run at a limit, over the usual length of flat runs elsewhere.
+/// Minimum length of a run at a limit, relative to the usual length of flat runs elsewhere.
 const OVER_USUAL: f64 = 3.0;
 /// Quantile that gives the usual length of the flat runs elsewhere.
 const USUAL: f64 = 0.9;
@@ -69,10 +69,9 @@ pub(crate) fn finite_values(record: &FlightRecord, signal: &Signal) -> Vec<f64> 
         .collect()
 }
 
-/// Share of samples at which a channel is at its limit.
+/// Share of a channel's samples at its limit, with the acceptable maximum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Clipping {
-    /// Share of the samples at a limit.
     pub(crate) share: f64,
     /// Maximum acceptable share.
     pub(crate) most: f64,

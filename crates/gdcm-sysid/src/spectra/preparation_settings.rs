@@ -16,12 +16,13 @@ pub enum Hold {
     /// A continuous signal; stairs raise a caution.
     #[default]
     None,
-    /// The stairs act on the aircraft, or are the resolution of the sensor: the samples are right.
+    /// The stairs act on the aircraft, or are the resolution of the sensor: the samples are correct
+    /// as logged.
     Acts,
     /// A command held for `hold_s` \[s\] and logged when it begins: it acts `hold_s / 2` later.
     Command { hold_s: f64 },
-    /// A sensor with the sample time `hold_s` \[s\], repeated by a faster logger: it measured
-    /// `hold_s / 2` earlier.
+    /// A sensor with the sample time `hold_s` \[s\] whose samples are repeated by a faster logger:
+    /// a stamp is on average `hold_s / 2` later than the measurement.
     SlowSensor { hold_s: f64 },
     /// A sensor slower than the logger: only new samples count, with straight lines between them.
     FreshSamples,
@@ -31,7 +32,7 @@ pub enum Hold {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ChannelPreparation {
     pub name: String,
-    /// Known sensor or bus delay to remove \[s\].
+    /// Sensor or bus delay to remove \[s\], as stated by the engineer.
     pub delay_s: f64,
     pub hold: Hold,
     /// Maximum plausible modulus in the channel's unit; a larger value raises a doubt about the
@@ -49,7 +50,8 @@ impl ChannelPreparation {
         }
     }
 
-    /// Returns the delay \[s\] of a stamp after the time at which the channel had the value.
+    /// Returns how much later \[s\] a sample is stamped than the channel had its value; negative
+    /// for a command that is stamped when its hold begins.
     pub(crate) fn shift_s(&self) -> f64 {
         match self.hold {
             Hold::Command { hold_s } => self.delay_s - 0.5 * hold_s,
@@ -86,7 +88,8 @@ pub struct Preparation {
 }
 
 impl Preparation {
-    /// The defaults: every channel as logged, gaps up to 3 samples bridged, segments from 10 s on.
+    /// Creates the default settings: every channel as logged, gaps of up to 3 samples bridged,
+    /// segments of at least 10 s.
     #[must_use]
     pub fn of(inputs: &[&str], outputs: &[&str]) -> Self {
         Self {
@@ -227,7 +230,6 @@ pub enum PreparationError {
          Log longer records, fill the gaps, or leave out the channel with gaps"
     )]
     NothingLeft { longest_s: f64, least_s: f64 },
-    /// Channels that are constant.
     #[error("{} never moved in any record: leave {} out", names(.0), if .0.len() == 1 { "it" } else { "them" })]
     Constant(Vec<Signal>),
 }

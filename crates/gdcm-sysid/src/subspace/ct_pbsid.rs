@@ -30,7 +30,7 @@ pub(crate) struct SubspaceShape {
     pub(crate) longest_future: usize,
 }
 
-/// States for all orders, proposed with a Laguerre pole and a past window.
+/// States for models of all orders, from one Laguerre pole and one past window.
 #[derive(Clone, Debug)]
 pub(crate) struct Subspace {
     pole: f64,

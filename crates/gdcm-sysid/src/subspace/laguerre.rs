@@ -90,7 +90,7 @@ pub(crate) struct Projections {
     pub(crate) pole: f64,
     /// `p`: every channel has the projections 0 to `past`.
     pub(crate) past: usize,
-    /// Time between two instants \[s\].
+    /// Time between the instants at which rows are taken \[s\].
     pub(crate) spacing_s: f64,
 }
 

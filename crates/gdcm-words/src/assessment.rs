@@ -47,7 +47,8 @@ pub fn missing_cost_text(why: MissingCost) -> String {
     }
 }
 
-/// Writes the sentence: "better in 41 of 50, worst PED → NY in condition 5: +12.3".
+/// Returns the summary in words: "better in 41 of 50, worst PED → NY in condition 5: +12.3";
+/// "nothing to assess" without responses.
 pub fn summary_text(summary: &AssessmentSummary, dataset: &Dataset) -> String {
     let Some((condition, pair, change)) = summary.worst else {
         return "nothing to assess".to_owned();

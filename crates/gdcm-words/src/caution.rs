@@ -221,7 +221,7 @@ fn left_out_words(left_out: &[(Pair, usize)], pair_name: &impl Fn(Pair) -> Strin
     parts.join(", ")
 }
 
-/// Formats a gain: three decimals, or an exponent below 1e-3 and from 1e4.
+/// Formats a gain: three decimals, or an exponent below 1e-3 and at 1e4 or above.
 fn gain_words(gain: f64) -> String {
     if (1e-3..1e4).contains(&gain) {
         format!("{gain:.3}")

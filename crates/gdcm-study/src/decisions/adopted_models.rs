@@ -1,4 +1,4 @@
-//! Models identified from flight records that a condition adopts instead of those of its file.
+//! Models identified from flight records that a condition adopts instead of the models in its file.
 
 use gdcm_model::dataset::condition::{ConditionError, ConditionRecord};
 use gdcm_model::dataset::model::Origin;
@@ -41,7 +41,7 @@ impl OfferedModels {
     };
 }
 
-/// Models identified from flight records, with these records.
+/// Models identified from flight records, together with these records.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AdoptedModels {
     pub models: Vec<Model>,

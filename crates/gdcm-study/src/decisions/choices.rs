@@ -92,7 +92,7 @@ impl ConditionChoice {
 }
 
 impl BundleChoice {
-    /// Drops the decisions about models that are absent.
+    /// Drops the decisions about models for whose name `is_there` is false.
     pub(crate) fn retain(&mut self, is_there: impl Fn(&str) -> bool) {
         self.rejected.retain(|name| is_there(name));
         self.reasons.retain(|name, _| is_there(name));

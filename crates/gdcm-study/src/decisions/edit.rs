@@ -54,7 +54,7 @@ pub enum Edit {
     Hold(Pair, bool),
     /// Fits a response, or ignores it in the objective.
     Fit(Pair, bool),
-    /// Changes a setting ([`Setting::to`]).
+    /// Changes a setting; built by [`Setting::to`].
     Set(&'static Setting, Value),
     /// Reverses the sign of a channel in the models, or restores it. As a decision about the data,
     /// it is common to all variants.
@@ -63,7 +63,7 @@ pub enum Edit {
         /// The models in which the sign is reversed; `None` restores the sign in all.
         of: Option<SignRole>,
     },
-    /// Adopts models identified from flight records in place of the identified bundles of
+    /// Adopts models identified from flight records instead of the identified bundles of
     /// conditions.
     TakeModels(Vec<(ConditionId, Arc<AdoptedModels>)>),
     ReturnModels {

@@ -39,7 +39,8 @@ pub struct RequirementSettings {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct OverviewLimits {
-    /// Maximum relative difference of the bandwidth from that of the identified model.
+    /// Maximum relative difference between the bandwidths of the corrected and the identified
+    /// model.
     pub bandwidth: f64,
     pub phase_delay_s: f64,
     /// Minimum share of time inside a tolerance, 0 to 1.

@@ -227,7 +227,7 @@ pub static LEAD_LIMIT: Setting = row(
 .digits(0.1, Digits::Significant)
 .where_it(has_leads);
 
-/// How couplings and modes are corrected.
+/// Correction of couplings and modes: none, mixing, or mixing and feedback (M16).
 pub static COUPLINGS: Setting = row(
     ["couplings", "couplings", "--couplings"],
     "What corrects couplings and modes, the same for all conditions, before the channels are corrected: nothing, a mixing of the \
@@ -267,7 +267,7 @@ pub static BAND: Setting = row(
 .unit("rad/s", "rad/s", 1.0)
 .at(Place::Line, "Band", "Band");
 
-/// Number of frequencies in the band.
+/// Number of logarithmically spaced frequencies in the band.
 pub static POINTS: Setting = row(
     ["number of frequencies", "points", "--points"],
     "Number of logarithmically spaced frequencies in the band",
@@ -439,7 +439,7 @@ pub static POOLING: Setting = row(
 .at(Place::Beside, "pooling", "Pooling (degrees of freedom borrowed)")
 .digits(0.1, Digits::Significant);
 
-/// Minimum coherence of the frequencies that count.
+/// Minimum coherence of the frequencies that count in J, G and D.
 pub static COHERENCE: Setting = row(
     ["coherence threshold", "coherence_threshold", "--coherence"],
     "Least coherence γ² of measured responses that is used: off, on, or the least (on is 0.6); off: every frequency counts alike",
@@ -545,7 +545,7 @@ pub static SCHEDULED_QUANTITY: Setting = row(
 )
 .at(Place::Beside, "", "Scheduled quantity");
 
-/// Whether delays are scheduled too.
+/// Whether the schedule has delays too: never, always, or automatically (M11).
 pub static SCHEDULE_DELAYS: Setting = row(
     ["delays over airspeed", "schedule_delays", "--schedule-delays"],
     "Schedule the delays of the channels too, clamped to their bounds (M11); without a value: always",
@@ -607,7 +607,7 @@ pub static AIRSPEED_TOLERANCE: Setting = row(
 .at(Place::Line, "One airspeed", "Airspeed tolerance")
 .digits(0.1, Digits::Decimals(1));
 
-/// Scheduling variable besides airspeed.
+/// Scheduling variable besides airspeed: none, altitude or mass.
 pub static SECOND_VARIABLE: Setting = row(
     [
         "second variable",
@@ -673,10 +673,10 @@ pub static SETTINGS: [&Setting; 29] = [
 ];
 
 impl Settings {
-    /// Refuses values outside their ranges: returns the first, with its setting.
+    /// Checks every value against the range of its setting.
     ///
     /// # Errors
-    /// The setting, and why its value is refused.
+    /// The first setting with an invalid value, and why the value is refused.
     pub fn check(&self) -> Result<(), (&'static Setting, EditRefusal)> {
         for setting in SETTINGS {
             setting

@@ -9,7 +9,7 @@ use super::study::{Study, Variant};
 pub const LONGEST_VARIANT_NAME: usize = 60;
 
 impl Study {
-    /// Returns the variant with this name.
+    /// Returns the variant with this name; `None` if there is none.
     pub fn variant(&self, name: &str) -> Option<&Variant> {
         self.variants
             .iter()

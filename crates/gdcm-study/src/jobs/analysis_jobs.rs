@@ -21,8 +21,8 @@ use crate::stages::coupling_costs::with_couplings;
 use crate::stages::engine::Engine;
 use crate::stages::optima::solved;
 
-/// Complete proof of eq. (7) for a condition, where the budget of the interactive analysis was too
-/// small.
+/// Complete proof of optimality for eq. (7) in a condition, if the budget of the interactive
+/// analysis was too small.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProofJob {
     pub problem: Arc<Problem>,

@@ -121,7 +121,7 @@ fn poles_margins_and_what_happens_above_the_band_are_of_every_condition() {
             "feedback moves poles"
         );
         let margin = of.margin.unwrap();
-        // M16.4: 0.87 in the band of another dataset of the same helicopter.
+        // M16.4 states 0.87 in the band, for another dataset of the same helicopter.
         assert!(
             margin.least > 0.8 && margin.omega_rad_s >= band.min(),
             "{margin:?}"

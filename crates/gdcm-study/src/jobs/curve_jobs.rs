@@ -143,7 +143,7 @@ impl AcrossRole {
         Self::Identified,
     ];
 
-    /// Returns the role's name.
+    /// Returns the name of the role in lists and captions: "corrected".
     pub fn name(self) -> &'static str {
         match self {
             Self::Nominal => "nominal",

@@ -103,7 +103,7 @@ pub struct IdentifyJob {
 }
 
 impl IdentifyJob {
-    /// Creates this request's job.
+    /// Creates the job that identifies the models of `condition`.
     pub fn new(condition: ConditionId, request: IdentificationRequest) -> Self {
         Self {
             condition,

@@ -50,7 +50,7 @@ impl NotAssessed {
     }
 }
 
-/// A study's complete result.
+/// Complete result of a study: conditions, couplings, schedule, assessment and uncertainty.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Analysis {
     pub study: Study,
@@ -154,8 +154,8 @@ pub struct ConditionAnalysis {
 }
 
 impl ConditionAnalysis {
-    /// Returns the comparison of the models without couplings; the comparison itself where there
-    /// are none.
+    /// Returns the comparison of the models without couplings, which is [`Self::comparison`] if
+    /// there are none.
     pub fn before_couplings(&self) -> &Comparison {
         match &self.coupled {
             Some(coupled) => &coupled.before,

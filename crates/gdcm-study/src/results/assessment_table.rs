@@ -98,7 +98,7 @@ pub struct AssessedCondition {
     /// J against the identified representative before and after the correction, response by
     /// response.
     pub changes: PairTable<Option<CostChange>>,
-    /// Why a response has no J.
+    /// Responses without J, each with the reason.
     pub missing: Vec<(Pair, MissingCost)>,
 }
 

@@ -19,8 +19,7 @@ pub struct ConventionDoubt {
     pub convention: Convention,
     /// The responsible channel.
     pub channel: Channel,
-    /// Responses with the difference, among the on-axis responses, or all responses if none is
-    /// on-axis.
+    /// On-axis responses (any responses if none is on-axis) with the difference.
     pub pairs: Vec<Pair>,
     /// Whether every response of the channel shows the difference, not only `pairs`.
     pub all_responses: bool,

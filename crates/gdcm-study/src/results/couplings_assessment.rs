@@ -43,7 +43,7 @@ pub struct ConditionCouplings {
     pub margin: Option<LoopMargin>,
     /// `20 log10 |H~ - H| / |H|` at ten times the upper end of the band, response by response.
     pub above_band_db: PairTable<Option<f64>>,
-    /// J on-axis and off-axis when the condition is left out; `None` where it is in no fit.
+    /// J on-axis and off-axis when the condition is left out; `None` if it is not used in the fit.
     pub left_out: Option<CouplingCost>,
     /// Names of the other kept physics models with matrices for which the feedback loop cannot be
     /// closed, each with the reason.

@@ -165,7 +165,8 @@ impl BandwidthFinding {
         }
     }
 
-    /// Adds intervals from standard deviations: normal, and not below zero.
+    /// Adds intervals from standard deviations, by the normal distribution; the lower end is at
+    /// least zero.
     fn add_deviation_intervals(&mut self, bandwidth: &Bandwidth, level: f64) {
         let factor = student_quantile(level, f64::INFINITY);
         for (name, metric) in METRICS.into_iter().zip(metrics(bandwidth)) {

@@ -44,7 +44,7 @@ impl RequirementRole {
         }
     }
 
-    /// Returns the role's name.
+    /// Returns the name of the role in files, tables and captions: "physics".
     pub fn name(self) -> &'static str {
         match self {
             Self::Physics => "physics",

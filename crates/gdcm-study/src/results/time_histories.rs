@@ -147,7 +147,7 @@ pub struct HistoryFinding {
     /// Weighted rms error (M17.4) \[deg, deg/s, ft/s, ft/s^2\]; `None` where no output has such a
     /// unit.
     pub j_rms: Option<f64>,
-    /// Outputs excluded from `j_rms`, because they are no angle, speed or acceleration.
+    /// Outputs excluded from `j_rms`, because they have no such unit.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub j_rms_left_out: Vec<String>,
     /// Theil's coefficient by output name, 0 to 1; constant outputs have none.
@@ -260,12 +260,12 @@ impl TimeHistories {
             .collect()
     }
 
-    /// Returns the applied tolerance rows, in the table's order.
+    /// Returns the quantities of the applied tolerance rows, in the order of the table.
     pub fn quantities(&self) -> impl Iterator<Item = &str> {
         self.applied_rows().map(|row| row.quantity.as_str())
     }
 
-    /// Returns the applied tolerance rows except those for integrated outputs.
+    /// Returns the quantities of the applied tolerance rows without integrated outputs.
     pub fn measured_quantities(&self) -> impl Iterator<Item = &str> {
         self.quantities().filter(|quantity| {
             let rows = self.tolerance_table.rows();

@@ -42,7 +42,7 @@ pub(crate) const SUBSTITUTION_PROOF: ProofBudget = ProofBudget {
     bytes: 64_000_000,
 };
 
-/// Dependencies of the distances, besides the models.
+/// Inputs on which the distances depend, besides the models.
 #[derive(Clone, Debug, PartialEq)]
 struct MetricsKey {
     grid: GridKey,
@@ -60,7 +60,7 @@ impl MetricsKey {
     }
 }
 
-/// Dependencies of the representatives' comparison, besides the models.
+/// Inputs on which the comparison of the representatives depends, besides the models.
 #[derive(Clone, Debug, PartialEq)]
 struct ComparisonKey {
     metrics: MetricsKey,
@@ -70,7 +70,7 @@ struct ComparisonKey {
     couplings: Option<Arc<FittedCouplings>>,
 }
 
-/// Dependencies of the responses of coupled models, besides the models.
+/// Inputs on which the responses of coupled models depend, besides the models.
 #[derive(Clone, Debug, PartialEq)]
 struct CoupledKey {
     grid: GridKey,

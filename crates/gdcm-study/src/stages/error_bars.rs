@@ -32,7 +32,7 @@ use crate::results::uncertainty::{
     SecondVariableTest, Uncertainty,
 };
 
-/// Maximum number of compared differences.
+/// Maximum number of differences that are computed.
 const MOST_DIFFERENCES: usize = 20_000;
 
 impl Uncertainty {

@@ -18,7 +18,7 @@ const SHARE_OF_HOLES: f64 = 0.1;
 /// Maximum deviation of an even step from a multiple of the median step, relative to the median
 /// step.
 const JITTER: f64 = 0.2;
-/// Minimum share of even steps in an even clock.
+/// Minimum share of even steps for a clock to count as even.
 const SHARE_OF_EVEN_STEPS: f64 = 0.95;
 
 /// Chosen columns, and the clock to which they are resampled.
@@ -32,7 +32,7 @@ pub(super) struct Resampling {
     clock: CommonClock,
 }
 
-/// A channel with its column.
+/// A channel, and the column from which its samples are taken.
 struct ChannelColumn<'r> {
     channel: ChannelUse<'r>,
     /// Factor from column values to channel values, including sign and the chosen remedy.

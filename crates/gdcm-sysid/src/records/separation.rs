@@ -42,8 +42,8 @@ impl Separation {
     }
 }
 
-/// Whether a column is named like a record number and holds several long runs of a constant
-/// integer.
+/// Whether a column is named like a record number and consists of several runs of equal integers,
+/// each of at least [`Separation::FEWEST`] samples.
 fn numbers_records(column: &RecordColumn) -> bool {
     let name = folded_name(&column.name);
     if !NUMBERS.split(' ').any(|word| word == name) {
@@ -56,7 +56,7 @@ fn numbers_records(column: &RecordColumn) -> bool {
             .all(|run| run.len() >= Separation::FEWEST && column.values[run.start].fract() == 0.0)
 }
 
-/// Whether stamps restart, with enough samples in each part.
+/// Whether stamps restart, with at least [`Separation::FEWEST`] samples in each part.
 fn restarts(stamps: &[f64]) -> bool {
     let parts = rising_parts(stamps);
     parts.len() > 1 && parts.iter().all(|part| part.len() >= Separation::FEWEST)

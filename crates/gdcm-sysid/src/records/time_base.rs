@@ -78,7 +78,7 @@ impl TimeBase {
         }
     }
 
-    /// Returns the median step \[s\]; `None` without two stamps.
+    /// Returns the median step \[s\]; `None` with fewer than two stamps, and for topics.
     pub fn step_s(self, table: &RecordTable) -> Option<f64> {
         match self {
             TimeBase::SampleTime(step_s) => Some(step_s),
@@ -197,7 +197,7 @@ impl StampUnit {
     }
 }
 
-/// Returns the last word in a name with several words.
+/// Returns the last word of a name; `None` if the name is a single word.
 fn last_word(name: &str) -> Option<&str> {
     name.rsplit(|c: char| !c.is_alphanumeric())
         .next()

@@ -52,7 +52,8 @@ fn join_topics_of_log(tables: &[RecordTable], log: &str) -> RecordTable {
     joined
 }
 
-/// Combines the topics of a record side by side; tables without a time are omitted and reported.
+/// Combines the topics of a record side by side; tables without a time are omitted and listed in a
+/// note.
 fn join_topics(tables: &[RecordTable]) -> RecordTable {
     let source = common_source(tables);
     let mut joined = RecordTable {
@@ -131,9 +132,9 @@ fn common_name(tables: &[RecordTable]) -> &str {
     if name.is_empty() { "topics" } else { name }
 }
 
-/// Combines tables that are topics in one record: in each file or folder, tables that lack a
-/// channel and have all channels together. If they come from several logs, so that channels
-/// have several columns, each log is combined separately. Other tables are unchanged.
+/// Combines tables that are topics of one record: in each file or folder, tables that each lack a
+/// channel but together have all of them. If they come from several logs, so that channels have
+/// several columns, each log is combined separately. Other tables are unchanged.
 pub fn with_topics_joined(
     tables: Vec<RecordTable>,
     channels: &RecordChannels,

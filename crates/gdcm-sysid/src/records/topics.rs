@@ -390,7 +390,6 @@ pub enum TopicError {
         second: String,
         second_start_s: f64,
     },
-    /// The record would be too large: a stamp is wrong, or the requested rate is too high.
     #[error(
         "the joined record would have {0:.0} samples: a stamp is wrong, or the requested rate is too high"
     )]

@@ -2,7 +2,7 @@
 
 use gdcm_model::simulation::Signal;
 
-/// A caution as stored in files, with machine-readable subject.
+/// A caution as stored in files, with a machine-readable subject.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CautionNote {
     /// Stable code, for programs.

@@ -155,8 +155,8 @@ pub(crate) fn is_coarse(values: &[f64]) -> bool {
     coarseness(values).is_some_and(|steps| steps > COARSE)
 }
 
-/// Returns the smallest step between two values over the standard deviation; `None` if the channel
-/// is constant.
+/// Returns the smallest step between two values divided by the standard deviation; `None` if the
+/// channel is constant.
 pub(crate) fn coarseness(values: &[f64]) -> Option<f64> {
     let count = values.len().max(1) as f64;
     let mean = values.iter().sum::<f64>() / count;
@@ -176,7 +176,7 @@ pub(crate) fn coarseness(values: &[f64]) -> Option<f64> {
     }
 }
 
-/// Stairs in a channel.
+/// Stairs in a channel: equal consecutive samples although the channel moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stairs {
     /// Share of equal consecutive samples while the channel moves.

@@ -93,7 +93,8 @@ impl Instrument {
 }
 
 impl InstrumentPoint {
-    /// Divides the responses of the outputs to the reference by those of the inputs (step 2).
+    /// Divides the responses of the outputs to the reference by the responses of the inputs (step
+    /// 2).
     fn new(fit: &LocalFit, outputs: usize) -> Self {
         let gamma = fit.response();
         let inputs = gamma.nrows() - outputs;
@@ -101,7 +102,7 @@ impl InstrumentPoint {
         let gamma_u = gamma.rows(outputs, inputs).into_owned();
         let inverse = pseudo_inverse(&gamma_u);
         let response = &gamma_y * &inverse;
-        // [I, -G] Cov N [I, -G]'.
+        // `left` is [I, -G] in Cv = Re([I, -G] Cov N [I, -G]').
         let mut left = DMatrix::zeros(outputs, outputs + inputs);
         left.columns_mut(0, outputs).fill_with_identity();
         left.columns_mut(outputs, inputs).copy_from(&(-&response));

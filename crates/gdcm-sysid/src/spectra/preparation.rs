@@ -23,7 +23,7 @@ pub struct RecordUse {
     pub logged_s: f64,
     /// Total segment length \[s\].
     pub used_s: f64,
-    /// Gaps, by starting time.
+    /// Gaps, sorted by their start.
     pub gaps: Vec<Gap>,
     /// Inputs at their limit, each with its share of samples there \[%\]. They need no caution: a
     /// saturated actuator position is a valid input.
@@ -299,7 +299,7 @@ fn check_shape(record: &FlightRecord, preparation: &Preparation) -> Result<(), P
 
 /// Consecutive grid points at which every channel has a value.
 struct Run {
-    /// First grid index; an integer.
+    /// First grid index, an integer value.
     first: f64,
     /// Samples row by row: inputs, then outputs.
     rows: Vec<f64>,

@@ -28,7 +28,7 @@ pub enum Hold {
     FreshSamples,
 }
 
-/// Preparation of a channel.
+/// Preparation of a channel: delay to remove, kind of hold, plausible range.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ChannelPreparation {
     pub name: String,
@@ -69,7 +69,7 @@ impl ChannelPreparation {
     }
 }
 
-/// Preparation of flight records.
+/// Settings for the preparation of flight records.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Preparation {
     /// Inputs, in column order.
@@ -124,7 +124,7 @@ impl Preparation {
         })
     }
 
-    /// Returns a channel's settings.
+    /// Returns the settings of a channel; `None` if the channel does not exist.
     pub fn channel(&self, signal: &Signal) -> Option<&ChannelPreparation> {
         signal
             .role
@@ -132,7 +132,7 @@ impl Preparation {
             .get(signal.index)
     }
 
-    /// Returns a channel's settings for editing.
+    /// Returns the settings of a channel for editing; `None` if the channel does not exist.
     pub fn channel_mut(&mut self, signal: &Signal) -> Option<&mut ChannelPreparation> {
         signal
             .role
@@ -178,7 +178,7 @@ pub enum PreparationError {
     NoRecords,
     #[error("no {0} is given: identification needs at least one input and one output")]
     NoChannels(ChannelSide),
-    /// The channels of a record differ from the named ones.
+    /// The channels of a record differ from the channels in the settings.
     #[error("record {record} has {found} {role}s, not {named}")]
     ChannelsDiffer {
         record: String,

@@ -177,7 +177,7 @@ fn stairs_caution(
     if channel.hold != Hold::None {
         return None;
     }
-    // The stairs of a coarse output are its coarse steps.
+    // The stairs of a coarse output are its coarse steps, for which there is another caution.
     if signal.role == ChannelSide::Output && is_coarse(&values_of_all(records, signal)) {
         return None;
     }

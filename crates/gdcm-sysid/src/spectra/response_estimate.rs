@@ -58,7 +58,7 @@ impl EstimatePoint {
     /// Returns the maximum partial coherence of an input over the outputs, less the share that as
     /// many columns of noise would explain: `1 - (1 - c) (freedom + 3) / freedom`.
     ///
-    /// Without this correction, the maximum over many outputs is never small by chance.
+    /// Without this correction, the maximum over many outputs would hardly ever be small.
     fn greatest_coherence(&self, input: usize) -> f64 {
         let columns = TERMS as f64;
         let freedom = self.freedom.max(1) as f64;

@@ -125,7 +125,7 @@ mod tests {
         let slow = without_fast_modes(&model, number(&known["wmax"])).unwrap();
         assert_eq!(slow.order() as f64, number(&known["order"]));
         for (omega, expected) in numbers(&known["w"]).into_iter().zip(response(&known["H"])) {
-            // Independent numpy code; its file states the tolerance.
+            // Expected values from independent numpy code; their file states the tolerance.
             assert!((response_at(&slow, omega) - expected).camax() < 1e-9);
         }
     }

@@ -16,7 +16,7 @@ pub(crate) fn correction_source(correction: AssessedCorrection, airspeed_kt: f64
         AssessedCorrection::Own => "the condition's own optimum".to_owned(),
         AssessedCorrection::Scheduled => format!("the schedule {at}"),
         AssessedCorrection::ScheduledWithoutLeads => {
-            format!("the schedule {at}, its leads left out")
+            format!("the schedule {at}, without its leads")
         }
         AssessedCorrection::ScheduleOfOthers => {
             format!("the schedule of the other conditions {at}")
@@ -40,8 +40,8 @@ pub fn missing_cost_text(why: MissingCost) -> String {
         MissingCost::NetGainNotPositive => "the scheduled net gain is not positive".to_owned(),
         MissingCost::Undefined(why) => undefined_text(why),
         MissingCost::NominalUndefined => {
-            "the nominal model's response is zero, numerically nothing or not finite somewhere in \
-             the band"
+            "the nominal model's response is zero, numerically zero or not finite somewhere in \
+            the band"
                 .to_owned()
         }
     }

@@ -9,9 +9,9 @@ pub fn time_skew_text(skew: &ChannelTimeSkew, channel: &str, physics: &str) -> S
     let delay_ms = telling(s_to_ms(skew.delay_s.abs()), 0);
     let direction = if skew.delay_s < 0.0 { "early" } else { "late" };
     format!(
-        "{channel} seems to be logged {delay_ms} ms {direction} in all records: against the \
-         physics model \"{physics}\" its responses differ as by a delay, and the others do not. \
-         That delay can be taken out. Leave it where the sensor or servo is as slow as that: the \
-         correction has a delay for it"
+        "{channel} seems to be logged {delay_ms} ms {direction} in all records: compared with the \
+        physics model \"{physics}\", its responses differ by a delay, and the other responses do \
+        not. This delay can be removed. Keep it if the sensor or servo really has this lag: the \
+        correction then contains a delay for it"
     )
 }

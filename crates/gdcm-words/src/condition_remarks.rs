@@ -38,7 +38,7 @@ pub fn remarks(
     if !study.choice(result.condition.id()).scheduled {
         remarks.push(Remark::caution(
             "left-out-of-schedule",
-            "This condition is left out of the schedule: its gains do not count in it.",
+            "This condition is left out of the schedule: its gains do not enter the fit.",
         ));
     }
     for caution in &result.cautions {
@@ -83,7 +83,7 @@ fn sign_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     for (channel, role) in &study.signs {
         let name = channel.name_in(&study.dataset);
         let models = role.models();
-        let text = format!("{name} of {models} is turned: its sign is not that of the file.");
+        let text = format!("The sign of {name} is reversed in {models}, relative to the file.");
         remarks.push(Remark {
             turn: Some((*channel, None)),
             ..Remark::good("channel-turned", text)
@@ -165,7 +165,7 @@ fn coherence_remark(result: &ConditionAnalysis) -> Option<Remark> {
     }
     Some(Remark::good(
         "coherence-used",
-        format!("Coherence weighs J, G and D of {weighted} responses."),
+        format!("J, G and D of {weighted} responses are weighted by coherence."),
     ))
 }
 
@@ -195,7 +195,7 @@ fn worse_remark(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
         return None;
     }
     let text = format!(
-        "Held, yet farther from flight than without a correction: {}.",
+        "Held, but farther from flight than without a correction: {}.",
         texts.join(", ")
     );
     Some(Remark::caution("held-farther", text).repeated(Repeated::Farther(pairs)))
@@ -226,7 +226,7 @@ fn others_worse_remark(study: &Study, result: &ConditionAnalysis) -> Option<Rema
         "free-farther",
         format!(
             "{worse} of the {compared} responses that are not held are farther from flight than \
-             without."
+            without a correction."
         ),
     ))
 }
@@ -240,7 +240,7 @@ fn delay_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
         let accuracy = if result.delays.agreeing.is_empty() {
             "exactly"
         } else {
-            "as far as can be told"
+            "to the displayed precision"
         };
         let text = format!("All {held} held delays are matched {accuracy}.");
         return vec![Remark::good("delays-matched", text)];
@@ -280,7 +280,7 @@ fn needed_lead_remark(study: &Study, result: &ConditionAnalysis, held: usize) ->
         .map(|(pair, lead_ms)| format!("{} {lead_ms} ms", study.dataset.pair_name(*pair)))
         .collect();
     let text = format!(
-        "{subject} lead, because the physics model lags: {}. A delay cannot give it.",
+        "{subject} lead, because the physics model lags: {}. A delay cannot provide it.",
         leads.join(", ")
     );
     Some(Remark::caution("needs-lead", text).repeated(Repeated::NeedsLead(needed)))
@@ -304,8 +304,8 @@ pub fn details(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
     if study.settings.phase == PhaseCorrection::Lead {
         let residual_s = kkt_residual(&result.delay_problem, &result.delays);
         details.push(format!(
-            "The program of delays and leads is convex: KKT residual {residual_s:.0e} s, which \
-             proves its optimum."
+            "The optimisation of delays and leads is convex: the KKT residual of {residual_s:.0e} \
+            s proves that the solution is optimal."
         ));
     }
     let band_top = study.settings.band.max();

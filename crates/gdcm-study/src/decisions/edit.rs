@@ -112,7 +112,7 @@ impl Edit {
         match self {
             Edit::Reject(id) => format!("reject {}", name_of(id)),
             Edit::RejectBecause { model, .. } => format!("reject {}", name_of(model)),
-            Edit::SetReason(id, _) => format!("reason of {}", name_of(id)),
+            Edit::SetReason(id, _) => format!("reason for rejecting {}", name_of(id)),
             Edit::Restore(id) => format!("restore {}", name_of(id)),
             Edit::RestoreAll { condition } => format!("restore all (condition {condition})"),
             Edit::RejectEach(models) => format!("reject {} models", models.len()),
@@ -124,8 +124,11 @@ impl Edit {
             Edit::SetScheduled {
                 condition,
                 scheduled: true,
-            } => format!("schedule condition {condition}"),
-            Edit::SetScheduled { condition, .. } => format!("leave condition {condition} out"),
+            } => format!("use condition {condition} in the schedule"),
+            Edit::SetScheduled { condition, .. } => format!(
+                "leave condition {condition} out of \
+                the schedule"
+            ),
             Edit::SetHeldOut {
                 condition,
                 held_out: true,
@@ -146,8 +149,8 @@ impl Edit {
             Edit::SetSign { channel, of } => {
                 let name = channel.name_in(&study.dataset);
                 match of {
-                    Some(role) => format!("turn {name} ({})", role.word()),
-                    None => format!("turn {name} back"),
+                    Some(role) => format!("reverse the sign of {name} ({})", role.word()),
+                    None => format!("restore the sign of {name}"),
                 }
             }
             Edit::TakeModels(taken) => match taken.as_slice() {
@@ -155,7 +158,7 @@ impl Edit {
                 _ => format!("use identified models ({} conditions)", taken.len()),
             },
             Edit::ReturnModels { condition } => {
-                format!("put the file's identified models back (condition {condition})")
+                format!("restore the identified models of the file (condition {condition})")
             }
             Edit::SetRequirements(what, _) => format!("requirements: {what}"),
             Edit::KeepVariant { name } => format!("keep variant {name}"),

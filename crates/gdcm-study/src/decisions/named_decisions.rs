@@ -101,7 +101,7 @@ impl CarriedDecisions {
     fn take_requirements(&mut self, requirements: &Arc<RequirementSettings>) {
         self.study.requirements = Arc::clone(requirements);
         for decision in requirements.without_channel(&self.study.dataset) {
-            self.refuse(decision, "it stays in the study for another dataset");
+            self.refuse(decision, "kept in the study for use with another dataset");
         }
     }
 
@@ -131,7 +131,7 @@ impl CarriedDecisions {
                 of: Some(turned.of),
             }),
             None => self.refuse(
-                format!("turn {}", turned.channel),
+                format!("reverse the sign of {}", turned.channel),
                 "the dataset has no such channel",
             ),
         }

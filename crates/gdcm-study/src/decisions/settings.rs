@@ -284,8 +284,8 @@ impl Settings {
         let words = self.gain_source.words();
         if self.gain_source == GainSource::MeanOfPairs && self.phase == PhaseCorrection::Lead {
             return format!(
-                "{words}, without effect: with leads, G is that of what they leave of the \
-                 representatives"
+                "{words}, without effect: with leads, G is computed from the difference between \
+                the representatives that remains after the leads"
             );
         }
         words.to_owned()

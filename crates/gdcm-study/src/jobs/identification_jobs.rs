@@ -18,9 +18,12 @@ use crate::shared::Shared;
 /// Why no model can be identified.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NothingToIdentify {
-    #[error("there is no record to identify from: add some, or use those that are there")]
+    #[error(
+        "there is no record from which to identify models: add records, or mark records as \
+        used"
+    )]
     NoRecord,
-    #[error("every record is held out: at least one has to be left to identify from")]
+    #[error("every record is held out: leave at least one for the identification")]
     AllHeldOut,
 }
 

@@ -181,7 +181,7 @@ fn what_is_not_compared_is_said() {
     let others = found
         .missing
         .iter()
-        .filter(|of| of.why == "no flight record of it was given")
+        .filter(|of| of.why == "no flight record of this condition was given")
         .count();
     assert_eq!(others, analysis.conditions.len() - 1);
 

@@ -269,8 +269,8 @@ pub enum ConditionFailure {
     /// The two representatives have no response in common that is defined over the whole band.
     #[error(
         "no response of \"{physics}\" can be compared with \"{identified}\" over the whole band: \
-         each is zero, not finite or out of the range of gains somewhere; choose another \
-         representative, or another band"
+        each is zero, not finite or outside the range of computable gains at some frequency; \
+        choose another representative, or another band"
     )]
     NothingToCompare {
         physics: String,
@@ -280,8 +280,8 @@ pub enum ConditionFailure {
     },
     /// Every kept model is set aside (M5b).
     #[error(
-        "no {bundle} model is left to compare: each one kept lacks a measuring response that \
-         another model of the bundle has; restore one that has them all, or narrow the band"
+        "no {bundle} model is left to compare: each kept model lacks a compared response that \
+        another model of the bundle has; restore a model that has them all, or narrow the band"
     )]
     AllSetAside { bundle: BundleKind },
     #[error("the gains could not be computed: {0}")]

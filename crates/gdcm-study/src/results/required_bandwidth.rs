@@ -380,7 +380,7 @@ impl<'a> ConditionBandwidths<'a> {
         }
         self.coupled
             .get(&index)
-            .ok_or("the physics model has no matrices that couplings can be put into")
+            .ok_or("the physics model has no matrices to which couplings can be applied")
     }
 
     /// Computes a response's bandwidth and phase delay under a correction.
@@ -435,15 +435,24 @@ impl<'a> ConditionBandwidths<'a> {
         let why = match finding.role {
             RequirementRole::Physics | RequirementRole::Corrected => {
                 self.add_swap_intervals(finding, bandwidth, level);
-                "no other model of the bundles gives a spread"
+                "the bundles contain no other model from which to compute a spread"
             }
-            RequirementRole::Scheduled => "the schedule is not made again for each swap of models",
+            RequirementRole::Scheduled => "the schedule is not refitted for each swap of models",
             RequirementRole::Identified => {
                 finding.add_deviation_intervals(bandwidth, level);
                 match (&*self.identified.dynamics, self.identified.bands) {
-                    (_, Some(_)) => "the band of the identified model does not reach so far",
-                    (Dynamics::Measured(_), None) => "the measured response carries no band",
-                    (Dynamics::StateSpace(_), None) => "the identified model carries no band",
+                    (_, Some(_)) => {
+                        "the standard deviations of the identified model do not \
+                        extend to this frequency"
+                    }
+                    (Dynamics::Measured(_), None) => {
+                        "the measured response has no standard \
+                        deviations"
+                    }
+                    (Dynamics::StateSpace(_), None) => {
+                        "the identified model has no standard \
+                        deviations"
+                    }
                 }
             }
         };

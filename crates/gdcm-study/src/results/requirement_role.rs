@@ -59,10 +59,10 @@ impl RequirementRole {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RoleModelError {
     /// The model is a measured response, without matrices.
-    #[error("\"{model}\" is a measured response: without matrices it answers to no record")]
+    #[error("\"{model}\" is a measured response: without matrices it cannot be simulated")]
     Measured { model: String },
     /// The model is discrete-time; only continuous-time models are simulated.
-    #[error("\"{model}\" acts in discrete time: records are simulated in continuous time")]
+    #[error("\"{model}\" is a discrete-time model: only continuous-time models can be simulated")]
     Discrete { model: String },
     #[error(transparent)]
     NoSchedule(#[from] ScheduleError),

@@ -264,8 +264,8 @@ fn reversed_phases(analysis: &Analysis, findings: &[BandwidthFinding]) -> Vec<Re
             condition: phase.condition,
             text: format!(
                 "{} ({}): the phase of the attitude at the lowest frequency of the band lies \
-                 within 45 deg of +90 deg, as where the stick or the output counts the other way \
-                 round; the bandwidth is then wrong",
+                within 45 deg of +90 deg, which suggests that the stick or the output has the \
+                opposite sign; the bandwidth is then wrong",
                 analysis.study.dataset.pair_name(phase.pair),
                 phase.roles.join(", ")
             ),

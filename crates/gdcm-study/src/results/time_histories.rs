@@ -369,7 +369,7 @@ fn without_records(analysis: &Analysis, records: &[HistoryRecords]) -> Vec<Missi
         if analysis.condition(id).is_some() && !has_records {
             missing.push(missing_history(
                 Some(id),
-                "no flight record of it was given".to_owned(),
+                "no flight record of this condition was given".to_owned(),
             ));
         }
     }

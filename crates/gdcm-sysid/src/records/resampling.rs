@@ -109,14 +109,15 @@ impl Resampling {
             .map(|topic| format!("{} {} Hz", topic.name, telling(topic.rate_hz, 1)))
             .collect();
         let mut notes = vec![format!(
-            "resampled to {} Hz, every channel through the same low-pass at {} rad/s (logged: {})",
+            "resampled to {} Hz; every channel is filtered by the same low-pass at {} rad/s \
+            (logged: {})",
             telling(self.clock.rate_hz, 2),
             telling(self.clock.cutoff, 1),
             rates.join(", ")
         )];
         if !self.held.is_empty() {
             notes.push(format!(
-                "{}: taken as held from sample to sample, so moved half a sample later",
+                "{}: treated as held between samples, and therefore moved half a sample later",
                 self.held.join(", ")
             ));
         }
@@ -283,7 +284,7 @@ mod tests {
     fn topics_with_separate_clocks_become_a_record_with_a_note() {
         let table = RecordTable::new("log", vec![topic("M", 250.0, 0.3), topic("q", 100.0, 0.0)]);
         let notes = RecordLayout::proposed(&table, &channels(), &TimeWish::default()).notes;
-        let expected = "resampled to 50.93 Hz, every channel through the same low-pass at 80.0 rad/s (logged: M 250.0 Hz, q 100.0 Hz)";
+        let expected = "resampled to 50.93 Hz; every channel is filtered by the same low-pass at 80.0 rad/s (logged: M 250.0 Hz, q 100.0 Hz)";
         assert!(notes.iter().any(|note| note == expected), "{notes:?}");
         let flight = flight(&table, &channels());
         assert_eq!(flight.time_s[0], 0.3);

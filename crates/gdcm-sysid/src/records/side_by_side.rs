@@ -45,7 +45,7 @@ impl RecordTable {
             self.columns.remove(*column);
         }
         self.notes.push(format!(
-            "{} tables side by side, each behind its own stamps",
+            "{} tables side by side, each preceded by a stamp column",
             stamp_columns.len()
         ));
         self

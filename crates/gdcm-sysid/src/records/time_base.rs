@@ -160,7 +160,7 @@ impl StampUnit {
         if step > 0.0 && step < SHORTEST_STEP_S && is_plausible_step(step * SECONDS_A_DAY) {
             return Self::from_steps("days", SECONDS_A_DAY, step);
         }
-        Self::seconds(" (the file does not say the unit)".to_owned())
+        Self::seconds(" (the file does not state the unit)".to_owned())
     }
 
     /// Returns the time unit with this name, in its usual spelling; `None` if the name is not a
@@ -184,7 +184,7 @@ impl StampUnit {
         Self {
             name,
             seconds,
-            reason: format!(" (its steps are {step}: s would be too {fault})"),
+            reason: format!(" (its steps are {step}: seconds would be too {fault})"),
         }
     }
 
@@ -320,12 +320,12 @@ mod tests {
             (
                 None,
                 0.02,
-                "time from column \"t\", in s (the file does not say the unit)",
+                "time from column \"t\", in s (the file does not state the unit)",
             ),
             (
                 None,
                 20.0,
-                "time from column \"t\", in ms (its steps are 20.000: s would be too long)",
+                "time from column \"t\", in ms (its steps are 20.000: seconds would be too long)",
             ),
         ] {
             let table = table_with("t", unit, stamps(step));

@@ -83,7 +83,7 @@ fn join_topics(tables: &[RecordTable]) -> RecordTable {
     ));
     if !left_out.is_empty() {
         joined.notes.push(format!(
-            "left out, without a time: {}",
+            "left out, because they have no time: {}",
             shortened_list(&left_out)
         ));
     }

@@ -38,11 +38,12 @@ pub enum LocalPolynomialError {
     #[error("record {} differs from the first in its number of channels", .0 + 1)]
     ChannelsDiffer(usize),
     /// A line or a frequency is not finite, or a frequency is not greater than 0.
-    #[error("the spectra hold values that are not finite")]
+    #[error("the spectra contain values that are not finite")]
     NotFinite,
     /// Fewer lines than first-degree polynomials need.
     #[error(
-        "the records have {lines} spectral lines in the band where {needed} are needed: log longer, or leave out channels"
+        "the records have {lines} spectral lines in the band, but {needed} are needed: log \
+        longer, or leave out channels"
     )]
     TooFewLines {
         /// Number of lines in all records.

@@ -35,7 +35,8 @@ impl RecordUse {
     pub fn facts(&self) -> impl Iterator<Item = String> {
         self.inputs_at_limit.iter().map(|(signal, percent)| {
             format!(
-                "{}: {signal} is at its limit for {percent:.1} % of it, and used as it is",
+                "{}: {signal} is at its limit for {percent:.1} % of the record and is used as \
+                logged",
                 self.record
             )
         })

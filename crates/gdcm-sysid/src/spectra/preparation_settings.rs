@@ -198,12 +198,13 @@ pub enum PreparationError {
     },
     /// A delay or a hold is not finite or too long.
     #[error(
-        "{signal}: a delay or hold of {seconds} s is not possible, at most {LONGEST_SHIFT_S} s"
+        "{signal}: a delay or hold of {seconds} s is not possible; the maximum is \
+        {LONGEST_SHIFT_S} s"
     )]
     Shift { signal: Signal, seconds: f64 },
-    #[error("the shortest piece is {0} s: it must be greater than 0")]
+    #[error("minimum length of a piece: expected more than 0 s, found {0} s")]
     LeastSegment(f64),
-    #[error("gaps of {0} samples are too long to be bridged: at most {LONGEST_BRIDGE}")]
+    #[error("gaps of {0} samples are too long to be bridged; the maximum is {LONGEST_BRIDGE}")]
     Bridge(usize),
     #[error(
         "record {record}: time goes from {previous_s} s to {time_s} s in row {}. Sort the rows, or delete repeated rows",

@@ -32,7 +32,10 @@ pub enum RecordCaution {
         percent: f64,
     },
     /// A part between two gaps was left out because it is too short.
-    #[error("{record}: {length_s:.1} s from {start_s:.2} s were left out, too short between gaps")]
+    #[error(
+        "{record}: the {length_s:.1} s after {start_s:.2} s were left out, because they are \
+        too short between two gaps"
+    )]
     SegmentDropped {
         record: String,
         start_s: f64,
@@ -42,8 +45,8 @@ pub enum RecordCaution {
     RecordUnused(String),
     /// More than half of the consecutive samples are equal while the channel moves.
     #[error(
-        "{signal}: {percent:.0} % of consecutive samples are equal, it changes every {:.0} ms. State the cause: {}or a signal \
-         that really moves in steps (nothing done, as now)",
+        "{signal}: {percent:.0} % of consecutive samples are equal; it changes every {:.0} ms. \
+        State the cause: {}or a signal that really moves in steps (used as logged, as now)",
         1e3 * hold_s, hold_choices(signal.role, 1e3 * hold_s)
     )]
     SampleHold {
@@ -54,7 +57,7 @@ pub enum RecordCaution {
         hold_s: f64,
     },
     /// A value that is implausible in the channel's unit.
-    #[error("{signal} reaches {greatest:.3}, beyond {limit}: check its unit")]
+    #[error("{signal} reaches {greatest:.3}, above the plausible maximum {limit}: check its unit")]
     UnlikelyUnit {
         signal: Signal,
         /// Maximum modulus of the samples.
@@ -96,7 +99,8 @@ pub enum RecordCaution {
         seconds: f64,
     },
     #[error(
-        "{signal} is logged in coarse steps of {steps:.1} standard deviations; this had no effect in any test"
+        "{signal} is logged in coarse steps of {steps:.1} standard deviations; such steps had no \
+        effect in tests of the identification"
     )]
     Coarse {
         signal: Signal,
@@ -119,7 +123,7 @@ fn hold_choices(role: ChannelSide, hold_ms: f64) -> String {
     let half = 0.5 * hold_ms;
     let command = match role {
         ChannelSide::Input => {
-            format!("a command held and logged once a hold (moved {half:.0} ms later), ")
+            format!("a command that is held and logged once per hold (moved {half:.0} ms later), ")
         }
         ChannelSide::Output => String::new(),
     };

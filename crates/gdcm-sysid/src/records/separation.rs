@@ -191,7 +191,7 @@ fn rising_parts(stamps: &[f64]) -> Vec<Range<usize>> {
     parts
 }
 
-/// Whether half of [`Separation::FEWEST`] stamps from here on are below `last` or missing.
+/// Whether the first stamps, half of [`Separation::FEWEST`], are all below `last` or missing.
 fn stays_below(stamps: &[f64], last: f64) -> bool {
     stamps
         .iter()

@@ -419,7 +419,7 @@ fn a_folder_of_matrices_without_names_is_made_a_dataset_by_rules_from_the_shell(
         caution["text"]
             .as_str()
             .unwrap()
-            .contains("taken by their position")
+            .contains("assigned by position")
     };
     let cautions: Vec<&serde_json::Value> = said["cautions"]
         .as_array()

@@ -210,7 +210,7 @@ fn requirements_are_those_of_the_command_and_time_histories_stand_where_there_ar
         cells.contains(&format!("{rms:.2}"))
             && report.contains("J_rms over all records of a condition")
     );
-    assert!(report.contains("Conditions 7, 10: no flight record of it was given."));
+    assert!(report.contains("Conditions 7, 10: no flight record of this condition was given."));
 }
 
 #[test]
@@ -228,7 +228,7 @@ fn a_rejected_model_stands_with_the_words_that_the_analyst_typed() {
             && REPORT.contains(concat!("gdcm ", env!("CARGO_PKG_VERSION")))
     );
     assert!(
-        REPORT.contains("A delay cannot give it."),
+        REPORT.contains("A delay cannot provide it."),
         "what could not be matched is said in words"
     );
 }

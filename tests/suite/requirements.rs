@@ -219,7 +219,8 @@ fn the_models_of_the_example_answer_to_its_records_and_the_files_say_the_same() 
         "lead",
     ]);
     assert_eq!(ended.status, 0, "{ended:?}");
-    let without = "note: condition 7: no time histories: no flight record of it was given";
+    let without =
+        "note: condition 7: no time histories: no flight record of this condition was given";
     assert!(ended.error.contains(without), "{}", ended.error);
     assert!(
         ended

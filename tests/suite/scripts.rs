@@ -566,7 +566,7 @@ fn a_turned_channel_is_said_first_by_analyze_and_check_and_turned_by_the_option(
     let said = desk.gdcm(&["analyze", "turned.json", "--out", "turned"]);
     let out = on_one_line(&said.out);
     assert!(
-        out.contains(words) && out.contains("has the other sign. Turn it? (--sign Q=-1)"),
+        out.contains(words) && out.contains("has the opposite sign. Reverse it? (--sign Q=-1)"),
         "{out}"
     );
     assert!(

@@ -136,7 +136,7 @@ fn at_least_one_model_stays_in_each_bundle() {
     let notice = state(&window).notice.clone().expect("the refusal is shown");
     assert_eq!(notice.kind, NoticeKind::Trouble);
     assert!(
-        notice.text.contains("at least one must stay"),
+        notice.text.contains("at least one must remain"),
         "{}",
         notice.text
     );

@@ -87,7 +87,7 @@ fn cautions_stand_as_marks_at_their_places_and_their_buttons_act() {
     assert!(window.query_by_label("Cautions of flight 1").is_none());
     // Beyond the band of the sweeps.
     click(&mut window, "Page Response");
-    window.get_by_label_contains("⚠ shows nothing");
+    window.get_by_label_contains("⚠ no response shown");
     press(&mut window, "Fit flight 3 too");
     assert!(
         records(&window).rows.iter().all(|row| !row.guess.held_out) && records(&window).changed

@@ -308,7 +308,7 @@ fn an_input_at_its_limit_is_a_fact_and_no_caution() {
     records[0].inputs.apply(|u| *u = u.clamp(-0.9, 0.9));
     let facts = facts(&records);
     assert!(
-        matches!(&facts[..], [fact] if fact.contains("LON is at its limit for") && fact.ends_with("used as it is")),
+        matches!(&facts[..], [fact] if fact.contains("LON is at its limit for") && fact.ends_with("used as logged")),
         "{facts:?}"
     );
 }

@@ -314,14 +314,14 @@ fn a_result_says_what_coherence_did() {
     let weighed = said.iter().find(|remark| {
         remark
             .text
-            .contains("Coherence weighs J, G and D of 4 responses")
+            .contains("J, G and D of 4 responses are weighted by coherence")
     });
     assert_eq!(weighed.unwrap().kind, RemarkKind::Good);
 
     let off = words(&with(&noisy(), &[setting::COHERENCE.to(None::<f64>)]));
     assert!(
         off.iter()
-            .any(|words| words.contains("which is switched off")),
+            .any(|words| words.contains("coherence is switched off")),
         "{off:?}"
     );
 }

@@ -203,7 +203,7 @@ fn residues_of_differencing_count_as_zero_and_are_named() {
         assert_eq!(found.correction, zeros.condition(ONLY).unwrap().correction);
         let named = words(&analysis, found).concat();
         assert!(
-            named.contains("I1 → O0, I0 → O1 are numerically nothing"),
+            named.contains("I1 → O0, I0 → O1 are numerically zero"),
             "{named}"
         );
         let written = corrections(&analysis, "", &BTreeSet::from([ONLY]));

@@ -32,7 +32,7 @@ fn a_held_response_that_goes_farther_from_flight_is_named_with_both_costs() {
         let said = said(analysis, condition.id().0);
         let remark = said
             .iter()
-            .find(|remark| remark.text.starts_with("Held, yet farther from flight"));
+            .find(|remark| remark.text.starts_with("Held, but farther from flight"));
         for pair in result.held().marked() {
             let cost = result.cost[pair].unwrap();
             let name = format!("{} (J ", analysis.study.dataset.pair_name(pair));

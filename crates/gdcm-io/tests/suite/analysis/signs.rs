@@ -102,7 +102,7 @@ fn an_output_of_the_other_sign_is_found_and_turned_to_the_last_digit() {
         "{words}"
     );
     assert!(
-        words.ends_with("NZ of the identified models has the other sign. Turn it?"),
+        words.ends_with("NZ of the identified models has the opposite sign. Reverse it?"),
         "{words}"
     );
     // Before any delay, zero or mode is blamed.
@@ -128,7 +128,7 @@ fn an_output_of_the_other_sign_is_found_and_turned_to_the_last_digit() {
     assert!(
         said[0]
             .text
-            .starts_with("NZ of the identified models is turned")
+            .starts_with("The sign of NZ is reversed in the identified models")
             && said[0].turn == Some((NZ, None))
     );
 
@@ -257,6 +257,6 @@ fn signs_go_with_the_decisions_by_the_names_of_channels() {
     let (_, not_applied) = unknown.applied_to(study_of_example().dataset);
     assert_eq!(
         dataset_difference_text(&not_applied[0]),
-        "a decision no longer applies: turn AZ: the dataset has no such channel"
+        "a decision no longer applies: reverse the sign of AZ: the dataset has no such channel"
     );
 }

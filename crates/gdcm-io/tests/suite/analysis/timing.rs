@@ -89,7 +89,7 @@ fn a_model_sampled_too_slowly_for_the_band_is_set_aside_and_the_reason_said() {
         .iter()
         .map(|caution| caution_text(caution, name))
         .collect();
-    let words = "it is of discrete time, T = 0.5 s, and has no response from π/T = 6.2832 rad/s on";
+    let words = "it is a discrete-time model with T = 0.5 s, and has no response from π/T = 6.2832 rad/s upwards";
     assert!(
         said.iter()
             .any(|said| said.contains("\"slow\" is set aside") && said.contains(words)),

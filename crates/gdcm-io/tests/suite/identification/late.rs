@@ -100,12 +100,12 @@ fn words_say_what_is_seen_and_what_else_it_may_be() {
     let words = time_skew_text(&late, "Q", "nominal");
     assert!(
         words.starts_with(
-            "Q seems to be logged 40 ms early in all records: against the physics model \"nominal\""
+            "Q seems to be logged 40 ms early in all records: compared with the physics model \"nominal\""
         ),
         "{words}"
     );
     assert!(
-        words.contains("Leave it where the sensor or servo is as slow as that"),
+        words.contains("Keep it if the sensor or servo really has this lag"),
         "{words}"
     );
 }

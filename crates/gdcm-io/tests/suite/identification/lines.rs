@@ -411,7 +411,7 @@ fn a_short_record_has_a_response_and_one_of_a_few_lines_says_so() {
     assert!(
         refused
             .to_string()
-            .contains("9 spectral lines in the band where 12 are needed"),
+            .contains("9 spectral lines in the band, but 12 are needed"),
         "{refused}"
     );
 }

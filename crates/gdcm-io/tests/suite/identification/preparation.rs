@@ -298,14 +298,14 @@ fn stairs_in_an_input_raise_a_caution_with_three_choices() {
     let mut settings = settings();
     let text = words(&prepared(&record, &settings).cautions);
     assert!(
-        text.contains("LON: 80 % of consecutive samples are equal, it changes every 100 ms"),
+        text.contains("LON: 80 % of consecutive samples are equal; it changes every 100 ms"),
         "{text}"
     );
     for choice in [
         "50 ms later",
         "fresh samples",
         "50 ms earlier",
-        "nothing done",
+        "used as logged",
     ] {
         assert!(text.contains(choice), "{choice}: {text}");
     }

@@ -1,5 +1,5 @@
-//! Sentences and tables about couplings: diagnosis, benefit and cost (M16.4), and the values as
-//! tables (M16.5).
+//! Sentences about couplings (diagnosis, benefit and cost, M16.4), and tables of their values
+//! (M16.5).
 
 use std::collections::BTreeMap;
 
@@ -20,13 +20,13 @@ use gdcm_study::{Analysis, CouplingCorrection};
 use crate::remark::{Remark, RemarkKind};
 use crate::table::Table;
 
-/// Maximum number of entries that are reported from each matrix, largest first.
+/// Maximum number of entries reported per matrix; the largest come first.
 const MOST_REPORTED: usize = 3;
-/// Minimum share that is reported.
+/// Smaller shares \[-\] are not reported.
 const NOTHING: f64 = 0.005;
 
-/// Returns the remarks on the couplings of an analysis: why there are none; or their meaning,
-/// benefit and cost, if they were assessed.
+/// Returns the remarks on the couplings of an analysis: the reason why requested couplings are
+/// unavailable, or the remarks of [`coupling_remarks`]; empty if none were requested.
 pub fn analysis_coupling_remarks(analysis: &Analysis) -> Vec<Remark> {
     match (analysis.asked_couplings(), &analysis.coupling_assessment) {
         (Err(why), _) => vec![no_couplings(&why)],
@@ -35,8 +35,8 @@ pub fn analysis_coupling_remarks(analysis: &Analysis) -> Vec<Remark> {
     }
 }
 
-/// Returns the remark that requested couplings are unavailable, so that all results are without
-/// couplings.
+/// Returns the remark that the requested couplings are unavailable, with the reason `why`; all
+/// results are then computed without couplings.
 pub fn no_couplings(why: &str) -> Remark {
     Remark::trouble(
         "no-couplings",
@@ -44,7 +44,7 @@ pub fn no_couplings(why: &str) -> Remark {
     )
 }
 
-/// Returns all remarks: diagnosis, benefit, cost, and cautions.
+/// Interprets the largest entries, then adds the remarks of [`coupling_consequences`].
 pub fn coupling_remarks(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Remark> {
     let mut remarks: Vec<Remark> = diagnosis(assessment, dataset)
         .into_iter()
@@ -54,7 +54,7 @@ pub fn coupling_remarks(assessment: &CouplingsAssessment, dataset: &Dataset) -> 
     remarks
 }
 
-/// Returns the benefit, the cost, and the cautions.
+/// Returns remarks on the benefit and the cost of the couplings, and cautions about them.
 pub fn coupling_consequences(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Remark> {
     let mut remarks = verdict(assessment);
     remarks.extend(price(assessment, dataset));
@@ -90,7 +90,8 @@ fn diagnosis(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<String>
     words
 }
 
-/// Names the origin of the J by which the benefit is judged.
+/// Names the source of the J by which the benefit is judged: conditions left out of the fit, or the
+/// schedule.
 fn cost_source(assessment: &CouplingsAssessment) -> &'static str {
     if assessment.costs.left_out.is_some() {
         "conditions left out"
@@ -99,8 +100,8 @@ fn cost_source(assessment: &CouplingsAssessment) -> &'static str {
     }
 }
 
-/// Judges whether couplings are worthwhile: from J of conditions left out, or under the schedule
-/// where none was left out.
+/// Compares J without and with couplings, for conditions left out of the fit or, if none was left
+/// out, under the schedule. Adds a caution if the couplings are not worthwhile.
 fn verdict(assessment: &CouplingsAssessment) -> Vec<Remark> {
     let cost = assessment.deciding_cost();
     let (Some(with), Some(without)) = (cost.with.others, cost.without.others) else {
@@ -134,8 +135,8 @@ fn verdict(assessment: &CouplingsAssessment) -> Vec<Remark> {
     remarks
 }
 
-/// Returns the hint that recommends these couplings to a study that does not use them; `None` where
-/// they are not worthwhile, or no condition was left out of the fit.
+/// Returns the hint that recommends these couplings to a study that does not use them; `None` if
+/// they are not worthwhile, or if no condition was left out of the fit.
 pub fn coupling_offer(assessment: &CouplingsAssessment) -> Option<String> {
     let cost = assessment
         .costs
@@ -149,7 +150,7 @@ pub fn coupling_offer(assessment: &CouplingsAssessment) -> Option<String> {
     ))
 }
 
-/// Describes the effect of the couplings above the band, the pole shifts in the band, and the
+/// Describes the change in response above the band, the pole shifts within the band, and the
 /// meaning of the error bars.
 fn price(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Remark> {
     let mut remarks = Vec::new();
@@ -167,7 +168,7 @@ fn price(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Remark> {
     remarks
 }
 
-/// Describes the largest on-axis change above the band.
+/// Describes the largest change of an on-axis response above the band.
 fn above_band_words(assessment: &CouplingsAssessment, dataset: &Dataset) -> Option<String> {
     let changes = assessment.conditions.iter().filter_map(|(id, condition)| {
         let (pair, change_db) = condition.most_changed_above_band(dataset.on_axis())?;
@@ -217,7 +218,8 @@ fn farthest_pole_words(assessment: &CouplingsAssessment) -> Option<String> {
     }
 }
 
-/// Returns the cautions that are important before couplings are used.
+/// Returns the cautions to consider before couplings are used, such as newly unstable poles, a loop
+/// that is close to ringing, and entries that the data do not determine.
 pub fn coupling_cautions(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Remark> {
     let mut remarks = unstable_pole_remarks(assessment);
     if let Some(text) = ringing_words(assessment) {
@@ -257,7 +259,8 @@ pub fn coupling_cautions(assessment: &CouplingsAssessment, dataset: &Dataset) ->
     remarks
 }
 
-/// Lists the outputs that cannot be fed back.
+/// Lists the outputs that cannot be fed back, because their response to some input is missing in
+/// every condition; `None` if there are none.
 fn not_fed_back_words(dataset: &Dataset, outputs: &[usize]) -> Option<String> {
     if outputs.is_empty() {
         return None;
@@ -272,8 +275,8 @@ fn not_fed_back_words(dataset: &Dataset, outputs: &[usize]) -> Option<String> {
     ))
 }
 
-/// Lists the conditions whose poles are unknown, then the models to which the couplings cannot be
-/// applied.
+/// Returns a caution for each condition whose poles could not be computed, then a caution for each
+/// model to which the couplings cannot be applied.
 fn unknown_pole_remarks(assessment: &CouplingsAssessment) -> Vec<Remark> {
     let mut remarks = Vec::new();
     for (id, condition) in &assessment.conditions {
@@ -293,7 +296,8 @@ fn unknown_pole_remarks(assessment: &CouplingsAssessment) -> Vec<Remark> {
     remarks
 }
 
-/// Lists the newly unstable poles of the representatives, then those of the other kept models.
+/// Returns a remark on newly unstable poles of the physics representatives, then a remark on newly
+/// unstable poles of the other kept physics models.
 fn unstable_pole_remarks(assessment: &CouplingsAssessment) -> Vec<Remark> {
     let mut remarks = Vec::new();
     for is_representative in [true, false] {
@@ -329,7 +333,7 @@ fn unstable_pole_remarks(assessment: &CouplingsAssessment) -> Vec<Remark> {
     remarks
 }
 
-/// Reports how many conditions can be left out, unless all can.
+/// Reports how many conditions can be left out of the fit; `None` if all can.
 fn partly_left_out_words(assessment: &CouplingsAssessment) -> Option<String> {
     let all = assessment.fitted.problem.conditions.len();
     let known = assessment.left_out_fits.len();
@@ -342,7 +346,8 @@ fn partly_left_out_words(assessment: &CouplingsAssessment) -> Option<String> {
     ))
 }
 
-/// Reports the minimum stability margin of the loop, where it is close to ringing.
+/// Reports the minimum singular value of the loop over all conditions; `None` unless it is close to
+/// ringing.
 fn ringing_words(assessment: &CouplingsAssessment) -> Option<String> {
     let margins = assessment
         .conditions
@@ -367,12 +372,12 @@ fn counted(conditions: usize) -> String {
     format!("{conditions} condition{plural}")
 }
 
-/// Returns whether a channel is an angular rate, by its unit.
+/// Returns whether the unit of a channel belongs to an angular rate.
 fn is_rate(channel: &Channel) -> bool {
     ["deg/s", "rad/s", "°/s"].contains(&channel.unit.trim())
 }
 
-/// Returns whether a channel is an acceleration, by its unit.
+/// Returns whether the unit of a channel belongs to an acceleration.
 fn is_acceleration(channel: &Channel) -> bool {
     matches!(
         channel.unit.trim(),
@@ -415,7 +420,7 @@ fn feedback_words(dataset: &Dataset, feedback: &FeedbackShare) -> String {
     let input = &dataset.inputs()[feedback.input];
     let output = &dataset.outputs()[feedback.output];
     let meaning = feedback_meaning(dataset, feedback);
-    // A share is dimensionless only between channels with the same unit.
+    // A percentage is meaningful only between channels with the same unit.
     let moved = &dataset.inputs()[feedback.moved];
     let share = if moved.unit == input.unit {
         format!("{} % of {}", percent(feedback.share), moved.name)
@@ -440,7 +445,7 @@ fn feedback_words(dataset: &Dataset, feedback: &FeedbackShare) -> String {
     )
 }
 
-/// Names the physical meaning of a feedback entry, from the unit of its output.
+/// Names the physical meaning of a feedback entry, derived from the unit of its output.
 fn feedback_meaning(dataset: &Dataset, feedback: &FeedbackShare) -> &'static str {
     let is_on_axis = |output: usize| dataset.on_axis()[Pair::new(output, feedback.input)];
     if !is_on_axis(feedback.output) {
@@ -518,7 +523,7 @@ fn pole_words(pole: Complex<f64>) -> String {
     format!("{}{imaginary} rad/s", signed(pole.re, 3))
 }
 
-/// Lists the entries that the data do not determine.
+/// Lists the entries that the data do not determine; `None` if there are none.
 fn undetermined_words(dataset: &Dataset, unknowns: &[Unknown]) -> Option<String> {
     if unknowns.is_empty() {
         return None;
@@ -588,9 +593,9 @@ fn cost_cells(name: &str, cost: CouplingCost) -> [String; 5] {
     ]
 }
 
-/// Tabulates the mixing at the mean airspeed, and the feedback if there is any: one row for each
-/// input, with its shares from inputs and outputs. An entry that does not exceed its error bar is
-/// in brackets.
+/// Tabulates the mixing at the mean airspeed and, unless it is zero, the feedback: a row for each
+/// receiving input, a column for each input or output that acts on it. An entry that does not
+/// exceed its error bar is in brackets.
 pub fn coupling_matrix_tables(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Table> {
     let airspeed_kt = assessment.mean_airspeed_kt();
     let (inputs, outputs) = dataset.names_of_channels();
@@ -618,7 +623,7 @@ pub fn coupling_matrix_tables(assessment: &CouplingsAssessment, dataset: &Datase
     tables
 }
 
-/// Adds units to names: "LON [%]".
+/// Appends the unit of each channel to its name: "LON [%]".
 fn with_units(names: &[String], channels: &[Channel]) -> Vec<String> {
     names
         .iter()
@@ -659,7 +664,8 @@ fn entry_words(entry: &CouplingEntry) -> String {
     }
 }
 
-/// Tabulates the poles of each physics representative before and after, largest shift first.
+/// Tabulates the poles of each physics representative without and with couplings, largest shift
+/// first.
 pub fn pole_table(assessment: &CouplingsAssessment) -> Table {
     let columns = [
         "condition",

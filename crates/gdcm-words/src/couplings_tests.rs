@@ -1,4 +1,4 @@
-//! Sentences about the couplings of the example.
+//! Tests of the sentences about the couplings in the example.
 
 use std::sync::{Arc, LazyLock};
 
@@ -10,7 +10,7 @@ use crate::couplings::{coupling_cautions, coupling_offer, coupling_remarks};
 use crate::example_tests::EXAMPLE;
 use crate::remark::RemarkKind;
 
-/// The assessment of mixing and feedback of the reference dataset.
+/// Assessment of mixing and feedback for the reference dataset.
 static ASSESSED: LazyLock<Arc<CouplingsAssessment>> = LazyLock::new(|| {
     Engine::default()
         .assess_couplings(

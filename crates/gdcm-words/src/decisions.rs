@@ -1,5 +1,4 @@
-//! Decisions in words: differences between two sets of decisions, and between two states of a
-//! dataset.
+//! Differences between two sets of decisions, and between two states of a dataset, in words.
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -16,9 +15,8 @@ use gdcm_study::decisions::setting::SETTINGS;
 pub struct DecisionDifference {
     /// Subject of the decision: "α of the gains", "LON → Q", "nominal (condition 10)".
     pub what: String,
-    /// The decision before: "1", "held", "rejected".
+    /// Previous value: "1", "held", "rejected".
     pub before: String,
-    /// The decision after.
     pub after: String,
 }
 
@@ -51,7 +49,7 @@ impl YesNo {
 }
 
 /// Lists the decisions in which `after` differs from `before`: settings, responses, then condition
-/// by condition. Both studies have the same dataset. Variants are not compared.
+/// by condition. Both studies must have the same dataset. Variants are not compared.
 pub fn decision_differences(before: &Study, after: &Study) -> Vec<DecisionDifference> {
     let mut differences = setting_differences(before, after);
     let held = YesNo {
@@ -206,7 +204,8 @@ fn representative_words(choice: &BundleChoice) -> String {
     }
 }
 
-/// Describes a difference between a dataset and the dataset with which a study was made.
+/// Describes a difference between a dataset and an earlier state of it, with which a study was
+/// made.
 pub fn dataset_difference_text(difference: &Difference) -> String {
     match difference {
         Difference::AnotherFile { expected, found } => format!(

@@ -1,5 +1,5 @@
-//! Sentences about lead filters: the lead that each response needs, the filters, and the checks
-//! before they are used (M15).
+//! Sentences about lead filters: the lead that each response needs, the filters, and the checks to
+//! make before they are used (M15).
 
 use gdcm_method::correction::{Channel, LeadPrice};
 use gdcm_method::uncertainty::Scalar;
@@ -13,7 +13,8 @@ use gdcm_study::{ConditionAnalysis, PhaseCorrection, Study};
 use crate::missed_targets::missed_target_texts;
 use crate::remark::{Remark, RemarkKind, Repeated};
 
-/// Maximum difference \[s\] between the two values of D at which they describe a delay.
+/// Maximum difference \[s\] between the two values of D, by eq. (9) and over the band, at which the
+/// missing phase can be due to a delay.
 const APART_S: f64 = 0.02;
 /// Minimum absolute signed delay \[s\] that needs a correction.
 const NOTHING_S: f64 = 2e-3;
@@ -22,8 +23,8 @@ const NOTHING_DB: f64 = 0.05;
 
 /// Describes the lead of responses and channels: "P from LAT wants 65 ms of lead over the band: 24
 /// on P, 41 on LAT"; "LAT: as if a servo of 17 rad/s were replaced by one of 36 rad/s; +12.4 dB
-/// above the band". If `uncertainty` is given, the lead of a response has its error bar: "65 ± 4
-/// ms" (M13).
+/// above the band". With `uncertainty`, the lead of a response has its error bar: "65 ± 4 ms"
+/// (M13).
 pub fn lead_words(
     study: &Study,
     result: &ConditionAnalysis,
@@ -60,7 +61,7 @@ pub fn lead_words(
     words
 }
 
-/// Describes the lead or delay that a response needs, and the parts of its two channels.
+/// Describes the lead or delay that a response needs, and the contributions of its two channels.
 fn wanted_lead_words(
     study: &Study,
     result: &ConditionAnalysis,
@@ -116,7 +117,7 @@ fn half_width_words(
 }
 
 /// Describes the number of states that the leads add, and the frequency up to which the corrected
-/// model is valid.
+/// model is valid; `None` without leads.
 pub fn lead_limit_words(result: &ConditionAnalysis) -> Option<String> {
     let leads = &result.compensated.as_ref()?.leads;
     let limit = number(LeadPrice::of(leads)?.limit_rad_s);
@@ -141,7 +142,7 @@ pub fn servo_words(filter: LeadFilter) -> String {
     )
 }
 
-/// Returns the cautions about leads in words; empty where leads are not requested (M15.6).
+/// Returns the cautions about leads as sentences; empty if leads are not requested (M15.6).
 pub fn lead_cautions(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
     if result.compensated.is_none() {
         return Vec::new();
@@ -153,8 +154,8 @@ pub fn lead_cautions(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
         .collect()
 }
 
-/// Returns the remarks on leads and on the checks before they are used. For a study without leads,
-/// they only report whether leads would help.
+/// Returns the remarks on leads, including the checks to make before they are used. For a study
+/// without leads, they only report whether leads would help.
 pub(crate) fn lead_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let mut remarks: Vec<Remark> = common_lead(result).into_iter().collect();
     if study.settings.phase == PhaseCorrection::Lead {
@@ -166,7 +167,8 @@ pub(crate) fn lead_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Rem
     remarks
 }
 
-/// Reports J over the constrained responses without and with leads, where leads are recommended.
+/// Reports the mean J over the constrained responses without and with leads; `None` unless leads
+/// are recommended.
 fn offered_leads(result: &ConditionAnalysis) -> Option<Remark> {
     let offer = result.offer?;
     let without = telling(offer.without, 0);
@@ -183,7 +185,8 @@ fn offered_leads(result: &ConditionAnalysis) -> Option<Remark> {
     })
 }
 
-/// Reports that all constrained responses need about the same lead, and what to check first.
+/// Reports that all constrained responses need about the same lead, and which causes to check
+/// first.
 fn common_lead(result: &ConditionAnalysis) -> Option<Remark> {
     let mut wanted_s: Vec<f64> = result
         .held()
@@ -209,8 +212,8 @@ fn common_lead(result: &ConditionAnalysis) -> Option<Remark> {
     Some(Remark::caution("common-lead", text).repeated(Repeated::CommonLead(lead_ms)))
 }
 
-/// Reports whether every constrained response gets the lead that it needs; if not, which does not
-/// and why.
+/// Reports whether every constrained response gets the lead that it needs; otherwise names the
+/// responses that do not, with the reason.
 fn achieved(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let delays = &result.delays;
     let is_negligible = delays
@@ -238,7 +241,8 @@ fn achieved(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
         .collect()
 }
 
-/// Reports the gain increase of the lead filters within the band; the channel gains compensate it.
+/// Reports the gain increase within the band due to the lead filters, for which the channel gains
+/// compensate.
 fn raised_gain(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     let compensated = result.compensated.as_ref()?;
     let rises = result.held().marked().filter_map(|pair| {
@@ -259,7 +263,8 @@ fn raised_gain(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
 }
 
 /// Reports the constrained responses whose two values of D are far apart, which indicates a zero or
-/// a mode. Responses with a suspected sign difference are excepted: half a turn has another cause.
+/// a mode in the band. Responses with a suspected sign difference are excepted, because their half
+/// turn of phase has another cause.
 fn not_of_a_delay(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     let delta = &result.comparison.delta;
     let mut apart = Vec::new();

@@ -22,7 +22,7 @@ use gdcm_study::results::time_histories::TimeHistories;
 use crate::table::Table;
 use crate::time_histories::{cost_cells, cost_heads, output_weights_text, percent_rounded_down};
 
-/// Heading of the modulus.
+/// Heading of the columns with the modulus of a pole.
 const MODULUS: &str = "|\u{3bb}| [rad/s]";
 
 /// Tabulates every on-axis bandwidth and phase delay, with cautions.
@@ -57,7 +57,7 @@ pub fn bandwidth_table(requirements: &Requirements, dataset: &Dataset) -> Table 
     table
 }
 
-/// Returns the cautions about a bandwidth, or why it has no value.
+/// Returns the cautions about a bandwidth, or the reason why it has no value.
 fn bandwidth_remark(finding: &BandwidthFinding) -> String {
     let mut words = Vec::new();
     let absent = finding
@@ -229,8 +229,8 @@ fn summary_cells(finding: &SummaryFinding) -> Vec<String> {
     ]
 }
 
-/// Adds the identified models. They are the reference of the other models: only their time
-/// histories have results.
+/// Adds rows for the identified models. These are the reference of the other models, so that only
+/// their time histories have results.
 fn add_identified_rows(table: &mut Table, histories: &TimeHistories) {
     let role = RequirementRole::Identified;
     for finding in &histories.records {
@@ -265,7 +265,7 @@ pub fn summary_of_row<'a>(
         .find(|finding| finding.condition.to_string() == *condition && finding.role.name() == role)
 }
 
-/// Comparison of every condition's corrected model with the identified model.
+/// Table that compares every condition's corrected model with the identified model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RequirementsOverview {
     /// One row for each requirement, with its limit; one column for each condition; a dash where
@@ -384,7 +384,7 @@ impl RequirementsOverview {
         });
     }
 
-    /// Adds the share of time inside each tolerance, except those of integrated outputs.
+    /// Adds the share of time inside each tolerance, except tolerances of integrated outputs.
     fn add_histories(
         &mut self,
         histories: &TimeHistories,
@@ -450,7 +450,7 @@ fn has_bandwidth(requirements: &Requirements, pair: Pair) -> bool {
     })
 }
 
-/// Counts the modes of the corrected model beyond their tolerance; `None` where no mode with a
+/// Counts the modes of the corrected model beyond their tolerance; `None` if no mode with a
 /// tolerance is determined.
 fn modes_outside(requirements: &Requirements, id: ConditionId) -> Option<Judged> {
     let mut within = 0;
@@ -459,8 +459,8 @@ fn modes_outside(requirements: &Requirements, id: ConditionId) -> Option<Judged>
         if mode.condition != id {
             continue;
         }
-        // Gains and delays move no pole: without couplings, the corrected model has the poles of
-        // the physics model.
+        // Gains and delays do not move poles: without couplings, the corrected model has the poles
+        // of the physics model.
         match mode.corrected_verdict.unwrap_or(mode.verdict) {
             ModeVerdict::Within => within += 1,
             ModeVerdict::Outside => outside += 1,

@@ -238,7 +238,7 @@ pub fn record_history_table(history: &RecordHistory) -> Table {
     table
 }
 
-/// Formats a share in percent, rounded down: 100 is reached only by the whole.
+/// Formats a share in percent, rounded down: only the whole is displayed as 100.
 pub(crate) fn percent_rounded_down(share: Option<f64>) -> String {
     decimals_or_dash(share.map(|share| (1e3 * share).floor() / 10.0), 1)
 }

@@ -64,7 +64,8 @@ pub fn differences_summary(uncertainty: &Uncertainty) -> String {
 }
 
 /// Describes the test for a second variable: "from the lowest to the highest altitude −7 %: not
-/// needed; an effect smaller than ± 6 % could not have been seen".
+/// needed; an effect smaller than ± 6 % could not have been seen"; or the reason why it could not
+/// be tested.
 pub fn second_variable_text(test: &SecondVariableTest) -> String {
     let variable = test.variable.name();
     let effect = match &test.effect {
@@ -87,7 +88,7 @@ fn need(test: &SecondVariableTest) -> &'static str {
     if test.needed { "needed" } else { "not needed" }
 }
 
-/// Formats a value with this number of decimals, or the placeholder.
+/// Formats a value with this number of decimals; the placeholder if it is missing.
 fn cell(figure: Option<f64>, decimals: usize) -> String {
     match figure {
         Some(figure) => format!("{figure:.decimals$}"),
@@ -109,7 +110,7 @@ fn probability(p: Option<f64>) -> String {
 }
 
 /// Tabulates the differences in net gain at equal airspeed, in descending order of their ratio to
-/// the expected difference; returns the difference of each row too.
+/// the expected difference; also returns the differences in row order.
 pub fn difference_table(
     dataset: &Dataset,
     uncertainty: &Uncertainty,

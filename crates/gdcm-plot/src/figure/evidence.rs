@@ -1,4 +1,4 @@
-//! Contributions to the scatter in net gains (M13.5).
+//! Contributions to the scatter of net gains (M13.5).
 
 use gdcm_method::uncertainty::VarianceDecomposition;
 use gdcm_model::dataset::Pair;
@@ -14,22 +14,23 @@ use super::marks::{Bars, DotShape, Dots, Intervals, Note, Place};
 
 /// Bar width; positions on the axis are 1 apart.
 const BAR: f64 = 0.56;
-/// Offset between dots of the same position.
+/// Offset between dots at the same axis position.
 const APART: f64 = 0.24;
 /// Confidence interval of the unexplained part.
 const INTERVAL: Stroke = Stroke::solid(Color::of(Hue::Nominal).tint(50), 2.4);
-/// The axis includes interval ends up to this multiple of the largest scatter.
+/// Interval ends are shown up to this multiple of the largest scatter.
 const MOST_SEEN: f64 = 4.0;
-/// Range of the variance axis \[%\]: the shares end at 100 %, with room for the ratios above.
+/// Range of the variance axis \[%\]: the shares end at 100, and the ratios are written above.
 const SHARES: Range = Range {
     min: 0.0,
     max: 118.0,
 };
-/// Heights of the ratios above the shares, and of the note on a missing split \[%\].
+/// Positions \[%\] of the ratios above the shares, and of the note on a missing decomposition.
 const ABOVE: f64 = 109.0;
 const MIDDLE: f64 = 50.0;
 
-/// Reference of each scatter, in axis order.
+/// Names of the axis positions: scatter between conditions at equal airspeed, and scatter about the
+/// schedule.
 const ABOUT: [&str; 2] = ["airspeed", "schedule"];
 
 /// A share of the variance, with its colour; in print, shares differ in darkness.
@@ -55,8 +56,8 @@ const STACK: [Share; 3] = [
 ];
 
 /// Plots the contributions to the scatter for each pair, at equal airspeed and about the schedule:
-/// variance shares as stacked bars; below, the scatter, its expected value, and the unexplained
-/// part with its interval. `None` without error bars, or if no pair has a scatter.
+/// variance shares as stacked bars; below them, the scatter, its expected value, and the
+/// unexplained part with its interval. `None` without error bars, or if no pair has a scatter.
 pub fn evidence_figure(analysis: &Analysis, pairs: &[Pair]) -> Option<Figure> {
     let uncertainty = analysis.uncertainty.as_ref()?;
     let mut plots = Vec::new();
@@ -82,7 +83,7 @@ pub fn evidence_figure(analysis: &Analysis, pairs: &[Pair]) -> Option<Figure> {
     Some(figure)
 }
 
-/// A split at its position on the axis.
+/// Decomposition of a variance, at its position on the axis.
 struct PlacedSplit<'a> {
     x: f64,
     split: Option<&'a VarianceDecomposition>,
@@ -151,7 +152,7 @@ fn note(x: f64, y: f64, text: String, upright: bool) -> Note {
 }
 
 /// Plots standard deviations of `ln k_o k_i` in percent: the scatter, its expected value, and the
-/// unexplained part with its interval at this confidence level.
+/// unexplained part with its interval at the confidence level `level`.
 fn deviations_panel(scatter: &PairScatter, level: f64) -> Panel {
     let mut total = empty_dots("scatter", DotShape::Circle, Color::INK);
     let mut expected = empty_dots("expected", DotShape::Diamond, Color::of(Hue::Perturbed));
@@ -195,7 +196,8 @@ fn percent(variance: f64) -> f64 {
     100.0 * variance.sqrt()
 }
 
-/// Describes how large the differences are, their parts, the schedule and the settings.
+/// Summarises the differences at equal airspeed, explains the plot, and describes the schedule and
+/// the settings.
 fn caption(analysis: &Analysis, uncertainty: &Uncertainty) -> String {
     let settings = &analysis.study.settings;
     format!(

@@ -98,7 +98,7 @@ pub(super) fn net_delay(context: &Context<'_>, pair: Pair) -> Derivation {
     }
 }
 
-/// Describes whether a response is constrained, and the delta to which it is constrained.
+/// Describes whether a response is constrained, and its delta gain or delay.
 fn constraint_words(
     context: &Context<'_>,
     pair: Pair,
@@ -200,7 +200,7 @@ pub(super) fn delay_objective(context: &Context<'_>) -> Derivation {
     optimum.objective(&Objective::of_delays(problem))
 }
 
-/// A condition's problem with its solution.
+/// Gain or delay problem of a condition, with its solution.
 struct Optimum<'a> {
     context: &'a Context<'a>,
     problem: &'a Problem,
@@ -208,8 +208,8 @@ struct Optimum<'a> {
 }
 
 impl Optimum<'_> {
-    /// Lists the constrained responses that link the channel to other channels, then its value
-    /// within the bounds; `last` contains the value with its name.
+    /// Lists the constrained products or sums that contain the channel, then its bounds with
+    /// `last`, the name and the value of the channel, between them.
     fn steps(&self, channel: Channel, last: &str) -> Vec<String> {
         let is_gain = self.problem.quantity.is_gain();
         let (unit, scale) = if is_gain { ("", 1.0) } else { (" ms", 1e3) };
@@ -264,7 +264,7 @@ impl Optimum<'_> {
         rests_on
     }
 
-    /// Derives the objective: fit and regularisation.
+    /// Derives the value of the objective: fit term plus regularisation term.
     fn objective(&self, objective: &Objective) -> Derivation {
         let Objective { unit, scale, .. } = *objective;
         let value = scale * self.solution.objective;

@@ -13,7 +13,7 @@ use super::sample_words::median_words;
 use super::{Context, Derivation};
 use crate::assessment::correction_source;
 
-/// Maximum number of terms that are written out in a sum.
+/// Maximum number of terms written out in a sum.
 const MOST_TERMS: usize = 8;
 
 /// Section about J in the description of the method.
@@ -103,8 +103,8 @@ pub(super) fn score(context: &Context<'_>, model: &ModelId) -> Option<Derivation
     })
 }
 
-/// Derives the discontinuity ratio of a physics model: distances to other models over the distances
-/// that the trims explain.
+/// Derives the discontinuity ratio of a physics model: its distance to other models, relative to
+/// the distance that the difference in trim explains.
 pub(super) fn ratio(context: &Context<'_>, model: &ModelId) -> Option<Derivation> {
     const EQUATION: &str = "r_a = median over b of d(a, b) / √(Σ_k w_k (p_ak − p_bk)²); each p \
                             divided by its largest, w_k ≥ 0 by least absolute deviations";
@@ -196,7 +196,7 @@ fn cost_steps(symbol: &str, cost: Cost, average: CostAverage) -> [String; 3] {
     ]
 }
 
-/// Writes the net gain and net delay of a correction.
+/// Describes the net gain and the net delay of a correction.
 fn correction_words(context: &Context<'_>, pair: Pair, correction: &ChannelCorrection) -> String {
     let [output, input] = Channel::of(pair).map(|channel| context.channel(channel));
     format!(

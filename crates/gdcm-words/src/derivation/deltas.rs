@@ -115,7 +115,7 @@ pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     })
 }
 
-/// Writes the least-squares slope of the missing phase as a quotient.
+/// Writes the least-squares slope of the missing phase over frequency as a quotient.
 fn band_delay_words(context: &Context<'_>, mismatch: &Mismatch) -> String {
     let omega = mismatch.omega(context.omega());
     let phase = mismatch.phase_difference(context.omega());

@@ -1,4 +1,5 @@
-//! Error bars of explained results, and the results after each swap (M13).
+//! Error bars of explained results, and each result after another model is substituted for a
+//! representative (M13).
 
 use gdcm_method::uncertainty::{Bar, Scalar, VarianceComponent};
 use gdcm_model::dataset::ConditionId;
@@ -9,14 +10,14 @@ use gdcm_study::{Analysis, ConditionAnalysis};
 
 use super::explain_target::ExplainTarget;
 
-/// Remark on unconstrained net gains and on channels, where the identified models report their own
-/// error.
+/// Remark on unconstrained net gains and on channel values, used if the identified models come with
+/// standard errors.
 const SPREAD_ALONE: &str = "its identification part is the spread of the models alone, too small \
                             where they share their records: the error that a model tells of itself \
                             counts for G, D and the net gains that are held (M13.2)";
 
-/// Describes the error bar of a result with its parts, and the result after every swap; empty where
-/// there is no error bar, or it was not computed.
+/// Describes the error bar of a result with its parts, and the result after each substitution of a
+/// model; empty if no error bar is available.
 pub(super) fn error_bar_lines(analysis: &Analysis, target: &ExplainTarget) -> Vec<String> {
     lines_of(analysis, target).unwrap_or_default()
 }
@@ -38,7 +39,8 @@ fn lines_of(analysis: &Analysis, target: &ExplainTarget) -> Option<Vec<String>> 
     Some(lines)
 }
 
-/// Returns the condition and the key of the error bar that belongs to a result.
+/// Returns the condition and the key of a result's error bar; `None` for results without error
+/// bars.
 fn scalar_of(analysis: &Analysis, target: &ExplainTarget) -> Option<(ConditionId, Scalar)> {
     Some(match target {
         ExplainTarget::DeltaGain(id, pair) => (*id, Scalar::Gain(*pair)),
@@ -96,7 +98,7 @@ fn deviation_words(scalar: Scalar, deviation: f64) -> String {
     }
 }
 
-/// Describes a result after a swap: "with physics model roll+5: 1.0423".
+/// Describes a result after the substitution of a model: "with physics model roll+5: 1.0423".
 fn swap_words(result: &ConditionAnalysis, swap: &ModelSwap, scalar: Scalar) -> String {
     let kind = swap.bundle;
     let name = &result.condition.bundle(kind)[swap.model].name;

@@ -42,8 +42,8 @@ impl Derivation {
     }
 }
 
-/// Derives a result of `analysis`; `None` where it does not exist. Computes at most a few medians
-/// over frequency.
+/// Derives a result of `analysis`; `None` if the result does not exist. This is cheap: at most a
+/// few medians over frequency are computed.
 pub fn derivation(analysis: &Analysis, target: &ExplainTarget) -> Option<Derivation> {
     let mut derivation = derivation_without_bar(analysis, target)?;
     derivation
@@ -55,7 +55,7 @@ pub fn derivation(analysis: &Analysis, target: &ExplainTarget) -> Option<Derivat
 fn derivation_without_bar(analysis: &Analysis, target: &ExplainTarget) -> Option<Derivation> {
     let condition = |id: &ConditionId| Context::new(analysis, *id);
     let response = |id: &ConditionId, pair: &Pair| {
-        // `pair` may come from another dataset.
+        // `pair` may come from another dataset and may not exist in this one.
         analysis.study.dataset.on_axis().get(*pair)?;
         Context::new(analysis, *id)
     };

@@ -1,8 +1,8 @@
-//! Describes samples: range and median.
+//! Descriptions of samples by their range and their median.
 
 use gdcm_model::number_format::five_digits;
 
-/// Describes the number of values and their range.
+/// Describes values by their number and range.
 pub(super) fn spread(values: &[f64]) -> String {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);

@@ -130,7 +130,7 @@ fn scaled_airspeed_words(schedule: &Schedule, airspeed_kt: f64) -> String {
     )
 }
 
-/// Writes the table points on either side of an airspeed.
+/// Describes the table points on either side of an airspeed.
 fn neighbours_words(airspeeds_kt: &[f64], values: &[f64], airspeed_kt: f64) -> String {
     let point = |at: usize| {
         format!(

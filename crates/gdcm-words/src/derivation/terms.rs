@@ -1,6 +1,6 @@
 //! Symbols of the equations with their meanings.
 
-/// Symbols of the derived equations with meaning, and with unit if there is one (docs/method.md).
+/// Symbols of the derived equations with their meaning and, if any, their unit (docs/method.md).
 const TERMS: [(&str, &str); 30] = [
     ("G", "gain that the response wants, a ratio"),
     ("D", "delay that the response wants [s]"),
@@ -64,7 +64,8 @@ pub(super) fn terms_of(equation: &str) -> Vec<(&'static str, &'static str)> {
     found.into_iter().map(|(_, term)| term).collect()
 }
 
-/// Returns the position of a symbol in an equation, except inside a longer symbol.
+/// Returns the position of a symbol in an equation; occurrences inside a longer symbol do not
+/// count.
 fn place_of(symbol: &str, equation: &str) -> Option<usize> {
     for (place, _) in equation.match_indices(symbol) {
         let before = equation[..place].chars().next_back();

@@ -39,9 +39,9 @@ fn io_error(error: csv::Error) -> io::Error {
 
 /// Returns a cell that no spreadsheet interprets as a formula, and no terminal as a command.
 ///
-/// A text that begins with `=`, `+`, `-` or `@` and is not a number is preceded by an apostrophe;
-/// control and invisible characters are spelled out. Numbers have the ASCII minus, and zero has no
-/// sign. A lone dash, which marks a missing value, is unchanged.
+/// A string that begins with `=`, `+`, `-` or `@` and is not a number is preceded by an apostrophe;
+/// control characters and invisible characters become escape sequences. Numbers have the ASCII
+/// minus, and zero has no sign. A lone dash, which marks a missing value, is unchanged.
 pub(crate) fn plain(cell: &str) -> String {
     let number = cell.replacen('\u{2212}', "-", 1);
     if number.parse::<f64>().is_ok() {

@@ -10,7 +10,7 @@ use gdcm_study::decisions::choices::BundleChoice;
 use gdcm_study::decisions::differences::Difference;
 use gdcm_study::decisions::setting::SETTINGS;
 
-/// One changed decision.
+/// A decision that differs between two studies.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DecisionDifference {
     /// Subject of the decision: "α of the gains", "LON → Q", "nominal (condition 10)".

@@ -98,7 +98,7 @@ fn wanted_lead_words(
     Some(text)
 }
 
-/// Formats the absolute value of a delay in milliseconds.
+/// Formats the absolute value of a delay in whole milliseconds.
 fn whole_ms(tau_s: f64) -> String {
     telling(s_to_ms(tau_s.abs()), 0)
 }

@@ -28,7 +28,7 @@ pub struct Remark {
     pub ignore: Option<Pair>,
     /// The phase correction that the user may choose instead, if suggested.
     pub phase: Option<PhaseCorrection>,
-    /// The channel whose sign the user may reverse, or restore if the role is `None`.
+    /// The channel whose sign the user may reverse or, if the role is `None`, restore.
     pub turn: Option<(Channel, Option<SignRole>)>,
     /// Content for a common table, used if many conditions have this remark.
     pub repeated: Option<Repeated>,
@@ -69,7 +69,7 @@ impl Remark {
         Self::new(code, RemarkKind::Good, text.into())
     }
 
-    /// Creates a caution.
+    /// Creates the remark that a request was fulfilled, with a caution.
     pub fn caution(code: &'static str, text: impl Into<String>) -> Self {
         Self::new(code, RemarkKind::Caution, text.into())
     }

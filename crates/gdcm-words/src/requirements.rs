@@ -268,10 +268,10 @@ pub fn summary_of_row<'a>(
 /// Table that compares every condition's corrected model with the identified model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RequirementsOverview {
-    /// One row for each requirement, with its limit; one column for each condition; a dash where
-    /// there is no value.
+    /// A row for each requirement, with its limit, and a column for each condition; a dash marks a
+    /// missing value.
     pub table: Table,
-    /// Whether a cell is beyond its limit, row by row.
+    /// Whether each cell is beyond its limit, row by row.
     outside: Vec<Vec<bool>>,
 }
 
@@ -285,7 +285,7 @@ struct OverviewRow {
     limit: String,
 }
 
-/// Value of a cell, and whether it is outside its limit.
+/// Value of a cell, and whether it is beyond its limit.
 struct Judged {
     text: String,
     is_outside: bool,

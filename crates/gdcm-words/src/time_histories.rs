@@ -168,8 +168,8 @@ pub fn output_weights_text(histories: &TimeHistories) -> String {
     format!("deg, deg/s, ft/s and ft/s\u{b2} weighing the same{without}")
 }
 
-/// Formats a result: share of time inside, largest excess, and an incorrect trend: "85.2; 0.84
-/// deg/s at 12.3 s; opposite trend".
+/// Formats a result: share of time inside \[%\], largest excess, and the trend if it is incorrect:
+/// "85.2; 0.84 deg/s at 12.3 s; opposite trend".
 fn excess_words(finding: &ToleranceFinding) -> String {
     let mut words = vec![percent_rounded_down(Some(finding.share_inside))];
     if finding.largest_excess > 0.0 {

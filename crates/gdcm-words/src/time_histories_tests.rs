@@ -81,7 +81,7 @@ fn tables_show_the_shares_costs_and_excesses_of_the_records() {
         shown.rows[2][..3],
         ["3", "2", "pitch rate"].map(str::to_owned)
     );
-    // Rounded down: a share below 1 is never displayed as 100.
+    // The share is rounded down: below 1, it is never displayed as 100.
     assert_eq!(
         shown.rows[2][3].parse::<f64>().unwrap(),
         (1e3 * share).floor() / 10.0

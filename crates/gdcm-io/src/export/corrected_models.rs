@@ -58,7 +58,7 @@ enum ModelsFormat {
 }
 
 impl ModelsFormat {
-    /// Chooses the format by the file extension.
+    /// Chooses the format by the file extension; fails for an unknown extension.
     fn from_path(path: &Path) -> Result<Self, ExportFault> {
         let extension = path
             .extension()

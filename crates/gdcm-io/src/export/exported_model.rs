@@ -186,7 +186,7 @@ fn couplings_words(analysis: &Analysis, dynamics: &StateSpace) -> &'static str {
     }
 }
 
-/// Returns the requested physics model of a condition.
+/// Returns the physics model of a condition that `role` selects.
 fn model_of<'c>(
     analysis: &Analysis,
     role: &ExportedRole,

@@ -1,4 +1,4 @@
-//! Scheduled gains and delays at given airspeeds, as lookup tables for linear interpolation: as
+//! Lookup tables of scheduled gains and delays at given airspeeds, for linear interpolation: as
 //! text, and for MATLAB.
 
 use std::fmt::Write;
@@ -100,7 +100,7 @@ struct Breakpoint {
     second: Option<f64>,
 }
 
-/// Values of a channel quantity at the breakpoints.
+/// Values of a quantity of a channel at the breakpoints.
 struct Column {
     quantity: &'static Quantity,
     channel: Channel,

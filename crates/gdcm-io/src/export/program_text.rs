@@ -3,7 +3,7 @@
 /// Formats a finite number with 17 significant digits, from which every language recovers the same
 /// value.
 pub(super) fn number(value: f64) -> String {
-    // Adding zero turns minus zero into zero.
+    // `+ 0.0` turns minus zero into zero.
     format!("{:.16e}", value + 0.0)
 }
 

@@ -70,7 +70,7 @@ fn condition_plot(source: &ConditionSource<'_>, pair: Pair, options: &BodeOption
     }
 }
 
-/// Contents of a response plot, magnitude above phase.
+/// Contents of the plot of a response, magnitude above phase.
 struct ResponsePlot<'a> {
     curves: &'a [BodeCurve],
     bands: &'a [BodeBand],

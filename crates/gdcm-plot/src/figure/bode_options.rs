@@ -37,7 +37,8 @@ pub struct BodeOptions {
 }
 
 impl BodeOptions {
-    /// Returns the frequency axis.
+    /// Returns the logarithmic frequency axis in the displayed unit, with the chosen range if there
+    /// is one.
     pub(super) fn frequency_axis(&self) -> Axis {
         Axis::logarithmic(self.unit.axis_label())
             .showing(self.omega.map(|range| self.in_unit(range.min, range.max)))

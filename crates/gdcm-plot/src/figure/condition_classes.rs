@@ -20,7 +20,7 @@ pub struct Classes {
 }
 
 impl Classes {
-    /// Collects the classes in a dataset.
+    /// Collects and sorts the classes that occur in a dataset.
     pub fn of(dataset: &Dataset) -> Self {
         let mut altitudes = BTreeSet::new();
         let mut weights = BTreeSet::new();

@@ -20,7 +20,7 @@ pub use super::bode_curve::CurveId;
 use super::bode_options::BodeOptions;
 use super::role::Role;
 
-/// Data behind the figures of a condition.
+/// Data from which the figures of a condition are drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct ConditionSource<'a> {
     /// The dataset with the engineer's decisions.
@@ -42,7 +42,7 @@ pub(super) struct SourceModel {
     pub(super) index: usize,
     pub(super) role: Role,
     pub(super) rejected: bool,
-    /// Whether the engineer hides the model or its role.
+    /// Whether the engineer has hidden the model or its role.
     pub(super) hidden: bool,
 }
 

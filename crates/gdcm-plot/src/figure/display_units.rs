@@ -44,7 +44,7 @@ impl FrequencyUnit {
         )
     }
 
-    /// Returns the label for a frequency axis.
+    /// Returns the axis label `Frequency [rad/s]` or `Frequency [Hz]`.
     pub fn axis_label(self) -> String {
         format!("Frequency [{}]", self.symbol())
     }

@@ -16,7 +16,7 @@ pub struct Drawing {
     pub shapes: Vec<Shape>,
 }
 
-/// A shape of a drawing.
+/// A shape of a drawing: a path, a text, or a clipped group of shapes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     Path {
@@ -32,13 +32,12 @@ pub enum Shape {
         fill: Option<Color>,
         stroke: Option<Stroke>,
     },
-    /// A line of text.
     Text(Text),
     /// Shapes clipped to an area.
     Clipped { area: Area, shapes: Vec<Shape> },
 }
 
-/// A line of text.
+/// A line of text, with its position and style.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Text {
     /// Position of the anchor, on the base line.
@@ -121,12 +120,12 @@ impl Area {
         }
     }
 
-    /// Returns the right edge, `left + width`.
+    /// Returns the coordinate of the right edge, `left + width`.
     pub fn right(&self) -> f64 {
         self.left + self.width
     }
 
-    /// Returns the lower edge, `top + height`.
+    /// Returns the coordinate of the lower edge, `top + height`.
     pub fn bottom(&self) -> f64 {
         self.top + self.height
     }
@@ -197,7 +196,7 @@ impl Shape {
         }
     }
 
-    /// Creates a rectangle.
+    /// Creates a rectangular path, with optional fill and stroke.
     pub fn rectangle(area: Area, fill: Option<Color>, stroke: Option<Stroke>) -> Self {
         Self::Path {
             points: area.corners().to_vec(),
@@ -213,7 +212,6 @@ impl Shape {
 pub enum Hue {
     /// Paper, and plot backgrounds in the window.
     Background,
-    /// Grid lines.
     Grid,
     /// Titles and primary text.
     Text,
@@ -290,11 +288,11 @@ pub struct Color {
 impl Color {
     /// Background colour of paper.
     pub const WHITE: Self = Self::of(Hue::Background);
-    /// Titles and primary text.
+    /// Colour of titles and primary text.
     pub const INK: Self = Self::of(Hue::Text);
-    /// Labels, frames and secondary text.
+    /// Colour of labels, frames and secondary text.
     pub const DIM: Self = Self::of(Hue::DimText);
-    /// Grid lines.
+    /// Colour of grid lines.
     pub const GRID: Self = Self::of(Hue::Grid);
 
     /// Creates a colour at full strength.
@@ -307,7 +305,7 @@ impl Color {
         Self { percent, ..self }
     }
 
-    /// Returns red, green and blue on paper (sRGB).
+    /// Returns red, green and blue on paper (sRGB), blended to the strength of this colour.
     pub fn rgb(self) -> [u8; 3] {
         mixed(
             Hue::Background.on_paper(),
@@ -349,13 +347,12 @@ impl Dash {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stroke {
     pub color: Color,
-    /// Width \[pt\].
     pub width_pt: f64,
     pub dash: Dash,
 }
 
 impl Stroke {
-    /// Creates a solid line.
+    /// Creates the style of a solid line.
     pub const fn solid(color: Color, width_pt: f64) -> Self {
         Self {
             color,
@@ -364,7 +361,7 @@ impl Stroke {
         }
     }
 
-    /// Creates a dashed line.
+    /// Creates the style of a dashed line.
     pub const fn dashed(color: Color, width_pt: f64, dash: Dash) -> Self {
         Self {
             color,

@@ -163,7 +163,7 @@ struct DrawnError {
 }
 
 impl DrawnError {
-    /// Returns a curve with these values over `omega` \[rad/s\].
+    /// Returns the curve with these values over `omega` \[rad/s\].
     fn apply(&self, curve: BodeCurve, omega: &Arc<[f64]>) -> BodeCurve {
         curve.with(omega, &self.magnitude_db, &self.phase)
     }

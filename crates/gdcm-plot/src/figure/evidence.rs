@@ -39,7 +39,7 @@ struct Share {
     hue: Hue,
 }
 
-/// From the bottom up, in the same order as [`VarianceDecomposition::shares`].
+/// Stacking order, from the bottom up; the same as in [`VarianceDecomposition::shares`].
 const STACK: [Share; 3] = [
     Share {
         name: "trim",

@@ -47,7 +47,7 @@ pub(super) struct GainPanel<'a> {
 }
 
 impl GainPanel<'_> {
-    /// Builds the panel; `label` names the vertical axis.
+    /// Builds the panel; `label` is the label of the vertical axis.
     pub(super) fn panel(&self, label: &str) -> Panel {
         let measure = self.quantity.measure();
         let bars = self.bars();
@@ -129,7 +129,7 @@ impl GainPanel<'_> {
         bars
     }
 
-    /// Returns `[x, lower end, upper end]` for each condition with a bar, in the unit of the
+    /// Returns `[x, lower end, upper end]` for each condition with an error bar, in the unit of the
     /// measure.
     fn bar_ends(
         &self,
@@ -290,8 +290,8 @@ impl GainPanel<'_> {
         groups
     }
 
-    /// Returns the optimum of a condition, labelled with the condition's number unless the axis
-    /// shows it.
+    /// Returns the optimum of a condition as a dot, labelled with the condition's number unless the
+    /// axis shows it.
     fn dot(&self, placed: &PlacedResult<'_>) -> Dot {
         let id = placed.state.id;
         let label = match self.across {
@@ -333,7 +333,7 @@ struct BandSample {
     widths: BandWidths,
 }
 
-/// Returns `[x, lower end, upper end]` at each sample.
+/// Returns `[x, lower end, upper end]` of a band at each sample.
 fn band_points(samples: &[BandSample], half: fn(&BandWidths) -> f64) -> Vec<[f64; 3]> {
     let mut points = Vec::new();
     for BandSample { x, value, widths } in samples {

@@ -136,7 +136,7 @@ pub fn add_variant(
     }
 }
 
-/// Returns a variant's schedule, if any, and its optima.
+/// Returns the schedule of a variant, if any, and its optima, as marks.
 fn variant_marks(quantity: GainQuantity, analysis: &Analysis, name: &str) -> Vec<Mark> {
     let across = Across::Airspeed;
     let stroke = Role::Variant.stroke(false);

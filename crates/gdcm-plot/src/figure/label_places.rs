@@ -24,7 +24,7 @@ struct Direction {
     offset: [f64; 2],
 }
 
-/// Directions tried around a dot, in order of preference.
+/// Directions of a label from its dot, in order of preference.
 const DIRECTIONS: [Direction; 8] = [
     Direction {
         before: [0.0, 1.0],
@@ -105,7 +105,7 @@ pub struct LabelPlace {
     pub leader: Option<[f64; 2]>,
 }
 
-/// A dot to be labelled.
+/// A dot, with the size of the label to be placed beside it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LabelledDot {
     pub center: [f64; 2],
@@ -176,10 +176,10 @@ struct Placing<'a> {
     places: Vec<Option<LabelPlace>>,
 }
 
-/// The label of another dot.
+/// Label of another dot, at its present place.
 struct OtherLabel {
     place: LabelPlace,
-    /// Centre of its dot.
+    /// Centre of the dot that it labels.
     center: [f64; 2],
 }
 

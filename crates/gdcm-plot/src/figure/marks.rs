@@ -40,7 +40,7 @@ pub enum Mark {
     Note(Note),
 }
 
-/// A line through points.
+/// A line through points, in axis units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
     /// Name, used as a heading in the tables.
@@ -87,7 +87,7 @@ pub struct Dot {
     pub id: Option<MarkId>,
 }
 
-/// Shape of a dot.
+/// Symbol with which a dot is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum DotShape {
     #[default]
@@ -117,7 +117,7 @@ pub struct Bars {
     pub beside: f64,
 }
 
-/// A shaded horizontal range, over the full panel height.
+/// A shaded range along the horizontal axis, over the full panel height.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Band {
     pub range: Range,
@@ -206,7 +206,7 @@ pub struct Note {
     pub text: String,
 }
 
-/// Position of a note.
+/// Position of a note in its panel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place {
     /// Centred on a point in axis units.
@@ -220,7 +220,7 @@ pub enum Place {
     LowerLeft,
 }
 
-/// Direction of an axis.
+/// Axis along which a coordinate is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Along {
     X,

@@ -87,7 +87,7 @@ impl Figure {
     }
 }
 
-/// A page under construction, from the top down.
+/// A page under construction; content is added from the top down.
 struct Page {
     shapes: Vec<Shape>,
     /// Width between the margins \[pt\].
@@ -182,7 +182,7 @@ fn sample_shapes(sample: Sample, [start, y]: [f64; 2], sample_width: f64) -> Vec
     }
 }
 
-/// Shapes for a panel.
+/// Shapes of a painted panel.
 struct PaintedPanel {
     shapes: Vec<Shape>,
     /// Number of labels omitted for lack of room.

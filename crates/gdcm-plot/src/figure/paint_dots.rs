@@ -21,7 +21,6 @@ const TRIANGLE: [[f64; 2]; 3] = [[0.0, -1.3], [1.2, 0.9], [-1.2, 0.9]];
 const CROSS: [[[f64; 2]; 2]; 2] = [[[-1.0, -1.0], [1.0, 1.0]], [[-1.0, 1.0], [1.0, -1.0]]];
 const PLUS: [[[f64; 2]; 2]; 2] = [[[-1.3, 0.0], [1.3, 0.0]], [[0.0, -1.3], [0.0, 1.3]]];
 
-/// Style of a dot.
 #[derive(Clone, Copy)]
 pub(super) struct DotStyle {
     pub(super) shape: DotShape,
@@ -139,7 +138,7 @@ pub(super) struct PaintedDots {
     pub(super) labels_left_out: usize,
 }
 
-/// A label to be placed.
+/// A label to be placed, with its dot or bracket.
 struct Label<'m> {
     dot: LabelledDot,
     words: &'m str,
@@ -235,7 +234,7 @@ fn labelled_dot(placed: &Placed<'_>, center: [f64; 2], radius: f64, label: &str)
     }
 }
 
-/// Returns the obstacles to labels.
+/// Collects the obstacles to labels: the curve on which the dots lie, error bars and brackets.
 fn surroundings(placed: &Placed<'_>) -> Surroundings {
     let mut path = Vec::new();
     let mut bars = Vec::new();

@@ -20,7 +20,7 @@ pub(super) struct Placed<'f> {
     pub(super) frame: Area,
     pub(super) x: Side,
     pub(super) y: Side,
-    /// Font size in the panel \[pt\].
+    /// Font size of the texts in the panel \[pt\].
     pub(super) letters_pt: f64,
 }
 

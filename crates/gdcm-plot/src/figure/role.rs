@@ -6,7 +6,7 @@ use gdcm_model::dataset::BundleKind;
 
 use super::drawing::{Color, Dash, Hue, Stroke};
 
-/// Role of a curve.
+/// Role of a curve in a figure; it determines the style.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Role {
     /// Physics model at the unperturbed trim.

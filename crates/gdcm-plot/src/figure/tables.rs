@@ -127,7 +127,7 @@ impl Series {
         ]
     }
 
-    /// Returns the series of a mark; none for a mark without values.
+    /// Returns the series of a mark; empty for a mark without values.
     fn from_mark(mark: &Mark) -> Vec<Self> {
         match mark {
             Mark::Curve(curve) => vec![Self::from_curve(curve)],
@@ -174,7 +174,7 @@ impl<'m> Constant<'m> {
 }
 
 impl Panel {
-    /// Returns the name in the tables, for a plot with this title.
+    /// Returns the name of the panel in the tables: plot title, if any, and quantity.
     fn name(&self, plot_title: &str) -> String {
         if plot_title.is_empty() {
             self.y.label.clone()
@@ -183,7 +183,7 @@ impl Panel {
         }
     }
 
-    /// Returns the rows in the long table.
+    /// Returns the rows of the panel in the long table.
     fn long_rows(&self, figure_title: &str, plot_title: &str) -> Vec<[String; 8]> {
         let name = self.name(plot_title);
         let mut rows = Vec::new();

@@ -14,7 +14,7 @@ pub enum Scale {
     Logarithmic,
 }
 
-/// A tick on an axis.
+/// A tick on an axis, with a label or without.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tick {
     pub value: f64,
@@ -32,14 +32,14 @@ impl Tick {
     }
 }
 
-/// Minimum distances between ticks \[pt\].
+/// Minimum distances \[pt\] at which ticks are drawn or labelled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TickGaps {
-    /// Between labels.
+    /// Minimum distance between labels.
     pub labels: f64,
-    /// Between labels at equal steps on a logarithmic axis.
+    /// Minimum distance between labels at equal steps on a logarithmic axis.
     pub equal_steps: f64,
-    /// Between grid lines within a decade.
+    /// Minimum distance between grid lines within a decade.
     pub lines: f64,
 }
 
@@ -131,7 +131,7 @@ fn logarithmic_ticks(range: Range, length_pt: f64, gaps: TickGaps) -> Vec<Tick> 
 struct DecadeLabels {
     /// Whether there is room for labels at 2 and 5.
     has_two_and_five: bool,
-    /// Whether there is room for labels at 3, 4, 6, 7, 8 and 9.
+    /// Whether there is room for labels at 3, 4, 6, 7, 8 and 9 as well.
     has_nine: bool,
     /// Whether there is room for lines without labels.
     has_lines: bool,

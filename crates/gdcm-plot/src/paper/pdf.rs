@@ -157,7 +157,7 @@ impl Page {
         self.content.close_path();
     }
 
-    /// Sets the colours and the line for the next path.
+    /// Sets the fill colour and the line style of the next path.
     fn take_paint(&mut self, fill: Option<Color>, stroke: Option<Stroke>) {
         if let Some(color) = fill {
             let [red, green, blue] = parts(color);
@@ -238,7 +238,7 @@ const IDENTITY: SystemInfo<'static> = SystemInfo {
 /// The used letters, numbered in each font in the order of their first use.
 #[derive(Default)]
 struct UsedLetters {
-    /// In the same order as [`FONTS`].
+    /// Used letters of each font, in the order of [`FONTS`].
     fonts: [Used; FONTS.len()],
 }
 
@@ -343,7 +343,7 @@ impl Used {
     }
 }
 
-/// Writes a font descriptor.
+/// Writes the descriptor of a font, which contains its metrics.
 fn describe(pdf: &mut Pdf, objects: &FontObjects, name: Name<'_>, face: &FontRef<'_>) {
     let metrics = face.metrics(Size::new(UNITS as f32), LocationRef::default());
     let bounds = metrics.bounds.unwrap_or_default();

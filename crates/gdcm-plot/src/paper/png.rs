@@ -49,7 +49,7 @@ pub fn write_png(drawing: &Drawing, file: &mut dyn Write) -> io::Result<()> {
     writer.finish().map_err(unpacked)
 }
 
-/// Returns the underlying I/O error, so that a full disk is reported as such.
+/// Returns the underlying I/O error, so that causes such as a full disk are reported as such.
 fn unpacked(error: EncodingError) -> io::Error {
     match error {
         EncodingError::IoError(error) => error,

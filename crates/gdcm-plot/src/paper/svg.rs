@@ -75,7 +75,7 @@ struct Svg<'a> {
 }
 
 impl Svg<'_> {
-    /// Adds a line to the text.
+    /// Appends a line to the SVG text.
     fn line(&mut self, line: &str) {
         self.text.push_str(line);
         self.text.push('\n');

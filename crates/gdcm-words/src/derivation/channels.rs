@@ -8,14 +8,14 @@ use gdcm_model::units::{s_to_ms, six_digits};
 use super::{Context, Derivation};
 use crate::leads::servo_words;
 
-/// An objective as an equation.
+/// An objective as an equation, with the units of its value.
 struct Objective {
     equation: &'static str,
     /// Unit of the displayed value, with a leading space.
     unit: &'static str,
     /// Factor from the stored to the displayed value.
     scale: f64,
-    /// Section in the method's description.
+    /// Section in the description of the method.
     section: &'static str,
 }
 
@@ -50,7 +50,7 @@ impl Objective {
     }
 }
 
-/// Derives a response's net gain.
+/// Derives the net gain `k_o k_i` of a response.
 pub(super) fn net_gain(context: &Context<'_>, pair: Pair) -> Derivation {
     let result = context.result;
     let [output, input] = Channel::of(pair);
@@ -74,7 +74,7 @@ pub(super) fn net_gain(context: &Context<'_>, pair: Pair) -> Derivation {
     }
 }
 
-/// Derives a response's net delay.
+/// Derives the net delay `τ_o + τ_i` \[ms\] of a response.
 pub(super) fn net_delay(context: &Context<'_>, pair: Pair) -> Derivation {
     let result = context.result;
     let [output, input] = Channel::of(pair);
@@ -119,7 +119,7 @@ fn constraint_words(
     }
 }
 
-/// Derives a channel's gain.
+/// Derives the gain `k` of a channel; `None` for a channel that the dataset does not have.
 pub(super) fn gain(context: &Context<'_>, channel: Channel) -> Option<Derivation> {
     let result = context.result;
     let value = *result.gains.channels().get(channel)?;
@@ -143,7 +143,8 @@ pub(super) fn gain(context: &Context<'_>, channel: Channel) -> Option<Derivation
     })
 }
 
-/// Derives a channel's delay or signed delay.
+/// Derives the delay or signed delay `τ` \[ms\] of a channel; `None` for a channel that the dataset
+/// does not have.
 pub(super) fn delay(context: &Context<'_>, channel: Channel) -> Option<Derivation> {
     let result = context.result;
     let value = s_to_ms(*result.delays.channels().get(channel)?);
@@ -179,7 +180,7 @@ pub(super) fn delay(context: &Context<'_>, channel: Channel) -> Option<Derivatio
     })
 }
 
-/// Derives the objective of the gains.
+/// Derives the minimised objective of the gains.
 pub(super) fn gain_objective(context: &Context<'_>) -> Derivation {
     let optimum = Optimum {
         context,
@@ -189,7 +190,7 @@ pub(super) fn gain_objective(context: &Context<'_>) -> Derivation {
     optimum.objective(&Objective::of_gains(context))
 }
 
-/// Derives the objective of the delays.
+/// Derives the minimised objective of the delays.
 pub(super) fn delay_objective(context: &Context<'_>) -> Derivation {
     let problem = &context.result.delay_problem;
     let optimum = Optimum {

@@ -64,7 +64,7 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// Describes the two representatives.
+    /// Describes the physics and the identified representative.
     pub(super) fn models(&self) -> Vec<String> {
         let couplings = if self.result.coupled.is_some() {
             format!(", with {} (M16)", self.settings().couplings.name())

@@ -16,7 +16,7 @@ use crate::assessment::correction_source;
 /// Maximum number of terms written out in a sum.
 const MOST_TERMS: usize = 8;
 
-/// Section about J in the description of the method.
+/// Section that defines J in the description of the method.
 const COST_SECTION: &str = "M4, eq. (14) to (19)";
 
 /// Writes a sum: "a + b + c + … (20 terms)".
@@ -58,7 +58,7 @@ fn model_words(model: &Model) -> Vec<String> {
     words
 }
 
-/// Derives a model's score: its mean distance to the other kept models.
+/// Derives the score of a model: its mean distance to the other kept models.
 pub(super) fn score(context: &Context<'_>, model: &ModelId) -> Option<Derivation> {
     let result = context.result;
     let kind = model.bundle;
@@ -179,7 +179,7 @@ fn cost_equation(average: CostAverage) -> String {
     format!("J = {per_db} · {word}_ω(ΔdB²) + {per_deg} · {word}_ω(Δφ²), dB and degrees")
 }
 
-/// Writes the steps to J of a mismatch: magnitude part, phase part, and their sum.
+/// Writes the steps from a mismatch to J: magnitude part, phase part, and their sum.
 fn cost_steps(symbol: &str, cost: Cost, average: CostAverage) -> [String; 3] {
     let word = average_word(average);
     let [per_db, per_deg] = Cost::factors();

@@ -1,4 +1,4 @@
-//! Derives G and D (M6).
+//! Derives delta gain G and delta delay D (M6).
 
 use gdcm_method::correction::delta::GainSource;
 use gdcm_method::fidelity::Mismatch;
@@ -80,7 +80,7 @@ fn mean_gain(context: &Context<'_>, title: String, value: f64) -> Derivation {
     }
 }
 
-/// Derives the delta delay `D` of a response: the band delay where the delays are fitted to it,
+/// Derives the delta delay `D` of a response: the band delay if the delays are fitted to it,
 /// otherwise the median.
 pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     let value = s_to_ms(context.result.wanted_delay_s(pair)?);

@@ -52,7 +52,7 @@ fn scalar_of(analysis: &Analysis, target: &ExplainTarget) -> Option<(ConditionId
     })
 }
 
-/// Describes the error bar, its two parts, and its remarks.
+/// Describes an error bar, its two parts, and its remarks.
 fn bar_lines(bar: &Bar, scalar: Scalar, level: f64) -> Vec<String> {
     let whole = match (bar.half_width(level), bar.degrees_of_freedom()) {
         (Some(half_width), Some(degrees)) => format!(
@@ -89,7 +89,7 @@ fn part_words(name: &str, scalar: Scalar, part: Option<VarianceComponent>) -> St
     }
 }
 
-/// Formats a deviation: delays in ms, gains in percent.
+/// Formats a standard deviation: of a delay in ms, of a gain in percent.
 fn deviation_words(scalar: Scalar, deviation: f64) -> String {
     if scalar.is_delay() {
         format!("{:.2} ms", s_to_ms(deviation))

@@ -18,16 +18,17 @@ use gdcm_study::Analysis;
 use context::Context;
 pub use explain_target::ExplainTarget;
 
-/// Derivation of a result.
+/// Derivation of a result: equation, equation with numbers, and the models and choices on which the
+/// result rests.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Derivation {
-    /// Name of the result: "G of LON → Q, condition 3".
+    /// Name of the result with its condition: "G of LON → Q, condition 3".
     pub title: String,
     /// The equation, as in the description of the method.
     pub equation: String,
     /// The equation with numbers, step by step; the last step contains the result.
     pub with_numbers: Vec<String>,
-    /// The underlying models, band, points and choices.
+    /// Models, band, points and choices on which the result rests.
     pub rests_on: Vec<String>,
     /// Section in the description of the method: "M6, eq. (5)".
     pub section: &'static str,

@@ -18,7 +18,7 @@ pub(super) fn spread(values: &[f64]) -> String {
     }
 }
 
-/// Describes values and their median.
+/// Describes how the median results from the values.
 pub(super) fn median_words(values: &[f64]) -> String {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);

@@ -54,7 +54,7 @@ pub fn write_figure(
     outputs.persist()
 }
 
-/// Writes a figure in the given format.
+/// Writes a figure in the format `format`, whatever the file extension. CSV follows RFC 4180.
 pub fn write_as(
     figure: &Figure,
     width: ColumnWidth,
@@ -71,8 +71,6 @@ pub fn write_as(
         ),
     }
 }
-
-// CSV as defined by RFC 4180.
 
 #[cfg(test)]
 mod tests {

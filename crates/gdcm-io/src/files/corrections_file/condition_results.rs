@@ -9,7 +9,7 @@ use gdcm_study::{Analysis, ConditionAnalysis};
 
 use crate::files::export_contents::ExportContents;
 
-/// Results of a condition.
+/// A condition of an analysis, with its scheduled correction.
 pub(super) struct ConditionResults<'a> {
     pub(super) analysis: &'a Analysis,
     pub(super) condition: &'a Condition,
@@ -50,7 +50,7 @@ impl ConditionResults<'_> {
         self.analysis.condition(self.condition.id())
     }
 
-    /// Returns the condition's own correction.
+    /// Returns the condition's own correction; `None` if the condition has no result.
     pub(super) fn own(&self) -> Option<&ChannelCorrection> {
         self.result().map(|result| &result.correction)
     }

@@ -172,7 +172,8 @@ pub(crate) fn response_table(
 }
 
 impl ResponseRow<'_> {
-    /// Returns the change in J due to the schedule.
+    /// Returns the change in J due to the schedule; `None` if the condition or the response is not
+    /// assessed.
     fn change(&self) -> Option<CostChange> {
         let id = self.results.condition.id();
         let changes = self.results.analysis.assessment.get(&id)?;

@@ -89,7 +89,7 @@ pub(super) fn bars(names: &ChannelNames<'_>, condition: ConditionId) -> Option<V
     Some(without_empty(members, &["D_band_s"]))
 }
 
-/// Confidence intervals of a condition.
+/// Error bars of a condition, from which its confidence intervals at a level are written.
 struct ConditionBars<'a> {
     names: &'a ChannelNames<'a>,
     bars: &'a ScalarTable<Option<Bar>>,
@@ -115,7 +115,8 @@ impl ConditionBars<'_> {
     }
 }
 
-/// Returns the conclusions from all confidence intervals; `None` without confidence intervals.
+/// Returns the conclusions from the confidence intervals of all conditions; `None` without
+/// confidence intervals.
 pub(super) fn uncertainty(names: &ChannelNames<'_>) -> Option<Value> {
     let uncertainty = names.analysis.uncertainty.as_ref()?;
     let level = uncertainty.level;

@@ -33,7 +33,7 @@ const EXAMPLE_NAME: &str = "example-dataset.json";
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DatasetOrigin {
     File(PathBuf),
-    /// The example that is part of the program.
+    /// The example dataset that is part of the program.
     EmbeddedExample,
 }
 
@@ -84,7 +84,7 @@ impl LoadedDataset {
         }
     }
 
-    /// Returns the dataset's file name; "(embedded example)" without a file.
+    /// Returns the name of the dataset's file; "(embedded example)" if there is no file.
     pub fn file_name(&self) -> String {
         match self.path().and_then(Path::file_name) {
             Some(name) => sanitized(&name.to_string_lossy()),

@@ -102,7 +102,7 @@ pub(super) struct ConditionText {
     pub(super) records: Option<Limited<RecordText, MOST_RECORDS>>,
 }
 
-/// A flight record.
+/// A flight record of a condition.
 #[derive(Deserialize, Serialize)]
 pub(crate) struct RecordText {
     pub(super) name: String,

@@ -34,7 +34,10 @@ pub enum Shape {
     },
     Text(Text),
     /// Shapes clipped to an area.
-    Clipped { area: Area, shapes: Vec<Shape> },
+    Clipped {
+        area: Area,
+        shapes: Vec<Shape>,
+    },
 }
 
 /// A line of text, with its position and style.

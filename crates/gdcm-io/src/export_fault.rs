@@ -11,7 +11,8 @@ use crate::reading_budget::VariableFault;
 pub enum ExportFault {
     /// A scheduled curve contains a value that is not finite.
     #[error(
-        "the {curve} of {channel} has a number that is not finite; correct it before it is exported"
+        "the {curve} of {channel} has a value that is not finite; correct the schedule before \
+        exporting it"
     )]
     Curve {
         channel: String,
@@ -19,17 +20,20 @@ pub enum ExportFault {
         curve: &'static str,
     },
     /// The requested airspeeds are not finite and increasing, or there are none.
-    #[error("the airspeeds of the table must be finite, increase, and be at least one")]
+    #[error(
+        "the airspeeds of the table must be finite and increasing, and there must be at least \
+        one"
+    )]
     Breakpoints,
     /// The file name of a MATLAB function is not a valid function name.
     #[error(
-        "MATLAB calls a function by the name of its file: a letter, then letters, digits and _, 63 at most, and neither a \
-         keyword nor a name that the file uses itself; found {}",
+        "invalid name for the file of a MATLAB function: use a letter, then letters, digits and \
+        _, at most 63 characters, and neither a keyword nor a name used inside the file; found {}",
         quoted(found)
     )]
     FunctionName { found: String },
     /// The file extension does not belong to a format for models.
-    #[error("models are written to a name that ends in .mat, .json or .npz")]
+    #[error("the file name of exported models must end in .mat, .json or .npz")]
     ModelsFormat,
     /// The values cannot be written.
     #[error(transparent)]
@@ -39,7 +43,8 @@ pub enum ExportFault {
     Schedule(#[from] ScheduleError),
     /// Couplings are requested but unavailable, so that the export would differ from the request.
     #[error(
-        "the study asks for couplings, and there are none: {why}; correct that, or set couplings to none"
+        "the study requests couplings, but they are unavailable: {why}; correct this, or set \
+        couplings to none"
     )]
     NoCouplings { why: String },
     /// A condition has no result of its own.
@@ -47,16 +52,14 @@ pub enum ExportFault {
     NoResult { condition: ConditionId, why: String },
     #[error("the dataset has no condition {condition}")]
     NoCondition { condition: ConditionId },
-    #[error(
-        "condition {condition} has no physics model \"{model}\"; name the condition that has it"
-    )]
+    #[error("condition {condition} has no physics model \"{model}\"; name a condition that has it")]
     NoModel {
         condition: ConditionId,
         model: String,
     },
     /// A model is a measured response, which has no matrices.
     #[error(
-        "condition {condition}, model \"{model}\": it is a measured response and has no matrices to be exported"
+        "condition {condition}, model \"{model}\": a measured response has no matrices to export"
     )]
     NoMatrices {
         condition: ConditionId,

@@ -32,7 +32,7 @@ pub enum FileError {
     NotAFile { path: PathBuf, kind: &'static str },
     /// The output path is a named pipe, a socket or a device.
     #[error(
-        "{}: this is {kind}, not a file, and is not written to; give the name of a file",
+        "{}: this is {kind}, not a file, so nothing is written to it; give the name of a file",
         sanitized_path(path)
     )]
     OutputNotAFile { path: PathBuf, kind: &'static str },
@@ -41,7 +41,7 @@ pub enum FileError {
     Unreadable { path: PathBuf, reason: String },
     /// The size of the file, or of its uncompressed content, exceeds the limit.
     #[error(
-        "{}: holds more than {most_mib} MiB, the limit for a file; split the file",
+        "{}: exceeds {most_mib} MiB, the limit for a file; split the file",
         sanitized_path(path)
     )]
     TooLarge { path: PathBuf, most_mib: u64 },
@@ -51,12 +51,13 @@ pub enum FileError {
     )]
     Gzip { path: PathBuf },
     #[error(
-        "{}: the gzip data end too early, the file is cut off; copy it again",
+        "{}: the gzip data end too early: the file is truncated; copy it again",
         sanitized_path(path)
     )]
     GzipCutOff { path: PathBuf },
     /// The text ends within a JSON value.
-    #[error("{}: {}the JSON ends too early (line {line}, column {column}), the file is cut off; copy it again", sanitized_path(path), place.before())]
+    #[error("{}: {}the JSON ends too early (line {line}, column {column}): the file is truncated; \
+        copy it again", sanitized_path(path), place.before())]
     CutOff {
         path: PathBuf,
         /// Place in the content that the reader had reached.
@@ -130,13 +131,13 @@ pub enum FileError {
         held: usize,
     },
     #[error(
-        "{}: holds more than {most} files; give a folder with fewer",
+        "{}: contains more than {most} files; give a folder with fewer files",
         sanitized_path(path)
     )]
     TooManyFiles { path: PathBuf, most: usize },
     /// The dataset of a study cannot be read.
     #[error(
-        "{}: the study's dataset cannot be opened: {dataset}; give its present path with --dataset",
+        "{}: the study's dataset cannot be opened: {dataset}; give its current path with --dataset",
         sanitized_path(path)
     )]
     StudyDataset {
@@ -146,7 +147,7 @@ pub enum FileError {
     },
     /// A directory cannot be created because a file has its name.
     #[error(
-        "{}: cannot be written: a file has the name of this directory",
+        "{}: cannot be written: a file with the name of this directory exists",
         sanitized_path(path)
     )]
     NotADirectory { path: PathBuf },
@@ -155,20 +156,21 @@ pub enum FileError {
     Exists { paths: Vec<PathBuf> },
     /// The output file is also read as an input.
     #[error(
-        "{}: the data are read from this file, so it is not overwritten; choose another name or directory",
+        "{}: the data are read from this file, so it is not overwritten; choose another name or \
+        directory",
         sanitized_path(path)
     )]
     Input { path: PathBuf },
     /// The file extension does not belong to a format for figures.
     #[error(
-        "{}: a figure is written to a name that ends in .svg, .png, .pdf or .csv",
+        "{}: the file name of a figure must end in .svg, .png, .pdf or .csv",
         sanitized_path(path)
     )]
     FigureFormat { path: PathBuf },
     /// A figure without values was to be written as CSV.
     #[error(
-        "{}: \"{}\" shows no numbers that could be written: none of the requested responses or channels has a result; request others, or \
-         .svg",
+        "{}: \"{}\" has no values to write: none of the requested responses or channels has a \
+        result; request others, or use .svg",
         sanitized_path(path),
         sanitized(title)
     )]
@@ -284,13 +286,16 @@ fn line_words(line: Option<usize>) -> String {
 
 fn no_record_words(record: Option<&str>, held: usize) -> String {
     let held = match held {
-        0 => "holds no record".to_owned(),
-        1 => "holds another record".to_owned(),
-        _ => format!("holds {held} records"),
+        0 => "contains no record".to_owned(),
+        1 => "contains another record".to_owned(),
+        _ => format!("contains {held} records"),
     };
     match record {
-        Some(record) => format!("the record {} is not in it; it {held}", quoted(record)),
-        None => format!("a single record is requested; it {held}"),
+        Some(record) => format!(
+            "the record {} is not in this file, which {held}",
+            quoted(record)
+        ),
+        None => format!("a single record is required, but the file {held}"),
     }
 }
 
@@ -304,7 +309,7 @@ fn existing_words(paths: &[PathBuf]) -> String {
 pub fn system_words(error: &std::io::Error) -> String {
     let words = match error.kind() {
         ErrorKind::StorageFull => "the disk is full",
-        ErrorKind::QuotaExceeded => "the disk quota is used up",
+        ErrorKind::QuotaExceeded => "the disk quota is exceeded",
         ErrorKind::FileTooLarge => "it would be larger than the system allows (ulimit -f)",
         ErrorKind::PermissionDenied => "permission denied",
         ErrorKind::ReadOnlyFilesystem => "the file system is read-only",

@@ -40,7 +40,7 @@ pub fn analysis_coupling_remarks(analysis: &Analysis) -> Vec<Remark> {
 pub fn no_couplings(why: &str) -> Remark {
     Remark::trouble(
         "no-couplings",
-        format!("No couplings: {why}. Everything here is without them."),
+        format!("Couplings are unavailable: {why}. All results are computed without couplings."),
     )
 }
 
@@ -62,9 +62,9 @@ pub fn coupling_consequences(assessment: &CouplingsAssessment, dataset: &Dataset
     remarks
 }
 
-/// Interprets the largest significant entries: "LAT takes 4.7 % of LON: as a swashplate phase of
-/// 2.7°"; "PED follows NY by 1.2 % per m/s²: directional stiffness that the physics model does not
-/// have".
+/// Interprets the largest significant entries: "LAT receives 4.7 % of LON, equivalent to a swashplate
+/// phase of 2.7°"; "PED follows NY by 1.2 % per m/s²: directional stiffness that the physics model
+/// does not represent correctly".
 fn diagnosis(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<String> {
     let airspeed_kt = assessment.mean_airspeed_kt();
     let matrices = assessment.fitted.matrices();
@@ -94,7 +94,7 @@ fn diagnosis(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<String>
 /// schedule.
 fn cost_source(assessment: &CouplingsAssessment) -> &'static str {
     if assessment.costs.left_out.is_some() {
-        "conditions left out"
+        "conditions left out of the fit"
     } else {
         "the schedule"
     }
@@ -110,13 +110,13 @@ fn verdict(assessment: &CouplingsAssessment) -> Vec<Remark> {
     let source = cost_source(assessment);
     let couplings = assessment.couplings.name();
     let mut text = format!(
-        "Off the axis, J of {source} is {} without couplings and {} with {couplings}",
+        "Off-axis J of {source} is {} without couplings and {} with {couplings}",
         telling(without, 1),
         telling(with, 1)
     );
     if let (Some(with), Some(without)) = (cost.with.on_axis, cost.without.on_axis) {
         text.push_str(&format!(
-            "; on the axis {} and {}",
+            "; on-axis J is {} and {}",
             telling(without, 1),
             telling(with, 1)
         ));
@@ -127,8 +127,8 @@ fn verdict(assessment: &CouplingsAssessment) -> Vec<Remark> {
         remarks.push(Remark::caution(
             "couplings-not-worthwhile",
             format!(
-                "Off the axis, J of {source} is not at least a tenth less with {couplings}: switch \
-                 the couplings off."
+                "Off-axis J of {source} decreases by less than a tenth with {couplings}: switch \
+                the couplings off."
             ),
         ));
     }
@@ -143,7 +143,7 @@ pub fn coupling_offer(assessment: &CouplingsAssessment) -> Option<String> {
         .left_out
         .filter(CouplingCost::is_worth_it)?;
     Some(format!(
-        "With {} off-axis J of conditions left out would be {} in place of {}.",
+        "With {}, off-axis J of conditions left out of the fit would be {} instead of {}.",
         assessment.couplings.name(),
         telling(cost.with.others?, 1),
         telling(cost.without.others?, 1)
@@ -162,8 +162,8 @@ fn price(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Remark> {
     }
     remarks.push(Remark::good(
         "bars-under-couplings",
-        "Error bars of gains, delays and leads are those under these couplings: a swap of models \
-         does not fit them again.",
+        "Error bars of gains, delays and leads are computed with these couplings: the couplings \
+        are not fitted again when models are exchanged.",
     ));
     remarks
 }
@@ -180,8 +180,8 @@ fn above_band_words(assessment: &CouplingsAssessment, dataset: &Dataset) -> Opti
     }
     let top = assessment.omega.last().copied().unwrap_or_default();
     Some(format!(
-        "Above the band, at {} rad/s, the couplings change {} most of the on-axis responses: by {} \
-         dB of it (condition {id}).",
+        "Above the band, at {} rad/s, the couplings change {} more than any other on-axis \
+         response: the relative change is {} dB (condition {id}).",
         number(top),
         dataset.pair_name(pair),
         signed(change_db, 0)
@@ -227,20 +227,23 @@ pub fn coupling_cautions(assessment: &CouplingsAssessment, dataset: &Dataset) ->
     }
     let has_feedback = assessment.couplings == CouplingCorrection::MixingAndFeedback;
     if assessment.want_leads > 0 && has_feedback {
-        remarks.push(Remark::caution("feedback-as-lead", format!(
-            "In {} all held responses want lead, which no channel gives: the feedback takes its \
-             place, with large entries and poles far from where they were. Correct the phase by \
-             leads first.",
-            counted(assessment.want_leads)
-        )));
+        remarks.push(Remark::caution(
+            "feedback-as-lead",
+            format!(
+                "In {}, all held responses need lead, which no channel provides. The feedback \
+            compensates for it, with large entries and large pole shifts. Correct the phase by \
+            leads first.",
+                counted(assessment.want_leads)
+            ),
+        ));
     }
     let conditions = assessment.fitted.problem.conditions.len();
     if conditions < LEAST_CONDITIONS {
         remarks.push(Remark::caution(
             "few-conditions",
             format!(
-                "Couplings of {}: three are needed for error bars and for J of conditions left \
-                 out.",
+                "The couplings are fitted to {}; error bars, and J of conditions left out, \
+                require three.",
                 counted(conditions)
             ),
         ));
@@ -270,7 +273,7 @@ fn not_fed_back_words(dataset: &Dataset, outputs: &[usize]) -> Option<String> {
         .map(|&output| dataset.outputs()[output].name.as_str())
         .collect();
     Some(format!(
-        "{} cannot be fed back: some input has no response of it in any condition.",
+        "{} cannot be fed back: the response to at least one input is missing in every condition.",
         names.join(", ")
     ))
 }
@@ -281,14 +284,14 @@ fn unknown_pole_remarks(assessment: &CouplingsAssessment) -> Vec<Remark> {
     let mut remarks = Vec::new();
     for (id, condition) in &assessment.conditions {
         if let Err(why) = &condition.poles {
-            let text = format!("Condition {id}: poles are not known: {why}.");
+            let text = format!("Condition {id}: the poles cannot be computed: {why}.");
             remarks.push(Remark::caution("poles-unknown", text));
         }
     }
     for (id, condition) in &assessment.conditions {
         for (model, why) in &condition.refused {
             let text = format!(
-                "Condition {id}, {model}: what the couplings do to it is not known: {why}."
+                "Condition {id}, {model}: the effect of the couplings cannot be computed: {why}."
             );
             remarks.push(Remark::caution("model-refused", text));
         }
@@ -316,10 +319,10 @@ fn unstable_pole_remarks(assessment: &CouplingsAssessment) -> Vec<Remark> {
         };
         let places = unstable_places(&poles);
         let text = if poles.len() == 1 {
-            format!("A pole of the {models} is newly unstable with the couplings: {places}.")
+            format!("A pole of the {models} becomes unstable with the couplings: {places}.")
         } else {
             format!(
-                "{} poles of {models} are newly unstable with the couplings: {places}.",
+                "{} poles of {models} become unstable with the couplings: {places}.",
                 poles.len()
             )
         };
@@ -341,8 +344,9 @@ fn partly_left_out_words(assessment: &CouplingsAssessment) -> Option<String> {
         return None;
     }
     Some(format!(
-        "J of conditions left out and the bars of the couplings rest on {known} of {all} \
-         conditions: without each of the others no couplings or no schedule are found."
+        "J of conditions left out, and the error bars of the couplings, are based on {known} of \
+        {all} conditions: if one of the others is left out, the couplings or the schedule cannot \
+        be fitted."
     ))
 }
 
@@ -359,8 +363,8 @@ fn ringing_words(assessment: &CouplingsAssessment) -> Option<String> {
         return None;
     }
     Some(format!(
-        "The loop is close to ringing at {} rad/s: the least singular value of I − K H is {} \
-         (condition {id}).",
+        "The loop is close to ringing at {} rad/s: the minimum singular value of I − K H is {} \
+        (condition {id}).",
         telling(margin.omega_rad_s, 1),
         telling(margin.least, 2)
     ))
@@ -385,13 +389,13 @@ fn is_acceleration(channel: &Channel) -> bool {
     )
 }
 
-/// Describes a mixing entry: "LAT takes 4.7 % of LON: as a swashplate phase of 2.7°".
+/// Describes a mixing entry: "LAT receives 4.7 % of LON, equivalent to a swashplate phase of 2.7°".
 fn mixing_words(dataset: &Dataset, mixing: &MixingShare) -> String {
     let to = &dataset.inputs()[mixing.to];
     let from = &dataset.inputs()[mixing.from];
     if to.unit != from.unit {
         return format!(
-            "{} takes {} {} per {} of {}.",
+            "{} receives {} {} per {} of {}.",
             to.name,
             with_minus_sign(&telling(mixing.share, 3)),
             to.unit,
@@ -401,13 +405,13 @@ fn mixing_words(dataset: &Dataset, mixing: &MixingShare) -> String {
     }
     let phase = match mixing.swashplate_phase_deg {
         Some(phase_deg) => format!(
-            ": as a swashplate phase of {}°",
+            ", equivalent to a swashplate phase of {}°",
             with_minus_sign(&telling(phase_deg, 1))
         ),
         None => String::new(),
     };
     format!(
-        "{} takes {} % of {}{phase}.",
+        "{} receives {} % of {}{phase}.",
         to.name,
         percent(mixing.share),
         from.name
@@ -415,7 +419,7 @@ fn mixing_words(dataset: &Dataset, mixing: &MixingShare) -> String {
 }
 
 /// Describes a feedback entry: "PED follows NY by 1.2 % per m/s²: directional stiffness that the
-/// physics model does not have".
+/// physics model does not represent correctly".
 fn feedback_words(dataset: &Dataset, feedback: &FeedbackShare) -> String {
     let input = &dataset.inputs()[feedback.input];
     let output = &dataset.outputs()[feedback.output];
@@ -435,7 +439,7 @@ fn feedback_words(dataset: &Dataset, feedback: &FeedbackShare) -> String {
     };
     format!(
         "{} follows {} by {} {} per {}, up to {share} at {} rad/s: {meaning} that the physics \
-         model does not have right.",
+        model does not represent correctly.",
         input.name,
         output.name,
         with_minus_sign(&telling(feedback.entry, 3)),
@@ -471,8 +475,8 @@ fn percent(share: f64) -> String {
     with_minus_sign(&telling(100.0 * share, 1))
 }
 
-/// Locates unstable poles, grouped by condition: "in the band condition 4, slow at 2 rad/s;
-/// condition 1, 8 models at 0.143 to 0.149 rad/s".
+/// Locates unstable poles, grouped by condition: "within the band, condition 4, slow at 2
+/// rad/s; condition 1, 8 models at 0.143 to 0.149 rad/s".
 fn unstable_places(poles: &[&UnstablePole]) -> String {
     let mut in_band: BTreeMap<ConditionId, Vec<&UnstablePole>> = BTreeMap::new();
     let mut beyond: BTreeMap<ConditionId, Vec<&UnstablePole>> = BTreeMap::new();
@@ -486,7 +490,10 @@ fn unstable_places(poles: &[&UnstablePole]) -> String {
     }
     let mut places = Vec::new();
     for (condition, poles) in &in_band {
-        places.push(format!("in the band {}", unstable_place(*condition, poles)));
+        places.push(format!(
+            "within the band, {}",
+            unstable_place(*condition, poles)
+        ));
     }
     for (condition, poles) in &beyond {
         places.push(unstable_place(*condition, poles));
@@ -539,16 +546,16 @@ fn undetermined_words(dataset: &Dataset, unknowns: &[Unknown]) -> Option<String>
         })
         .collect();
     Some(format!(
-        "No response says anything of these entries, which stay as without couplings: {}.",
+        "No response determines these entries, which are left as without couplings: {}.",
         names.join(", ")
     ))
 }
 
 /// Returns the heading: "mixing and feedback fitted to 11 conditions; the normal equations of the
-/// last solve hold to 3e-16".
+/// last solution are satisfied to 3e-16".
 pub fn couplings_heading(assessment: &CouplingsAssessment) -> String {
     format!(
-        "{} fitted to {}; the normal equations of the last solve hold to {:.0e}",
+        "{} fitted to {}; the normal equations of the last solution are satisfied to {:.0e}",
         assessment.couplings.name(),
         counted(assessment.fitted.problem.conditions.len()),
         assessment.fitted.fit.residual
@@ -603,12 +610,12 @@ pub fn coupling_matrix_tables(assessment: &CouplingsAssessment, dataset: &Datase
         String::new()
     } else {
         format!(
-            ", ± bar of {} %, in brackets within it",
+            ", ± {} % error bar; entries in brackets do not exceed it",
             number(100.0 * assessment.level)
         )
     };
     let title = format!(
-        "Mixing at {} kt: share of each input that an input takes{bars}",
+        "Mixing at {} kt: share of each input (column) that an input (row) receives{bars}",
         telling(airspeed_kt, 0)
     );
     let mixing = assessment.mixing(airspeed_kt);
@@ -617,7 +624,10 @@ pub fn coupling_matrix_tables(assessment: &CouplingsAssessment, dataset: &Datase
     if feedback.iter().any(|entry| entry.value != 0.0) {
         let to = with_units(&inputs, dataset.inputs());
         let from = with_units(&outputs, dataset.outputs());
-        let title = format!("Feedback: units of an input for each unit of an output{bars}");
+        let title = format!(
+            "Feedback: units of an input (row) per unit of an output \
+            (column){bars}"
+        );
         tables.push(matrix_table(title, &to, &from, &feedback));
     }
     tables
@@ -674,7 +684,7 @@ pub fn pole_table(assessment: &CouplingsAssessment) -> Table {
         "moved by [rad/s]",
     ];
     let mut table = Table::new(
-        "Poles of the physics representatives, without couplings and with them",
+        "Poles of the physics representatives, without and with couplings",
         columns,
     );
     for (id, condition) in &assessment.conditions {

@@ -209,8 +209,8 @@ fn representative_words(choice: &BundleChoice) -> String {
 pub fn dataset_difference_text(difference: &Difference) -> String {
     match difference {
         Difference::AnotherFile { expected, found } => format!(
-            "the dataset has changed since the study was saved, and the study does not say what it \
-             held: expected SHA-256 {expected}, found {found}"
+            "the dataset has changed since the study was saved, and the study does not record the \
+            earlier contents: expected SHA-256 {expected}, found {found}"
         ),
         Difference::ConditionAdded(id) => format!("condition {id} was added"),
         Difference::ConditionRemoved(id) => format!("condition {id} was removed"),
@@ -218,7 +218,7 @@ pub fn dataset_difference_text(difference: &Difference) -> String {
             condition,
             before_kt,
             now_kt,
-        } => format!("condition {condition} is flown at {now_kt} kt, was {before_kt} kt"),
+        } => format!("condition {condition} is at {now_kt} kt; it was at {before_kt} kt"),
         Difference::ModelAdded(id) => format!("{id} was added"),
         Difference::ModelRemoved(id) => format!("{id} was removed"),
         Difference::ModelChanged(id) => format!("{id} has changed"),

@@ -21,7 +21,7 @@ const NOTHING_S: f64 = 2e-3;
 /// Minimum gain increase \[dB\] that is reported.
 const NOTHING_DB: f64 = 0.05;
 
-/// Describes the lead of responses and channels: "P from LAT wants 65 ms of lead over the band: 24
+/// Describes the lead of responses and channels: "P from LAT needs 65 ms of lead over the band: 24
 /// on P, 41 on LAT"; "LAT: as if a servo of 17 rad/s were replaced by one of 36 rad/s; +12.4 dB
 /// above the band". With `uncertainty`, the lead of a response has its error bar: "65 ± 4 ms"
 /// (M13).
@@ -83,7 +83,7 @@ fn wanted_lead_words(
         )
     };
     let mut text = format!(
-        "{} from {} wants {}{} ms of {} over the band: {}, {}",
+        "{} from {} needs {}{} ms of {} over the band: {}, {}",
         output.name_in(&study.dataset),
         input.name_in(&study.dataset),
         whole_ms(wanted_s),
@@ -174,8 +174,8 @@ fn offered_leads(result: &ConditionAnalysis) -> Option<Remark> {
     let without = telling(offer.without, 0);
     let with = telling(offer.with, 0);
     let text = format!(
-        "All held responses want lead: with a delay or lead in each channel their J would be about \
-         {with} in the mean, in place of {without}."
+        "All held responses need lead: with a delay or lead in each channel, their mean J would \
+        be about {with} instead of {without}."
     );
     let remark =
         Remark::caution("leads-offered", text).repeated(Repeated::LeadsOffered([without, with]));
@@ -205,9 +205,9 @@ fn common_lead(result: &ConditionAnalysis) -> Option<Remark> {
     }
     let lead_ms = telling(-s_to_ms(middle), 0);
     let text = format!(
-        "All held responses want about {lead_ms} ms of lead: check first the time alignment of the \
-         records, the simulation's integration and sampling delay, then servo and sensor models; a \
-         common lag is better taken out where it arises than corrected."
+        "All held responses need about {lead_ms} ms of lead. First check the time alignment of \
+        the records, and the integration and sampling delay of the simulation, then the servo \
+        and sensor models: a common lag is better removed at its source than corrected."
     );
     Some(Remark::caution("common-lead", text).repeated(Repeated::CommonLead(lead_ms)))
 }
@@ -224,14 +224,14 @@ fn achieved(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     if is_negligible {
         return vec![Remark::good(
             "leads-negligible",
-            "Nothing to do for the phase: every delay or lead is less than 2 ms.",
+            "No phase correction is needed: every delay or lead is below 2 ms.",
         )];
     }
     if delays.unmatched.is_empty() {
         let text = match result.held().marked().count() {
             0 => "No delay or lead is held.".to_owned(),
-            1 => "The held response gets the delay or lead that it wants.".to_owned(),
-            count => format!("All {count} held responses get the delay or lead that they want."),
+            1 => "The held response gets the delay or lead that it needs.".to_owned(),
+            count => format!("All {count} held responses get the delay or lead that they need."),
         };
         return vec![Remark::good("leads-matched", text)];
     }
@@ -256,8 +256,8 @@ fn raised_gain(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     let most_db = telling(rise_db.abs(), 1);
     let name = study.dataset.pair_name(pair);
     let text = format!(
-        "The lead filters raise the gain within the band, which the gains take back: by up to \
-         {most_db} dB ({name})."
+        "The lead filters raise the gain within the band by up to {most_db} dB ({name}); the \
+        channel gains compensate for this."
     );
     Some(Remark::caution("gain-raised", text).repeated(Repeated::RaisedGain(most_db, pair)))
 }
@@ -289,13 +289,12 @@ fn not_of_a_delay(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
         return None;
     }
     let remedy = if study.settings.phase == PhaseCorrection::Lead {
-        ": no lead filter mends it"
+        ", which a lead filter cannot correct"
     } else {
         ""
     };
     let text = format!(
-        "The missing phase is not that of a delay, but of a zero or a mode in the band{remedy}: \
-         {}.",
+        "The missing phase is not due to a delay, but to a zero or a mode in the band{remedy}: {}.",
         apart.join("; ")
     );
     Some(Remark::caution("not-a-delay", text))

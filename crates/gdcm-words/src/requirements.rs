@@ -71,19 +71,19 @@ fn bandwidth_remark(finding: &BandwidthFinding) -> String {
         && (finding.gain_limited || words.is_empty())
     {
         words.push(match rule {
-            BandwidthRule::Gain => "gain-limited: the standard warns of it",
-            BandwidthRule::Phase => "of the phase margin",
-            BandwidthRule::PhaseGainUnknown => "of the phase margin; the gain margin is not known",
+            BandwidthRule::Gain => "gain-limited, which the standard warns against",
+            BandwidthRule::Phase => "from the phase margin",
+            BandwidthRule::PhaseGainUnknown => "from the phase margin; the gain margin is unknown",
         });
     }
     if !finding.rests_above_band.is_empty() {
-        words.push("rests on the model above the band");
+        words.push("depends on the model above the band");
     }
     if !finding.rests_below_band.is_empty() {
-        words.push("rests on the model below the band");
+        words.push("depends on the model below the band");
     }
     if finding.phase_delay_of_line {
-        words.push("τ_p of the least-squares line");
+        words.push("τ_p from the least-squares line");
     }
     words.join("; ")
 }
@@ -99,10 +99,10 @@ pub fn mode_table(requirements: &Requirements, condition: ConditionId) -> Table 
     let is_coupled = modes.iter().any(|mode| mode.corrected_verdict.is_some());
     let has_deviations = modes.iter().any(|mode| mode.identified_deviation.is_some());
     let deviations = if has_deviations {
-        "standard deviations of flown modes known"
+        "standard deviations of the identified modes are available"
     } else {
-        "standard deviations of flown modes not known (they are of a model identified in this \
-         session): not determined is what lies below the band"
+        "standard deviations of the identified modes are unavailable (only models identified in \
+        this session have them); modes below the band count as not determined"
     };
     let title = format!("Modes of condition {condition}; {deviations}");
     let mut table = Table::new(title, mode_columns(is_coupled));
@@ -311,8 +311,8 @@ impl RequirementsOverview {
             .collect();
         let mut columns = HEADS.map(str::to_owned).to_vec();
         columns.extend(ids.iter().map(ToString::to_string));
-        let title = "Corrected against identified models, condition by condition; the limits are \
-                     the program's, of no standard";
+        let title = "Corrected models compared with identified models, condition by condition; \
+            the limits are set in this program, not by a standard";
         let mut overview = Self {
             table: Table::new(title, columns),
             outside: Vec::new(),
@@ -329,7 +329,7 @@ impl RequirementsOverview {
         overview.add(
             OverviewRow {
                 requirement: "modes beyond tolerance".to_owned(),
-                unit: "of those with a tolerance",
+                unit: "of modes with a tolerance",
                 limit: "0".to_owned(),
             },
             &ids,

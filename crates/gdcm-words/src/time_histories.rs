@@ -130,8 +130,9 @@ pub fn record_table(histories: &TimeHistories, condition: ConditionId) -> Table 
         }
     }
     table.title = format!(
-        "Records of condition {condition}: share of time inside, largest excess beyond the \
-         corridor and when; {} of {all} rows, of which every model is always inside, are left out",
+        "Records of condition {condition}: share of time inside, and largest excess beyond the \
+        corridor with its time; {} of {all} rows are omitted, because every model is always \
+        inside",
         all - table.rows.len()
     );
     table
@@ -165,7 +166,7 @@ pub fn output_weights_text(histories: &TimeHistories) -> String {
     } else {
         format!("; without {}", Vec::from_iter(excluded).join(", "))
     };
-    format!("deg, deg/s, ft/s and ft/s\u{b2} weighing the same{without}")
+    format!("equal weights for deg, deg/s, ft/s and ft/s\u{b2}{without}")
 }
 
 /// Formats a result: share of time inside \[%\], largest excess, and the trend if it is incorrect:

@@ -31,7 +31,10 @@ pub fn difference_text(difference: &AirspeedDifference, level: f64) -> String {
     let differ =
         format!("conditions {first} and {second} ({airspeed_kt:.0} kt) differ by {percent:.0} %");
     let Some(ratio) = difference.difference.ratio() else {
-        return format!("{differ}; their bundles have no spread to compare that with");
+        return format!(
+            "{differ}; their bundles have no spread with which to compare the \
+            difference"
+        );
     };
     format!(
         "{differ}, {ratio:.1} × expected from trim and identification uncertainty; {}",
@@ -64,8 +67,8 @@ pub fn differences_summary(uncertainty: &Uncertainty) -> String {
 }
 
 /// Describes the test for a second variable: "from the lowest to the highest altitude −7 %: not
-/// needed; an effect smaller than ± 6 % could not have been seen"; or the reason why it could not
-/// be tested.
+/// needed; an effect smaller than ± 6 % could not have been detected"; or the reason why it could
+/// not be tested.
 pub fn second_variable_text(test: &SecondVariableTest) -> String {
     let variable = test.variable.name();
     let effect = match &test.effect {
@@ -77,7 +80,7 @@ pub fn second_variable_text(test: &SecondVariableTest) -> String {
     let sign = if percent < 0.0 { "−" } else { "+" };
     format!(
         "from the lowest to the highest {variable} {sign}{:.1} %: {}; an effect smaller than ± \
-         {visible:.1} % could not have been seen",
+        {visible:.1} % could not have been detected",
         percent.abs(),
         need(test)
     )
@@ -149,10 +152,10 @@ pub fn second_variable_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Ta
         "response",
         "variable",
         "effect [%]",
-        "not seen below ± [%]",
+        "detectable from ± [%]",
         "Holm p",
         "unseen [%]",
-        "with it [%]",
+        "unseen with it [%]",
         "verdict",
     ];
     let mut table = Table::new("Does the schedule need a second variable?", columns);
@@ -192,7 +195,7 @@ pub fn scatter_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Table {
         "interval [%]",
         "× expected",
     ];
-    let mut table = Table::new("What the scatter of the net gains is made of", columns);
+    let mut table = Table::new("Contributions to the scatter of the net gains", columns);
     let deviation = |variance: f64| percent(Some(variance.sqrt()));
     for scatter in &uncertainty.scatter {
         for (about, decomposition) in [

@@ -26,7 +26,7 @@ use crate::formats::variables::{TextArray, Value, Variable};
 pub(super) const STATE_SPACE: ExportFormat = ExportFormat {
     name: "state-space",
     extension: "mat",
-    words: "Corrected models as state-space",
+    words: "Corrected models in state-space form",
     options: &["--condition", "--model", "--correction", "--pade"],
     check_path: |path| ModelsFormat::from_path(path).map(drop),
     contents: |analysis, request| contents_of_models(analysis, request),
@@ -298,7 +298,9 @@ mod tests {
                 "{phase_deg}"
             );
             assert!(
-                model.words().contains("are left out, up to"),
+                model
+                    .words()
+                    .contains("are left out, which causes a phase error of up to"),
                 "{}",
                 model.words()
             );

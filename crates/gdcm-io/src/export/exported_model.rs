@@ -179,7 +179,8 @@ fn couplings_words(analysis: &Analysis, dynamics: &StateSpace) -> &'static str {
     ) {
         (None, _) => "",
         (Some(_), CouplingCorrection::MixingAndFeedback) if has_delays => {
-            "; with mixing and feedback of the model, its own delays inside the loop as Pade approximants"
+            "; with mixing and feedback; the model's own delays are inside the loop, as Pade \
+            approximants"
         }
         (Some(_), CouplingCorrection::MixingAndFeedback) => "; with mixing and feedback, exact",
         (Some(_), _) => "; with mixing, exact",
@@ -341,7 +342,8 @@ impl ExportedModel {
         let left_out = telling(self.left_out_deg, 3);
         let top = number(self.band_top_rad_s);
         format!(
-            "; the delays of the condition's own correction are left out, up to {left_out} deg at {top} rad/s"
+            "; the delays of the condition's own correction are left out, which causes a phase \
+            error of up to {left_out} deg at {top} rad/s"
         )
     }
 

@@ -255,7 +255,7 @@ impl<'e> BreakpointTable<'e> {
         for column in &self.columns {
             if column.error.error > 0.0 {
                 remarks.push(format!(
-                    "table of the {}: off by up to {}",
+                    "table of the {}: maximum error {}",
                     column.words(),
                     column.error_words()
                 ));
@@ -287,7 +287,8 @@ impl<'e> BreakpointTable<'e> {
             let _ = writeln!(text, "# {line}");
         }
         text.push_str(
-            "# Greatest error of linear interpolation in this table, end values outside it, against the curves:\n",
+            "# Maximum error of linear interpolation in this table (with the end values outside \
+            its range), compared with the curves:\n",
         );
         for column in &self.columns {
             let _ = writeln!(

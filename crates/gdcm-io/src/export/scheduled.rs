@@ -181,7 +181,7 @@ impl Scheduled<'_> {
             "Gains (no delays)"
         };
         let mut lines = vec![
-            format!("{quantities} that correct a model of a helicopter, scheduled with airspeed."),
+            format!("{quantities} that correct a helicopter model, scheduled with airspeed."),
             "The model gets the input Mi*u(t - tau_i); its output ym gives y(t) = Mo*ym(t - tau_o).".to_owned(),
             "Units: airspeed in knots, delays in seconds, gains without a unit.".to_owned(),
             format!(
@@ -197,9 +197,12 @@ impl Scheduled<'_> {
         if self.couplings.is_some() {
             lines.extend(
                 [
-                    "Couplings: in place of u1 = Mi*u(t - tau_i), after leads, the model itself gets u2 = mixing*u1 + feedback*ym;",
-                    "ym is its output before any correction. Where it has a feed-through D, u2 and ym depend on each other at once:",
-                    "solved, u2 = u1m + F*(y0) of u1m = mixing*u1, y0 = C*x + D*u1m, F = feedback*inverse(I - D*feedback).",
+                    "Couplings: instead of u1 = Mi*u(t - tau_i), after leads, the model itself \
+                    gets u2 = mixing*u1 + feedback*ym;",
+                    "ym is its output before any correction. If the model has a feed-through D, \
+                    u2 and ym depend on each other instantaneously;",
+                    "the solution is u2 = u1m + F*y0, where u1m = mixing*u1, y0 = C*x + D*u1m, F \
+                    = feedback*inverse(I - D*feedback).",
                 ]
                 .map(str::to_owned),
             );
@@ -226,14 +229,15 @@ impl Scheduled<'_> {
         };
         vec![
             format!(
-                "Lead: each input, after its gain and delay, and each output, before them, passes {filter},"
+                "Lead: each input, after its gain and delay, and each output, before them, passes \
+                through {filter},"
             ),
             format!(
-                "with b = {} s for all, and a in seconds for each; where a = b there is no lead.",
+                "with b = {} s for all channels, and a [s] for each channel; a = b means no lead.",
                 number(lag_s)
             ),
             format!(
-                "In fixed-step code use Tustin's rule and a step of at most {} s.",
+                "In fixed-step code, use Tustin's rule and a step of at most {} s.",
                 number(0.5 * lag_s)
             ),
         ]

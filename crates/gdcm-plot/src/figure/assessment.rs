@@ -72,7 +72,7 @@ pub fn assessment_figure(analysis: &Analysis, pairs: &[Pair], choice: Assessment
         AssessedCorrection::ScheduleOfOthers => "the schedule of the other conditions",
         AssessedCorrection::Own => "each condition's own optimum",
     };
-    let title = format!("Change of J of the {model} model under {correction}");
+    let title = format!("Change in J of the {model} model under {correction}");
     Figure::new(title)
         .caption(caption(analysis, &table))
         .plots(plots)
@@ -178,7 +178,7 @@ fn caption(analysis: &Analysis, table: &AssessmentTable) -> String {
     }
     let average = average_word(table.choice.average);
     caption.push_str(&format!(
-        " J takes {average} over frequency; below 0 is better."
+        " J is {average} over frequency; negative changes are improvements."
     ));
     for left_out in &table.left_out {
         caption.push_str(&format!(

@@ -250,7 +250,10 @@ pub fn overview_figure(source: &ConditionSource<'_>, options: &BodeOptions) -> F
         .pairs()
         .map(|pair| overview_plot(source, pair, options));
     Figure::new(source.condition_words())
-        .caption(format!("{} * held exactly.", source.caption()))
+        .caption(format!(
+            "{} An asterisk (*) marks held responses.",
+            source.caption()
+        ))
         .plots(plots)
         .columns(dataset.inputs().len())
         .dense()

@@ -328,13 +328,13 @@ pub(super) fn settings_words(dataset: &Dataset, settings: &Settings) -> String {
     let high = compact(settings.band.max());
     let phase = match settings.phase {
         PhaseCorrection::Delay => "",
-        PhaseCorrection::None => " No correction of the phase.",
+        PhaseCorrection::None => " No phase correction.",
         PhaseCorrection::Lead => " A delay or a lead filter in each channel.",
     };
     let couplings = match settings.couplings {
         CouplingCorrection::None => "",
-        CouplingCorrection::Mixing => " The physics models with a mixing of the inputs.",
-        CouplingCorrection::MixingAndFeedback => " The physics models with mixing and feedback.",
+        CouplingCorrection::Mixing => " Physics models include a mixing of the inputs.",
+        CouplingCorrection::MixingAndFeedback => " Physics models include mixing and feedback.",
     };
     format!(
         "{}. Band {low} to {high} rad/s, {} frequencies; \u{3b1} {} for gains, {} for delays.{phase}{couplings}",

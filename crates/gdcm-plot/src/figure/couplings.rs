@@ -77,7 +77,7 @@ fn loop_plot(assessment: &CouplingsAssessment, shown: ConditionId, unit: Frequen
         key: "band".to_owned(),
     };
     let ringing = Rule::horizontal(LoopMargin::CAUTION, RINGING).label("close to ringing");
-    let y = Axis::linear("least singular value of I − K H")
+    let y = Axis::linear("minimum singular value of I − K H")
         .including(0.0)
         .including(1.0);
     let mut panel = Panel::new(Axis::logarithmic(unit.axis_label()), y)
@@ -94,7 +94,7 @@ fn loop_plot(assessment: &CouplingsAssessment, shown: ConditionId, unit: Frequen
     let name = format!("condition {shown}");
     let values = assessment.conditions[&shown].singular_values.clone();
     let curve = Curve::new(&name, SHOWN, frequencies, values).key(&name);
-    Plot::new("Loop at the sticks").panel(panel.with(curve))
+    Plot::new("Coupling loop at the inputs").panel(panel.with(curve))
 }
 
 /// Plots the poles near the band, without and with couplings.

@@ -362,7 +362,7 @@ fn delta_rules(
         let label = format!("D {} ms", signed(s_to_ms(delay_s)));
         let mut line = delay_rule(ReferenceKind::Delta, label, delay_s, unit);
         if delay_s < 0.0 {
-            line.note = ": lead is missing".to_owned();
+            line.note = ": lead is needed".to_owned();
         }
         lines.push(line);
     }

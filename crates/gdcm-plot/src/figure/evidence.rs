@@ -73,7 +73,7 @@ pub fn evidence_figure(analysis: &Analysis, pairs: &[Pair]) -> Option<Figure> {
     if plots.is_empty() {
         return None;
     }
-    let figure = Figure::new("What the scatter of the net gains is made of")
+    let figure = Figure::new("Contributions to the scatter of the net gains")
         .caption(caption(analysis, uncertainty))
         .plots(plots)
         .columns(5)
@@ -121,7 +121,7 @@ fn shares_panel(scatter: &PairScatter) -> Panel {
     let mut missing = Vec::new();
     for PlacedSplit { x, split } in placed_splits(scatter) {
         let Some(split) = split else {
-            missing.push(note(x, MIDDLE, "no freedom".to_owned(), true));
+            missing.push(note(x, MIDDLE, "no degrees of freedom".to_owned(), true));
             continue;
         };
         if let Some(shares) = split.shares() {
@@ -179,7 +179,7 @@ fn deviations_panel(scatter: &PairScatter, level: f64) -> Panel {
     let mut panel = Panel::new(axis(), y);
     if !ends.is_empty() {
         panel = panel.with(Intervals {
-            name: format!("unexplained, interval of {:.0} %", 100.0 * level),
+            name: format!("unexplained, {:.0} % interval", 100.0 * level),
             stroke: INTERVAL,
             ends,
         });
@@ -201,8 +201,10 @@ fn percent(variance: f64) -> f64 {
 fn caption(analysis: &Analysis, uncertainty: &Uncertainty) -> String {
     let settings = &analysis.study.settings;
     format!(
-        "{} Of ln(k_o k_i), about the mean of each airspeed and about the schedule ({}): shares of the variance, and standard \
-         deviations. Trim, identification: expected from the bundles; unexplained: what neither makes. Above the bars: scatter, × expected. {}",
+        "{} Scatter of ln(k_o k_i) about the mean at each airspeed, and about the schedule ({}): \
+        shares of the variance, and standard deviations. Trim and identification: expected from \
+        the bundles; unexplained: the remainder. Above the bars: ratio of the scatter to its \
+        expected value. {}",
         differences_summary(uncertainty),
         schedule_words(&settings.schedule),
         settings_words(&analysis.study.dataset, settings)

@@ -68,9 +68,9 @@ impl FigureFormat {
     pub fn words(self) -> &'static str {
         match self {
             Self::Svg => "SVG, for documents and drawing programs",
-            Self::Png => "PNG, 300 dots to the inch",
-            Self::Pdf => "PDF, one page",
-            Self::Csv => "CSV, the numbers",
+            Self::Png => "PNG, 300 dots per inch",
+            Self::Pdf => "PDF, a single page",
+            Self::Csv => "CSV, the values of all curves",
         }
     }
 }

@@ -44,7 +44,7 @@ impl FrequencyPanels<'_> {
         let strips = self.strips.iter().map(|&(from, to)| Band {
             range: self.options.in_unit(from, to),
             color: NOTICED,
-            key: "what is left would be noticed".to_owned(),
+            key: "remaining error would be noticed".to_owned(),
         });
         let bands = self
             .bands
@@ -106,7 +106,7 @@ impl FrequencyPanels<'_> {
             points.push([x, convert(*low), convert(*high)]);
         }
         Envelope {
-            name: "band of 95 %".to_owned(),
+            name: "95 % band".to_owned(),
             color: UNCERTAIN,
             edge: None,
             points,

@@ -115,12 +115,12 @@ impl GainPanel<'_> {
         };
         let level = uncertainty.level;
         let whole = Intervals {
-            name: format!("bar of {:.0} %", 100.0 * level),
+            name: format!("{:.0} % error bar", 100.0 * level),
             stroke: BAR,
             ends: self.bar_ends(uncertainty, Bar::interval),
         };
         let inner = Intervals {
-            name: "identification in it".to_owned(),
+            name: "identification part of the error bar".to_owned(),
             stroke: INNER_BAR,
             ends: self.bar_ends(uncertainty, Bar::inner_interval),
         };

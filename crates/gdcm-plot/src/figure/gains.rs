@@ -99,7 +99,7 @@ fn caption(analysis: &Analysis, across: Across, measure: Measure) -> String {
         caption.push_str(&format!(" Schedule: {schedule}."));
     }
     if across == Across::Airspeed {
-        caption.push_str(" Numbers are those of the conditions.");
+        caption.push_str(" Numbers identify the conditions.");
     }
     caption.push_str(" Dashed: no correction.");
     caption

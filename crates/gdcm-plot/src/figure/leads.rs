@@ -29,7 +29,8 @@ const BEYOND: Color = Color::of(Hue::Warning).tint(14);
 pub fn leads_figure(source: &ConditionSource<'_>, pairs: &[Pair]) -> Figure {
     let title = format!("Leads · {}", source.condition_words());
     let caption = format!(
-        "{} What delay or lead adds to each channel, without the gains k; thin: the other channels.",
+        "{} Effect of delay or lead in each channel, without the gains k; thin lines: other \
+        channels.",
         source.caption()
     );
     let mut figure = Figure::new(title).caption(caption).columns(2).aspect(0.62);

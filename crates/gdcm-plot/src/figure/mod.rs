@@ -64,7 +64,7 @@ pub mod error;
 mod evidence;
 #[expect(
     clippy::module_inception,
-    reason = "the room is named by what it makes"
+    reason = "the folder and the file of its main type have the same name"
 )]
 pub mod figure;
 mod figure_format;

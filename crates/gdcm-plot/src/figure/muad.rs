@@ -32,8 +32,8 @@ pub fn muad_about(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<ReferenceLi
     }
     let mut lines = Vec::new();
     for (end, label) in [
-        (LOWER, "unnoticed above, MUAD"),
-        (UPPER, "unnoticed below, MUAD"),
+        (LOWER, "unnoticeable above (MUAD)"),
+        (UPPER, "unnoticeable below (MUAD)"),
     ] {
         let mut magnitude = Vec::new();
         let mut phase = Vec::new();
@@ -54,8 +54,8 @@ pub fn muad_about(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<ReferenceLi
 pub(super) fn muad_among_errors(omega: &[f64], unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
     let mut lines = Vec::new();
     for (end, label) in [
-        (LOWER, "unnoticed below, MUAD"),
-        (UPPER, "unnoticed above, MUAD"),
+        (LOWER, "unnoticeable below (MUAD)"),
+        (UPPER, "unnoticeable above (MUAD)"),
     ] {
         let mut magnitude = Vec::new();
         let mut phase = Vec::new();

@@ -79,10 +79,7 @@ impl Figure {
     fn printed_caption(&self, labels_left_out: usize) -> String {
         match labels_left_out {
             0 => self.caption.clone(),
-            count => format!(
-                "{} Without room, and left out: {count} of the labels.",
-                self.caption
-            ),
+            count => format!("{} Labels omitted for lack of room: {count}.", self.caption),
         }
     }
 }

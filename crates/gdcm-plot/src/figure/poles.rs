@@ -63,7 +63,10 @@ pub fn poles_figure(
         marks.extend(pole_shift_marks(shifts));
     }
     Figure::new(format!("Poles · {}", source.condition_words()))
-        .caption(format!("{} Rays: equal damping ratio ζ.", source.caption()))
+        .caption(format!(
+            "{} Rays: constant damping ratio ζ.",
+            source.caption()
+        ))
         .plot(plane_plot("s-plane", whole, marks.clone()))
         .plot(plane_plot("slow modes", SLOW, marks))
         .columns(2)

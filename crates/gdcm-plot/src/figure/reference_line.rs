@@ -78,7 +78,7 @@ impl ReferenceKind {
             Self::Delta => "delta gain, delta delay",
             Self::Bound => "bounds",
             Self::Quantile => "quantiles",
-            Self::Envelope => "unnoticed within, MUAD",
+            Self::Envelope => "unnoticeable within (MUAD)",
         }
     }
 }

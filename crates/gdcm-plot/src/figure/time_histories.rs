@@ -52,7 +52,7 @@ pub fn test_answers_figure(answers: &TestAnswers, dataset: &Dataset) -> Figure {
         let curves = answer_curves(answers, &time_s, index);
         plots.push(answer_plot(&output.name, &output.unit, curves));
     }
-    let mut caption = "Linear models from rest; there is no flight here.".to_owned();
+    let mut caption = "Linear models, starting at rest; no flight data.".to_owned();
     for (role, answer) in &answers.models {
         if let Err(why) = answer {
             caption.push_str(&format!(" No {} model: {why}.", role.name()));
@@ -119,8 +119,10 @@ pub fn record_history_figure(history: &RecordHistory, dataset: &Dataset, input: 
         .map(|why| format!(" {why}."))
         .collect();
     let caption = format!(
-        "Windows of at most 10 s, each from an estimated state; attitudes are integrals of rates from the start of each window. Below: \
-         less flight. Wide: outside the corridor. No qualification: the tests of the table are steps and doublets at given conditions.{missing}"
+        "Windows of at most 10 s, each starting from an estimated state; attitudes are integrals \
+        of rates from the start of each window. Below: simulated minus flight. Thick lines: \
+        outside the corridor. This is not a qualification: the tests in the table of tolerances \
+        are steps and doublets at specified conditions.{missing}"
     );
     let title = format!(
         "Condition {}: {}{held_out}",
@@ -146,7 +148,7 @@ fn record_input_plot(history: &RecordHistory, dataset: &Dataset, input: usize) -
 fn quantity_plot(history: &QuantityHistory) -> Plot {
     let tolerance = &history.tolerance;
     let label = format!("{} [{}]", tolerance.quantity, history.unit);
-    let less = format!("less flight [{}]", history.unit);
+    let less = format!("minus flight [{}]", history.unit);
     let record = empty_panel(&label).with_all(history_marks(history, Shown::Recorded));
     let difference = empty_panel(&less).with_all(history_marks(history, Shown::LessFlight));
     let title = format!("{}, {}", tolerance.quantity, tolerance.words());

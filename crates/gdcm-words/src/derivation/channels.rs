@@ -108,14 +108,14 @@ fn constraint_words(
     let name = context.pair(pair);
     let delta = match delta {
         Some(delta) => five_digits(delta),
-        None => "nothing defined".to_owned(),
+        None => "undefined".to_owned(),
     };
     if solution.targets[pair].is_none() {
-        format!("{name} is free, its delta is {delta}")
+        format!("{name} is not held; its delta is {delta}")
     } else if solution.unmatched.iter().any(|miss| miss.pair == pair) {
-        format!("{name} is held at the nearest that can be reached, its delta is {delta}")
+        format!("{name} is held as close to its delta as possible; its delta is {delta}")
     } else {
-        format!("{name} is held at its delta {delta}")
+        format!("{name} is held at its delta, {delta}")
     }
 }
 
@@ -162,7 +162,7 @@ pub(super) fn delay(context: &Context<'_>, channel: Channel) -> Option<Derivatio
     let mut with_numbers = optimum.steps(channel, &format!("{name} = {} ms", five_digits(value)));
     if let Some(filter) = result.correction.lead(channel) {
         with_numbers.push(format!(
-            "its filter has {} ms of lead at low frequency: {}",
+            "its lead filter provides {} ms of lead at low frequency: {}",
             five_digits(s_to_ms(filter.lead_s())),
             servo_words(filter)
         ));
@@ -283,7 +283,7 @@ impl Optimum<'_> {
         );
         let mut rests_on = self.rests_on();
         rests_on.push(format!(
-            "no less than {}{unit} is possible",
+            "proven lower bound of the objective: {}{unit}",
             five_digits(scale * self.solution.proof.lower_bound)
         ));
         Derivation {

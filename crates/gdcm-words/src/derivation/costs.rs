@@ -70,7 +70,7 @@ pub(super) fn score(context: &Context<'_>, model: &ModelId) -> Option<Derivation
         .filter_map(|other| result.figures.bundle(kind).between(index, other))
         .collect();
     let step = if distances.is_empty() {
-        "s = 0: it is the only model kept".to_owned()
+        "s = 0, because no other model is kept".to_owned()
     } else {
         format!(
             "s = ({}) / {} = {}",
@@ -107,7 +107,7 @@ pub(super) fn score(context: &Context<'_>, model: &ModelId) -> Option<Derivation
 /// the distance that the difference in trim explains.
 pub(super) fn ratio(context: &Context<'_>, model: &ModelId) -> Option<Derivation> {
     const EQUATION: &str = "r_a = median over b of d(a, b) / √(Σ_k w_k (p_ak − p_bk)²); each p \
-                            divided by its largest, w_k ≥ 0 by least absolute deviations";
+        divided by its maximum, w_k ≥ 0 by least absolute deviations";
     let result = context.result;
     let value = result.discontinuity_ratio(&model.name)?;
     let fit = result.figures.discontinuity.as_ref().ok()?;
@@ -147,13 +147,16 @@ pub(super) fn ratio(context: &Context<'_>, model: &ModelId) -> Option<Derivation
         five_digits(value)
     ));
     let mut rests_on = vec![
-        format!("all {} physics models, whatever is rejected", models.len()),
+        format!(
+            "all {} physics models, including rejected models",
+            models.len()
+        ),
         context.band(),
         context.measuring(),
     ];
     rests_on.extend(model_words(&models[index]));
     rests_on.push(format!(
-        "above {SUGGESTION_RATIO} a model is suggested as an outlier"
+        "a model above {SUGGESTION_RATIO} is suggested as an outlier"
     ));
     Some(Derivation {
         title: context.title(&format!("discontinuity ratio of {}", model.name)),
@@ -232,7 +235,7 @@ pub(super) fn cost_after(context: &Context<'_>, pair: Pair) -> Option<Derivation
     Some(Derivation {
         title: context.title(&format!("J of {} after the correction", context.pair(pair))),
         equation: format!(
-            "{}; of H_sim · k_o k_i e^(−jω(τ_o + τ_i))",
+            "{}; for the corrected response H_sim · k_o k_i e^(−jω(τ_o + τ_i))",
             cost_equation(average)
         ),
         with_numbers,

@@ -32,7 +32,7 @@ pub(super) fn delays_ms(mismatch: &Mismatch, omega: &[f64]) -> Vec<f64> {
 fn weighted_median_words(mismatch: &Mismatch, values: &[f64]) -> String {
     match mismatch.coherence_weights {
         None => median_words(values),
-        Some(_) => format!("where half of the weight lies of {}", spread(values)),
+        Some(_) => format!("the weighted median of {}", spread(values)),
     }
 }
 
@@ -67,7 +67,10 @@ fn mean_gain(context: &Context<'_>, title: String, value: f64) -> Derivation {
         let scores = &context.result.representative(kind).scores;
         scores.iter().flatten().count()
     });
-    let models = format!("{physics} physics and {identified} identified models that are kept");
+    let models = format!(
+        "{physics} physics models and {identified} identified models that are \
+        kept"
+    );
     Derivation {
         title,
         equation:
@@ -102,7 +105,9 @@ pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     };
     if !is_of_band && mismatch.leaves_half_a_turn() {
         rests_on.push(
-            "at each frequency the turn nearest to the pure delay that fits best (M6b)".to_owned(),
+            "at each frequency, the phase is taken on the turn nearest to the best-fitting pure \
+            delay (M6b)"
+                .to_owned(),
         );
     }
     Some(Derivation {

@@ -12,9 +12,9 @@ use super::explain_target::ExplainTarget;
 
 /// Remark on unconstrained net gains and on channel values, used if the identified models come with
 /// standard errors.
-const SPREAD_ALONE: &str = "its identification part is the spread of the models alone, too small \
-                            where they share their records: the error that a model tells of itself \
-                            counts for G, D and the net gains that are held (M13.2)";
+const SPREAD_ALONE: &str = "its identification part is the spread of the models alone, which is \
+    too small if the models share records; the standard errors of the models themselves count \
+    only for G, D and held net gains (M13.2)";
 
 /// Describes the error bar of a result with its parts, and the result after each substitution of a
 /// model; empty if no error bar is available.
@@ -56,12 +56,12 @@ fn scalar_of(analysis: &Analysis, target: &ExplainTarget) -> Option<(ConditionId
 fn bar_lines(bar: &Bar, scalar: Scalar, level: f64) -> Vec<String> {
     let whole = match (bar.half_width(level), bar.degrees_of_freedom()) {
         (Some(half_width), Some(degrees)) => format!(
-            "bar of {:.0} %: ± {} = t({degrees:.1}) · {} (M13)",
+            "{:.0} % error bar: ± {} = t({degrees:.1}) · {} (M13)",
             100.0 * level,
             deviation_words(scalar, half_width),
             deviation_words(scalar, bar.deviation())
         ),
-        _ => "no bar (M13)".to_owned(),
+        _ => "no error bar (M13)".to_owned(),
     };
     let mut lines = vec![
         whole,
@@ -71,7 +71,7 @@ fn bar_lines(bar: &Bar, scalar: Scalar, level: f64) -> Vec<String> {
     lines.extend(bar.remarks().into_iter().map(str::to_owned));
     if bar.left_out > 0 {
         lines.push(format!(
-            "{} substitutions have no such figure",
+            "{} exchanges of a model give no value of this result",
             bar.left_out
         ));
     }

@@ -49,7 +49,7 @@ fn conditions<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Conditio
             models += condition.physics_models.len() + condition.identified_models.len();
             if models > MOST_MODELS_IN_ALL {
                 return Err(format!(
-                    "expected at most {MOST_MODELS_IN_ALL} models in all, found more"
+                    "expected at most {MOST_MODELS_IN_ALL} models in total, found more"
                 ));
             }
             Ok(())

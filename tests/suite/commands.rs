@@ -749,7 +749,7 @@ fn an_output_directory_that_cannot_be_made_is_status_2_before_any_work() {
         2,
         &[
             "small.json: cannot be written",
-            "a file has the name of this directory",
+            "a file with the name of this directory exists",
         ],
     );
 }
@@ -923,7 +923,7 @@ fn a_study_whose_dataset_has_changed_or_moved_is_used_and_told_about_unless_it_h
     });
     let told = desk.gdcm(&["check", "a.gdcm-study.json"]);
     assert!(
-        told.status == 0 && told.error.contains("condition 7 is flown at 61 kt"),
+        told.status == 0 && told.error.contains("condition 7 is at 61 kt"),
         "{told:?}"
     );
     let strict = desk.gdcm(&["check", "a.gdcm-study.json", "--strict"]);
@@ -933,7 +933,7 @@ fn a_study_whose_dataset_has_changed_or_moved_is_used_and_told_about_unless_it_h
     );
     desk.refusal(&["check", "a.gdcm-study.json", "--strict"])
         .assert_code("different-dataset", &["a.gdcm-study.json", "--strict"])
-        .assert_reported("condition 7 is flown at 61 kt");
+        .assert_reported("condition 7 is at 61 kt");
     fs::rename(&dataset, desk.path("moved.json")).unwrap();
     desk.gdcm(&["check", "a.gdcm-study.json"])
         .assert_failed(2, &["small.json: there is no such file", "--dataset"]);
@@ -1149,7 +1149,7 @@ fn check_finds_a_wrong_structure_without_reading_a_large_file_to_its_end() {
     desk.gdcm(&["check", "large.json"])
         .assert_failed(2, &["large.json: inputs: expected a list, found 5"]);
     desk.gdcm(&["analyze", "large.json", "--out", "out"])
-        .assert_failed(2, &["holds more than 128 MiB"]);
+        .assert_failed(2, &["exceeds 128 MiB"]);
 }
 
 #[test]

@@ -26,12 +26,12 @@ fn analyze_says_what_couplings_mean_are_worth_and_cost_and_writes_them() {
     ended.assert_done();
     for words in [
         "mixing and feedback fitted to 11 conditions",
-        "LAT takes 4.",
-        "as a swashplate phase of 2.",
-        "Off the axis, J of conditions left out is ",
+        "LAT receives 4.",
+        "equivalent to a swashplate phase of 2.",
+        "Off-axis J of conditions left out of the fit is ",
         "condition left out",
         "Above the band, at 120 rad/s, the couplings change ",
-        "newly unstable with the couplings",
+        "unstable with the couplings",
     ] {
         assert!(ended.out.contains(words), "{words}: {}", ended.out);
     }
@@ -214,7 +214,7 @@ fn couplings_that_nothing_can_be_fitted_to_are_told_in_words() {
     assert!(
         ended
             .out
-            .contains("Couplings of 1 condition: three are needed"),
+            .contains("The couplings are fitted to 1 condition; "),
         "{}",
         ended.out
     );
@@ -237,7 +237,7 @@ fn couplings_that_nothing_can_be_fitted_to_are_told_in_words() {
     assert!(
         refused
             .error
-            .contains("the study asks for couplings, and there are none: "),
+            .contains("the study requests couplings, but they are unavailable: "),
         "{}",
         refused.error
     );

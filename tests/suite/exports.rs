@@ -539,7 +539,7 @@ fn a_table_says_how_far_it_is_off() {
     assert!(
         ended
             .out
-            .contains("table of the gain of input LON: off by up to "),
+            .contains("table of the gain of input LON: maximum error "),
         "{}",
         ended.out
     );

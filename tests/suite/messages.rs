@@ -402,7 +402,7 @@ fn lists_beyond_their_limits_are_refused_with_their_place() {
         .collect();
     let message = dataset_refusal(&text.to_string());
     assert!(
-        message.contains("conditions: expected at most 50000 models in all, found more"),
+        message.contains("conditions: expected at most 50000 models in total, found more"),
         "{message}"
     );
     let conditions = many(

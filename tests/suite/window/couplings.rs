@@ -58,7 +58,7 @@ fn couplings_are_looked_at_used_drawn_and_undone() {
         "{said}"
     );
     assert!(
-        said.contains("own correction") && said.contains("Loop at the sticks"),
+        said.contains("own correction") && said.contains("Coupling loop at the inputs"),
         "{said}"
     );
     assert_eq!(state(&window).study, before, "looking decides nothing");
@@ -124,7 +124,8 @@ fn couplings_are_offered_once_leads_do_what_a_channel_can() {
     give(&mut window, LayoutCommand::ShowSheet(Some(Sheet::Reasons)));
     let said = texts(&window);
     assert!(
-        said.contains("Above the band, at 120 rad/s") && said.contains("newly unstable"),
+        said.contains("Above the band, at 120 rad/s")
+            && said.contains("unstable with the couplings"),
         "{said}"
     );
 }
@@ -159,7 +160,7 @@ fn couplings_that_cannot_be_found_are_told_beside_the_verdict() {
     );
     give(&mut window, LayoutCommand::ShowSheet(Some(Sheet::Reasons)));
     assert!(
-        texts(&window).contains("Everything here is without them."),
+        texts(&window).contains("All results are computed without couplings."),
         "{}",
         texts(&window)
     );

@@ -214,7 +214,9 @@ fn records_are_found_again_by_their_names_in_the_dataset() {
     );
     let words = of_runs[1].as_ref().unwrap_err().to_string();
     assert!(
-        words.ends_with("runs.csv: the record \"run 6\" is not in it; it holds 2 records"),
+        words.ends_with(
+            "runs.csv: the record \"run 6\" is not in this file, which contains 2 records"
+        ),
         "{words}"
     );
 }

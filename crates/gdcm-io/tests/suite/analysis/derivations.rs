@@ -62,7 +62,7 @@ fn g_and_d_are_told_with_their_models_and_medians() {
         result.comparison.delta.gain[pair()].unwrap(),
     );
     assert!(
-        gain.with_numbers[0].contains("the mean of the middle two of 200 values from"),
+        gain.with_numbers[0].contains("the mean of the two middle values of 200 values from"),
         "{gain:?}"
     );
     assert_eq!(

@@ -272,21 +272,21 @@ fn what_leads_do_and_cost_is_told_and_what_to_check_first() {
         .collect();
     let first = said
         .iter()
-        .find(|text| text.contains("check first the time alignment of the records"))
+        .find(|text| text.contains("First check the time alignment of the records"))
         .unwrap();
     assert!(
-        first.starts_with("All held responses want about"),
+        first.starts_with("All held responses need about"),
         "{first}"
     );
     assert!(
-        said.contains(&"All 5 held responses get the delay or lead that they want.".to_owned()),
+        said.contains(&"All 5 held responses get the delay or lead that they need.".to_owned()),
         "{said:?}"
     );
     let words = lead_words(study, result, None);
     // From the reference: P from LAT wants 65.4 ms, 24.1 on P, 41.2 on LAT.
     assert!(
         words.iter().any(|of| of
-            .starts_with("P from LAT wants 65 ms of lead over the band: 24 on P, 41 on LAT; +")),
+            .starts_with("P from LAT needs 65 ms of lead over the band: 24 on P, 41 on LAT; +")),
         "{words:?}"
     );
     assert!(
@@ -506,7 +506,7 @@ fn what_a_response_wants_has_the_bar_of_whole_analyses_with_each_model_pinned() 
     let result = analysis.condition(id).unwrap();
     let words = lead_words(study, result, Some(&sure));
     let with_bar = |of: &String| {
-        of.starts_with("P from LAT wants 65 ± ")
+        of.starts_with("P from LAT needs 65 ± ")
             && of.contains(" ms of lead over the band: 24 on P, 41 on LAT")
     };
     assert!(words.iter().any(with_bar), "{words:?}");

@@ -353,7 +353,7 @@ fn a_study_whose_dataset_has_changed_opens_and_lists_what_is_different() {
 
     let found = differences(&desk);
     for words in [
-        "condition 7 is flown at 61 kt",
+        "condition 7 is at 61 kt",
         "condition 7, physics model \"nominal\" has changed",
         "condition 7, physics model \"V+5kt\" was removed",
         "condition 7, physics model \"V+6kt\" was added",

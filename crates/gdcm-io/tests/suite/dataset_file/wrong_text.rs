@@ -87,7 +87,7 @@ fn a_small_file_that_unpacks_to_more_than_the_limit_is_refused() {
         encoder.write_all(&blank).unwrap();
     }
     let message = refusal(&encoder.finish().unwrap());
-    assert!(message.contains("holds more than 128 MiB"), "{message}");
+    assert!(message.contains("exceeds 128 MiB"), "{message}");
 }
 
 #[test]

@@ -35,7 +35,7 @@ fn the_legend_of_a_bode_figure_names_the_roles_that_are_present() {
         "scheduled",
         "rejected",
         "band of comparison",
-        "band of 95 %",
+        "95 % band",
     ];
     assert_eq!(legend(&figure), expected);
     let hidden = BTreeSet::from([Role::Perturbed, Role::Rejected]);
@@ -223,7 +223,7 @@ fn evidence_stacks_the_shares_of_each_split_and_shows_the_rest_with_its_interval
         "trim",
         "identification",
         "unexplained",
-        "unexplained, interval of 90 %",
+        "unexplained, 90 % interval",
         "scatter",
     ];
     assert_eq!(legend(&figure)[..5], names);
@@ -280,7 +280,7 @@ fn the_numbers_of_evidence_name_what_the_scatter_is_about() {
         format!("{:?}", 100.0 * split.scatter.sqrt())
     );
     assert_eq!(
-        row("unexplained, interval of 90 %, upper")[3],
+        row("unexplained, 90 % interval, upper")[3],
         format!("{:?}", 100.0 * high)
     );
 }
@@ -374,7 +374,12 @@ fn net_gains_on_paper_have_their_bars_and_brackets() {
         "significant difference, × expected",
         "difference, not significant",
     ];
-    let names = ["bar of 90 %", "identification in it", beyond, within];
+    let names = [
+        "90 % error bar",
+        "identification part of the error bar",
+        beyond,
+        within,
+    ];
     assert!(
         names
             .iter()

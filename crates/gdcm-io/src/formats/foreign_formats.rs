@@ -4,9 +4,9 @@ use crate::file_error::FileError;
 use crate::formats::Importer;
 use crate::reading_budget::VariableFault;
 
-/// An unsupported format.
+/// An unsupported format, with export instructions.
 struct Foreign {
-    /// Possible first bytes.
+    /// First bytes of a file; several alternatives are possible.
     signatures: &'static [&'static [u8]],
     name: &'static str,
     /// How to export the data; `{file}` and `{stem}` represent the file name with and without its
@@ -100,7 +100,7 @@ pub(super) const FOREIGN_FORMAT: Importer = Importer {
     read: |bytes, path, _| Err(FileError::variables(path, unsupported(bytes))),
 };
 
-/// Returns the fault for an unsupported format.
+/// Returns the error for a file of an unsupported format.
 fn unsupported(bytes: &[u8]) -> VariableFault {
     match find_foreign(bytes) {
         Some(Foreign { name, remedy, .. }) => VariableFault::unsupported("", *name, *remedy),

@@ -1,4 +1,4 @@
-//! Files in zip archives.
+//! Zip archives and the files in them.
 
 use std::collections::HashSet;
 use std::io::Read;
@@ -13,16 +13,16 @@ use crate::formats::variables::Variable;
 use crate::formats::{Contents, Importer, importer_of, is_known};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Maximum ratio of unpacked to packed bytes in deflate (RFC 1951).
+/// Maximum ratio of decompressed to compressed bytes in deflate (RFC 1951).
 const LARGEST_RATIO: u64 = 1032;
 
-/// Number of bytes unpacked between two queries to the budget.
+/// Number of bytes decompressed between two checks against the budget.
 const CHUNK: u64 = 1 << 20;
 
-/// Name ending for NumPy arrays.
+/// Extension of NumPy arrays.
 const ARRAY: &str = ".npy";
 
-/// Zip archives: NumPy arrays (`.npz`), and files with any other format.
+/// Importer of zip archives: NumPy archives (`.npz`), and archives of files with any other format.
 pub(crate) const ZIP: Importer = Importer {
     name: "a zip archive",
     endings: &["npz", "zip"],
@@ -32,7 +32,7 @@ pub(crate) const ZIP: Importer = Importer {
     },
 };
 
-/// Reads the arrays and the other files in an archive; nested archives are not read.
+/// Reads the arrays and the other files in an archive; nested archives are ignored.
 pub(crate) fn read_archive(
     bytes: &[u8],
     budget: &ReadingBudget<'_>,
@@ -46,10 +46,10 @@ pub(crate) fn read_archive(
     })
 }
 
-/// An archive during reading.
+/// State of reading an archive.
 #[derive(Default)]
 struct ArchiveReading {
-    /// Array names.
+    /// Names of the arrays, to detect duplicates.
     names: HashSet<String>,
     variables: Vec<Variable>,
     files: Vec<(String, Result<Contents, FileError>)>,
@@ -62,8 +62,8 @@ impl ArchiveReading {
         file: &ZipFile<'_, '_>,
         budget: &ReadingBudget<'_>,
     ) -> Result<(), VariableFault> {
-        // A few bytes in the archive's directory create a variable or a file, regardless of its
-        // contents.
+        // Each entry needs memory for a variable or a file, whereas a few bytes in the directory of
+        // the archive suffice to create it.
         let overhead = size_of::<Variable>() + size_of::<Contents>() + file.path.len();
         budget.take(1, overhead as u64, "")?;
         if let Some(name) = file.path.strip_suffix(ARRAY) {
@@ -98,7 +98,10 @@ impl ArchiveReading {
         Ok(())
     }
 
-    /// Takes the contents read from a file, or the fault; ends if the budget is exhausted.
+    /// Stores the contents of a file, or the error from reading it.
+    ///
+    /// # Errors
+    /// Only an exhausted budget.
     fn take_contents(
         &mut self,
         file: &ZipFile<'_, '_>,
@@ -114,17 +117,17 @@ impl ArchiveReading {
     }
 }
 
-/// A packed file in a zip archive (APPNOTE 6.3).
+/// A file in a zip archive (APPNOTE 6.3).
 struct ZipFile<'z, 'b> {
     /// Path in the archive.
     path: &'z str,
-    /// File offset \[bytes\].
+    /// Offset of the file in the archive \[bytes\].
     offset: u64,
     archive: &'z ZipSliceArchive<&'b [u8]>,
     entry: &'z ZipFileHeaderRecord<'b>,
 }
 
-/// Passes every file in an archive to `visit`, in archive order.
+/// Passes each file in an archive to `visit`, in archive order.
 fn visit_files(
     bytes: &[u8],
     mut visit: impl FnMut(&ZipFile<'_, '_>) -> Result<(), VariableFault>,
@@ -155,8 +158,8 @@ fn visit_files(
 }
 
 impl ZipFile<'_, '_> {
-    /// Unpacks the file up to the size given by the archive: a few kilobytes can unpack to
-    /// gigabytes. Faults give `name` as the file.
+    /// Decompresses the file, up to the size stated in the archive, because a few kilobytes can
+    /// expand to gigabytes; `name` is the file name in errors.
     fn unpack(&self, name: &str, budget: &ReadingBudget<'_>) -> Result<Vec<u8>, VariableFault> {
         if self.entry.flags().is_encrypted() {
             return Err(unsupported(name, "an encrypted entry"));
@@ -195,8 +198,8 @@ fn unsupported(name: &str, what: &str) -> VariableFault {
     VariableFault::unsupported(name, what, "pack it again by deflate, without a password")
 }
 
-/// Reads up to the end, where the length and the checksum are compared, or up to the first byte
-/// beyond `length`, unless the reading is stopped.
+/// Reads a whole entry and compares its length; stops at the first byte beyond `length`. The
+/// archive reader compares the checksum at the end.
 fn read_whole(
     reader: impl Read,
     length: u64,
@@ -215,8 +218,8 @@ fn read_whole(
     }
 }
 
-/// Returns the fault for an unreadable archive. A file that begins like an archive has lost its
-/// end, which holds the directory.
+/// Returns the error for an archive that cannot be opened. If it begins like an archive, its end
+/// with the directory is missing.
 fn unreadable(bytes: &[u8]) -> VariableFault {
     if bytes.starts_with(b"PK\x03\x04") {
         return VariableFault::cut_off("", bytes.len());

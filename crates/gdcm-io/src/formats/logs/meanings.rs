@@ -1,12 +1,12 @@
-//! Channels and units for logged columns, as each system documents them.
+//! Channels and units of logged columns, according to the documentation of each logging system.
 
 use gdcm_sysid::records::RecordColumn;
 
-/// A documented column.
+/// A column whose channel and unit are documented.
 struct DocumentedColumn {
     name: &'static str,
     channel: &'static str,
-    /// Empty if the documentation gives none.
+    /// Unit; empty if the documentation gives none.
     unit: &'static str,
 }
 
@@ -22,11 +22,11 @@ const fn documented(
     }
 }
 
-/// Documented columns in the logs of a system. A channel is read from the first of its columns in
-/// this list that is present and varies.
+/// Documented columns in the logs of a system. If several columns measure a channel, the first in
+/// this list that is present and varies is used.
 pub(super) struct Meanings {
     columns: &'static [DocumentedColumn],
-    /// Remark on the sign conventions.
+    /// Note for the user about sign conventions.
     signs: &'static str,
 }
 
@@ -92,8 +92,8 @@ pub(super) const ARDUPILOT: Meanings = Meanings {
             to reverse one)",
 };
 
-/// Betaflight and relatives: field names of the blackbox; `axisSum` is the sum of the controller's
-/// terms, the input to the mixer (<https://betaflight.com/docs/development/Blackbox>).
+/// Betaflight and relatives: field names of the blackbox; `axisSum` is the sum of the controller
+/// terms, which is the input to the mixer (<https://betaflight.com/docs/development/Blackbox>).
 pub(super) const BETAFLIGHT: Meanings = Meanings {
     columns: &[
         documented("axisSum[0]", "LAT", ""),
@@ -107,7 +107,8 @@ pub(super) const BETAFLIGHT: Meanings = Meanings {
     signs: "signs are the flight controller's: check the sign of one channel before using signs of derivatives",
 };
 
-/// Assigns the documented channels and units to columns; returns a note with the assignments.
+/// Assigns the documented channels and units to columns. Returns a note that lists the assigned
+/// channels; `None` if there are none.
 pub(super) fn give_meanings(columns: &mut [RecordColumn], meanings: &Meanings) -> Option<String> {
     let mut channels: Vec<&str> = Vec::new();
     let mut assignments: Vec<String> = Vec::new();

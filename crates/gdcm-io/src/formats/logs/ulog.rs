@@ -29,12 +29,12 @@ const MAGIC: &[u8] = b"ULog\x01\x12\x35";
 const HEADER: usize = 16;
 /// Length of a message header \[bytes\].
 const MESSAGE_HEADER: usize = 3;
-/// Flag of appended data; a log with any other incompatible flag is rejected.
+/// Incompatibility flag for appended data, the only supported one.
 const APPENDED: u8 = 1;
 /// `ARMING_STATE_ARMED` in `VehicleStatus.msg`, PX4 1.14 to 1.16.
 const ARMED: f64 = 2.0;
 
-/// PX4 logs.
+/// Importer of PX4 logs.
 pub(crate) const ULOG: Importer = Importer {
     name: "a ULog of PX4",
     endings: &["ulg", "ulog"],
@@ -46,24 +46,24 @@ pub(crate) const ULOG: Importer = Importer {
     },
 };
 
-/// A subscribed topic and the field positions in its messages.
+/// Topic assigned to a message id, and the positions of its fields in the messages.
 struct Subscription {
     samples: TopicSamples,
     stamp: Place,
-    /// Position of each field.
+    /// Positions of the fields other than the time stamp.
     places: Vec<Place>,
-    /// Minimum data length of a message \[bytes\].
+    /// Minimum length of the data in a message \[bytes\].
     least: usize,
 }
 
-/// Content of the messages read so far.
+/// Contents of the messages read so far.
 #[derive(Default)]
 struct Messages<'b> {
     formats: Formats<'b>,
     subscriptions: BTreeMap<u16, Subscription>,
     dropouts: usize,
     lost_ms: u64,
-    /// Number of data messages that have no topic or are too short.
+    /// Number of data messages without a topic, or too short for it.
     unread: usize,
 }
 
@@ -79,7 +79,8 @@ fn read_ulog(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, Variab
         budget.work(1, "")?;
         let from = at + MESSAGE_HEADER;
         let to = from + usize::from(u16::from_le_bytes([low, high]));
-        // A message cut off by a crash ends where data were appended.
+        // A message that reaches into appended data was cut off by a crash: continue with the
+        // appended data.
         let next_part = appended.iter().copied().filter(|offset| *offset > at).min();
         if let Some(next_part) = next_part
             && to > next_part
@@ -101,10 +102,10 @@ fn read_ulog(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, Variab
     messages.columns(is_cut)
 }
 
-/// Reads the offsets of appended data \[bytes\] from the flags.
+/// Reads the offsets of appended data \[bytes\] from the content of the flags message.
 ///
 /// # Errors
-/// A flag of a later version is set.
+/// [`VariableFault`] if an unknown incompatibility flag is set.
 fn appended_offsets(flags: &[u8]) -> Result<Vec<usize>, VariableFault> {
     for (index, flag) in flags.get(8..16).unwrap_or_default().iter().enumerate() {
         let known = if index == 0 { APPENDED } else { 0 };
@@ -148,7 +149,7 @@ impl<'b> Messages<'b> {
         Ok(())
     }
 
-    /// Stores the layout of a topic; later layouts of the same topic are ignored.
+    /// Stores the layout of a topic; ignores a second layout with the same name.
     fn take_format(
         &mut self,
         content: &'b [u8],
@@ -184,7 +185,7 @@ impl<'b> Messages<'b> {
         Ok(())
     }
 
-    /// Registers a topic and its instance under a message id; skips a layout that is damaged or
+    /// Assigns a topic and its instance to a message id; ignores a topic whose layout is damaged or
     /// lacks a time stamp.
     fn subscribe(
         &mut self,
@@ -227,7 +228,8 @@ impl<'b> Messages<'b> {
         Ok(())
     }
 
-    /// Returns the columns with their documented meanings, the flight modes, and notes.
+    /// Returns the columns, with their documented channels and units, the flight modes, and notes.
+    /// `is_cut`: the log was truncated.
     fn columns(self, is_cut: bool) -> Result<Columns, VariableFault> {
         let topics: Vec<TopicSamples> = self
             .subscriptions
@@ -267,7 +269,8 @@ impl<'b> Messages<'b> {
     }
 }
 
-/// Finds the armed spans and the flight modes in `vehicle_status`.
+/// Returns the spans in which the vehicle was armed, and those of the flight modes, from
+/// `vehicle_status`.
 fn flight_modes(topics: &[TopicSamples]) -> Vec<ModeSpan> {
     let Some(status) = topics.iter().find(|topic| topic.name == "vehicle_status") else {
         return Vec::new();
@@ -318,7 +321,7 @@ const NAVIGATION: [(u8, &str); 13] = [
 mod tests {
     use super::*;
 
-    /// A message of a ULog.
+    /// Returns a ULog message of type `kind`.
     fn message(kind: u8, content: &[u8]) -> Vec<u8> {
         [&(content.len() as u16).to_le_bytes()[..], &[kind], content].concat()
     }

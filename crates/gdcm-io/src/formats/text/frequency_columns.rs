@@ -1,4 +1,4 @@
-//! Frequency responses in a table, recognised by column names and units.
+//! Frequency responses in a table, recognised by the names and units of its columns.
 
 use crate::formats::text::columns::TextTable;
 use crate::formats::text::response_columns::{RecognisedResponse, ResponsePoints, column_place};
@@ -6,20 +6,23 @@ use crate::formats::text::response_recognition::{FrequencyColumn, Recognition};
 use crate::formats::text::unrecognised::{Unrecognised, units_missing, unrecognised};
 use crate::reading_budget::VariableFault;
 
-/// Meaning of the columns in a table.
+/// Meaning of the columns of a frequency response table.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct FrequencyColumns {
     frequency: FrequencyColumn,
-    /// The responses, in column order.
+    /// Frequency responses, in the order of their columns.
     pub(crate) responses: Vec<RecognisedResponse>,
-    /// Each decision with its reason.
+    /// Notes for the user: each choice with its reason.
     pub(crate) notes: Vec<String>,
-    /// Unused columns: their names, or their numbers if they have no name.
+    /// Unused columns, by name or, without a name, by number.
     pub(crate) unused: Vec<String>,
 }
 
 impl FrequencyColumns {
-    /// Recognises the columns by their names and units; ambiguities become questions.
+    /// Recognises the columns by their names and units.
+    ///
+    /// # Errors
+    /// [`Unrecognised`] if no frequency response is found, or the user must be asked about a unit.
     pub(crate) fn recognise(table: &TextTable) -> Result<Self, Unrecognised> {
         let mut recognition = Recognition::new(table);
         let frequency = recognition.frequency()?;
@@ -45,11 +48,13 @@ impl FrequencyColumns {
         Ok(columns)
     }
 
-    /// Returns the points for every response, in rad/s and as complex numbers.
+    /// Returns the points of each response.
     ///
-    /// Decreasing frequencies are reversed. A frequency that is missing, negative, or not above the
-    /// preceding frequency is rejected with its line, and so is a row with only one part of a
-    /// complex number.
+    /// Rows with decreasing frequencies are put in reverse order.
+    ///
+    /// # Errors
+    /// [`VariableFault`] with the line if a frequency is missing, negative or not above the
+    /// preceding frequency, or if a row has only one part of a complex number.
     pub(crate) fn values(&self, table: &TextTable) -> Result<Vec<ResponsePoints>, VariableFault> {
         if self.is_decreasing(table) {
             self.increasing_values(&reversed(table))
@@ -58,7 +63,7 @@ impl FrequencyColumns {
         }
     }
 
-    /// Whether the frequencies decrease strictly.
+    /// Returns whether the frequencies are strictly decreasing.
     fn is_decreasing(&self, table: &TextTable) -> bool {
         let frequencies = &table.columns[self.frequency.column];
         frequencies.len() > 1 && frequencies.is_sorted_by(|above, below| above > below)
@@ -72,7 +77,10 @@ impl FrequencyColumns {
             .collect()
     }
 
-    /// Returns the frequencies \[rad/s\], which must increase strictly.
+    /// Returns the frequencies \[rad/s\].
+    ///
+    /// # Errors
+    /// [`VariableFault`] with the line unless they are strictly increasing and not negative.
     fn omega(&self, table: &TextTable) -> Result<Vec<f64>, VariableFault> {
         let FrequencyColumn { column, factor } = self.frequency;
         let frequencies = &table.columns[column];
@@ -99,7 +107,8 @@ fn reversed(table: &TextTable) -> TextTable {
     table
 }
 
-/// Describes the fault in a frequency that follows `before`.
+/// Describes why a frequency is invalid, with a remedy; `None` if it is valid. `before` is the
+/// preceding frequency.
 fn frequency_fault(value: f64, before: f64) -> Option<String> {
     if !value.is_finite() {
         Some("is missing or infinite; complete it or take the line out".to_owned())
@@ -141,7 +150,7 @@ mod recognition_tests {
             .to_string()
     }
 
-    /// γ² in this column, as a fraction of 1.
+    /// Returns a column that holds γ² as a fraction of 1.
     fn squared(column: usize) -> Option<CoherenceColumn> {
         Some(CoherenceColumn {
             column,
@@ -155,7 +164,7 @@ mod recognition_tests {
         FrequencyColumns::recognise(&table).unwrap_err().unsaid
     }
 
-    /// The first column as the frequency.
+    /// Returns the frequency column, the first column.
     fn frequency(factor: f64) -> FrequencyColumn {
         FrequencyColumn { column: 0, factor }
     }

@@ -1,8 +1,8 @@
 //! Variables written as MATLAB or Octave statements: `A = [1 2; 3 4e-3]; % comment`.
 //!
-//! Supported are numbers, texts, matrices and cell arrays of these, variables and fields on either
-//! side of `=`, and models created by `ss`, `tf` and `zpk`. Nothing is computed or run: other
-//! statements are reported with a remedy.
+//! Supported are numbers, strings, matrices and cell arrays of these, variables and fields on
+//! either side of `=`, and models created by `ss`, `tf` and `zpk`. Expressions are not evaluated
+//! and other statements not executed; they are reported with a remedy.
 
 use crate::formats::text::encoding::refuse_binary;
 use crate::formats::text::lines::excerpt;
@@ -14,7 +14,7 @@ use crate::formats::text::workspace::Workspace;
 use crate::formats::variables::{Value, Variable};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Words that begin a block, whose statements may run never, once or repeatedly.
+/// Words that begin a block, whose statements may be executed any number of times.
 const BLOCKS: [&str; 8] = [
     "if",
     "for",
@@ -38,17 +38,21 @@ const BLOCK_ENDS: [&str; 9] = [
     "end_unwind_protect",
 ];
 
-/// Variables and notes from the statements.
+/// Variables assigned by MATLAB or Octave statements, with notes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Statements {
-    /// The variables in the order of their first assignments, with their last values. A value that
-    /// is not supported is [`Value::Opaque`] with the reason, its line and its column.
+    /// Variables in the order of their first assignments, with their last values. An unsupported
+    /// value is [`Value::Opaque`] with the reason, its line and its column.
     pub variables: Vec<Variable>,
-    /// Statements that were not run.
+    /// Notes for the user on statements that were skipped.
     pub notes: Vec<String>,
 }
 
 /// Reads variables from MATLAB or Octave statements.
+///
+/// # Errors
+/// [`VariableFault`] for binary data and unclosed brackets, and if the budget is exhausted.
+/// Unsupported statements are noted instead.
 pub fn read_literals(text: &str, budget: &ReadingBudget) -> Result<Statements, VariableFault> {
     refuse_binary(text, "MATLAB statements")?;
     let mut reading = Reading {
@@ -68,17 +72,17 @@ pub fn read_literals(text: &str, budget: &ReadingBudget) -> Result<Statements, V
     })
 }
 
-/// Statements during reading.
+/// State of reading statements.
 struct Reading<'t, 'm> {
     scanner: Scanner<'t>,
     budget: &'m ReadingBudget<'m>,
     workspace: Workspace<'t>,
     notes: Vec<String>,
-    /// Open conditions and loops.
+    /// Number of conditions and loops that are not closed.
     open_blocks: usize,
 }
 
-/// Where a statement begins.
+/// Beginning of a statement.
 #[derive(Clone, Copy)]
 struct Beginning {
     position: Position,
@@ -108,7 +112,8 @@ impl<'t> Reading<'t, '_> {
         }
     }
 
-    /// Reads a statement that may begin with a name.
+    /// Reads a statement other than an assignment of function results; if no name begins it, it is
+    /// skipped with a note.
     fn named_statement(&mut self, begin: Beginning) -> Result<(), VariableFault> {
         let path = self.scanner.path(self.budget)?;
         let behind = self.scanner.clone();
@@ -140,7 +145,7 @@ impl<'t> Reading<'t, '_> {
         }
     }
 
-    /// Skips a statement with a note.
+    /// Skips a statement, and notes the reason `why`.
     fn pass_over(&mut self, begin: Beginning, why: &str) -> Result<(), VariableFault> {
         let note = format!(
             "line {} (\"{}\") {why}",
@@ -152,7 +157,7 @@ impl<'t> Reading<'t, '_> {
         self.scanner.pass_statement(self.budget)
     }
 
-    /// Skips "[a, b] = …", results from a function, which is not run.
+    /// Skips "[a, b] = …" and makes the variables opaque, because functions are not executed.
     fn function_results(&mut self, begin: Beginning) -> Result<(), VariableFault> {
         let line = self.scanner.rest_of_line();
         let Some(names) = assigned_names(line) else {
@@ -167,7 +172,7 @@ impl<'t> Reading<'t, '_> {
         self.scanner.pass_statement(self.budget)
     }
 
-    /// Reads an assigned value; a value that is not supported makes the variable opaque.
+    /// Reads the value of an assignment; an unsupported value makes the variable opaque.
     fn assignment(&mut self, path: &[&'t str], begin: Position) -> Result<(), VariableFault> {
         let before = self.scanner.clone();
         match self.assigned_value(begin) {
@@ -198,7 +203,7 @@ impl<'t> Reading<'t, '_> {
         reader.whole_value()
     }
 
-    /// Sets a variable to an unreadable value.
+    /// Makes a variable or field opaque, for the reason `what`.
     fn set_unread(
         &mut self,
         path: &[&'t str],
@@ -213,7 +218,7 @@ impl<'t> Reading<'t, '_> {
     }
 }
 
-/// Returns the names in "[a, b] = …"; `None` if the line is no such assignment.
+/// Returns the names in "[a, b] = …"; `None` if the line is not such an assignment.
 fn assigned_names(line: &str) -> Option<&str> {
     let (names, behind) = line.split_once(']')?;
     let behind = behind.trim_start();

@@ -1,4 +1,4 @@
-//! Assembly of frequency responses from table columns.
+//! Assembly of frequency responses from the columns of a table.
 
 use std::f64::consts::TAU;
 
@@ -11,33 +11,34 @@ use crate::formats::text::response_label::ResponseLabel;
 use crate::formats::text::unrecognised::{Unrecognised, UnsaidUnit, unrecognised};
 
 /// Maximum difference between the rectangular and the polar form of a response, relative to its
-/// magnitude: tables have few digits.
+/// magnitude; tables are printed with few digits.
 const FORM_TOLERANCE: f64 = 0.01;
-/// Coherence above this value is in percent; the margin above 1 is for rounding and noise.
+/// Maximum coherence that counts as a fraction; larger values are in percent. Values slightly above
+/// 1 result from rounding and noise.
 const LARGEST_COHERENCE: f64 = 1.5;
 
-/// The frequency column.
+/// Column of the frequencies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct FrequencyColumn {
-    /// The column, from 0.
+    /// Column index, from 0.
     pub(super) column: usize,
-    /// Factor to rad/s.
+    /// Factor that converts to rad/s.
     pub(super) factor: f64,
 }
 
-/// A table while its responses are assembled.
+/// State of recognising the responses in a table.
 pub(super) struct Recognition<'t> {
     table: &'t TextTable,
     meanings: Vec<ColumnMeaning>,
-    /// Each decision with its reason.
+    /// Notes for the user: each choice with its reason.
     pub(super) notes: Vec<String>,
-    /// Columns without a unit whose numbers allow several units.
+    /// Columns whose unit the user must be asked for.
     pub(super) unsaid: Vec<UnsaidUnit>,
-    /// Unused column names.
+    /// Names of unused columns.
     pub(super) unused: Vec<String>,
 }
 
-/// Columns that belong to one response.
+/// Columns that belong to the same response.
 #[derive(Default)]
 struct Group {
     label: ResponseLabel,
@@ -49,17 +50,17 @@ struct GroupColumn {
     column: usize,
 }
 
-/// Columns in polar form.
+/// Indices of the columns with magnitude and phase.
 #[derive(Clone, Copy)]
 struct PolarColumns {
     magnitude: usize,
     phase: usize,
 }
 
-/// A magnitude and a phase, interpreted.
+/// Interpretation of a magnitude and a phase column.
 struct PolarReading {
     parts: ResponseParts,
-    /// Columns whose units are neither given nor evident.
+    /// Those of the two columns whose unit the user must be asked for.
     unsaid: Vec<UnsaidUnit>,
 }
 
@@ -88,7 +89,10 @@ impl<'t> Recognition<'t> {
         }
     }
 
-    /// Finds the frequency column and its unit.
+    /// Finds the frequency column and its unit; a missing unit is added to `unsaid`.
+    ///
+    /// # Errors
+    /// [`Unrecognised`] if there is no frequency column.
     pub(super) fn frequency(&mut self) -> Result<FrequencyColumn, Unrecognised> {
         let named = self
             .meanings
@@ -119,7 +123,7 @@ impl<'t> Recognition<'t> {
         Ok(FrequencyColumn { column, factor })
     }
 
-    /// Notes the interpretation of a column and its reason; `more` is added to the reason.
+    /// Notes how a column is interpreted and for which reason; `more` is appended to the reason.
     fn note(&mut self, column: usize, interpretation: &str, more: &str) {
         let place = column_place(self.table, column);
         let reason = &self.meanings[column].reason;
@@ -128,7 +132,7 @@ impl<'t> Recognition<'t> {
         ));
     }
 
-    /// Returns the responses, ordered by their first columns.
+    /// Returns the responses in the order of their first columns.
     pub(super) fn responses(&mut self) -> Vec<RecognisedResponse> {
         let mut responses = Vec::new();
         for group in self.groups() {
@@ -154,8 +158,8 @@ impl<'t> Recognition<'t> {
         responses
     }
 
-    /// Finds the columns with the complex numbers; real and imaginary parts take precedence over
-    /// magnitude and phase.
+    /// Returns the columns that give the complex numbers of a group; real and imaginary parts are
+    /// preferred to magnitude and phase. Returns `None` if a part is missing.
     fn parts(&mut self, group: &Group) -> Option<ResponseParts> {
         let polar = group.polar();
         if let Some(re) = group.column(Quantity::Real)
@@ -166,7 +170,7 @@ impl<'t> Recognition<'t> {
             self.note(im, "imaginary part", "");
             if let Some(columns) = polar {
                 let polar = self.polar(columns);
-                // Missing units of the polar form are not asked for: it only serves as a check.
+                // Do not ask for missing units of the polar form, which serves only as a check.
                 if polar.unsaid.is_empty() {
                     self.compare(parts, polar.parts);
                 }
@@ -178,7 +182,8 @@ impl<'t> Recognition<'t> {
         Some(polar.parts)
     }
 
-    /// Notes that a group is unused because one part of the complex number is missing.
+    /// Notes that the columns of a group are not used because one part of the complex number is
+    /// missing.
     fn leave_out(&mut self, group: &Group) {
         for known in &group.columns {
             if known.quantity == Quantity::Error {
@@ -191,8 +196,9 @@ impl<'t> Recognition<'t> {
         }
     }
 
-    /// Interprets a coherence column: percent if its unit or its numbers above 1 require it. If its
-    /// unit is unknown (a column called gamma), the user is asked whether it holds γ or γ².
+    /// Interprets a coherence column. It is in percent if its unit is % or a number exceeds
+    /// `LARGEST_COHERENCE`. If its unit is missing (a column called gamma), the user is asked
+    /// whether it holds γ or γ².
     fn coherence(&mut self, column: usize) -> CoherenceColumn {
         let unit = self.meanings[column].unit;
         if unit.is_none() {
@@ -226,7 +232,7 @@ impl<'t> Recognition<'t> {
         }
     }
 
-    /// Collects the columns for each response, and notes columns with an unknown meaning.
+    /// Groups the columns by response, and notes columns whose meaning is unknown.
     fn groups(&mut self) -> Vec<Group> {
         let mut groups: Vec<Group> = Vec::new();
         for (column, meaning) in self.meanings.iter().enumerate() {
@@ -252,7 +258,8 @@ impl<'t> Recognition<'t> {
         groups
     }
 
-    /// Interprets a magnitude and a phase.
+    /// Interprets a magnitude and a phase column; missing units are derived from the numbers if
+    /// possible.
     fn polar(&mut self, columns: PolarColumns) -> PolarReading {
         let PolarColumns { magnitude, phase } = columns;
         let mut unsaid = Vec::new();
@@ -307,8 +314,8 @@ impl<'t> Recognition<'t> {
         }
     }
 
-    /// Whether negative numbers show that a magnitude is in dB. They do not in a column called
-    /// gain, which may hold a level in dB or a signed ratio.
+    /// Returns whether negative numbers show that a magnitude is in dB. Returns false for a column
+    /// called gain, in which negative numbers may also be signed ratios.
     fn has_negative_levels(&self, magnitude: usize) -> bool {
         let name = self.table.name(magnitude).unwrap_or_default();
         let is_gain = name.to_lowercase().contains("gain");
@@ -318,7 +325,8 @@ impl<'t> Recognition<'t> {
                 .any(|&value| value < 0.0)
     }
 
-    /// Notes whether both forms of a response agree.
+    /// Notes whether the rectangular and the polar form of a response agree within
+    /// `FORM_TOLERANCE`.
     fn compare(&mut self, rectangular: ResponseParts, polar: ResponseParts) {
         let table = self.table;
         let differing = (0..table.lines.len()).find(|&row| {
@@ -341,10 +349,12 @@ impl<'t> Recognition<'t> {
     }
 }
 
-/// Returns the group to which a column belongs: the last group for a column without a label, else
-/// the last group with the same label; only groups that lack the quantity are considered.
+/// Returns the index of the group to which a column belongs: the last group if the column has no
+/// label, otherwise the last group with the same label. A group that already has the quantity is
+/// not eligible; `None` if no group is.
 fn group_for(groups: &[Group], quantity: Quantity, label: &ResponseLabel) -> Option<usize> {
-    // In the name of an error column, the other words give the quantity to which the error belongs.
+    // The label of an error column names a quantity, not a channel, so the column joins the last
+    // group.
     let joins_last = *label == ResponseLabel::default() || quantity == Quantity::Error;
     if joins_last
         && let Some(last) = groups.last()

@@ -1,4 +1,4 @@
-//! Tests of recognised models, with values as produced by the format readers.
+//! Tests of the recognition of models, with values as the format readers return them.
 
 use gdcm_model::assembly::ChannelLabel;
 use gdcm_model::dataset::model::Origin;
@@ -213,7 +213,7 @@ fn json(text: &str) -> Found<FoundModel> {
     }
 }
 
-/// Recognises a model with two inputs and two outputs that has these further members.
+/// Recognises a model with two inputs and two outputs to which `members` are added.
 fn beside(members: &str) -> Found<FoundModel> {
     json(&format!(
         r#"{{"A": [[-1, 0], [0, -2]], "B": [[1, 0], [0, 2]], "C": [[1, 0], [0, 1]], "D": [[0, 0], [0, 0]], {members}}}"#
@@ -567,7 +567,7 @@ fn gamma_a_bare_f_and_coherence_of_another_size_are_asked_about_beside_a_respons
 
 #[test]
 fn a_response_of_several_channels_is_put_in_order() {
-    // Two outputs, one input, three frequencies: the first index is fastest.
+    // Two outputs, one input and three frequencies, with the output index fastest.
     let response = Array {
         shape: vec![2, 1, 3],
         kind: ElementKind::Float,

@@ -83,7 +83,7 @@ impl LeftOutPart {
                 format!("{} (not scheduled)", delayed_channel_text(delayed, dataset))
             }
             Self::Leads => "the lead filters of the schedule".to_owned(),
-            Self::Couplings(why) => format!("the couplings that the study asks for: {why}"),
+            Self::Couplings(why) => format!("the couplings requested by the study: {why}"),
         }
     }
 }

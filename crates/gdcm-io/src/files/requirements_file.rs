@@ -199,19 +199,19 @@ fn bandwidth_remark(finding: &BandwidthFinding, name: &'static str, is_known: bo
         remarks.push("gain-limited".to_owned());
     }
     if name == "omega_bw_rad_s" && finding.rule == Some(BandwidthRule::PhaseGainUnknown) {
-        remarks.push("of the phase margin; the gain margin is not known".to_owned());
+        remarks.push("from the phase margin; the gain margin is unknown".to_owned());
     }
     if name == "phase_delay_s" && finding.phase_delay_of_line {
-        remarks.push("of the least-squares line".to_owned());
+        remarks.push("from the least-squares line".to_owned());
     }
     if finding.rests_above(name) {
-        remarks.push("rests on the response above the band".to_owned());
+        remarks.push("depends on the response above the band".to_owned());
     }
     if finding.rests_below_band.contains(&name) {
-        remarks.push("rests on the response below the band".to_owned());
+        remarks.push("depends on the response below the band".to_owned());
     }
     if let Some(count) = finding.swaps_left_out.get(name) {
-        remarks.push(format!("{count} swaps without it"));
+        remarks.push(format!("{count} exchanges of models give no value"));
     }
     remarks.join("; ")
 }
@@ -281,7 +281,9 @@ fn history_rows(finding: &HistoryFinding) -> Vec<Vec<String>> {
         ..Subject::default()
     };
     let remark = match (finding.j_rms, finding.j_rms_left_out.as_slice()) {
-        (None, _) => "no output is an angle, a rate, a speed or an acceleration".to_owned(),
+        (None, _) => {
+            "J_rms needs an output that is an angle, a rate, a speed or an acceleration".to_owned()
+        }
         (Some(_), []) => String::new(),
         (Some(_), left_out) => format!("without {}", left_out.join(", ")),
     };
@@ -308,7 +310,7 @@ fn history_rows(finding: &HistoryFinding) -> Vec<Vec<String>> {
 fn tolerance_remark(finding: &ToleranceFinding, name: &str) -> String {
     match (name, finding.correlation, finding.trend) {
         ("largest_excess", ..) => finding.unit.clone(),
-        ("correlation", None, _) => "flown or simulated does not move".to_owned(),
+        ("correlation", None, _) => "the flown or the simulated output is constant".to_owned(),
         ("correlation", _, Some(trend)) => format!("off-axis, trend {}", trend.name()),
         _ => String::new(),
     }

@@ -528,7 +528,7 @@ fn slashed(path: &Path, study: &Path) -> Result<String, FileError> {
         Some(text) => Ok(text.replace(std::path::MAIN_SEPARATOR, "/")),
         None => Err(FileError::unwritable(
             study,
-            "the dataset's path is not valid Unicode",
+            "the dataset's path is not valid Unicode; rename the dataset or its folder",
         )),
     }
 }
@@ -544,7 +544,7 @@ fn settled(path: &Path) -> Result<PathBuf, FileError> {
         }
         _ => Err(FileError::unwritable(
             path,
-            "this is not the name of a file",
+            "the path does not end in a file name",
         )),
     }
 }
@@ -553,7 +553,7 @@ fn settled(path: &Path) -> Result<PathBuf, FileError> {
 #[derive(Clone, Debug)]
 #[expect(
     clippy::large_enum_variant,
-    reason = "one is made when a file is opened, and taken apart at once"
+    reason = "created once for an opened file and taken apart immediately"
 )]
 pub enum Opened {
     Dataset(LoadedDataset),

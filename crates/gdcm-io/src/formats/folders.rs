@@ -129,7 +129,7 @@ impl Listing<'_> {
         let target = fs::metadata(&path).map_or(kind, |metadata| metadata.file_type());
         match kind_of(target) {
             Some(kind) => self.skipped.push(format!(
-                "{}: skipped: this is {kind}, not a file",
+                "{}: skipped, because this is {kind}, not a file",
                 sanitized(&name)
             )),
             None => self.files.push(ListedFile { path, name }),

@@ -39,7 +39,7 @@ impl Tree {
             .and_then(|tree| json.end().map(|()| tree));
         read.map_err(|error| match refused.take() {
             Some(fault) => fault,
-            None => VariableFault::line("", error.line(), format!("this is not JSON: {error}")),
+            None => VariableFault::line("", error.line(), format!("invalid JSON: {error}")),
         })
     }
 }

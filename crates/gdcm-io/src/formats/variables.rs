@@ -211,8 +211,8 @@ impl Value {
                 format!("a {} array of complex numbers", dimensions(&array.shape))
             }
             Value::Array(array) => format!("a {} array of numbers", dimensions(&array.shape)),
-            Value::Text(text) if text.texts.len() == 1 => "a text".to_owned(),
-            Value::Text(text) => format!("{} texts", text.texts.len()),
+            Value::Text(text) if text.texts.len() == 1 => "a string".to_owned(),
+            Value::Text(text) => format!("{} strings", text.texts.len()),
             Value::Cell(cell) => format!("a {} cell array", dimensions(&cell.shape)),
             Value::Struct(records) => format!("a {} struct array", dimensions(&records.shape)),
             Value::Object(object) => format!(

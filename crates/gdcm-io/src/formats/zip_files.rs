@@ -77,8 +77,10 @@ impl ArchiveReading {
                 return self.take_contents(file, (importer.read)(&bytes, path, budget));
             }
         }
-        self.ignored
-            .push(format!("{}: no file of a known kind", file.path));
+        self.ignored.push(format!(
+            "{}: an unsupported format, or an archive in the archive",
+            file.path
+        ));
         Ok(())
     }
 
@@ -147,7 +149,7 @@ fn visit_files(
         let path = entry.file_path();
         let offset = entry.local_header_offset();
         let path = std::str::from_utf8(path.as_bytes())
-            .map_err(|_| VariableFault::damaged("", "a name is not UTF-8", offset))?;
+            .map_err(|_| VariableFault::damaged("", "a file name is not UTF-8", offset))?;
         visit(&ZipFile {
             path,
             offset,
@@ -171,7 +173,7 @@ impl ZipFile<'_, '_> {
         let packed = found.data();
         let length = self.entry.uncompressed_size_hint();
         if length > (packed.len() as u64).saturating_mul(LARGEST_RATIO) {
-            return Err(self.damaged(name, "it claims more bytes than it can unpack to"));
+            return Err(self.damaged(name, "it claims to expand to more bytes than is possible"));
         }
         budget.take(length, 1, name)?;
         let unpacked = match self.entry.compression_method() {
@@ -182,7 +184,7 @@ impl ZipFile<'_, '_> {
                 budget,
             )?,
             method => {
-                let what = format!("an entry packed by method {}", method.as_u16());
+                let what = format!("an entry compressed with method {}", method.as_u16());
                 return Err(unsupported(name, &what));
             }
         };
@@ -195,7 +197,11 @@ impl ZipFile<'_, '_> {
 }
 
 fn unsupported(name: &str, what: &str) -> VariableFault {
-    VariableFault::unsupported(name, what, "pack it again by deflate, without a password")
+    VariableFault::unsupported(
+        name,
+        what,
+        "compress it again with deflate, without a password",
+    )
 }
 
 /// Reads a whole entry and compares its length; stops at the first byte beyond `length`. The
@@ -211,7 +217,12 @@ fn read_whole(
         budget.work(0, "")?;
         match reader.by_ref().take(CHUNK).read_to_end(&mut unpacked) {
             Ok(0) if unpacked.len() as u64 == length => return Ok(Ok(unpacked)),
-            Ok(0) => return Ok(Err(std::io::Error::other("it is not as long as it claims"))),
+            Ok(0) => {
+                return Ok(Err(std::io::Error::other(
+                    "its length differs from the stated \
+                length",
+                )));
+            }
             Ok(_) => {}
             Err(error) => return Ok(Err(error)),
         }

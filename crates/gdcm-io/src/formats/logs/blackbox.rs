@@ -73,13 +73,14 @@ fn read_blackbox(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Columns
     if flights.is_empty() {
         return Err(VariableFault::damaged(
             "",
-            "a blackbox without a flight of 50 frames",
+            "no flight with at least 50 frames",
             0,
         ));
     }
     if ignored > 0 {
         flights[0].notes.push(format!(
-            "{ignored} of {count} flights in the file have fewer than {FEWEST_FRAMES} frames: left out"
+            "{ignored} of {count} flights in the file are omitted: they have fewer than \
+            {FEWEST_FRAMES} frames"
         ));
     }
     Ok(flights)
@@ -313,7 +314,8 @@ impl Flight {
                 Err(VariableFault::unsupported(
                     name,
                     format!(
-                        "a blackbox of data version \"{version}\", or with fields of a later version"
+                        "a blackbox log of data version \"{version}\", or with fields of a later \
+                        version"
                     ),
                     "save it as CSV: blackbox_decode \"{file}\"",
                 ))
@@ -405,9 +407,8 @@ impl Flight {
     /// Returns the columns of the fields, and for each axis a column with the sum of the controller
     /// terms.
     fn columns(self, name: String, budget: &ReadingBudget<'_>) -> Result<Columns, VariableFault> {
-        let mut notes = vec![
-            "a log of Betaflight; axisSum is the sum of the terms of the controller".to_owned(),
-        ];
+        let mut notes =
+            vec!["a Betaflight log; axisSum is the sum of the controller terms".to_owned()];
         let names = &self.heading.frames[&b'I'].names;
         let mut columns = Vec::new();
         for (field, values) in names.iter().zip(self.values) {
@@ -429,13 +430,13 @@ impl Flight {
             notes.extend(give_meanings(&mut columns, &BETAFLIGHT));
         } else {
             notes.push(
-                "gyro_scale is not 1: the unit of gyroADC is not known, no channels are proposed"
+                "gyro_scale is not 1: the unit of gyroADC is unknown, so no channels are proposed"
                     .to_owned(),
             );
         }
         if self.damaged > 0 {
             notes.push(format!(
-                "{} frames are damaged: left out up to the next intra frame",
+                "{} damaged frames: the frames up to the next intra frame are omitted",
                 self.damaged
             ));
         }

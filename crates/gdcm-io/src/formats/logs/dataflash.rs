@@ -29,7 +29,7 @@ const FORMAT_LENGTH: usize = 89;
 
 /// Importer of ArduPilot logs in binary form.
 pub(crate) const DATAFLASH: Importer = Importer {
-    name: "a DataFlash log of ArduPilot",
+    name: "an ArduPilot DataFlash log",
     endings: &["bin"],
     recognises: |bytes, _| bytes.starts_with(&[MARK[0], MARK[1], FORMAT]),
     read: |bytes, path, budget| {
@@ -65,9 +65,9 @@ fn read_dataflash(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, V
     }
 
     let mut notes =
-        vec!["a log of ArduPilot; time in seconds since the autopilot was started".to_owned()];
+        vec!["an ArduPilot log; time in seconds since the start of the autopilot".to_owned()];
     if skipped > 0 {
-        notes.push(format!("{skipped} bytes between messages: left out"));
+        notes.push(format!("{skipped} bytes between messages are skipped"));
     }
     topics.columns(notes)
 }

@@ -317,7 +317,7 @@ impl Topics {
         if columns.columns.is_empty() {
             return Err(VariableFault::damaged(
                 "",
-                "a log without a message that has stamps and numbers",
+                "a log without a message that has time stamps and numbers",
                 0,
             ));
         }

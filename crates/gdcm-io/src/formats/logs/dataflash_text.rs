@@ -16,7 +16,7 @@ const BEGINNING: &[u8] = b"FMT,128,89,FMT,";
 
 /// Importer of ArduPilot logs in text form.
 pub(crate) const DATAFLASH_TEXT: Importer = Importer {
-    name: "a DataFlash log of ArduPilot as text",
+    name: "an ArduPilot DataFlash log as text",
     endings: &["log"],
     recognises: |bytes, _| {
         let start: Vec<u8> = bytes
@@ -55,7 +55,7 @@ fn read_text(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, Variab
         topics.take(fields, |index| cells.get(index)?.parse().ok(), budget)?;
     }
     topics.columns(vec![
-        "a log of ArduPilot as text; time in seconds since the autopilot was started".to_owned(),
+        "an ArduPilot log as text; time in seconds since the start of the autopilot".to_owned(),
     ])
 }
 

@@ -56,8 +56,8 @@ pub(super) const PX4: Meanings = Meanings {
         documented("sensor_combined.accelerometer_m_s2[1]", "NY", "m/s^2"),
         documented("sensor_combined.accelerometer_m_s2[2]", "NZ", "m/s^2"),
     ],
-    signs: "signs are PX4's: body axes forward, right, down, so that thrust and acceleration along z are negative up (give COL=-COLUMN \
-            to reverse one)",
+    signs: "signs follow PX4's convention: body axes forward, right and down, so that thrust and \
+        acceleration along z are negative upwards (give COL=-COLUMN to reverse a sign)",
 };
 
 /// ArduPilot: `SIDD` from the system identification mode, `RATE`, `IMU`
@@ -88,8 +88,8 @@ pub(super) const ARDUPILOT: Meanings = Meanings {
         documented("ATT.Roll", "PHI", "deg"),
         documented("ATT.Pitch", "THETA", "deg"),
     ],
-    signs: "signs are ArduPilot's: body axes forward, right, down, so that the acceleration along z is negative up (give NZ=-COLUMN \
-            to reverse one)",
+    signs: "signs follow ArduPilot's convention: body axes forward, right and down, so that the \
+        acceleration along z is negative upwards (give NZ=-COLUMN to reverse a sign)",
 };
 
 /// Betaflight and relatives: field names of the blackbox; `axisSum` is the sum of the controller
@@ -104,7 +104,8 @@ pub(super) const BETAFLIGHT: Meanings = Meanings {
         documented("gyroADC[1]", "Q", "deg/s"),
         documented("gyroADC[2]", "R", "deg/s"),
     ],
-    signs: "signs are the flight controller's: check the sign of one channel before using signs of derivatives",
+    signs: "signs follow the flight controller's convention: check the sign of one channel before \
+        using signs of derivatives",
 };
 
 /// Assigns the documented channels and units to columns. Returns a note that lists the assigned
@@ -134,7 +135,7 @@ pub(super) fn give_meanings(columns: &mut [RecordColumn], meanings: &Meanings) -
         return None;
     }
     Some(format!(
-        "by the system's documentation: {}; {}",
+        "according to the documentation of the logging system: {}; {}",
         assignments.join(", "),
         meanings.signs
     ))
@@ -169,7 +170,7 @@ mod tests {
             "the unit in the file is kept"
         );
         assert!(
-            words.starts_with("by the system's documentation: P = RATE.R, Q = RATE.P; signs"),
+            words.starts_with("according to the documentation of the logging system: P = RATE.R, Q = RATE.P; signs"),
             "{words}"
         );
     }

@@ -36,7 +36,7 @@ const ARMED: f64 = 2.0;
 
 /// Importer of PX4 logs.
 pub(crate) const ULOG: Importer = Importer {
-    name: "a ULog of PX4",
+    name: "a PX4 ULog",
     endings: &["ulg", "ulog"],
     recognises: |bytes, _| bytes.starts_with(MAGIC),
     read: |bytes, path, budget| {
@@ -112,7 +112,7 @@ fn appended_offsets(flags: &[u8]) -> Result<Vec<usize>, VariableFault> {
         if *flag & !known != 0 {
             return Err(VariableFault::unsupported(
                 "",
-                "a ULog with parts of a later version",
+                "a ULog of a later version",
                 "save its topics as CSV: ulog2csv \"{file}\"",
             ));
         }
@@ -245,23 +245,25 @@ impl<'b> Messages<'b> {
             return Err(VariableFault::cut_off("", HEADER));
         }
         let notes = &mut columns.notes;
-        notes.push("a log of PX4; time in seconds since the autopilot was started".to_owned());
+        notes.push("a PX4 log; time in seconds since the start of the autopilot".to_owned());
         notes.extend(give_meanings(&mut columns.columns, &PX4));
         if self.dropouts > 0 {
             let lost_s = self.lost_ms as f64 * 1e-3;
             notes.push(format!(
-                "{} dropouts of the logger, {lost_s:.2} s together: gaps",
+                "{} dropouts of the logger, {lost_s:.2} s in total, leave gaps",
                 self.dropouts
             ));
         }
         if self.unread > 0 {
             notes.push(format!(
-                "{} messages without a topic, or too short: left out",
+                "{} messages are omitted: they have no topic or are too short",
                 self.unread
             ));
         }
         if is_cut {
-            notes.push("the file is cut off: read up to its end".to_owned());
+            notes.push(
+                "the file is truncated: it was read up to the last complete message".to_owned(),
+            );
         }
         notes.extend(modes_note(&modes));
         columns.modes = modes;
@@ -387,7 +389,7 @@ mod tests {
             columns
                 .notes
                 .iter()
-                .any(|note| note == "1 dropouts of the logger, 0.25 s together: gaps")
+                .any(|note| note == "1 dropouts of the logger, 0.25 s in total, leave gaps")
         );
         let modes: Vec<&str> = columns
             .modes
@@ -401,7 +403,7 @@ mod tests {
     fn a_log_that_is_cut_off_is_read_up_to_its_end() {
         let bytes = log(40);
         let columns = read(&bytes[..bytes.len() - 20]).unwrap();
-        assert!(columns.notes.iter().any(|note| note.contains("cut off")));
+        assert!(columns.notes.iter().any(|note| note.contains("truncated")));
         assert!(read(&bytes[..16]).is_err() && read(&bytes[..8]).is_err());
     }
 

@@ -104,7 +104,7 @@ impl Flattening<'_> {
 
     fn parse_field<'f>(&self, field: &'f str) -> Result<LayoutField<'f>, VariableFault> {
         let Some((kind, name)) = field.split_once(' ') else {
-            return Err(self.damaged(format!("\"{}\" is no field", short(field))));
+            return Err(self.damaged(format!("\"{}\" is not a field", short(field))));
         };
         let array = kind.strip_suffix(']').and_then(|kind| kind.split_once('['));
         let Some((kind, length)) = array else {
@@ -120,7 +120,7 @@ impl Flattening<'_> {
                 name,
                 length: Some(length),
             }),
-            _ => Err(self.damaged(format!("\"{}\" has no length", short(name)))),
+            _ => Err(self.damaged(format!("\"{}\" has no valid length", short(name)))),
         }
     }
 
@@ -148,7 +148,7 @@ impl Flattening<'_> {
             // Reject fields of length zero, which could be repeated without limit.
             if self.offset == begin || self.offset > LARGEST {
                 return Err(self.damaged(format!(
-                    "the field \"{}\" has no length, or too much",
+                    "the field \"{}\" is empty or too long",
                     short(name)
                 )));
             }

@@ -59,7 +59,7 @@ impl ArrayHeader {
         let Some(class) = ArrayClass::from_number(number) else {
             return Err(flags
                 .data
-                .damaged(format!("an array with the unknown class {number}")));
+                .damaged(format!("an array of unknown class {number}")));
         };
         let shape = if class == ArrayClass::Opaque {
             vec![1, 1]

@@ -135,9 +135,9 @@ impl<'b> Element<'b> {
         let width = number_type.size();
         let length = self.data.len();
         if !length.is_multiple_of(width) {
-            return Err(self.data.damaged(format!(
-                "{length} bytes for numbers with {width} bytes each"
-            )));
+            return Err(self
+                .data
+                .damaged(format!("{length} bytes for numbers of {width} bytes each")));
         }
         Ok(length / width)
     }
@@ -162,7 +162,7 @@ impl<'b> Element<'b> {
 /// Returns the data type for the number in the tag at `tag`; rejects an unknown number.
 fn known_kind(number: u32, tag: Cursor<'_>) -> Result<DataKind, VariableFault> {
     DataKind::from_number(number)
-        .ok_or_else(|| tag.damaged(format!("an element with the unknown data type {number}")))
+        .ok_or_else(|| tag.damaged(format!("an element of unknown data type {number}")))
 }
 
 /// Positions of an array that was read, from which the position of the next element is found.

@@ -58,8 +58,8 @@ impl Inflater<'_> {
                 .take(chunk)
                 .read_to_end(&mut self.bytes)
                 .map_err(|error| match error.kind() {
-                    ErrorKind::UnexpectedEof => packed.damaged("the packed bytes end too early"),
-                    _ => packed.damaged("the packed bytes were changed"),
+                    ErrorKind::UnexpectedEof => packed.damaged("the compressed data end too early"),
+                    _ => packed.damaged("the compressed data are corrupt"),
                 })?;
             if (found as u64) < chunk {
                 // Accept fewer bytes, because GNU Octave announces too many; if bytes are really
@@ -80,7 +80,7 @@ impl Inflater<'_> {
         let length = u64::from(tag.u32()?);
         if length > (packed.len() as u64).saturating_mul(MOST_EXPANSION) {
             return Err(packed.damaged(format!(
-                "{} packed bytes that claim to hold {length}",
+                "{} compressed bytes that claim to expand to {length}",
                 packed.len()
             )));
         }
@@ -94,9 +94,9 @@ impl Inflater<'_> {
         let more = self
             .decoder
             .read(&mut [0])
-            .map_err(|_| packed.damaged("the packed bytes were changed"))?;
+            .map_err(|_| packed.damaged("the compressed data are corrupt"))?;
         if more != 0 {
-            return Err(packed.damaged("more packed bytes than announced"));
+            return Err(packed.damaged("more compressed data than announced"));
         }
         Ok(())
     }

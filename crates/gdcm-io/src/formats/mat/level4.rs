@@ -176,7 +176,7 @@ fn no_matrix(start: Cursor<'_>, found: &str) -> VariableFault {
 
 /// Returns the error for an invalid sparse matrix at `start`.
 fn sparse_damage(start: Cursor<'_>) -> VariableFault {
-    start.damaged("a sparse matrix whose numbers do not fit it")
+    start.damaged("a sparse matrix with inconsistent numbers")
 }
 
 /// Converts indices that count from 1 to indices that count from 0; `None` if an index is negative,

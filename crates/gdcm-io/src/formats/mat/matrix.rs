@@ -121,7 +121,7 @@ impl ArrayReader<'_> {
     ) -> Result<Array, VariableFault> {
         let start = *contents;
         let &[height, width] = header.shape.as_slice() else {
-            return Err(start.damaged("a sparse array that is no matrix"));
+            return Err(start.damaged("a sparse array that is not a matrix"));
         };
         let rows = read_sizes(&Element::read(contents)?, self.budget)?;
         let starts = read_sizes(&Element::read(contents)?, self.budget)?;
@@ -142,10 +142,10 @@ impl ArrayReader<'_> {
             im,
         };
         let Some(entries) = columns.into_entries() else {
-            return Err(start.damaged("a sparse matrix whose columns do not fit its numbers"));
+            return Err(start.damaged("a sparse matrix whose columns do not match its numbers"));
         };
         entries.full_matrix("", self.budget, || {
-            start.damaged("a number outside its sparse matrix")
+            start.damaged("an element outside its sparse matrix")
         })
     }
 
@@ -254,7 +254,8 @@ impl ArrayReader<'_> {
         let class = Element::read(contents)?.name()?;
         if system != CLASS_SYSTEM {
             Element::pass_all(contents)?;
-            let why = "only objects of MATLAB's own classes are read; in MATLAB, save its data as numbers or text";
+            let why = "only objects of MATLAB classes are supported; in MATLAB, save its data as \
+                numbers or text";
             return Ok(Value::opaque(format!("{class} ({system})"), why));
         }
         let contents = self.nested_value(contents, path)?;
@@ -268,7 +269,11 @@ impl ArrayReader<'_> {
         }
         match &contents {
             Value::Struct(records) => objects.enumeration(records, &class, path, self.budget),
-            _ => Ok(unreadable(&class, "it refers to no object", &variable)),
+            _ => Ok(unreadable(
+                &class,
+                "its reference points to no object",
+                &variable,
+            )),
         }
     }
 }
@@ -294,7 +299,7 @@ pub(super) fn read_field_names(
     if !fits {
         return Err(names
             .data
-            .damaged("field names that do not fit their length"));
+            .damaged("field names that do not match their length"));
     }
     let length = length.max(1);
     budget.take((bytes.len() / length) as u64, 128, "")?;

@@ -32,11 +32,11 @@ const HDF5_SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
 /// Major version in files of levels 5 to 7.
 const LEVEL_5: u8 = 1;
 /// Name of the expected format in error messages of [`read`].
-const EXPECTED: &str = "a .mat file of MATLAB up to version 7";
+const EXPECTED: &str = "a MATLAB .mat file up to version 7";
 
 /// Importer of MATLAB files up to version 7.
 pub(crate) const MAT: Importer = Importer {
-    name: "a .mat file of MATLAB up to version 7",
+    name: "a MATLAB .mat file up to version 7",
     endings: &["mat"],
     recognises: |bytes, ending| {
         ending == "mat" || FileVersion::read(bytes).is_some_and(|version| version.major == LEVEL_5)
@@ -52,7 +52,7 @@ pub fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, V
     if is_hdf5(bytes) {
         return Err(VariableFault::format(
             EXPECTED,
-            "an HDF5 file, as MATLAB writes with -v7.3",
+            "an HDF5 file, as written by MATLAB with -v7.3",
         ));
     }
     // A level-5 file begins with text: none of its first four bytes is zero, unlike in a level-4
@@ -66,7 +66,7 @@ pub fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, V
         _ if level4::begins(bytes) => level4::read(bytes, budget),
         Some(FileVersion { major, .. }) if begins_with_text => Err(VariableFault::format(
             EXPECTED,
-            format!("a .mat file of the unknown version {major}"),
+            format!("a .mat file of unknown version {major}"),
         )),
         _ => Err(VariableFault::format(EXPECTED, describe_start(bytes))),
     }

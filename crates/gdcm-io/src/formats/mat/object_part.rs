@@ -86,7 +86,7 @@ fn read_wrapper(
     let path = ValuePath::start(WRAPPER);
     let reader = ArrayReader {
         budget,
-        objects: Err("it is nested in the objects of the file"),
+        objects: Err("it is nested inside another object, which is not supported"),
     };
     let mut cells = Vec::new();
     let mut long_words = LongWords::new();

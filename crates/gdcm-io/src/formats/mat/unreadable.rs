@@ -6,7 +6,11 @@ use crate::formats::variables::Value;
 
 /// Returns the opaque value for an object of an unsupported class.
 pub(super) fn unread_class(class: &str, path: &ValuePath<'_>) -> Value {
-    unreadable(class, "values of this class are not read", &path.text())
+    unreadable(
+        class,
+        "values of this class are not supported",
+        &path.text(),
+    )
 }
 
 /// Returns an opaque value with the reason and a command that exports its data.

@@ -29,7 +29,7 @@ pub(super) fn check_chunks(
         return Ok(());
     };
     if shape.contains(&0) || shape.len() != sides.len() {
-        return Err(damaged(path, "the chunks have no size"));
+        return Err(damaged(path, "the chunks have no valid size"));
     }
     let mut elements: u64 = 1;
     let mut most_chunks: u64 = 1;
@@ -45,7 +45,7 @@ pub(super) fn check_chunks(
     if index == Some(ChunkIndex::BTreeV2) {
         return Err(VariableFault::unsupported(
             path,
-            "a dataset that can grow in two directions",
+            "a dataset with several unlimited dimensions",
             "write it with a fixed shape",
         ));
     }

@@ -84,7 +84,7 @@ impl Elements {
             });
         }
         if count.checked_mul(size) != Some(bytes.len()) {
-            return Err(damaged(path, "the dataset does not fit its shape"));
+            return Err(damaged(path, "the dataset does not match its shape"));
         }
         Ok(Self {
             datatype,
@@ -188,7 +188,7 @@ fn sides_in_memory(sides: &[u64]) -> Option<Vec<usize>> {
 }
 
 fn too_many_elements(path: &str) -> VariableFault {
-    damaged(path, "the element count overflows")
+    damaged(path, "the number of elements is too large")
 }
 
 fn little_endian_word(bytes: &[u8]) -> u64 {

@@ -24,7 +24,8 @@ pub(super) fn library_fault(error: &Error, path: &str) -> VariableFault {
             | FormatError::UnsupportedZfp(_),
         ) => {
             // A program that requests the latest format of HDF5 2.0 writes a new chunk layout.
-            let remedy = "write it with compression gzip or none, in a single file, in the format of HDF5 1.14 or earlier";
+            let remedy = "write it with gzip compression or none, in a single file, in the format \
+                of HDF5 1.14 or earlier";
             VariableFault::unsupported(path, format!("a dataset of this kind ({error})"), remedy)
         }
         _ => damaged(path, &error.to_string()),

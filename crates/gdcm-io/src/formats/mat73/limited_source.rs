@@ -55,7 +55,7 @@ impl Source for LimitedSource {
         }
         if paid.is_err() {
             return Err(FormatError::Source(
-                "its parts refer to one another too often".to_owned(),
+                "the parts of the file refer to one another too often".to_owned(),
             ));
         }
         let start = usize::try_from(offset).unwrap_or(usize::MAX);

@@ -40,7 +40,7 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Importer of MATLAB 7.3 and HDF5 files.
 pub(crate) const HDF5: Importer = Importer {
-    name: "an HDF5 file, as MATLAB writes with -v7.3",
+    name: "an HDF5 file, as written by MATLAB with -v7.3",
     endings: &["mat", "h5", "hdf5"],
     recognises: |bytes, _| is_hdf5(bytes),
     read: |bytes, path, budget| Contents::variables(read(bytes, budget), path),
@@ -72,7 +72,7 @@ fn read_variables(
 fn open(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<File, VariableFault> {
     if !is_hdf5_bytes(bytes) {
         return Err(VariableFault::other_bytes(
-            "a file of MATLAB 7.3 or HDF5",
+            "a MATLAB 7.3 or HDF5 file",
             bytes,
         ));
     }

@@ -103,7 +103,7 @@ impl Reader<'_> {
             Some(records) => Ok(Value::Struct(records)),
             None => Ok(Value::opaque(
                 "an HDF5 dataset",
-                "it holds neither numbers nor texts",
+                "it holds neither numbers nor strings",
             )),
         }
     }
@@ -187,7 +187,7 @@ impl Reader<'_> {
             return Ok(function_handle());
         }
         if attributes.encoding == OBJECT {
-            return Ok(Value::opaque(class, "enumerations are not read"));
+            return Ok(Value::opaque(class, "enumerations are not supported"));
         }
         let members = self.in_field_order(members, &attributes.fields, path)?;
         let records = if is_struct_array(&attributes, &members, path)? {
@@ -287,7 +287,7 @@ impl Reader<'_> {
             if !records.fields.is_empty() && records.shape != shape {
                 return Err(damaged(
                     &field_path(path, name),
-                    "the value count of a field differs from the record count",
+                    "a field has more or fewer values than there are records",
                 ));
             }
             records.shape = shape;
@@ -303,7 +303,7 @@ impl Reader<'_> {
 }
 
 fn function_handle() -> Value {
-    Value::opaque("function_handle", "functions are not data")
+    Value::opaque("function_handle", "functions cannot be read as data")
 }
 
 /// Returns whether a group is a struct array: its members are datasets of references that are not

@@ -217,7 +217,7 @@ fn member_value(
     }
     Ok(Value::opaque(
         "a field of a record",
-        "it is neither a number nor a text with a fixed length",
+        "it is neither a number nor a string of fixed length",
     ))
 }
 
@@ -271,7 +271,7 @@ impl SparseGroup<'_> {
             Some(numbers) => Ok(numbers),
             None => Err(damaged(
                 self.path,
-                "the elements of a sparse matrix are no numbers",
+                "the elements of a sparse matrix are not numbers",
             )),
         }
     }
@@ -284,7 +284,7 @@ impl SparseGroup<'_> {
         let Some(words) = elements.words(self.path, self.budget)? else {
             return Err(damaged(
                 self.path,
-                "the indices of a sparse matrix are no integers",
+                "the indices of a sparse matrix are not integers",
             ));
         };
         Ok(Some(
@@ -306,6 +306,6 @@ impl SparseGroup<'_> {
     }
 
     fn contradiction(&self) -> VariableFault {
-        damaged(self.path, "the sparse matrix contradicts itself")
+        damaged(self.path, "the sparse matrix is inconsistent")
     }
 }

@@ -56,7 +56,7 @@ impl Element {
         match descr {
             Json::String(code) => Self::parse_code(code),
             Json::Array(fields) => Self::parse_record(fields),
-            _ => Err(damaged("the element type is neither a text nor a list")),
+            _ => Err(damaged("the element type is neither a string nor a list")),
         }
     }
 
@@ -198,11 +198,14 @@ pub(super) fn parse_sides(shape: &Json) -> Option<Vec<usize>> {
 }
 
 fn wrong_field() -> VariableFault {
-    damaged("a field of the records has no name and type")
+    damaged("a field of the records lacks a name or a type")
 }
 
 fn unknown_code(code: &str) -> VariableFault {
-    damaged(format!("\"{}\" is no element type", code.escape_default()))
+    damaged(format!(
+        "\"{}\" is not an element type",
+        code.escape_default()
+    ))
 }
 
 /// Returns the error for a header that NumPy would not write.

@@ -13,7 +13,8 @@ const VERSION_AT: usize = 6;
 /// Offset of the header length in the file \[bytes\], used as the position of errors in the header.
 const LENGTH_AT: usize = 8;
 /// Error message for a header whose keys are not the required keys.
-const MISSING_KEY: &str = "the header has not the keys descr, fortran_order and shape";
+const MISSING_KEY: &str = "the header does not have exactly the keys descr, fortran_order and \
+    shape";
 
 /// Header of a `.npy` file (`numpy.lib.format`, versions 1.0 to 3.0).
 #[derive(Clone, Debug, PartialEq)]
@@ -55,7 +56,7 @@ impl Header {
             return Err(damaged(name, "fortran_order is neither True nor False"));
         };
         let Some(shape) = parse_sides(shape) else {
-            return Err(damaged(name, "the shape is no tuple of whole numbers"));
+            return Err(damaged(name, "the shape is not a tuple of integers"));
         };
         let element = Element::parse(descr).map_err(|fault| fault.of(|| name.to_owned()))?;
         Ok(Self {
@@ -70,10 +71,7 @@ impl Header {
 impl HeaderText {
     fn read(bytes: &[u8], name: &str) -> Result<Self, VariableFault> {
         if !bytes.starts_with(MAGIC) {
-            return Err(VariableFault::other_bytes(
-                "an array of NumPy (.npy)",
-                bytes,
-            ));
+            return Err(VariableFault::other_bytes("a NumPy array (.npy)", bytes));
         }
         let Some(&version) = bytes.get(VERSION_AT) else {
             return Err(VariableFault::cut_off(name, bytes.len()));
@@ -85,7 +83,7 @@ impl HeaderText {
                 return Err(VariableFault::unsupported(
                     name,
                     format!("version {version} of the .npy format"),
-                    "save it with numpy.save of a plain array",
+                    "save a plain array with numpy.save",
                 ));
             }
         };

@@ -23,7 +23,7 @@ pub use crate::formats::npy::writer::write_npz;
 
 /// Importer of NumPy arrays.
 pub(crate) const NPY: Importer = Importer {
-    name: "an array of NumPy",
+    name: "a NumPy array",
     endings: &["npy"],
     recognises: |bytes, _| bytes.starts_with(MAGIC),
     read: |bytes, path, budget| {
@@ -59,7 +59,7 @@ pub fn read_npy(
         return Err(VariableFault::unsupported(
             name,
             "data after the array",
-            "save a single array in each .npy file, several with numpy.savez",
+            "save a single array in each .npy file, or several with numpy.savez",
         ));
     }
     let stored = StoredArray {
@@ -76,7 +76,7 @@ pub fn read_npy(
 }
 
 fn too_many_elements(name: &str) -> VariableFault {
-    VariableFault::damaged(name, "the element count of the shape overflows", 8)
+    VariableFault::damaged(name, "the number of elements in the shape is too large", 8)
 }
 
 /// Array elements as stored in a file.
@@ -333,7 +333,7 @@ mod archive_tests {
             read(&other)
                 .unwrap_err()
                 .to_string()
-                .contains("an entry packed by method 12 cannot be read")
+                .contains("an entry compressed with method 12 cannot be read")
         );
     }
 

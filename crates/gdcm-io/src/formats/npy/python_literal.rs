@@ -36,20 +36,20 @@ pub(super) fn parse_literal(text: &str) -> Result<Json, &'static str> {
         rest = &rest[length..];
     }
     serde_json::from_str(&json)
-        .map_err(|_| "the header is no dictionary of texts, numbers and tuples")
+        .map_err(|_| "the header is not a dictionary of strings, numbers and tuples")
 }
 
 /// Converts the string at the beginning of `rest`; returns its length including both quotation
 /// marks \[bytes\].
 fn convert_text(rest: &str, quote: char, json: &mut String) -> Result<usize, &'static str> {
     let Some(end) = rest[1..].find(quote) else {
-        return Err("a text in the header does not end");
+        return Err("a string in the header is not closed");
     };
     let text = &rest[1..=end];
     // Escapes occur only in unusual field names: with quotation marks, backslashes or control
     // characters.
     if text.contains('\\') {
-        return Err("the header holds an escape");
+        return Err("the header contains an escape sequence");
     }
     json.push_str(&Json::from(text).to_string());
     Ok(end + 2)
@@ -63,7 +63,7 @@ fn convert_word(rest: &str, json: &mut String) -> Result<usize, &'static str> {
     match &rest[..end] {
         "True" => json.push_str("true"),
         "False" => json.push_str("false"),
-        _ => return Err("the header holds an unknown word"),
+        _ => return Err("the header contains an unknown word"),
     }
     Ok(end)
 }

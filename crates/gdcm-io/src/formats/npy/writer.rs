@@ -53,8 +53,12 @@ pub fn write_npz(variables: &[Variable]) -> Result<Vec<u8>, VariableFault> {
 }
 
 fn refused(name: &str, what: &str) -> VariableFault {
-    let remedy = "write arrays and texts under short names";
-    VariableFault::unsupported(name, format!("{what} cannot be written, so it"), remedy)
+    let remedy = "write only arrays and strings, under shorter names or in several files";
+    VariableFault::unsupported(
+        name,
+        format!("{what} cannot be written, and therefore"),
+        remedy,
+    )
 }
 
 /// Adds an array to an archive as a compressed `.npy` file.

@@ -75,8 +75,8 @@ impl Assembler<'_> {
         let Some(form) = Form::from_type_name(local_type) else {
             return Err(VariableFault::unsupported(
                 variable,
-                format!("a {type_name} of GNU Octave"),
-                "save it without this variable, or with -v7",
+                format!("a GNU Octave {type_name}"),
+                "save the file without this variable, or with -v7",
             ));
         };
         Ok(match form {
@@ -117,7 +117,9 @@ impl Assembler<'_> {
         variable: &str,
     ) -> Result<usize, VariableFault> {
         let Some(count) = count(shape) else {
-            return Err(self.parts.fault(variable, "the element count overflows"));
+            return Err(self
+                .parts
+                .fault(variable, "the number of elements is too large"));
         };
         self.parts.budget().take(count as u64, size, variable)?;
         Ok(count)
@@ -157,14 +159,17 @@ impl Assembler<'_> {
 
     fn full_matrix(&self, entries: &SparseEntries, variable: &str) -> Result<Array, VariableFault> {
         entries.full_matrix(variable, self.parts.budget(), || {
-            self.parts.fault(variable, "a number is outside the matrix")
+            self.parts
+                .fault(variable, "an element is outside the matrix")
         })
     }
 
     fn range(&mut self, variable: &str) -> Result<Array, VariableFault> {
         let numbers = self.parts.numbers(Element::FLOAT, 3, variable)?;
         let &[first, limit, step] = numbers.as_slice() else {
-            return Err(self.parts.fault(variable, "a range has three numbers"));
+            return Err(self
+                .parts
+                .fault(variable, "a range does not have three numbers"));
         };
         let range = Range { first, limit, step };
         range.array(variable, self.parts.budget())
@@ -203,7 +208,7 @@ impl Assembler<'_> {
             if values.len() != count {
                 return Err(self.parts.fault(
                     &inner,
-                    "the value count of a field differs from the record count",
+                    "a field has more or fewer values than there are records",
                 ));
             }
             fields.push((name, values));
@@ -261,6 +266,6 @@ pub(super) fn text_rows(letters: &[u8], height: usize) -> TextArray {
 
 /// Returns the error for a character array with more than two dimensions, which is not supported.
 pub(super) fn texts_in_pages(variable: &str) -> VariableFault {
-    let what = "a text array with more than two dimensions";
+    let what = "a character array with more than two dimensions";
     VariableFault::unsupported(variable, what, "save it as a cell array")
 }

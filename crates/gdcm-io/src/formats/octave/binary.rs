@@ -20,7 +20,7 @@ const NAMED_TYPE: u8 = 0xff;
 
 /// Importer of files written by `save -binary`.
 pub(crate) const OCTAVE_BINARY: Importer = Importer {
-    name: "a file of GNU Octave, as it writes with -binary",
+    name: "a GNU Octave file, written with -binary",
     endings: &["bin", "mat"],
     recognises: |bytes, _| bytes.starts_with(MAGIC),
     read: |bytes, path, budget| Contents::variables(read_variables(bytes, budget), path),
@@ -88,7 +88,7 @@ impl<'b> BinaryReader<'b> {
 
     fn length(&mut self, variable: &str) -> Result<usize, VariableFault> {
         let length = self.int(variable)?;
-        usize::try_from(length).map_err(|_| self.fault(variable, "a length is below zero"))
+        usize::try_from(length).map_err(|_| self.fault(variable, "a length is negative"))
     }
 
     /// Reads `count` lengths or indices, which must not be negative.
@@ -213,7 +213,7 @@ impl Parts for BinaryReader<'_> {
         };
         columns
             .into_entries()
-            .ok_or_else(|| self.fault(variable, "the sparse matrix contradicts itself"))
+            .ok_or_else(|| self.fault(variable, "the sparse matrix is inconsistent"))
     }
 
     fn text(&mut self, variable: &str) -> Result<TextArray, VariableFault> {

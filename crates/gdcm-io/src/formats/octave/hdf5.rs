@@ -14,7 +14,7 @@ use crate::formats::variables::{
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Error message for a struct array whose fields have different numbers of values.
-const FIELD_LENGTH: &str = "the value count of a field differs from the record count";
+const FIELD_LENGTH: &str = "a field has more or fewer values than there are records";
 
 /// Converts the groups of a file written by Octave to values; returns the values of any other file
 /// unchanged.
@@ -71,7 +71,7 @@ fn convert_group(
     budget: &ReadingBudget<'_>,
 ) -> Result<Value, VariableFault> {
     let Some(OctaveGroup { type_name, value }) = OctaveGroup::from_value(group) else {
-        return Err(damaged(variable, "a group has no type and no value"));
+        return Err(damaged(variable, "a group lacks a type or a value"));
     };
     budget.take(1, size_of::<Value>() as u64, variable)?;
     let Some(form) = Form::from_type_name(type_name) else {
@@ -109,7 +109,7 @@ fn convert_group(
 }
 
 fn unknown_value(type_name: &str) -> Value {
-    Value::opaque(format!("a {type_name} of GNU Octave"), "save it with -v7")
+    Value::opaque(format!("a GNU Octave {type_name}"), "save it with -v7")
 }
 
 fn damaged(variable: &str, what: &str) -> VariableFault {
@@ -125,7 +125,7 @@ fn with_reversed_sides(
 ) -> Result<Array, VariableFault> {
     budget.take(array.len() as u64, 16, variable)?;
     let Some(places) = Places::row_major(&array.shape) else {
-        return Err(damaged(variable, "the element count overflows"));
+        return Err(damaged(variable, "the number of elements is too large"));
     };
     let places: Vec<usize> = places.collect();
     Ok(Array {
@@ -172,7 +172,7 @@ impl<'v> GroupParts<'v> {
     fn range_number(&self, name: &str) -> Result<f64, VariableFault> {
         match self.number(name) {
             Some(number) => Ok(number),
-            None => Err(self.damaged("a range has no base, limit and step")),
+            None => Err(self.damaged("a range lacks its base, limit or step")),
         }
     }
 
@@ -196,7 +196,10 @@ impl<'v> GroupParts<'v> {
             }
         }
         if count(&shape) != Some(values.len()) {
-            return Err(self.damaged("the value count of a cell array does not fit its sides"));
+            return Err(self.damaged(
+                "the number of values in a cell array does not match its \
+                dimensions",
+            ));
         }
         Ok(CellArray { shape, values })
     }
@@ -273,7 +276,7 @@ impl<'v> GroupParts<'v> {
     }
 
     fn sparse_contradiction(&self) -> VariableFault {
-        self.damaged("the sparse matrix contradicts itself")
+        self.damaged("the sparse matrix is inconsistent")
     }
 
     fn damaged(&self, what: &str) -> VariableFault {

@@ -15,7 +15,7 @@ const HEAD: usize = 2000;
 
 /// Importer of files written by `save -text`.
 pub(crate) const OCTAVE_TEXT: Importer = Importer {
-    name: "a file of GNU Octave, as it writes with -text",
+    name: "a GNU Octave file, written with -text",
     endings: &["txt", "mat", "dat"],
     recognises: |bytes, _| begins_with_variable(bytes),
     read: |bytes, path, budget| {
@@ -221,7 +221,7 @@ impl Parts for TextReader<'_> {
             shape.push(self.index(variable)?);
         }
         if shape.len() < 2 {
-            return Err(self.fault(variable, "expected two dimensions or more"));
+            return Err(self.fault(variable, "expected at least two dimensions"));
         }
         Ok(Sides {
             shape,
@@ -266,7 +266,7 @@ impl Parts for TextReader<'_> {
             let row = self.index(variable)?.wrapping_sub(1);
             let column = self.index(variable)?.wrapping_sub(1);
             if row >= height || column >= width {
-                return Err(self.fault(variable, "a number is outside the matrix"));
+                return Err(self.fault(variable, "an element is outside the matrix"));
             }
             // Take twice the memory of an entry: vectors grow by doubling.
             self.budget.take(1, 48, variable)?;

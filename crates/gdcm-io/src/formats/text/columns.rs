@@ -79,7 +79,7 @@ impl TextTable {
         }
         self.names = Some(names);
         self.notes
-            .push("the headings of the columns are those of the rules".to_owned());
+            .push("the column headings are taken from the rules".to_owned());
         Ok(self)
     }
 }
@@ -101,7 +101,7 @@ pub fn read_table(text: &str, budget: &ReadingBudget) -> Result<TextTable, Varia
 fn no_numbers(text: &str) -> VariableFault {
     let found = match excerpt(text).as_str() {
         "" => "an empty file".to_owned(),
-        start => format!("no line that consists of numbers (it begins with \"{start}\")"),
+        start => format!("no row of numbers (the text begins with \"{start}\")"),
     };
     VariableFault::format(EXPECTED, found)
 }
@@ -164,7 +164,8 @@ impl<'m> Reading<'m> {
             Some(RowShape { width: 1, .. }) => {
                 let columns = self.layout.columns;
                 self.notes.push(format!(
-                    "line {number} holds one number, the table has {columns} columns: skipped"
+                    "line {number} is skipped: it holds one number, but the table has {columns} \
+                    columns"
                 ));
                 self.skip(number, line)
             }
@@ -258,7 +259,8 @@ impl<'m> Reading<'m> {
         if cells.all(|cell| cell_number(&cell, decimal_comma).is_none()) {
             let start = excerpt(line);
             return format!(
-                "words among the rows (\"{start}\"); put # before them, or split the file if others follow"
+                "text among the rows (\"{start}\"); put # before it, or split the file if another \
+                table follows"
             );
         }
         let mark = if decimal_comma && cell.contains('.') {
@@ -267,7 +269,8 @@ impl<'m> Reading<'m> {
             ""
         };
         format!(
-            "column {} holds \"{}\", which is no number{mark}; correct it, or empty the cell",
+            "column {} holds \"{}\", which is not a number{mark}; correct it, or leave the cell \
+            empty",
             index + 1,
             excerpt(cell)
         )
@@ -289,8 +292,8 @@ impl<'m> Reading<'m> {
             "",
             number,
             format!(
-                "{found} columns, where the table has {expected} (between {separator}); \
-                 complete the line, or split the file where the columns change"
+                "{found} columns, but the table has {expected} (separated by {separator}); \
+                complete the line, or split the file where the columns change"
             ),
         )
     }
@@ -302,7 +305,8 @@ impl<'m> Reading<'m> {
         let heading = Heading::find(self.skipped_above_rows(), self.layout);
         self.notes.extend(heading.notes);
         if heading.names.is_none() && self.may_have_decimal_commas() {
-            let note = "each line has one comma: read as two columns; numbers with a decimal comma look the same";
+            let note = "each line has one comma, which is read as the separator of two columns; \
+                decimal commas would look the same";
             self.notes.push(note.to_owned());
         }
         Ok(TextTable {
@@ -413,7 +417,7 @@ mod columns_tests {
         assert_eq!(table.columns[0], [1000.0, 2000.0]);
         assert_eq!(
             table.notes[0],
-            "line 1 holds one number, the table has 2 columns: skipped"
+            "line 1 is skipped: it holds one number, but the table has 2 columns"
         );
         assert_eq!(missing(&table), 1);
     }
@@ -423,25 +427,24 @@ mod columns_tests {
         let message = |text: &str| read(text).unwrap_err().to_string();
         assert_eq!(
             message("a,b,c\n1,2,3\n4,5\n"),
-            "line 3: 2 columns, where the table has 3 (between commas); \
+            "line 3: 2 columns, but the table has 3 (separated by commas); \
              complete the line, or split the file where the columns change"
         );
         assert_eq!(
             message("1,2,3\n4,x,6\n"),
-            "line 2: column 2 holds \"x\", which is no number; correct it, or empty the cell"
+            "line 2: column 2 holds \"x\", which is not a number; correct it, or leave the cell empty"
         );
         assert_eq!(
             message("1,5;2\n1.5;3\n1,6;2\n"),
-            "line 2: column 1 holds \"1.5\", which is no number (the decimal mark is the comma); \
-             correct it, or empty the cell"
+            "line 2: column 1 holds \"1.5\", which is not a number (the decimal mark is the comma); \
+             correct it, or leave the cell empty"
         );
         assert!(
-            message("t;x;\n1;2;\n3;4;\n5;\n")
-                .starts_with("line 4: 1 columns, where the table has 2")
+            message("t;x;\n1;2;\n3;4;\n5;\n").starts_with("line 4: 1 columns, but the table has 2")
         );
         assert_eq!(
             message("1,2\n3,4\nt,x\n"),
-            "line 3: words among the rows (\"t,x\"); put # before them, or split the file if others follow"
+            "line 3: text among the rows (\"t,x\"); put # before it, or split the file if another table follows"
         );
         assert_eq!(
             message(" \n"),
@@ -449,7 +452,7 @@ mod columns_tests {
         );
         assert!(
             message("hello world")
-                .contains("no line that consists of numbers (it begins with \"hello world\")")
+                .contains("no row of numbers (the text begins with \"hello world\")")
         );
     }
 

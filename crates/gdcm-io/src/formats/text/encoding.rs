@@ -63,10 +63,7 @@ pub(super) fn refuse_binary(text: &str, expected: &'static str) -> Result<(), Va
 }
 
 fn no_text(expected: &'static str, at: usize) -> VariableFault {
-    VariableFault::format(
-        expected,
-        format!("a file that is no text (byte {at} of it is zero)"),
-    )
+    VariableFault::format(expected, format!("a binary file (byte {at} is zero)"))
 }
 
 #[cfg(test)]
@@ -111,7 +108,7 @@ mod encoding_tests {
         let fault = refuse_binary("ab\0c", "a table").unwrap_err();
         assert_eq!(
             fault.to_string(),
-            "expected a table, found a file that is no text (byte 2 of it is zero)"
+            "expected a table, found a binary file (byte 2 is zero)"
         );
     }
 }

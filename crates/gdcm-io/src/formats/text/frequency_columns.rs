@@ -32,7 +32,7 @@ impl FrequencyColumns {
         }
         if responses.is_empty() {
             return Err(unrecognised(
-                "no magnitude with a phase and no real part with an imaginary part",
+                "neither magnitude and phase nor real and imaginary part",
             ));
         }
         let mut columns = Self {
@@ -42,7 +42,7 @@ impl FrequencyColumns {
             unused: recognition.unused,
         };
         if columns.is_decreasing(table) {
-            let note = "the frequencies fall: taken from the last line to the first";
+            let note = "the frequencies decrease: the rows are read in reverse order";
             columns.notes.push(note.to_owned());
         }
         Ok(columns)
@@ -111,16 +111,17 @@ fn reversed(table: &TextTable) -> TextTable {
 /// preceding frequency.
 fn frequency_fault(value: f64, before: f64) -> Option<String> {
     if !value.is_finite() {
-        Some("is missing or infinite; complete it or take the line out".to_owned())
+        Some("is missing or infinite; complete it or remove the line".to_owned())
     } else if value < 0.0 {
-        Some(format!("is negative ({value}); take the line out"))
+        Some(format!("is negative ({value}); remove the line"))
     } else if value == before {
         Some(format!(
-            "occurs on two lines ({value}); take one of the lines out"
+            "occurs on two lines ({value}); remove one of the lines"
         ))
     } else if value < before {
         Some(format!(
-            "is below the frequency before it ({value} after {before}); sort the lines by frequency"
+            "is below the preceding frequency ({value} after {before}); sort the lines by \
+            frequency"
         ))
     } else {
         None
@@ -345,9 +346,9 @@ mod recognition_tests {
             found
                 .notes
                 .iter()
-                .any(|note| note.contains("column 4 (\"mag X/Y\") is left out"))
+                .any(|note| note.contains("column 4 (\"mag X/Y\") is ignored"))
         );
-        assert!(fault("w,mag\n1,2\n2,3\n").contains("no magnitude with a phase"));
+        assert!(fault("w,mag\n1,2\n2,3\n").contains("neither magnitude and phase"));
         assert!(fault("mag,phase\n1,2\n2,1\n").contains("no frequency"));
     }
 }
@@ -393,10 +394,10 @@ mod frequency_values_tests {
         let start = "the frequency in column 1 (\"omega\")";
         assert_eq!(
             message(["1", "2", "2"]),
-            format!("line 4: {start} occurs on two lines (2); take one of the lines out")
+            format!("line 4: {start} occurs on two lines (2); remove one of the lines")
         );
         assert!(message(["1", "3", "2"]).starts_with(&format!(
-            "line 4: {start} is below the frequency before it (2 after 3)"
+            "line 4: {start} is below the preceding frequency (2 after 3)"
         )));
         assert!(message(["1", "", "2"]).starts_with(&format!("line 3: {start} is missing")));
         assert!(message(["-1", "1", "2"]).starts_with(&format!("line 2: {start} is negative")));

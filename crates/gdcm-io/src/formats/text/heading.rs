@@ -54,10 +54,9 @@ impl Heading {
             names = before;
         }
         heading.take_names(&names.cells);
-        heading.notes.push(format!(
-            "line {} gives the names of the columns",
-            names.number
-        ));
+        heading
+            .notes
+            .push(format!("line {} gives the column names", names.number));
         heading
     }
 
@@ -86,7 +85,8 @@ impl Heading {
         if found > 1 {
             let columns = layout.columns;
             self.notes.push(format!(
-                "line {number} has {found} words for {columns} columns: not read as their names"
+                "line {number} has {found} words for {columns} columns: it is not read as column \
+                names"
             ));
         }
     }
@@ -325,7 +325,7 @@ mod heading_tests {
         assert_eq!(heading.names, None);
         assert_eq!(
             heading.notes,
-            ["line 2 has 2 words for 3 columns: not read as their names"]
+            ["line 2 has 2 words for 3 columns: it is not read as column names"]
         );
     }
 

@@ -85,7 +85,7 @@ impl Call<'_> {
         let Some(MatrixSize { rows, columns }) = size else {
             return refused(
                 format!(
-                    "{}(…) is read with its numbers of rows and columns only; {REMEDY}",
+                    "{}(…) is supported only with numbers of rows and columns; {REMEDY}",
                     self.name
                 ),
                 self.place,
@@ -168,7 +168,9 @@ fn record(function: &str, names: &[&str], arguments: Vec<Value>) -> Result<Value
         };
         if names.is_empty() && matches!(value, Value::Cell(_)) {
             return Err(
-                "struct(…) of cells is an array of records; write s.name = {…} instead".to_owned(),
+                "struct(…) with cells creates a struct array, which is not supported; write \
+                s.name = {…} instead"
+                    .to_owned(),
             );
         }
         let name = name.texts.concat();

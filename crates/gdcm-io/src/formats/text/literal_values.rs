@@ -70,7 +70,7 @@ impl ValueReader<'_, '_, '_> {
             Some('[') => self.matrix(),
             Some('{') => self.cell_array(place, depth),
             Some('\'' | '"') => Ok(Value::text(self.scanner.quoted(self.budget)?)),
-            Some('@') => refused(format!("functions are not read; {REMEDY}"), place),
+            Some('@') => refused(format!("functions are not supported; {REMEDY}"), place),
             None | Some('\n' | '\r' | ';' | ',') => {
                 refused("a value is missing here; write it", place)
             }
@@ -85,7 +85,7 @@ impl ValueReader<'_, '_, '_> {
         self.scanner.pass_blanks()?;
         match path.as_slice() {
             [] => refused(
-                format!("this is no number, text or matrix; {REMEDY}"),
+                format!("this is not a number, string or matrix; {REMEDY}"),
                 place,
             ),
             [function] if self.scanner.take("(") => self.call(function, place, depth),
@@ -189,7 +189,8 @@ impl ValueReader<'_, '_, '_> {
                 rows += 1;
                 if row != columns {
                     let what = format!(
-                        "row {rows} has {row} columns, the first {columns}; complete the shorter"
+                        "row {rows} has {row} columns, but the first row has {columns}; complete \
+                        the shorter row"
                     );
                     return refused(what, opening);
                 }
@@ -299,7 +300,7 @@ impl ValueReader<'_, '_, '_> {
         }
         if texts.len() < count || is_transposed {
             return refused(
-                "numbers and texts cannot be in the same brackets; write {…} instead of […]",
+                "numbers and strings cannot be mixed in brackets; write {…} instead of […]",
                 opening,
             );
         }
@@ -313,9 +314,12 @@ impl ValueReader<'_, '_, '_> {
         }
         match self.scanner.peek() {
             Some('"') => Ok(Element::Text(self.scanner.quoted(self.budget)?)),
-            Some('\'') => refused("texts in brackets are not joined; write {'A', 'B'}", place),
+            Some('\'') => refused(
+                "strings in brackets are not joined; write {'A', 'B'}",
+                place,
+            ),
             _ => refused(
-                format!("only numbers are read in brackets; {REMEDY}"),
+                format!("only numbers are supported in brackets; {REMEDY}"),
                 place,
             ),
         }
@@ -325,7 +329,7 @@ impl ValueReader<'_, '_, '_> {
     /// the function.
     fn call(&mut self, name: &str, place: Position, depth: usize) -> Result<Value, ValueError> {
         let Some(function) = Function::find(name) else {
-            return refused(format!("{name}(…) is not computed here; {REMEDY}"), place);
+            return refused(format!("{name}(…) is not evaluated; {REMEDY}"), place);
         };
         let mut arguments = Vec::new();
         loop {
@@ -354,8 +358,5 @@ impl ValueReader<'_, '_, '_> {
 
 /// Returns the error for an expression, because this reader evaluates none.
 fn not_computed<T>(place: Position) -> Result<T, ValueError> {
-    refused(
-        format!("expressions are not computed here; {REMEDY}"),
-        place,
-    )
+    refused(format!("expressions are not evaluated; {REMEDY}"), place)
 }

@@ -126,7 +126,7 @@ impl<'t> Reading<'t, '_> {
             [] => self.pass_over(begin, "is not understood"),
             [word] if BLOCKS.contains(word) => {
                 self.open_blocks += 1;
-                self.pass_over(begin, "is not run, and values set in it are not read")
+                self.pass_over(begin, "is not executed, and values set in it are not read")
             }
             [word] if BLOCK_ENDS.contains(word) => {
                 self.open_blocks = self.open_blocks.saturating_sub(1);
@@ -136,9 +136,10 @@ impl<'t> Reading<'t, '_> {
                 let changes_part = self.scanner.changes_part();
                 self.scanner = behind;
                 if !changes_part {
-                    return self.pass_over(begin, "is not run");
+                    return self.pass_over(begin, "is not executed");
                 }
-                let why = "only a part of it is set here; write the whole value in one statement";
+                let why = "only a part of the variable is set here; write the whole value in one \
+                    statement";
                 self.set_unread(&[name], begin.position, why)?;
                 self.scanner.pass_statement(self.budget)
             }
@@ -161,9 +162,9 @@ impl<'t> Reading<'t, '_> {
     fn function_results(&mut self, begin: Beginning) -> Result<(), VariableFault> {
         let line = self.scanner.rest_of_line();
         let Some(names) = assigned_names(line) else {
-            return self.pass_over(begin, "is not run");
+            return self.pass_over(begin, "is not executed");
         };
-        let why = "it is the result of a function, which is not run; write its value";
+        let why = "it is the result of a function, which is not executed; write its value";
         for name in names.split(|c: char| !is_of_word(c)) {
             if begins_word(name) {
                 self.set_unread(&[name], begin.position, why)?;
@@ -191,7 +192,8 @@ impl<'t> Reading<'t, '_> {
     fn assigned_value(&mut self, begin: Position) -> Result<Value, ValueError> {
         if self.open_blocks > 0 {
             return refused(
-                "it is set within a condition or a loop, which is not run; write its value outside",
+                "it is set within a condition or a loop, which is not executed; write its value \
+                outside",
                 begin,
             );
         }
@@ -373,7 +375,7 @@ mod tests {
         assert_eq!(literals.variables.len(), 1);
         assert_eq!(
             literals.notes[0],
-            "line 1 (\"function out = f(x)\") is not run"
+            "line 1 (\"function out = f(x)\") is not executed"
         );
         assert_eq!(literals.notes.len(), 6);
     }
@@ -393,13 +395,13 @@ mod tests {
         assert_eq!(
             reasons,
             [
-                &format!("A line 1, column 5: inv(…) is not computed here; {REMEDY}"),
-                "B line 3, column 5: A could not be read itself",
-                "C line 4, column 11: it is set within a condition or a loop, which is not run; write its value outside",
-                "D line 8, column 1: only a part of it is set here; write the whole value in one statement",
-                "E line 6, column 1: only a part of it is set here; write the whole value in one statement",
-                "F line 7, column 1: it is the result of a function, which is not run; write its value",
-                "G line 7, column 1: it is the result of a function, which is not run; write its value",
+                &format!("A line 1, column 5: inv(…) is not evaluated; {REMEDY}"),
+                "B line 3, column 5: A itself could not be read",
+                "C line 4, column 11: it is set within a condition or a loop, which is not executed; write its value outside",
+                "D line 8, column 1: only a part of the variable is set here; write the whole value in one statement",
+                "E line 6, column 1: only a part of the variable is set here; write the whole value in one statement",
+                "F line 7, column 1: it is the result of a function, which is not executed; write its value",
+                "G line 7, column 1: it is the result of a function, which is not executed; write its value",
                 "H",
             ]
         );
@@ -409,7 +411,7 @@ mod tests {
     fn errors_give_the_place_and_the_remedy() {
         assert_eq!(
             why("A = [1 2; 3];"),
-            "line 1, column 5: row 2 has 1 columns, the first 2; complete the shorter"
+            "line 1, column 5: row 2 has 1 columns, but the first row has 2; complete the shorter row"
         );
         assert_eq!(
             why("\nA = \n"),
@@ -417,20 +419,20 @@ mod tests {
         );
         assert_eq!(
             why("A = @(x) x"),
-            format!("line 1, column 5: functions are not read; {REMEDY}")
+            format!("line 1, column 5: functions are not supported; {REMEDY}")
         );
         assert_eq!(
             why("A = 'open"),
-            "line 1, column 5: a text begins here and has no end; close it with '"
+            "line 1, column 5: the string that begins here is not closed; close it with '"
         );
-        let part = "line 1, column 8: only a part of it is set here; write the whole value in one statement";
+        let part = "line 1, column 8: only a part of the variable is set here; write the whole value in one statement";
         assert_eq!(why("A = 1; A += 2"), part);
         assert_eq!(why("A = 1; A++"), part);
         assert_eq!(
             why("A = x(1)"),
-            format!("line 1, column 5: x(…) is not computed here; {REMEDY}")
+            format!("line 1, column 5: x(…) is not evaluated; {REMEDY}")
         );
-        assert_eq!(why("A = 3x"), "line 1, column 5: \"3x\" is no number");
+        assert_eq!(why("A = 3x"), "line 1, column 5: \"3x\" is not a number");
     }
 
     #[test]

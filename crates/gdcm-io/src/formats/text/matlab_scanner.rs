@@ -5,7 +5,7 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Remedy in messages about unsupported statements.
 pub(super) const REMEDY: &str =
-    "write its numbers, or save the workspace in MATLAB: save -v7 workspace.mat";
+    "write the numbers, or save the workspace in MATLAB: save -v7 workspace.mat";
 /// Maximum nesting depth of values, which are read recursively.
 pub(super) const MOST_NESTED: usize = 64;
 
@@ -231,7 +231,7 @@ impl<'t> Scanner<'t> {
             let end = rest.find([quote, '\n', '\r']);
             let Some(end) = end.filter(|&end| rest[end..].starts_with(quote)) else {
                 return refused(
-                    format!("a text begins here and has no end; close it with {quote}"),
+                    format!("the string that begins here is not closed; close it with {quote}"),
                     opening,
                 );
             };
@@ -269,7 +269,7 @@ impl<'t> Scanner<'t> {
                 is_imaginary,
             })),
             _ => refused(
-                format!("\"{}\" is no number", excerpt(&rest[..end + tail])),
+                format!("\"{}\" is not a number", excerpt(&rest[..end + tail])),
                 place,
             ),
         }

@@ -34,7 +34,7 @@ pub fn read_matrix(
         .find(|(_, line)| cell_number(line, table.decimal_comma).is_some());
     if let Some((line, _)) = single_number {
         let what = format!(
-            "a single number, where other rows have {}; complete the row",
+            "a single number, but other rows have {}; complete the row",
             table.columns.len()
         );
         return Err(VariableFault::line(name, *line, what));
@@ -51,7 +51,7 @@ pub fn read_matrix(
 /// A common factor ("1.0e+03 *") is applied, columns printed in several parts ("Columns 1 through
 /// 6") are joined, and row and column names are skipped.
 pub fn read_matrices(text: &str, budget: &ReadingBudget) -> Result<NamedMatrices, VariableFault> {
-    refuse_binary(text, "matrices under their names")?;
+    refuse_binary(text, "matrices with names")?;
     let mut reading = Reading {
         matrices: Vec::new(),
         notes: Vec::new(),
@@ -144,7 +144,7 @@ impl Reading<'_> {
             return self.column_names(number, line);
         }
         if 2 * numbers >= words {
-            let what = format!("\"{}\" is no row of numbers; correct it", excerpt(line));
+            let what = format!("\"{}\" is not a row of numbers; correct it", excerpt(line));
             return Err(VariableFault::line("", number, what));
         }
         self.notes
@@ -241,7 +241,7 @@ impl Reading<'_> {
             }
             if matrix.scale != 1.0 {
                 self.notes.push(format!(
-                    "{name} is printed with the factor {:e}, and so with few digits",
+                    "{name} is printed with the factor {:e}, and therefore with few digits",
                     matrix.scale
                 ));
             }
@@ -253,7 +253,7 @@ impl Reading<'_> {
         }
         if variables.is_empty() {
             return Err(VariableFault::format(
-                "matrices under their names",
+                "matrices with names",
                 "no name with numbers below it",
             ));
         }
@@ -286,7 +286,7 @@ impl Part {
         match table.skipped.first() {
             Some((line, text)) => {
                 let what = format!(
-                    "\"{}\" is no row like the others; complete it",
+                    "\"{}\" is not a row like the others; complete it",
                     excerpt(text)
                 );
                 Err(VariableFault::line(name, self.line_number(*line), what))
@@ -471,7 +471,7 @@ mod matrix_text_tests {
             .to_string();
         assert_eq!(
             ragged,
-            "variable A: line 1: a single number, where other rows have 2; complete the row"
+            "variable A: line 1: a single number, but other rows have 2; complete the row"
         );
     }
 
@@ -517,7 +517,7 @@ mod matrix_text_tests {
         let message = |text: &str| read(text).unwrap_err().to_string();
         assert!(message("1 2\n").starts_with("line 1: numbers without a name"));
         assert!(message("A =\n1 2\n\n3\n").starts_with("variable A: line 4: "));
-        assert!(message("A =\n1 2\n3 x\n").starts_with("line 3: \"3 x\" is no row of numbers"));
+        assert!(message("A =\n1 2\n3 x\n").starts_with("line 3: \"3 x\" is not a row of numbers"));
         assert_eq!(message("A\n1\nA\n2\n"), "duplicate name \"A\"; rename one");
         assert!(message("A =\n").contains("no name with numbers below it"));
     }

@@ -87,7 +87,8 @@ impl RecognisedResponse {
                 if !number(column).is_finite() {
                     let place = column_place(table, column);
                     let what = format!(
-                        "{place} has no finite number; complete it or empty its other half too"
+                        "{place} has no finite number; complete it, or also empty the other part \
+                        of the complex number"
                     );
                     return Err(VariableFault::line("", line, what));
                 }
@@ -95,7 +96,10 @@ impl RecognisedResponse {
             let (re, im) = self.parts.complex(table, row);
             if !(re.is_finite() && im.is_finite()) {
                 let place = column_place(table, columns[0]);
-                let what = format!("{place} is too large for a magnitude; is it in dB?");
+                let what = format!(
+                    "{place} is too large for a magnitude; if it is in dB, write \
+                    [dB] in the heading"
+                );
                 return Err(VariableFault::line("", line, what));
             }
             points.omega.push(omega);

@@ -117,7 +117,7 @@ impl<'t> Recognition<'t> {
         };
         let reason = match self.table.units.get(column).and_then(Option::as_ref) {
             Some(unit) => format!(", its unit is {unit}"),
-            None => ", and with it the unit".to_owned(),
+            None => ", which implies the unit".to_owned(),
         };
         self.note(column, &format!("the frequency in {unit}"), &reason);
         Ok(FrequencyColumn { column, factor })
@@ -190,8 +190,10 @@ impl<'t> Recognition<'t> {
                 continue;
             }
             let place = column_place(self.table, known.column);
-            self.notes
-                .push(format!("{place} is left out: its other half is missing"));
+            self.notes.push(format!(
+                "{place} is ignored: the matching column is missing (real and \
+                    imaginary part, or magnitude and phase, are both needed)"
+            ));
             self.unused.push(column_name(self.table, known.column));
         }
     }
@@ -222,7 +224,7 @@ impl<'t> Recognition<'t> {
         }
         let is_gamma = unit == Some(KnownUnit::Gamma);
         if is_gamma {
-            reason = ", its unit is γ: squared";
+            reason = ", its unit is γ, so it is squared";
         }
         self.note(column, interpretation, reason);
         CoherenceColumn {
@@ -239,7 +241,7 @@ impl<'t> Recognition<'t> {
             let Some(quantity) = meaning.quantity else {
                 let place = column_place(self.table, column);
                 self.notes
-                    .push(format!("{place} is left out: its name is not known"));
+                    .push(format!("{place} is ignored: its name is not recognised"));
                 self.unused.push(column_name(self.table, column));
                 continue;
             };
@@ -341,7 +343,7 @@ impl<'t> Recognition<'t> {
             magnitude + 1,
             phase + 1
         );
-        let taken = "the real and imaginary parts, which are taken";
+        let taken = "the real and imaginary parts, which are used";
         self.notes.push(match differing {
             None => format!("{columns} agree with {taken}"),
             Some(row) => format!("{columns} differ from {taken} (line {})", table.lines[row]),

@@ -29,7 +29,7 @@ impl Separator {
         match self {
             Separator::Tab => "tabulators",
             Separator::Semicolon => "semicolons",
-            Separator::Pipe => "upright strokes",
+            Separator::Pipe => "vertical bars",
             Separator::Comma => "commas",
             Separator::Blanks => "blanks",
         }

@@ -24,8 +24,9 @@ pub(crate) struct Unrecognised {
 /// Returns the error for a table that is not recognised as a frequency response, with a remedy.
 pub(super) fn unrecognised(found: &str) -> Unrecognised {
     let found = format!(
-        "a table with {found} among its columns; name the content of each column in the first line, by --headings, or under \
-         \"headings\" in the rules: \"omega [rad/s]\", \"mag Q/LON [dB]\", \"phase Q/LON [deg]\""
+        "a table with {found} among its columns; name each column in the first line, with \
+        --headings, or under \"headings\" in the rules: \"omega [rad/s]\", \"mag Q/LON [dB]\", \
+        \"phase Q/LON [deg]\""
     );
     Unrecognised {
         fault: VariableFault::format("a frequency response in columns", found),

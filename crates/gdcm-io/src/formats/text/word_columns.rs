@@ -159,10 +159,12 @@ impl Numbering {
             match column.kind {
                 Kind::Numbers => {}
                 Kind::Clock => notes.push(format!(
-                    "{name} has clock times: read as seconds from the first"
+                    "{name} has times of day, which are read as seconds since the first"
                 )),
                 Kind::Words if column.words.len() > MOST_WORDS => {
-                    notes.push(format!("{name} has words: left out"));
+                    notes.push(format!(
+                        "{name} has too many different words and is ignored"
+                    ));
                 }
                 Kind::Words => notes.push(format!(
                     "{name} has words, which are numbered: {}",

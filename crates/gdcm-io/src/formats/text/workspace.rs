@@ -65,7 +65,10 @@ impl<'t> Workspace<'t> {
             return refused("a name is missing", place);
         };
         let Some(&index) = self.places.get(name) else {
-            return refused(format!("{name} is not known here; write its value"), place);
+            return refused(
+                format!("{name} has not been assigned; write its value"),
+                place,
+            );
         };
         let mut value = &self.variables[index].value;
         for field in fields {
@@ -76,7 +79,7 @@ impl<'t> Workspace<'t> {
         }
         if let Value::Opaque { .. } = value {
             return refused(
-                format!("{} could not be read itself", path.join(".")),
+                format!("{} itself could not be read", path.join(".")),
                 place,
             );
         }
@@ -110,7 +113,10 @@ fn set_field(target: &mut Value, path: &[&str], value: Value) {
         }
         Value::Opaque { .. } => {}
         _ => {
-            let why = format!("a field {name} is set in {words}; use different names");
+            let why = format!(
+                "field {name} is set in {words}, which cannot have fields; use \
+                different names"
+            );
             *target = Value::opaque("a variable with a field", why);
         }
     }

@@ -69,7 +69,8 @@ pub(super) fn refuse_delays(record: &Record<'_>) -> Result<(), String> {
     for field in record.delay_fields() {
         if field.meaning.delayed != Delayed::Unclear && field.is_nonzero() {
             return Err(format!(
-                "{}: a measured response has its delays in it; multiply it by them (in MATLAB: sys = absorbDelay(sys)), or remove the field",
+                "{}: a measured response must contain its delays; include them in it (in MATLAB: \
+                sys = absorbDelay(sys)), or remove the field",
                 field.name
             ));
         }
@@ -246,7 +247,10 @@ impl DelayReading {
                         "MATLAB counts the delays of a discrete-time model in samples, but these are not whole numbers",
                     ));
                 }
-                self.note_convention(name, "counted in samples, as MATLAB does in discrete time");
+                self.note_convention(
+                    name,
+                    "is counted in samples, as in MATLAB for discrete time",
+                );
                 Ok(sample_time_s)
             }
             (DelayUnit::Unknown, Some(_)) => Err(question(
@@ -263,7 +267,11 @@ impl DelayReading {
                         &format!("{} can be seconds or milliseconds", number(greatest)),
                     ));
                 }
-                self.note_convention(name, "taken to be in s, as its name says no unit");
+                self.note_convention(
+                    name,
+                    "is assumed to be in s, because its name contains no \
+                    unit",
+                );
                 Ok(1.0)
             }
         }
@@ -310,7 +318,7 @@ fn store(stored: &mut Option<Vec<f64>>, delays: Vec<f64>, name: &str) -> Result<
             .any(|(known, delay)| (known - delay).abs() > ROUNDING_S);
         if differs {
             return Err(format!(
-                "{name}: these delays are given a second time, with other numbers; remove one"
+                "{name}: these delays are given twice, with different numbers; remove one"
             ));
         }
     }
@@ -362,7 +370,7 @@ fn refuse_other_time_units(record: &Record<'_>) -> Result<(), String> {
     match unit.as_deref() {
         None | Some("" | "s" | "sec" | "second" | "seconds") => Ok(()),
         Some(unit) => Err(format!(
-            "its time is in {unit}; in MATLAB: sys = chgTimeUnit(sys, 'seconds')"
+            "its time unit is {unit}; in MATLAB: sys = chgTimeUnit(sys, 'seconds')"
         )),
     }
 }

@@ -106,7 +106,7 @@ impl<'v> StoredResponse<'v> {
                 im: &im.re,
                 shape: &re.shape,
             }),
-            _ => Err("real and imaginary parts are of different sizes".to_owned()),
+            _ => Err("real and imaginary parts have different dimensions".to_owned()),
         }
     }
 }

@@ -275,7 +275,7 @@ fn delays_are_read_under_every_name_with_known_signals_and_unit() {
     assert!(
         noted
             .iter()
-            .any(|note| note.contains("input_delays taken to be in s")),
+            .any(|note| note.contains("input_delays is assumed to be in s")),
         "{noted:?}"
     );
     assert_eq!(
@@ -321,7 +321,7 @@ fn an_ambiguous_delay_is_refused_with_a_question() {
         ),
         (
             r#""InputDelay": [0.03, 0.05], "input_delays_ms": [30, 40]"#,
-            "a second time",
+            "given twice",
         ),
         (r#""TimeUnit": "milliseconds""#, "chgTimeUnit"),
     ] {
@@ -561,7 +561,7 @@ fn gamma_a_bare_f_and_coherence_of_another_size_are_asked_about_beside_a_respons
     assert!(
         of(r#""w": [1, 2, 3], "InputDelay": 0.03"#)
             .1
-            .contains("has its delays in it")
+            .contains("must contain its delays")
     );
 }
 

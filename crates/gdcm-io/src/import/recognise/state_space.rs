@@ -171,7 +171,7 @@ fn state_space(
     match optional_matrix(record, MatrixName::D, read)? {
         Some(given) if given.len() == 1 && given[0] == 0.0 => {}
         Some(given) => d = given,
-        None => notes.push("the file has no D: taken as zero".to_owned()),
+        None => notes.push("the file has no D: it is assumed to be zero".to_owned()),
     }
     let (a, b) = match optional_matrix(record, MatrixName::E, read)? {
         Some(e) if !e.is_empty() => solve_descriptor(e, a, b)?,
@@ -281,7 +281,7 @@ fn solve_descriptor(
     let n = a.nrows();
     if e.shape() != (n, n) {
         return Err(format!(
-            "E: expected {n} x {n} as A, found {} x {}",
+            "E: expected {n} x {n}, like A, found {} x {}",
             e.nrows(),
             e.ncols()
         ));

@@ -236,7 +236,7 @@ pub(super) fn transfer_function(record: &Record<'_>, variable: &str) -> Result<F
     model.notes.extend(timing.notes);
     model
         .notes
-        .push("transfer functions, each realised by itself".to_owned());
+        .push("transfer functions, each realised separately".to_owned());
     Ok(model)
 }
 

@@ -89,7 +89,9 @@ pub(super) fn page_of(
         columns,
     } = PagedShape::new(array, pages_first);
     if has_imaginary_part(array) {
-        return Err(format!("{name}: expected real numbers, found complex ones"));
+        return Err(format!(
+            "{name}: expected real numbers, found complex numbers"
+        ));
     }
     let is_interleaved = array.shape.len() == 3 && pages_first;
     let start = if is_interleaved {

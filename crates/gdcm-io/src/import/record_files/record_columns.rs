@@ -82,7 +82,7 @@ pub(super) fn array_columns(record: &Record<'_>, variable: &str) -> Option<Colum
     let mut notes = Vec::new();
     if !left_out.is_empty() {
         notes.push(format!(
-            "of another length, left out: {}",
+            "omitted because of another length: {}",
             left_out.join(", ")
         ));
     }

@@ -189,7 +189,10 @@ fn files_in_an_archive_are_records_of_it() {
             ("two.zip", Some("records/sides.mat"))
         ]
     );
-    assert_eq!(found.ignored, ["readme.md: no file of a known kind"]);
+    assert_eq!(
+        found.ignored,
+        ["readme.md: an unsupported format, or an archive in the archive"]
+    );
     found
         .tables
         .iter()

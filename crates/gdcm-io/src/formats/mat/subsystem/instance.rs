@@ -53,7 +53,7 @@ impl<'s> Assembly<'s> {
                 Some(texts) => Value::Text(texts),
                 None => unreadable(
                     class,
-                    "its texts are packed in an unknown way",
+                    "its strings are stored in an unknown form",
                     &path.text(),
                 ),
             });

@@ -121,7 +121,7 @@ impl Subsystem {
             }
             Err(class) => Ok(unreadable(
                 class,
-                "the members of the enumeration are not read",
+                "the members of the enumeration cannot be decoded",
                 &path.text(),
             )),
         }

@@ -178,7 +178,7 @@ fn response_array(
     }
 }
 
-/// Converts a caution to JSON, with the index of its record if it concerns a single record.
+/// Converts a caution to JSON, with the name of its record if it concerns a single record.
 fn caution_text(note: &CautionNote) -> Value {
     let single_record = match note.records.as_slice() {
         [record] => Some(record),

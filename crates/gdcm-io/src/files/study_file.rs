@@ -388,8 +388,8 @@ pub(crate) fn dataset_of_study(path: &Path) -> Option<String> {
     }
 }
 
-/// Opens a study and its dataset, which is searched at the path given in the study, then in the
-/// directory of the study file.
+/// Opens a study and its dataset, which is expected at the path given in the study, otherwise in
+/// the directory of the study file.
 pub fn open_study(path: &Path) -> Result<OpenedStudy, FileError> {
     let budget = ReadingBudget::default();
     study_from(&Source::read(path, &budget)?, path, None, &budget)
@@ -462,7 +462,7 @@ fn load_referenced(
     };
     match load_dataset_within(&path, budget) {
         Ok(loaded) => Ok(loaded),
-        // A stopped reading does not mean that the dataset is missing.
+        // Cancelled reading does not mean that the dataset is missing.
         Err(error) if error.is_stopped() => Err(error),
         Err(error) => Err(FileError::StudyDataset {
             path: study.to_owned(),

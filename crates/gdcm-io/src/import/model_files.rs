@@ -21,7 +21,7 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 /// Key in [`Headings`] for all tables with as many columns as there are headings; any other key is
 /// a file.
 pub const EVERY_TABLE: &str = "*";
-/// Number of lines at the beginning of a text in which a named matrix is searched.
+/// Number of lines at the beginning of a text that are searched for a named matrix.
 const HEADING_LINES: usize = 50;
 /// Maximum number of unused variables listed for each file.
 const MOST_LISTED: usize = 20;
@@ -294,7 +294,7 @@ impl<'h> ModelReading<'h> {
     }
 }
 
-/// Contents of a text file in which models are searched.
+/// Contents of a text file that is searched for models.
 enum TextContents {
     Variables {
         variables: Vec<Variable>,

@@ -158,7 +158,7 @@ fn begin_contents(class: Class, flags: u32, shape: &[usize], name: &str) -> Vec<
     bytes
 }
 
-/// Class, flags and data type as which numbers are written.
+/// Class, flags and data type with which numbers are written.
 #[derive(Clone, Copy)]
 struct NumberForm {
     class: Class,

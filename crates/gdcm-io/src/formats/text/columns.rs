@@ -12,7 +12,7 @@ use crate::formats::text::separator::Separator;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 const EXPECTED: &str = "a table of numbers in columns";
-/// Number of lines before the first row in which a repeated heading is searched.
+/// Number of lines before the first row among which a repeated heading is looked up.
 const COMPARED_HEADINGS: usize = 20;
 
 /// Table of numbers in columns.

@@ -17,7 +17,6 @@ const FORM_TOLERANCE: f64 = 0.01;
 /// 1 result from rounding and noise.
 const LARGEST_COHERENCE: f64 = 1.5;
 
-/// Column of the frequencies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct FrequencyColumn {
     /// Column index, from 0.
@@ -32,7 +31,7 @@ pub(super) struct Recognition<'t> {
     meanings: Vec<ColumnMeaning>,
     /// Notes for the user: each choice with its reason.
     pub(super) notes: Vec<String>,
-    /// Columns whose unit the user must be asked for.
+    /// Columns with a missing unit that the user must state.
     pub(super) unsaid: Vec<UnsaidUnit>,
     /// Names of unused columns.
     pub(super) unused: Vec<String>,
@@ -60,7 +59,7 @@ struct PolarColumns {
 /// Interpretation of a magnitude and a phase column.
 struct PolarReading {
     parts: ResponseParts,
-    /// Those of the two columns whose unit the user must be asked for.
+    /// Those columns of the two whose missing unit the user must state.
     unsaid: Vec<UnsaidUnit>,
 }
 

@@ -326,7 +326,7 @@ fn store(stored: &mut Option<Vec<f64>>, delays: Vec<f64>, name: &str) -> Result<
     Ok(())
 }
 
-/// Adds the delays of channels and the delays split from those of responses; `None` if all are
+/// Adds the delays given for channels and the delays split off from responses; `None` if all are
 /// zero.
 fn sum(own: Option<Vec<f64>>, more: Option<Vec<f64>>) -> Option<Vec<f64>> {
     let delays: Vec<f64> = match (own, more) {

@@ -91,9 +91,9 @@ fn labels(
     Ok(labels)
 }
 
-/// Returns the names or units in the first field with one of these keys, searched in the record and
-/// then in its enclosing records; missing entries are empty strings. Returns `None` if no field has
-/// them.
+/// Returns the names or units in the first field with one of these keys, from the record or
+/// otherwise from its enclosing records; missing entries are empty strings. Returns `None` if no
+/// field has them.
 fn list_of_labels(
     record: &Record<'_>,
     keys: &[&str],

@@ -108,7 +108,8 @@ struct Search<'r, T> {
 }
 
 impl<T> Search<'_, T> {
-    /// Adds what the fields of a record form; returns whether they form anything.
+    /// Adds the models or flight records formed by the fields of a record; returns whether there
+    /// are any.
     fn try_record(&mut self, record: &Record<'_>, variable: &str) -> Result<bool, VariableFault> {
         self.budget
             .work(STEPS * record.fields().count() as u64, variable)?;
@@ -203,8 +204,8 @@ impl<T> Search<'_, T> {
         Ok(is_any_found)
     }
 
-    /// Adds what element `index` of a struct array forms, or what each model in it forms if it is
-    /// an array of models. Returns whether anything was recognised.
+    /// Adds the models or flight records in element `index` of a struct array, which may itself be
+    /// an array of models. Returns whether there are any.
     fn try_pages<'v>(
         &mut self,
         name: &str,

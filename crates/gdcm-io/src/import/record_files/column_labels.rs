@@ -76,7 +76,7 @@ pub(super) struct ColumnLabels {
 }
 
 impl ColumnLabels {
-    /// Finds the labels of a field with `count` columns, searched in lists named after the field
+    /// Finds the labels of a field with `count` columns, first in lists named after the field
     /// (`u_names`), then in lists of all inputs or all outputs, then in lists of the whole record.
     /// Lists with another length are ignored.
     pub(super) fn find(record: &Record<'_>, field: &str, count: usize) -> Self {

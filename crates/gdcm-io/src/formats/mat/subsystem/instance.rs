@@ -14,7 +14,7 @@ use crate::formats::variables::{
 };
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Property that holds the value as which a class saves its objects.
+/// Property that holds the value that a class saves instead of an object.
 const CREATED: &str = "any";
 
 /// Assembles objects, including nested objects.

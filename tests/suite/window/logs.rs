@@ -65,7 +65,7 @@ fn a_log_of_px4_proposes_its_setpoints_and_rates() {
     );
     let notes = made(&mut window, "quadrotor");
     assert!(
-        notes.iter().any(|note| note.contains("signs are PX4's")),
+        notes.iter().any(|note| note.contains("signs follow PX4's")),
         "{notes:?}"
     );
     let units: Vec<&str> = state(&window)

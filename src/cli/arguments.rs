@@ -1,4 +1,4 @@
-//! The command line.
+//! Arguments and commands of the command line.
 
 use std::path::PathBuf;
 

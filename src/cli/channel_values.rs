@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use gdcm_model::assembly::FileScope;
 use gdcm_study::decisions::signs::SignRole;
 
-/// A value that an option declares for a channel.
+/// Value that an option declares for a channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelValue<T> {
     pub channel: String,
@@ -27,7 +27,7 @@ impl<T> ChannelValue<T> {
     }
 }
 
-/// Returns the first channel that is named by more than one declaration.
+/// Returns the first channel that occurs in more than one declaration.
 pub(super) fn first_duplicate<'a, T: 'a>(
     declarations: impl IntoIterator<Item = &'a ChannelValue<T>>,
 ) -> Option<&'a str> {
@@ -38,7 +38,7 @@ pub(super) fn first_duplicate<'a, T: 'a>(
         .find(|channel| !seen.insert(*channel))
 }
 
-/// A channel in a single record.
+/// Channel in a single record, written as "RECORD:CHANNEL".
 pub(super) struct RecordChannel<'a> {
     pub(super) record: &'a str,
     pub(super) channel: &'a str,
@@ -147,12 +147,12 @@ pub(super) fn channel_delay(text: &str) -> Result<ChannelValue<f64>, String> {
     }
 }
 
-/// A value that an option declares for a channel in some of the assembled files.
+/// Value that an option declares for a channel in some of the assembled files.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileValue<T> {
     pub channel: String,
     pub value: T,
-    /// Files to which the value applies; by default those of the identified models.
+    /// Files to which the value applies; by default the files of the identified models.
     pub scope: FileScope,
 }
 
@@ -174,7 +174,7 @@ impl<T> FileValue<T> {
     }
 }
 
-/// Hint about the scope of an option, for its error message.
+/// Explanation of the scope syntax, appended to error messages.
 const SCOPE_HINT: &str =
     ":identified, :physics, :all or : and the file of a model or a pattern of folders may follow";
 

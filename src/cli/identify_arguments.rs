@@ -114,7 +114,7 @@ pub struct IdentifyArguments {
 }
 
 impl IdentifyArguments {
-    /// Returns the references, each with its column if given.
+    /// Returns the recorded references; empty if none are given.
     pub fn references(&self) -> &[SaidChannel] {
         match &self.reference {
             Some(list) => &list.channels,
@@ -122,7 +122,7 @@ impl IdentifyArguments {
         }
     }
 
-    /// Returns the search settings that replace the defaults.
+    /// Returns the search settings given on the command line; they replace the defaults.
     pub fn search(&self) -> SearchSpace {
         SearchSpace {
             orders: self.order.clone(),
@@ -131,7 +131,7 @@ impl IdentifyArguments {
         }
     }
 
-    /// Returns the requested time column or sample time.
+    /// Returns the requested time column or sample rate.
     pub fn time_wish(&self) -> TimeWish {
         TimeWish {
             column: self.time.clone(),
@@ -154,7 +154,7 @@ pub enum OfferedChoice {
 }
 
 impl OfferedChoice {
-    /// Returns the models of the choice.
+    /// Returns the selection of identified models for the dataset.
     pub fn offered(self) -> OfferedModels {
         match self {
             Self::Refined => OfferedModels::REFINED,

@@ -4,7 +4,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 use gdcm_model::units::number;
 
-/// Returns a parser that accepts the names of these values.
+/// Returns a parser that accepts the names of `values`.
 pub(super) fn one_of<T, const N: usize>(
     values: [T; N],
     name: fn(T) -> &'static str,
@@ -73,7 +73,8 @@ pub struct PairName {
     pub input: String,
 }
 
-/// A list of responses. An alias, because the parser takes a plain vector for a repeated option.
+/// A list of responses. The alias is necessary because clap would take a `Vec` for an option that
+/// can be repeated.
 pub type PairList = Vec<PairName>;
 
 /// Parses "P/LAT,Q/LON", or "none".
@@ -142,7 +143,8 @@ pub struct RecordPart {
 }
 
 impl RecordPart {
-    /// Returns the first and last time \[s\] on the time axis of a record that starts at `start_s`.
+    /// Returns the first and last time \[s\] on the record's time axis, whose first sample is at
+    /// `start_s`.
     pub(super) fn on_clock_s(&self, start_s: f64) -> [f64; 2] {
         if self.is_from_start {
             self.part_s.map(|time_s| start_s + time_s)

@@ -1,4 +1,4 @@
-//! `gdcm report`: full report, ready to print.
+//! `gdcm report`: writes a full report, ready to print.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ use super::study_options::{CommandStudy, ErrorBars, StudyAnalysis, analyze_study
 use super::terminal::print;
 use super::text::counted;
 
-/// Analyses, and writes the full report.
+/// Analyses a study and writes the full report.
 pub(super) fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     let CommandStudy {
         study,

@@ -58,7 +58,7 @@ pub(super) fn requested_channels(
     Ok(channels)
 }
 
-/// Returns the declarations that apply to all records, not to a single one.
+/// Returns the declarations without a record name, which apply to all records.
 fn for_all_records<T>(declarations: &[ChannelValue<T>]) -> Vec<&ChannelValue<T>> {
     declarations
         .iter()
@@ -73,7 +73,8 @@ fn listed(list: &Option<ChannelList>) -> &[SaidChannel] {
     }
 }
 
-/// Returns the channels listed on the command line, in the units of the first record.
+/// Returns the channels listed on the command line; channels without a unit take the unit of the
+/// first record.
 fn named_channels(arguments: &IdentifyArguments) -> RecordChannels {
     let inputs = listed(&arguments.inputs).iter();
     let outputs = listed(&arguments.outputs).iter();
@@ -99,7 +100,7 @@ fn channels_of_dataset(
     Ok(channels)
 }
 
-/// Sets the column of a channel of the dataset; rejects a unit other than the dataset's.
+/// Sets the column of a channel of the dataset; rejects a unit that differs from the dataset's.
 fn set_column(
     option: &'static str,
     channel: &SaidChannel,
@@ -131,7 +132,8 @@ fn set_column(
     Ok(())
 }
 
-/// Adds the reference channels after the model's inputs, because both are read in the same way.
+/// Adds the reference channels to the inputs, after those of the model, because both are read in
+/// the same way.
 fn add_references(
     arguments: &IdentifyArguments,
     channels: &mut RecordChannels,
@@ -170,7 +172,7 @@ fn set_locations(
     Ok(())
 }
 
-/// Rejects a channel of `--held` that is not an input.
+/// Rejects names given by `--held` that are not inputs.
 fn check_held(arguments: &IdentifyArguments, channels: &RecordChannels) -> Result<(), Failure> {
     for held in &arguments.held {
         if channels.inputs.iter().all(|rule| rule.name != *held) {
@@ -217,7 +219,7 @@ fn without_delays(rules: &[ChannelRule], delays: &[&ChannelValue<f64>]) -> Vec<C
     prepared
 }
 
-/// Returns whether a channel with this name exists.
+/// Returns whether an input or output has this name.
 pub(super) fn has_channel(channels: &RecordChannels, name: &str) -> bool {
     let mut rules = channels.inputs.iter().chain(&channels.outputs);
     rules.any(|rule| rule.name == name)
@@ -229,7 +231,7 @@ pub(super) fn unknown_channel(option: &'static str, channel: &str) -> Failure {
     Failure::coded_option(option, "unknown-channel", reason)
 }
 
-/// Applies the declarations of an option to the channels; rejects duplicates.
+/// Applies the declarations of an option to the channels; rejects unknown channels and duplicates.
 pub(super) fn declare_conversions<'a, T: Clone + 'a>(
     option: &'static str,
     declarations: impl IntoIterator<Item = &'a ChannelValue<T>>,

@@ -1,4 +1,4 @@
-//! serde_json errors in the words of engineers.
+//! Translates serde_json errors into terms familiar to engineers.
 
 use std::path::Path;
 
@@ -18,7 +18,8 @@ struct Position {
     column: usize,
 }
 
-/// Translates a serde_json error at a place in a file.
+/// Translates a serde_json error into a file error; `place` is the part of the file in which it
+/// occurred.
 pub(super) fn json_error(
     text: &[u8],
     path: &Path,
@@ -48,7 +49,7 @@ pub(super) fn json_error(
     }
 }
 
-/// Translates an error in the JSON itself.
+/// Translates a syntax error, a number outside the range of JSON, or nesting that is too deep.
 fn syntax_error(
     text: &[u8],
     path: &Path,
@@ -71,8 +72,8 @@ fn syntax_error(
         };
         return FileError::content(path, ContentError::new(place, fault));
     }
-    // serde_json also reports a syntax error in valid JSON if a value is not a text where one of
-    // several words is expected.
+    // serde_json also reports a syntax error in valid JSON if a value is not a string where an
+    // enumeration is expected.
     if is_json_so_far(text) {
         let fault = ContentFault::Type {
             expected: "a text in quotation marks".to_owned(),
@@ -99,7 +100,7 @@ fn is_json_so_far(text: &[u8]) -> bool {
     }
 }
 
-/// Translates serde_json's syntax errors that mention its internals.
+/// Rewords serde_json's syntax errors that mention its internals.
 fn syntax_words(reason: &str) -> String {
     match reason {
         "expected ident" => "a word that JSON does not know".to_owned(),
@@ -149,10 +150,10 @@ fn data_fault(reason: &str, position: Position) -> ContentFault {
     }
 }
 
-/// Text that begins serde errors about the length of a list.
+/// Start of serde's messages about the length of a list.
 const INVALID_LENGTH: &str = "invalid length ";
 
-/// Returns the text between a beginning and an end.
+/// Returns the text between the prefix `start` and the suffix `end`; `None` if either is missing.
 fn text_between(text: &str, start: &str, end: &str) -> Option<String> {
     let inner = text.strip_prefix(start)?.strip_suffix(end)?;
     Some(inner.to_owned())
@@ -164,7 +165,7 @@ fn found_words(found: &str, is_length: bool) -> String {
         return format!("{found} entries");
     }
     let unquoted = found.replace('`', "");
-    // serde writes all digits.
+    // Shorten the number: serde writes all its digits.
     if let Some(Ok(value)) = unquoted.strip_prefix("floating point ").map(str::parse) {
         return number(value);
     }

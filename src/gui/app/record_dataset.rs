@@ -15,15 +15,15 @@ use crate::gui::commands::records::RecordsCommand;
 use crate::gui::state::forms::FormKind;
 use crate::gui::state::wanted_dataset::WantedDataset;
 
-/// Maximum number of reported problems.
+/// Maximum number of problems reported individually.
 const MOST_PROBLEMS: usize = 6;
 
-/// Sources and settings for a dataset to be made from records.
+/// Sources and settings of a dataset that is to be made from records.
 struct DatasetRequest {
     sources: Vec<PathBuf>,
     channels: RecordChannels,
     band: Band,
-    /// Path to the dataset's file.
+    /// Path of the dataset file to be written.
     path: PathBuf,
 }
 
@@ -42,7 +42,8 @@ impl GdcmApp {
             .filter(|made| self.files.loaded.path() == Some(&made.path))
     }
 
-    /// Asks for the channels of a new dataset, with a proposal based on the displayed record.
+    /// Opens the form for the channels of a new dataset, with a proposal based on the displayed
+    /// record.
     pub(super) fn ask_record_dataset(&mut self) {
         let condition = self.state.condition().id();
         let Some(records) = self.state.records.conditions.get(&condition) else {
@@ -159,7 +160,7 @@ impl DatasetRequest {
     }
 }
 
-/// Returns the file name up to its first dot.
+/// Returns the file name up to the first dot.
 fn dataset_name(path: &Path) -> String {
     let Some(name) = path.file_name() else {
         return String::new();

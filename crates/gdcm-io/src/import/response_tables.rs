@@ -16,7 +16,7 @@ use crate::reading_budget::VariableFault;
 /// Frequency responses found in a table.
 pub(super) struct TableModels {
     pub(super) found: Found<FoundModel>,
-    /// Units to be stated before the table can be read as a frequency response.
+    /// Units that the user must state before the table can be read as frequency responses.
     pub(super) unsaid: Vec<UnsaidUnit>,
 }
 

@@ -1,5 +1,5 @@
-//! Sections on the benefit of the scheduled correction, the uncertainty of the results (M13), and
-//! the meaning, benefit and cost of couplings in the physics models (M16).
+//! Report sections on the benefit of the scheduled correction, on the uncertainty of the results
+//! (M13), and on the meaning, benefit and cost of couplings in the physics models (M16).
 
 use std::sync::Arc;
 
@@ -33,7 +33,7 @@ use gdcm_words::uncertainty::{
 use super::Unobtrusive;
 use super::page::{CONDITIONS_DRAWN, PAIRS_DRAWN, Page};
 
-/// Returns the analysis with confidence intervals.
+/// Returns the analysis with confidence intervals, which are computed if missing.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `progress` requests it.
@@ -52,7 +52,7 @@ pub(super) fn with_bars(
     })
 }
 
-/// Adds the section on the uncertainty, if confidence intervals are available.
+/// Adds the section on uncertainty; nothing if confidence intervals are not available.
 pub(super) fn add_uncertainty(page: &mut Page, analysis: &Analysis) {
     let Some(uncertainty) = &analysis.uncertainty else {
         return;
@@ -101,7 +101,7 @@ const IN_A_FIGURE: usize = 12;
 /// Maximum number of conditions side by side in a table that fits on a page.
 const CONDITIONS: usize = 12;
 
-/// Adds the section on the assessment.
+/// Adds the section on the change of J due to the scheduled correction.
 pub(super) fn add_assessment(page: &mut Page, analysis: &Analysis) {
     page.section("Assessment");
     let choice = usual_choice(analysis);
@@ -271,7 +271,8 @@ fn parts_table(analysis: &Analysis, assessment: &AssessmentTable, pairs: &[Pair]
 /// Maximum number of matrix columns that fit on a page.
 const MATRIX_COLUMNS: usize = 8;
 
-/// Returns the analysis with its couplings assessed, if it has any.
+/// Returns the analysis with the assessment of its couplings, which is computed if missing;
+/// unchanged if no couplings were fitted.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `progress` requests it.

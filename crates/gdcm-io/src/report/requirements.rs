@@ -1,4 +1,5 @@
-//! Section on the qualification requirements (M17), with the same values as `gdcm requirements`.
+//! Report section on the qualification requirements (M17), with the same values as `gdcm
+//! requirements`.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +20,7 @@ use super::{ReportSubject, Unobtrusive};
 /// Maximum number of columns in a table that fits on a page.
 const COLUMNS: usize = 9;
 
-/// Adds the section on the requirements, with the responses to flight records if available.
+/// Adds the section on the requirements, with time histories if flight records are available.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `progress` requests it.
@@ -68,8 +69,8 @@ pub(super) fn add_requirements(
     Ok(())
 }
 
-/// Adds bandwidth and phase delay of the responses in which either is defined, and the reasons why
-/// the others have none.
+/// Adds bandwidth and phase delay of the responses for which either is defined, and the reasons why
+/// the other responses have none.
 fn add_bandwidth(page: &mut Page, requirements: &Requirements, study: &Study) {
     let dataset = &study.dataset;
     page.subsection("Bandwidth and phase delay");
@@ -121,7 +122,8 @@ fn add_modes(page: &mut Page, requirements: &Requirements) {
     }
 }
 
-/// Adds the comparison of time histories with tolerances, and the records that are not compared.
+/// Adds the comparison of time histories with the tolerances, and a list of the records that are
+/// not compared.
 fn add_histories(page: &mut Page, histories: &TimeHistories) {
     page.subsection("Time histories");
     let source = match histories.tolerance_table.source() {
@@ -147,7 +149,7 @@ fn add_histories(page: &mut Page, histories: &TimeHistories) {
     page.list(remarks.lines());
 }
 
-/// Tabulates the requested tolerances.
+/// Tabulates the tolerances set by the user.
 fn tolerance_table(histories: &TimeHistories) -> Table {
     let mut table = Table::new(
         "Tolerances",
@@ -175,7 +177,8 @@ fn tolerance_table(histories: &TimeHistories) -> Table {
     table
 }
 
-/// Distinct remarks, each with the conditions to which it applies.
+/// Distinct remarks, each with the conditions to which it applies; no conditions if it applies to
+/// all.
 #[derive(Default)]
 struct ConditionRemarks {
     conditions_by_words: BTreeMap<String, Vec<ConditionId>>,

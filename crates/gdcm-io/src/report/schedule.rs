@@ -1,4 +1,5 @@
-//! Section on the channels over the conditions, and on the gains scheduled with airspeed.
+//! Report section on the gains and delays of the channels in each condition, and on the gains
+//! scheduled with airspeed.
 
 use gdcm_method::correction::{Channel, ChannelCorrection};
 use gdcm_method::schedule::Schedule;
@@ -22,7 +23,7 @@ const PAIRS_IN_A_FIGURE: usize = 10;
 /// Maximum number of value columns in a table that fits on a page.
 const COLUMNS: usize = 10;
 
-/// Adds the section on the schedule.
+/// Adds the section on channels and schedule.
 pub(super) fn add_schedule(page: &mut Page, analysis: &Analysis) {
     page.section("Channels and schedule");
     page.subsection("Channels over the conditions");
@@ -43,7 +44,8 @@ pub(super) fn add_schedule(page: &mut Page, analysis: &Analysis) {
     }
 }
 
-/// Adds figures of the channels; `axes` are the drawn quantity and the horizontal axis.
+/// Adds figures of the channels; `axes` are the plotted quantity and the quantity on the horizontal
+/// axis.
 fn add_channels(
     page: &mut Page,
     analysis: &Analysis,
@@ -59,7 +61,7 @@ fn add_channels(
     }
 }
 
-/// Adds the schedule over airspeed.
+/// Adds the results that depend on airspeed: facts, remarks, coefficients, gains and figures.
 fn add_airspeed(page: &mut Page, analysis: &Analysis, schedule: &Schedule, channels: &[Channel]) {
     add_schedule_facts(page, analysis, schedule);
     add_schedule_remarks(page, analysis, schedule);
@@ -126,7 +128,7 @@ fn add_schedule_remarks(page: &mut Page, analysis: &Analysis, schedule: &Schedul
     page.list(lines);
 }
 
-/// Returns the conditions that are not in the schedule.
+/// Returns the ids of the conditions that the schedule omits.
 fn not_scheduled(analysis: &Analysis) -> Vec<String> {
     let scheduled: Vec<ConditionId> = analysis.scheduled();
     let mut names = Vec::new();
@@ -138,7 +140,8 @@ fn not_scheduled(analysis: &Analysis) -> Vec<String> {
     names
 }
 
-/// Returns the responses that measure a model, and the constrained responses.
+/// Returns the responses in the objective (on-axis; all if none is on-axis) and the constrained
+/// responses, at most [`PAIRS_DRAWN`].
 fn shown_pairs(study: &Study) -> Vec<Pair> {
     let measuring = study.dataset.measuring_pairs();
     let shown = measuring.map(|pair, measures| *measures || study.settings.constrained[pair]);
@@ -208,7 +211,7 @@ fn channel_name(dataset: &Dataset, channel: Channel) -> String {
     channel.name(&inputs, &outputs)
 }
 
-/// Column of a table over airspeed: its name, and the function that writes its cell.
+/// Column of a table over airspeed: its name and the function that formats a cell.
 struct AirspeedColumn {
     name: String,
     cell: Box<dyn Fn(&ChannelCorrection) -> String>,

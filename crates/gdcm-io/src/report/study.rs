@@ -1,4 +1,4 @@
-//! Sections on the study as a whole: its results, settings and sources, and the excluded models.
+//! Report sections on the study as a whole: results, settings, sources, and excluded models.
 
 use std::collections::BTreeMap;
 
@@ -23,7 +23,7 @@ use super::conditions::proof_word;
 use super::page::{NAMES_SHOWN, Page, names};
 use super::{PROGRAM, ReportSource};
 
-/// Adds a summary.
+/// Adds the summary of the results.
 pub(super) fn add_summary(page: &mut Page, analysis: &Analysis) {
     page.section("Summary");
     let conditions = analysis.study.dataset.conditions();
@@ -51,7 +51,7 @@ pub(super) fn add_summary(page: &mut Page, analysis: &Analysis) {
     page.table(&condition_table(analysis));
 }
 
-/// Describes the benefit of the schedule to the nominal models in a sentence.
+/// Returns a sentence on the change of J of the nominal models due to the schedule.
 pub fn assessment_sentence(analysis: &Analysis) -> String {
     let dataset = &analysis.study.dataset;
     let measuring = dataset.measuring_pairs();
@@ -76,7 +76,7 @@ pub fn assessment_sentence(analysis: &Analysis) -> String {
     )
 }
 
-/// Mark of a missing value in tables.
+/// Placeholder for a missing value in tables.
 const MISSING: &str = "–";
 
 fn condition_table(analysis: &Analysis) -> Table {
@@ -131,7 +131,7 @@ fn kept_words(study: &Study, condition: &Condition, kind: BundleKind) -> String 
     format!("{kept} of {}", models.len())
 }
 
-/// Returns how many constrained responses are matched: "4 of 5".
+/// Returns how many of the constrained responses satisfy their constraint: "4 of 5".
 fn matched_words(result: &ConditionAnalysis, unmatched: usize) -> String {
     let held = result.held().marked().count();
     format!("{} of {held}", held.saturating_sub(unmatched))
@@ -170,7 +170,7 @@ pub(super) fn add_settings(page: &mut Page, study: &Study) {
     );
 }
 
-/// Lists the marked responses.
+/// Lists the marked responses by name.
 fn pair_names(dataset: &Dataset, marked: &PairTable<bool>) -> String {
     let pairs: Vec<String> = marked
         .marked()
@@ -183,7 +183,7 @@ fn pair_names(dataset: &Dataset, marked: &PairTable<bool>) -> String {
     }
 }
 
-/// Describes the form of a schedule.
+/// Describes the kind, degree and variables of a schedule.
 pub(super) fn schedule_words(settings: &ScheduleSettings) -> String {
     let kind = match settings.kind {
         ScheduleKind::Polynomial { degree } => format!("polynomial of degree {degree} in airspeed"),
@@ -205,7 +205,7 @@ pub(super) fn schedule_words(settings: &ScheduleSettings) -> String {
     )
 }
 
-/// Adds the section on the study's files.
+/// Adds the section on the files of the study and the dataset.
 pub(super) fn add_files(page: &mut Page, study: &Study, source: &ReportSource) {
     page.section("Provenance");
     let dataset = &study.dataset;
@@ -279,7 +279,7 @@ pub(super) fn add_models(page: &mut Page, study: &Study) {
     }
 }
 
-/// Returns file, hash, variable (or records), date and note of a model's source.
+/// Returns the table cells of a model's source: file, hash, variable (or records), date and note.
 fn source_cells(source: &Provenance) -> [String; 5] {
     let Provenance {
         file,
@@ -336,7 +336,8 @@ fn rejected_table(analysis: &Analysis) -> Table {
     table
 }
 
-/// Adds a row for each rejected model. Of many models without a reason, the last are only counted.
+/// Adds a row for each rejected model. Of the models rejected without a reason, only the first
+/// [`NAMES_SHOWN`] are listed; the others are counted.
 fn rejected_rows(analysis: &Analysis, condition: &Condition, kind: BundleKind, table: &mut Table) {
     let study = &analysis.study;
     let result = analysis.condition(condition.id());

@@ -52,7 +52,7 @@ pub(super) fn text_columns(
     }
 }
 
-/// Whether a fault is in the text itself rather than an exceeded limit.
+/// Whether a fault is in the text itself, rather than an exceeded limit of the budget.
 fn is_of_the_text(fault: &VariableFault) -> bool {
     matches!(
         fault,

@@ -1,4 +1,4 @@
-//! Datasets that are refused for what they say.
+//! Dataset files rejected because of their content.
 
 use super::*;
 

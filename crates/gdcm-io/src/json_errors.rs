@@ -113,7 +113,8 @@ fn syntax_words(reason: &str) -> String {
     }
 }
 
-/// Translates an error about a value with the wrong type.
+/// Translates an error about a missing, unknown or duplicate key, or about a value with the wrong
+/// type.
 fn data_fault(reason: &str, position: Position) -> ContentFault {
     let Position { line, column } = position;
     if let Some(key) = text_between(reason, "missing field `", "`") {

@@ -195,7 +195,7 @@ impl<T, const MOST: usize> Limited<T, MOST> {
         }
     }
 
-    /// Returns the entries in an optional list.
+    /// Returns the entries of a list; empty if there is no list.
     pub(super) fn entries(list: Option<Self>) -> Vec<T> {
         list.map(|list| list.0).unwrap_or_default()
     }

@@ -14,9 +14,9 @@ use crate::reading_budget::ReadingBudget;
 /// A step on the path from the top level of a JSON text to a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Step {
-    /// Into an object, to this key.
+    /// To the value under this key of an object.
     Key(String),
-    /// Into a list, to this entry, counted from 0.
+    /// To the entry of a list with this index, counted from 0.
     Entry(usize),
 }
 
@@ -51,7 +51,7 @@ pub(super) fn location_of(steps: &[Step], outline: &Outline) -> Location {
     location
 }
 
-/// Returns the bundle under a key in a condition.
+/// Returns the kind of bundle that a condition stores under a key; `None` for other keys.
 fn bundle_with_key(key: &str) -> Option<BundleKind> {
     match key {
         PHYSICS_MODELS => Some(BundleKind::Physics),
@@ -60,7 +60,7 @@ fn bundle_with_key(key: &str) -> Option<BundleKind> {
     }
 }
 
-/// Returns the key for a bundle in a condition.
+/// Returns the key under which a condition stores a bundle.
 fn bundle_key(bundle: BundleKind) -> &'static str {
     match bundle {
         BundleKind::Physics => PHYSICS_MODELS,
@@ -130,11 +130,10 @@ pub(super) struct Outline {
     pub(super) version: Option<String>,
     /// Condition ids, by condition index.
     ids: BTreeMap<usize, i64>,
-    /// Model names.
     names: BTreeMap<ModelIndex, String>,
 }
 
-/// Place of a model in a file.
+/// Position of a model in a file.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct ModelIndex {
     condition: usize,
@@ -370,7 +369,7 @@ impl UnknownKey {
     }
 }
 
-/// Appends the steps on a path, from the top.
+/// Appends the steps of a path, from the top level on.
 fn collect_steps(path: &serde_ignored::Path<'_>, steps: &mut Vec<Step>) {
     use serde_ignored::Path as Ignored;
     let (parent, step) = match path {

@@ -1,4 +1,4 @@
-//! Files that are written whole, or not at all; individually or as a set.
+//! Files that are written completely or not at all, individually or as a set.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -22,7 +22,7 @@ pub enum Existing {
     Replace,
 }
 
-/// A set of files that are put in their places together, or not at all.
+/// A set of files that are renamed to their paths together, or not at all.
 ///
 /// ```text
 /// check    reject paths that must not be written to      (before any work)
@@ -214,7 +214,7 @@ fn is_same_file(path: &Path, input: &Path) -> bool {
     kind_of(found.file_type()).is_none() && same_file::is_same_file(path, input).unwrap_or(false)
 }
 
-/// Returns the checksum line for a file.
+/// Returns the line about a file in the format of `sha256sum`.
 fn checksum(name: &str, bytes: &[u8]) -> String {
     format!("{:x}  {name}\n", Sha256::digest(bytes))
 }

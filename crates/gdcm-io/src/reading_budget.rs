@@ -76,7 +76,7 @@ pub enum VariableFault {
     /// Values are nested more deeply than the limit, or in a cycle.
     #[error("{}values are nested too deeply, or contain themselves", at(variable))]
     TooDeep { variable: String },
-    /// Duplicate name.
+    /// A name that must be unique occurs more than once.
     #[error("duplicate name \"{name}\"; rename one")]
     Duplicate { name: String },
     /// The reader was cancelled.

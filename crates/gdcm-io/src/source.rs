@@ -20,7 +20,7 @@ pub(super) const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
 /// UTF-8 byte order mark, which some editors write at the beginning of a text.
 const BYTE_ORDER_MARK: [u8; 3] = [0xef, 0xbb, 0xbf];
 
-/// Number of bytes read, decompressed or hashed between two queries to the budget.
+/// Number of bytes read, decompressed or hashed between two queries of the budget.
 const CHUNK: usize = 1 << 16;
 
 /// Text of a file and hash of its bytes.
@@ -283,7 +283,7 @@ mod source_tests {
 
     #[test]
     fn the_hash_agrees_with_the_published_example() {
-        // FIPS 180-2, appendix B.1.
+        // Source of the example: FIPS 180-2, appendix B.1.
         let hash = sha256(b"abc", Path::new("x"), &ReadingBudget::new(0)).unwrap();
         assert_eq!(
             hash,

@@ -27,7 +27,7 @@ pub(super) struct AnalysisJob {
     pub(super) study: Study,
     /// The displayed condition, whose result and curves are computed first.
     pub(super) condition: ConditionId,
-    /// Problems proven since the last analysis.
+    /// Optimality proofs found since the last analysis.
     pub(super) proofs: Vec<Proof>,
     /// Channel to the window, which receives the result of the displayed condition before the
     /// results of the other conditions.

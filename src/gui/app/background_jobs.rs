@@ -316,7 +316,7 @@ fn toggles_job(state: &State) -> Option<TogglesJob> {
     Some(TogglesJob { condition })
 }
 
-/// Returns the unproven problems, the displayed condition first.
+/// Returns the jobs that prove the unproven problems, the displayed condition first.
 fn proof_jobs(state: &State) -> Vec<ProofJob> {
     let Some(analysis) = state.analysis() else {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! Questions that wait for an answer.
+//! Dialogs and questions that wait for the engineer's answer.
 
 use gdcm_io::{Existing, Opened};
 

@@ -79,8 +79,8 @@ pub(super) struct Waker {
 }
 
 impl Waker {
-    /// Lets the free threads look for waiting jobs. The caller holds no lane's lock, because a
-    /// thread locks the schedule first and a lane second.
+    /// Lets the free threads look for waiting jobs. The caller must not hold the lock of a lane: a
+    /// thread locks the schedule first and then a lane, so there would be a deadlock.
     pub(super) fn wake(&self) {
         self.schedule.change(|_| ());
     }

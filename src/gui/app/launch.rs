@@ -252,8 +252,8 @@ fn run(
         .with_app_id(APP_ID)
         .with_inner_size([1440.0, 900.0])
         .with_min_inner_size([900.0, 560.0]);
-    // There are no colour gradients to smooth, and without a graphics processor dithering would
-    // cost time for every pixel.
+    // Dithering is off: there are no colour gradients to smooth, and without a graphics processor
+    // it would cost time for every pixel.
     let options = NativeOptions {
         viewport,
         dithering: false,

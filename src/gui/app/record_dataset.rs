@@ -27,7 +27,7 @@ struct DatasetRequest {
     path: PathBuf,
 }
 
-/// A dataset with its origin.
+/// A dataset made from records, with its origin.
 struct MadeDataset {
     dataset: Dataset,
     origin: DatasetOfRecords,

@@ -405,7 +405,7 @@ fn add_models(page: &mut Page, study: &Study, result: &ConditionAnalysis, kind: 
     }
 }
 
-/// Returns whether a model is kept, in a word.
+/// Describes in a word whether a model is kept.
 fn kept_word(
     study: &Study,
     result: &ConditionAnalysis,

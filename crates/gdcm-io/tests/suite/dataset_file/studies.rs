@@ -1,4 +1,4 @@
-//! Study files.
+//! Writing and reading of study files.
 
 use std::fs;
 use std::path::{Path, PathBuf};

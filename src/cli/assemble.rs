@@ -145,7 +145,7 @@ fn check_declared_once(arguments: &AssembleArguments) -> Result<(), Failure> {
 }
 
 fn converted_already(option: &'static str, channel: &str, scope: &FileScope) -> Failure {
-    let reason = format!("{channel} of {scope} has a unit or a factor already");
+    let reason = format!("{channel} of {scope} already has a unit or a factor");
     Failure::coded_option(option, "given-twice", reason)
 }
 
@@ -224,7 +224,7 @@ fn check_declared<T>(
         && !models.iter().any(|model| scope.holds(model, None))
     {
         let reason = format!(
-            "{channel}: no model is in \"{pattern}\"; models are named as in the last column, file"
+            "{channel}: no model matches \"{pattern}\"; use the names in the last column (file)"
         );
         return Err(Failure::coded_option(option, "unknown-model", reason));
     }

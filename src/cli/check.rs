@@ -112,7 +112,7 @@ fn on_axis_words(dataset: &Dataset) -> String {
         .map(|pair| sanitized(&dataset.pair_name(pair)))
         .collect();
     if pairs.is_empty() {
-        "none given: every response counts".to_owned()
+        "none marked: all responses enter the objective".to_owned()
     } else {
         pairs.join(", ")
     }

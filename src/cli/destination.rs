@@ -83,7 +83,7 @@ impl Destination {
             match group {
                 Some(group) => group.records.push(record),
                 None => caution(&format!(
-                    "{}: left out: its name gives no condition of the dataset",
+                    "{}: left out, because its name gives no condition of the dataset",
                     record.table.name
                 )),
             }
@@ -95,14 +95,15 @@ impl Destination {
             .collect();
         if !without.is_empty() {
             note(&format!(
-                "{}: no records; the identified models there stay unchanged",
+                "{}: no records; its identified models remain unchanged",
                 listed_conditions(&without)
             ));
         }
         groups.retain(|group| !group.records.is_empty());
         if groups.is_empty() {
             let reason = format!(
-                "no name gives a condition of the dataset ({}), as cond03 does",
+                "no record name gives a condition of the dataset ({}); a name with cond03 gives \
+                condition 3",
                 condition_ids(&self.dataset)
             );
             return Err(Failure::coded_option(
@@ -124,7 +125,7 @@ impl Destination {
             models
                 .put_into(&self.dataset, condition)
                 .map_err(|error| Failure::NoModels {
-                    reason: format!("the dataset cannot hold the models: {error}"),
+                    reason: format!("the models cannot be added to the dataset: {error}"),
                 })?;
         self.dataset = Arc::new(dataset);
         Ok(())

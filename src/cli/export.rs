@@ -98,7 +98,7 @@ fn check_options(arguments: &ExportArguments) -> Result<(), Failure> {
             .filter(|exporter| exporter.options.contains(&option))
             .map(|exporter| exporter.name)
             .collect();
-        let reason = format!("is an option of --as {}", names.join(" and "));
+        let reason = format!("applies only to --as {}", names.join(" and "));
         return Err(Failure::coded_option(option, "misplaced-option", reason));
     }
     Ok(())

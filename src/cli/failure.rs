@@ -27,7 +27,7 @@ pub(super) enum Failure {
     #[error("{found}: no such command or file; did you mean gdcm {suggestion}?")]
     UnknownCommand { found: String, suggestion: String },
     /// The dataset has changed since the study was saved, and `--strict` was given.
-    #[error("{path}: {} from the dataset of the study, refused by --strict", counted(*count, "difference"))]
+    #[error("{path}: {} from the dataset of the study, not accepted with --strict", counted(*count, "difference"))]
     Different { path: String, count: usize },
     /// Several faults in a dataset, each of which has already been reported.
     #[error("{path}: {count} faults; correct them and check the file again")]
@@ -53,7 +53,7 @@ pub(super) enum Failure {
     #[error("{paths}: no usable {noun}")]
     Nothing { paths: String, noun: &'static str },
     /// Some of the requested records could not be read completely; the others were used.
-    #[error("{paths}: not read, or only in part; the results are without the rest")]
+    #[error("{paths}: not read, or read only in part; the results do not include the missing data")]
     Unread { paths: String },
     /// Identification was completed, but the records identify no input.
     #[error("no input is identified by these records; the models do not describe {inputs}")]
@@ -112,7 +112,7 @@ impl Failure {
 
     /// Returns the failure for an option that names an unknown record.
     pub(super) fn unknown_record(option: &'static str, record: &str) -> Self {
-        let reason = format!("\"{record}\" is none of the records");
+        let reason = format!("no record is called \"{record}\"");
         Self::coded_option(option, "unknown-record", reason)
     }
 

@@ -86,7 +86,7 @@ fn assessed_couplings(
             reason: why.words(&study.dataset.names_of_channels().0),
         }),
         None => Err(Failure::NoResult {
-            reason: "no couplings".to_owned(),
+            reason: "there are no couplings to assess".to_owned(),
         }),
     }
 }

@@ -163,7 +163,7 @@ impl RecordLayouts<'_> {
             let (record, mut notes) = self.lay_out(table, channels);
             let name = &record.table.name;
             if is_empty_part(&record) {
-                note(&format!("{name}: no samples at these times"));
+                note(&format!("{name}: no samples in the requested part"));
                 continue;
             }
             if is_log(&record.table) {
@@ -292,7 +292,7 @@ pub(super) fn hold_out(
         }
         if !is_found {
             let reason =
-                format!("\"{name}\" is none of the records; name its file as a record too");
+                format!("no record is called \"{name}\"; give its file among the records too");
             return Err(Failure::coded_option(
                 "--hold-out",
                 "unknown-record",

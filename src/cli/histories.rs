@@ -157,7 +157,7 @@ fn report_record(laid_out: &ConditionRecord) {
     let name = &record.table.name;
     if laid_out.condition.is_none() {
         caution(&format!(
-            "{name}: left out: its name gives no condition of the dataset"
+            "{name}: left out, because its name gives no condition of the dataset"
         ));
         return;
     }
@@ -168,7 +168,9 @@ fn report_record(laid_out: &ConditionRecord) {
         caution(&format!("{name}: left out: {words}"));
     }
     if !record.used {
-        note(&format!("{name}: left out: the dataset excludes it"));
+        note(&format!(
+            "{name}: left out, because the dataset excludes it"
+        ));
     }
 }
 

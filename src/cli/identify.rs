@@ -385,7 +385,7 @@ impl Identifications<'_> {
         }
         if self.count == 0 {
             return Err(Failure::NoModels {
-                reason: format!("in none of {task_count} conditions"),
+                reason: format!("all {task_count} conditions failed"),
             });
         }
         if let Some(destination) = &self.destination {

@@ -213,8 +213,9 @@ fn open(file: &Path, arguments: &OpeningArguments) -> Result<Opened, Failure> {
 fn example(directory: &Path, existing: Existing) -> Result<(), Failure> {
     let path = write_example(directory, existing)?;
     print(&format!(
-        "{}: the example dataset (synthetic data)\nits flight records, example-records.zip, are in the folder assets of the program's \
-         source; the window finds them beside the dataset\n",
+        "{}: the example dataset (synthetic data)\nits flight records, example-records.zip, are \
+        in the folder assets of the program's source code; the window finds them if they are \
+        beside the dataset\n",
         sanitized_path(&path)
     ))
 }

@@ -156,9 +156,9 @@ pub(super) fn part_without_samples(part: &RecordPart, wholes: &[WholeRecord]) ->
     }
     let times = part.words();
     let mut reason = if part.is_from_start {
-        format!("no record has samples at {times} s from its start: {listed}")
+        format!("no record has samples in the part {times} (seconds from its start): {listed}")
     } else {
-        format!("no record has samples at {times} s on its own clock: {listed}")
+        format!("no record has samples in the part {times} (seconds on its time axis): {listed}")
     };
     let [from, to] = part.part_s;
     if !part.is_from_start && from >= 0.0 {

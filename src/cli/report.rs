@@ -69,7 +69,8 @@ fn check_ending(path: &Path) -> Result<(), Failure> {
         _ => Err(Failure::option(
             "--out",
             format!(
-                "expected a name that ends in .html, found {}; print the report as PDF from a browser",
+                "expected a name that ends in .html, found {}; for a PDF, print the report from a \
+                browser",
                 sanitized_path(path)
             ),
         )),

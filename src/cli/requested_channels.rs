@@ -110,7 +110,7 @@ fn set_column(
     let Some(index) = rules.iter().position(|rule| rule.name == *name) else {
         let names: Vec<&str> = rules.iter().map(|rule| rule.name.as_str()).collect();
         let reason = format!(
-            "the dataset has no {name} there; it has {}",
+            "the dataset has no {name} among these channels: {}",
             names.join(", ")
         );
         return Err(Failure::coded_option(option, "unknown-channel", reason));
@@ -141,7 +141,7 @@ fn add_references(
     for reference in arguments.references() {
         if has_channel(channels, &reference.name) {
             let reason = format!(
-                "{} is already an input or an output; a reference is neither",
+                "{} is already an input or an output; a reference must be another channel",
                 reference.name
             );
             return Err(Failure::option("--reference", reason));
@@ -176,7 +176,7 @@ fn set_locations(
 fn check_held(arguments: &IdentifyArguments, channels: &RecordChannels) -> Result<(), Failure> {
     for held in &arguments.held {
         if channels.inputs.iter().all(|rule| rule.name != *held) {
-            let reason = format!("{held} is none of the inputs");
+            let reason = format!("{held} is not an input");
             return Err(Failure::coded_option("--held", "unknown-channel", reason));
         }
     }
@@ -227,7 +227,7 @@ pub(super) fn has_channel(channels: &RecordChannels, name: &str) -> bool {
 
 /// Returns the failure for an option that names an unknown channel.
 pub(super) fn unknown_channel(option: &'static str, channel: &str) -> Failure {
-    let reason = format!("{channel} is none of the channels");
+    let reason = format!("there is no channel {channel}");
     Failure::coded_option(option, "unknown-channel", reason)
 }
 
@@ -246,7 +246,7 @@ pub(super) fn declare_conversions<'a, T: Clone + 'a>(
             .said
             .insert(channel.clone(), conversion(value.clone()));
         if known.is_some() {
-            let reason = format!("{channel} has a unit or a factor already");
+            let reason = format!("{channel} already has a unit or a factor");
             return Err(Failure::coded_option(option, "given-twice", reason));
         }
     }

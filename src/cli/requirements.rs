@@ -49,7 +49,7 @@ pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Fail
     let requirements = engine.requirements(
         &analysis,
         &KnownPoles::default(),
-        &TerminalProgress::new("reading bandwidths"),
+        &TerminalProgress::new("computing bandwidths"),
     )?;
     let histories = simulated_histories(&analysis, &records)?;
     let results = RequirementResults {
@@ -70,7 +70,7 @@ pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Fail
     text += &summary_section(&requirements);
     text += &mode_section(&requirements);
     text += &history_section(&histories);
-    text += &line("", "these numbers are no qualification");
+    text += &line("", "these values do not replace a qualification");
     text += &line("Written", &files);
     text += &tolerances;
     print(&text)?;
@@ -335,7 +335,7 @@ fn mode_section(requirements: &Requirements) -> String {
         .collect();
     let mut text = line("Modes", &verdict_counts("physics", &physics));
     if !corrected.is_empty() {
-        let words = verdict_counts("corrected with its couplings", &corrected);
+        let words = verdict_counts("corrected with couplings", &corrected);
         text += &line("", &words);
     }
     text
@@ -353,7 +353,7 @@ fn verdict_counts(model: &str, verdicts: &[ModeVerdict]) -> String {
         let count = verdicts.iter().filter(|found| **found == verdict).count();
         format!("{count} {label}")
     });
-    format!("of {model} against identified: {}", counts.join(", "))
+    format!("{model} compared with identified: {}", counts.join(", "))
 }
 
 /// Returns a table of the shares of time within the tolerances, limited to quantities for which a
@@ -378,8 +378,9 @@ fn history_section(histories: &TimeHistories) -> String {
         source => format!(" of {}", sanitized(source)),
     };
     let words = format!(
-        "share of time inside the tolerances{source}, over all records of a condition; attitudes are integrals of rates; without {} of \
-         {count} rows, in which every model is always inside:",
+        "share of time inside the tolerances{source}, over all records of a condition; attitudes \
+        are integrals of rates; omitting {} of {count} rows, in which every model is always \
+        inside:",
         count - table.rows.len()
     );
     let costs = format!(

@@ -85,7 +85,7 @@ fn schedule_words(schedule: &Schedule) -> String {
     words += &format!(", {} to {} kt", number(range.min_kt), number(range.max_kt));
     if let Some(term) = &schedule.second {
         words += &format!(
-            "; with {}, here in the middle of its range, {} {}",
+            "; with {} as second variable, here at the middle of its range, {} {}",
             term.variable,
             number(term.middle()),
             term.variable.unit()
@@ -177,7 +177,8 @@ fn second_variable_lines(study: &Study, uncertainty: &Uncertainty) -> String {
         && needed.iter().all(|test| test.variable != variable)
     {
         let words = format!(
-            "the schedule depends on airspeed and {variable}, though no response is found to need {variable}"
+            "the schedule depends on airspeed and {variable}, although no response needs \
+            {variable}"
         );
         text += &line("Caution", &words);
     }
@@ -198,7 +199,7 @@ pub(super) fn leave_one_out_section(analysis: &Analysis) -> String {
     let unseen = assessment(analysis, AssessedCorrection::ScheduleOfOthers);
     let mut text = line(
         "Left out",
-        "change of J of each condition under the schedule of the others, on-axis mean:",
+        "change of J in each condition with a schedule fitted to the others, on-axis mean:",
     );
     let mut table = Table::new("", ["condition", "kt", "schedule of all", "of the others"]);
     for condition in &unseen.conditions {
@@ -223,7 +224,8 @@ pub(super) fn leave_one_out_section(analysis: &Analysis) -> String {
         text += &detail("", &format!("condition {}: {why}", left_out.condition));
     }
     if analysis.fitted_couplings().is_some() {
-        let words = "the couplings here are those of all conditions; for J with couplings fitted without each condition, see Couplings";
+        let words = "these couplings are fitted to all conditions; for J with couplings fitted \
+            without each condition, see Couplings";
         text += &detail("", words);
     }
     text

@@ -217,7 +217,7 @@ fn apply_requirements(study: &mut Study, arguments: &StudyArguments) -> Result<(
         let unknown = settings.levels.unknown_axes(&outputs);
         if !unknown.is_empty() {
             caution(&sanitized(&format!(
-                "levels of {} are not drawn: outputs are {}",
+                "levels of {} are not drawn: the outputs are {}",
                 unknown.join(", "),
                 outputs.join(", ")
             )));
@@ -358,7 +358,8 @@ fn reject(study: &mut Study, rejection: &Rejection) -> Result<(), Failure> {
         }
         _ => {
             let reason = format!(
-                "\"{name}\" is both a physics and an identified model of condition {id}; use a study"
+                "\"{name}\" is both a physics and an identified model of condition {id}; reject \
+                it in a study instead"
             );
             Err(Failure::coded_option(OPTION, "ambiguous-model", reason))
         }

@@ -76,7 +76,7 @@ fn syntax_error(
     // enumeration is expected.
     if is_json_so_far(text) {
         let fault = ContentFault::Type {
-            expected: "a text in quotation marks".to_owned(),
+            expected: "text in quotation marks".to_owned(),
             found: "something else".to_owned(),
             line,
             column,
@@ -103,11 +103,13 @@ fn is_json_so_far(text: &[u8]) -> bool {
 /// Rewords serde_json's syntax errors that mention its internals.
 fn syntax_words(reason: &str) -> String {
     match reason {
-        "expected ident" => "a word that JSON does not know".to_owned(),
-        "expected value" => "expected a number, a text, a list or an object".to_owned(),
+        "expected ident" => "unknown word; JSON permits only true, false and null".to_owned(),
+        "expected value" => {
+            "expected a number, text in quotation marks, a list or an object".to_owned()
+        }
         "invalid unicode code point" => "the text is not UTF-8".to_owned(),
         _ if reason.starts_with("control character") => {
-            "a text in quotation marks goes over the end of a line".to_owned()
+            "text in quotation marks continues beyond the end of the line".to_owned()
         }
         _ => reason.replace('`', "\""),
     }
@@ -188,7 +190,7 @@ fn expected_words(expected: &str) -> String {
         "f64" => "a number (without quotation marks)".to_owned(),
         "i64" => "a whole number".to_owned(),
         "u64" | "usize" => "a whole number not below 0".to_owned(),
-        "a string" => "a text in quotation marks".to_owned(),
+        "a string" => "text in quotation marks".to_owned(),
         "a sequence" => "a list".to_owned(),
         "a map" => "an object".to_owned(),
         "a tuple of size 2" | "an array of length 2" => "a list of 2 entries".to_owned(),

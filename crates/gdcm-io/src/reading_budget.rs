@@ -55,7 +55,8 @@ pub enum VariableFault {
     },
     /// The file contains, or claims to contain, more data than the memory limit permits.
     #[error(
-        "{}this would take more than {most_mib} MiB of memory, the limit for a file; split the file",
+        "{}reading would take more than {most_mib} MiB of memory, the limit for a file; split the \
+        file",
         at(variable)
     )]
     TooLarge {
@@ -65,7 +66,8 @@ pub enum VariableFault {
     },
     /// Reading the file would take more steps of work than the limit.
     #[error(
-        "{}this would take more than {most_millions} million steps of work, the limit for a file; split the file",
+        "{}reading would take more than {most_millions} million steps of work, the limit for a \
+        file; split the file",
         at(variable)
     )]
     TooMuchWork {
@@ -318,11 +320,11 @@ mod tests {
         let budget = ReadingBudget::new(2 << 20).with_work(5_000_000);
         assert_eq!(budget.take(1 << 20, 2, "x"), Ok(()));
         let memory = budget.take(1, 1, "x").unwrap_err();
-        let words = "variable x: this would take more than 2 MiB of memory, the limit for a file; split the file";
+        let words = "variable x: reading would take more than 2 MiB of memory, the limit for a file; split the file";
         assert_eq!(memory.to_string(), words);
         assert_eq!(budget.work(3_000_000, ""), Ok(()));
         let work = budget.work(1_000_000, "").unwrap_err();
-        let words = "this would take more than 5 million steps of work, the limit for a file; split the file";
+        let words = "reading would take more than 5 million steps of work, the limit for a file; split the file";
         assert_eq!(work.to_string(), words);
         assert!(memory.is_of_the_budget() && work.is_of_the_budget());
     }

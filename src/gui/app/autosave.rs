@@ -150,7 +150,7 @@ impl Autosave {
             Ok(remains) => remains,
             Err(_) => Remains::new(
                 locked(&self.kept).clone(),
-                Some("the disk did not answer".to_owned()),
+                Some("the disk did not respond".to_owned()),
             ),
         }
     }
@@ -250,7 +250,7 @@ impl Keeper {
         let kept = self.keep();
         let trouble = match (&self.pending, &self.folder) {
             (None, _) => None,
-            (Some(_), None) => Some("there is no directory for them".to_owned()),
+            (Some(_), None) => Some("there is no directory in which to keep them".to_owned()),
             (Some(_), Some(_)) => kept.err().map(|error| error.to_string()),
         };
         Remains::new(locked(&self.kept).clone(), trouble)
@@ -289,7 +289,7 @@ impl Keeper {
 
     fn report(&self, done: Result<(), FileError>) {
         if let Err(error) = done {
-            let message = format!("decisions that are not saved cannot be kept safe: {error}");
+            let message = format!("unsaved decisions cannot be stored for recovery: {error}");
             self.replies.send(|app| app.notify_error(message));
         }
     }

@@ -104,7 +104,8 @@ impl GdcmApp {
         if path.extension().is_some() && holds_models(&path) {
             let path = sanitized_path(&path);
             return self.notify_error(format!(
-                "{path}: neither a dataset nor a study; Import models, in the menu File, makes a dataset from model files"
+                "{path}: neither a dataset nor a study; to make a dataset from model files, use \
+                Import models in the menu File"
             ));
         }
         let purpose = match self.recovery.offer_of(&path) {
@@ -393,12 +394,16 @@ fn dialog(purpose: DialogPurpose, file_name: &str) -> Option<PathBuf> {
             .add_filter("studies", &["json"])
             .set_file_name(file_name)
             .save_file(),
-        DialogPurpose::ModelFolder => dialog.set_title("A folder of model files").pick_folder(),
-        DialogPurpose::RecordFolder => dialog.set_title("A folder of flight records").pick_folder(),
+        DialogPurpose::ModelFolder => dialog
+            .set_title("Choose a folder with model files")
+            .pick_folder(),
+        DialogPurpose::RecordFolder => dialog
+            .set_title("Choose a folder with flight records")
+            .pick_folder(),
         DialogPurpose::RequirementTable(table) => {
             let title = match table {
-                RequirementTable::Levels => "Levels of bandwidth and phase delay",
-                RequirementTable::Tolerances => "Tolerances of time histories",
+                RequirementTable::Levels => "Open levels of bandwidth and phase delay",
+                RequirementTable::Tolerances => "Open tolerances of time histories",
             };
             dialog
                 .set_title(title)

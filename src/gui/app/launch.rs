@@ -342,7 +342,7 @@ fn repair_zoom(preferences: &Path) -> Option<String> {
     );
     let repaired = format!("{}1.0{}", &text[..start], &text[end..]);
     Some(match std::fs::write(preferences, repaired) {
-        Ok(()) => format!("{problem}; it is 1 now"),
+        Ok(()) => format!("{problem}; it was reset to 1"),
         Err(error) => format!("{problem}; it cannot be repaired: {error}"),
     })
 }

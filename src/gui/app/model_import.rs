@@ -176,7 +176,7 @@ impl GdcmApp {
         let paths = match sources {
             Sources::More(paths) => paths,
             Sources::Again(_) if self.readers.models.is_stopped() => {
-                return self.done("stopped: the models are those that were read before".to_owned());
+                return self.done("stopped: the models read before are kept".to_owned());
             }
             Sources::Again(paths) => {
                 bench.forget_models();
@@ -218,7 +218,7 @@ impl GdcmApp {
         if let Some(bench) = &mut self.state.assembling {
             bench.change(rules);
         }
-        let mut message = format!("took the rules of {}", sanitized_path(&path));
+        let mut message = format!("applied the rules in {}", sanitized_path(&path));
         for caution in cautions {
             message.push_str(&format!("; {caution}"));
         }

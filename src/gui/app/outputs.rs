@@ -140,7 +140,8 @@ impl GdcmApp {
         }
         if !results.background.proofs.is_empty() {
             return Err(format!(
-                "the gains are still being proven; {action} again in a moment, or stop the proof"
+                "the gains are still being proven optimal; {action} again in a moment, or stop \
+                the proof"
             ));
         }
         match &results.analysis {

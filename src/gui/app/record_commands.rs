@@ -268,11 +268,11 @@ fn edit_label(records: &ConditionRecords, command: &RecordsCommand) -> String {
         RecordsCommand::SetHeldOut(index, false) => format!("fit {}", record_name(records, *index)),
         RecordsCommand::SetDelay(signal, _) => format!("time skew of {}", signal.name),
         RecordsCommand::SetRemedies(index, _) => {
-            format!("put {} right", record_name(records, *index))
+            format!("correct {}", record_name(records, *index))
         }
         RecordsCommand::SetHold(signal, _) => format!("hold of {}", signal.name),
-        RecordsCommand::SetBand(_) => "band of the identification".to_owned(),
-        RecordsCommand::SetSearch(_) => "search of the identification".to_owned(),
+        RecordsCommand::SetBand(_) => "identification band".to_owned(),
+        RecordsCommand::SetSearch(_) => "identification search settings".to_owned(),
         RecordsCommand::SetReferences(_) => "references".to_owned(),
         RecordsCommand::AddPart(index, _) => format!("part of {}", record_name(records, *index)),
         RecordsCommand::RemovePart(index) => format!("remove {}", record_name(records, *index)),

@@ -234,7 +234,7 @@ impl AddedCounts {
         }
     }
 
-    /// Describes the counts: "81 records of 9 conditions added; 18 were there already".
+    /// Describes the counts: "81 records of 9 conditions added; 18 already loaded".
     fn words(&self) -> String {
         let conditions = if self.conditions > 1 {
             format!(" of {} conditions", self.conditions)
@@ -250,9 +250,9 @@ impl AddedCounts {
         }
         if self.known > 0 && parts.is_empty() {
             let known = counted_records(self.known);
-            parts.push(format!("nothing added: {known} there already"));
+            parts.push(format!("nothing added: {known} already loaded"));
         } else if self.known > 0 {
-            parts.push(format!("{} there already", self.known));
+            parts.push(format!("{} already loaded", self.known));
         }
         parts.join("; ")
     }

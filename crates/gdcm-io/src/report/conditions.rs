@@ -41,7 +41,8 @@ pub(super) fn add_conditions(
     let conditions = analysis.study.dataset.conditions();
     if conditions.len() > CONDITIONS_DRAWN {
         page.paragraph(&format!(
-            "The first {CONDITIONS_DRAWN} conditions have figures; gdcm figure makes those of the others."
+            "Only the first {CONDITIONS_DRAWN} conditions have figures; gdcm figure draws those \
+            of the others."
         ));
     }
     for (index, condition) in conditions.iter().enumerate() {
@@ -104,11 +105,11 @@ fn add_result(page: &mut Page, analysis: &Analysis, result: &ConditionAnalysis) 
             RemarkKind::Trouble => format!("Not matched: {}", remark.text),
         });
     }
-    page.heading_within("What was matched, what was not and why");
+    page.heading_within("Matched and unmatched responses, with reasons");
     page.list(lines);
     page.fine_list(details(study, result));
     if result.compensated.is_some() {
-        page.heading_within("What the leads do and what they cost");
+        page.heading_within("Effect and cost of the leads");
         page.list(lead_words(study, result, analysis.uncertainty.as_deref()));
     }
     add_responses(page, study, result);
@@ -454,7 +455,7 @@ fn add_response_plots(page: &mut Page, source: &ConditionSource<'_>, options: &B
         let caption = "Magnitude and phase of every model, and of the representative under its own and under the scheduled \
                        correction.";
         page.figure(&bode_figure(source, pairs, options), &title, caption);
-        let title = format!("Condition {id}, what the fit sees of them");
+        let title = format!("Condition {id}, difference between identified and physics models");
         let caption = "Ratio and phase difference of the identified representative and each kept physics model, with G, D, the \
                        bounds and the quantiles.";
         let figure = without_values(error_figure(source, pairs, options));
@@ -462,7 +463,7 @@ fn add_response_plots(page: &mut Page, source: &ConditionSource<'_>, options: &B
     }
     if drawn.len() < measuring.len() {
         page.paragraph(&format!(
-            "{} of {} responses that measure a model are drawn.",
+            "{} of {} responses in the objective are drawn.",
             drawn.len(),
             measuring.len()
         ));
@@ -481,7 +482,7 @@ fn add_overview(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOpt
         page.figure(
             &overview,
             &format!("Condition {id}, magnitude of every response"),
-            "With J before and after the correction; * is held exactly.",
+            "With J before and after the correction; * marks held responses.",
         );
     }
 }
@@ -499,7 +500,8 @@ fn add_poles(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOption
     page.figure(
         &poles_figure(source, &modes, options, (&|_| Vec::new(), &shifts)),
         &format!("Condition {id}, poles of its models"),
-        "Physics models ×, identified ones +; rays of equal damping ratio. A correction of channels moves no pole; couplings do.",
+        "Physics models ×, identified models +; rays of equal damping ratio. Corrections of \
+        channels do not move poles; couplings do.",
     );
 }
 

@@ -158,7 +158,7 @@ impl Page {
         self.body.push_str("</tbody>\n</table>\n");
         if table.rows.len() > ROWS {
             let more = table.rows.len() - ROWS;
-            self.paragraph(&format!("{more} more rows are left out here."));
+            self.paragraph(&format!("{more} more rows are omitted here."));
         }
     }
 

@@ -56,7 +56,8 @@ fn add_channels(
     for channels in channels.chunks(IN_A_FIGURE) {
         let uncertainty = analysis.uncertainty.as_deref();
         let figure = channels_figure(analysis, uncertainty, channels, axes);
-        let caption = "Each condition's optimum, within the bounds it was looked for in; dashed: no correction.";
+        let caption = "Optimum of each condition, and the bounds of its search; dashed: no \
+            correction.";
         page.figure(&figure, title, caption);
     }
 }
@@ -79,7 +80,7 @@ fn add_airspeed(page: &mut Page, analysis: &Analysis, schedule: &Schedule, chann
     for pairs in shown_pairs(&analysis.study).chunks(PAIRS_IN_A_FIGURE) {
         let figure = net_gain_figure(analysis, analysis.uncertainty.as_deref(), pairs);
         let caption =
-            "Each condition's optimum with its number, and the schedule; dashed: no correction.";
+            "Optimum of each condition, with its id, and the schedule; dashed: no correction.";
         page.figure(&figure, "Net gains against airspeed", caption);
     }
 }
@@ -102,9 +103,9 @@ fn add_schedule_facts(page: &mut Page, analysis: &Analysis, schedule: &Schedule)
         ("Degree used", degree),
         (
             "Airspeeds",
-            format!("{low} to {high} kt; outside, the end value holds"),
+            format!("{low} to {high} kt; outside this range, the end value applies"),
         ),
-        ("Conditions left out of it", left_out),
+        ("Conditions left out", left_out),
     ]);
 }
 
@@ -153,10 +154,10 @@ fn add_coefficients(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
     let coefficients = schedule.coefficients(&inputs, &outputs);
     let quantity = quantity_symbol(schedule.settings.quantity);
     let title = if coefficients.scale.is_empty() {
-        format!("The schedule: {quantity} at each airspeed, linear between")
+        format!("Schedule: {quantity} at each airspeed, linear in between")
     } else {
         format!(
-            "The schedule: coefficients of {quantity} in the scaled airspeed, {}",
+            "Schedule: coefficients of {quantity} in the scaled airspeed, {}",
             coefficients.scale
         )
     };

@@ -43,7 +43,8 @@ pub(super) fn add_summary(page: &mut Page, analysis: &Analysis) {
     }
     let scheduled = analysis.scheduled().len();
     page.paragraph(&format!(
-        "{solved} of {} conditions have a result, {scheduled} of them make the schedule; {rejected} models are rejected.",
+        "{solved} of {} conditions have a result; the schedule is fitted to {scheduled} of them; \
+        {rejected} models are rejected.",
         conditions.len()
     ));
     page.paragraph(&assessment_sentence(analysis));
@@ -80,7 +81,8 @@ pub fn assessment_sentence(analysis: &Analysis) -> String {
 const MISSING: &str = "–";
 
 fn condition_table(analysis: &Analysis) -> Table {
-    let title = "The conditions: models kept of those there are, held responses matched of those held, and how sure the gains are";
+    let title = "Conditions: kept models, matched held responses, and whether the gains are \
+        proven optimal";
     let columns = [
         "condition",
         "name",
@@ -200,7 +202,7 @@ pub(super) fn schedule_words(settings: &ScheduleSettings) -> String {
         None => String::new(),
     };
     format!(
-        "{kind}{second}, of {quantity}; airspeeds within {} kt are one; {delays}",
+        "{kind}{second}, of {quantity}; airspeeds within {} kt count as equal; {delays}",
         six_digits(settings.airspeed_tolerance_kt)
     )
 }
@@ -215,8 +217,8 @@ pub(super) fn add_files(page: &mut Page, study: &Study, source: &ReportSource) {
     };
     page.facts([
         ("Dataset", dataset.name().to_owned()),
-        ("Its file", source.dataset.clone()),
-        ("SHA-256 of that file", source.sha256.clone()),
+        ("Dataset file", source.dataset.clone()),
+        ("SHA-256 of the dataset file", source.sha256.clone()),
         ("Study", study_file),
         ("Program", PROGRAM.to_owned()),
         ("Inputs", channel_words(dataset.inputs())),
@@ -258,7 +260,7 @@ pub(super) fn add_models(page: &mut Page, study: &Study) {
     }
     page.section("Sources of the models");
     if models.is_empty() {
-        page.paragraph("The dataset does not say which files its models were made from.");
+        page.paragraph("The dataset does not state the source files of its models.");
         return;
     }
     let columns = [
@@ -269,13 +271,15 @@ pub(super) fn add_models(page: &mut Page, study: &Study) {
         "note",
         "models, by condition",
     ];
-    let mut table = Table::new("The files that the models were made from", columns);
+    let mut table = Table::new("Source files of the models", columns);
     for (cells, models) in models {
         table.row(cells.into_iter().chain([names(&models)]));
     }
     page.table(&table);
     if unknown > 0 {
-        page.paragraph(&format!("Of {unknown} models the dataset does not say."));
+        page.paragraph(&format!(
+            "The dataset does not state the source of {unknown} models."
+        ));
     }
 }
 
@@ -308,7 +312,8 @@ pub(super) fn add_left_out(page: &mut Page, analysis: &Analysis) {
         page.paragraph("No model is rejected.");
     } else {
         page.paragraph(&format!(
-            "Only the analyst rejects a model. A discontinuity ratio above {SUGGESTION_RATIO} makes it suspect."
+            "Only the analyst can reject a model. A discontinuity ratio above {SUGGESTION_RATIO} \
+            makes a model suspect."
         ));
     }
     page.table(&rejected);
@@ -325,7 +330,7 @@ fn rejected_table(analysis: &Analysis) -> Table {
         "bundle",
         "model",
         "discontinuity ratio",
-        "reason of the analyst",
+        "analyst's reason",
     ];
     let mut table = Table::new("Rejected models", columns);
     for condition in analysis.study.dataset.conditions() {
@@ -405,7 +410,7 @@ fn left_out_lines(analysis: &Analysis, condition: &Condition) -> Vec<String> {
     kept.retain(|name| !rejected.contains(name));
     if !kept.is_empty() {
         lines.push(format!(
-            "Condition {id}: suspected by their discontinuity ratios, and kept: {}.",
+            "Condition {id}: suspect because of their discontinuity ratios, but kept: {}.",
             names(&kept)
         ));
     }

@@ -119,5 +119,5 @@ fn remove_numbering(columns: &mut [Vec<f64>], notes: &mut Vec<String>) {
     for values in columns {
         values.remove(0);
     }
-    notes.push("the first line numbers the columns: it is no sample".to_owned());
+    notes.push("the first line contains column numbers and was skipped".to_owned());
 }

@@ -40,7 +40,7 @@ fn read_timetable(record: &Record<'_>, variable: &str) -> Option<Columns> {
         RowTimes::Step(step_s) => sample_time_s = Some(step_s),
         RowTimes::Stamps { time_s, is_clock } => {
             if is_clock {
-                notes.push("times are of the clock, counted from the first".to_owned());
+                notes.push("clock times: converted to seconds since the first sample".to_owned());
             }
             if time_s.len() == rows {
                 let time = RecordColumn {

@@ -171,7 +171,7 @@ impl IdentificationTask {
     /// Returns a line with the result and the path of its file.
     pub(super) fn outcome(&self, file: &Path, found: &Identification) -> String {
         let held_out = match found.held_out_cost {
-            Some(cost) => format!(", of the held-out records {cost:.2}"),
+            Some(cost) => format!(", {cost:.2} for the held-out records"),
             None => String::new(),
         };
         format!(

@@ -124,14 +124,17 @@ fn pair_sentences(facts: &[&Repeated]) -> Vec<&'static str> {
         .iter()
         .any(|fact| matches!(fact, Repeated::NeedsLead(_)))
     {
-        sentences
-            .push("held responses need lead [ms]: the physics model lags, and a delay cannot lead");
+        sentences.push(
+            "held responses need lead [ms]: the physics model lags, which no delay can correct",
+        );
     }
     if facts
         .iter()
         .any(|fact| matches!(fact, Repeated::Farther(_)))
     {
-        sentences.push("* is farther from flight (larger J) than without a correction");
+        sentences.push(
+            "* marks a response that is farther from flight (larger J) than without a correction",
+        );
     }
     sentences
 }

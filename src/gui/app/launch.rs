@@ -423,7 +423,7 @@ mod tests {
         .unwrap();
         let words = ending(Err(fault()), Some(&autosave), "").unwrap_err();
         assert!(
-            words.starts_with("stopped by a fault in its window: no libxkbcommon"),
+            words.starts_with("the window was ended by a fault: no libxkbcommon"),
             "{words}"
         );
         assert!(words.ends_with("every decision was saved"), "{words}");

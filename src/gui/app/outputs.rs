@@ -134,7 +134,7 @@ impl GdcmApp {
         let results = &self.state.results;
         if results.stopped {
             return Err(format!(
-                "{}: the computation was stopped; compute first",
+                "{}: the computation was stopped; choose Compute first",
                 self.state.after_stop()
             ));
         }
@@ -325,6 +325,6 @@ fn remarks_suffix(remarks: &[String]) -> String {
     match remarks {
         [] => String::new(),
         [remark] => format!(" ({remark})"),
-        several => format!(" ({} remarks, in the file)", several.len()),
+        several => format!(" ({} remarks; see the file)", several.len()),
     }
 }

@@ -90,7 +90,7 @@ impl GdcmApp {
     pub(super) fn take_identified(&mut self, conditions: &[ConditionId], offered: OfferedModels) {
         let adopted = self.adopted_models(conditions, offered);
         if adopted.is_empty() {
-            return self.notify_error("nothing was identified yet".to_owned());
+            return self.notify_error("nothing has been identified yet".to_owned());
         }
         let models: usize = adopted
             .iter()
@@ -106,7 +106,7 @@ impl GdcmApp {
                 "conditions"
             };
             let names = names.join(", ");
-            self.done(format!("took {models} models into {conditions} {names}"));
+            self.done(format!("adopted {models} models in {conditions} {names}"));
         }
     }
 

@@ -141,7 +141,7 @@ fn when(at: SystemTime, zone: &TimeZone) -> String {
 
 /// Returns the message on standard error after a fault has ended the window.
 pub(super) fn end_words(fault: &str, remains: &Remains) -> String {
-    let fault = format!("stopped by a fault in its window: {fault}");
+    let fault = format!("the window was ended by a fault: {fault}");
     match remains {
         Remains::Kept(kept) => format!("{fault}; {}", kept_words(kept)),
         Remains::Saved => format!("{fault}; every decision was saved"),
@@ -184,7 +184,7 @@ mod tests {
         let words = end_words(fault, &Remains::Kept(kept));
         assert!(
             words.starts_with(
-                "stopped by a fault in its window: out of range at src/view/centre.rs:7;"
+                "the window was ended by a fault: out of range at src/view/centre.rs:7;"
             ),
             "{words}"
         );

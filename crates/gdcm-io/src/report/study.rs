@@ -73,7 +73,7 @@ pub fn assessment_sentence(analysis: &Analysis) -> String {
         ""
     };
     format!(
-        "J of the nominal models under the schedule, over the {which} of every condition assessed: {found}.{between}"
+        "J of the nominal models with the schedule, over the {which} of all assessed conditions: {found}.{between}"
     )
 }
 

@@ -603,8 +603,8 @@ fn one_model_left_says_what_is_not_included() {
         "the identification is left"
     );
     let borrowed = bar(2).identification.unwrap();
-    // Two from the first condition, none from the third, which has a single model, and one from the
-    // fourth.
+    // Degrees of freedom borrowed: two from the first condition, none from the third, which has a
+    // single model, and one from the fourth.
     assert_eq!(
         (borrowed.degrees_of_freedom, bar(2).remarks().len()),
         (3.0, 0),

@@ -199,11 +199,11 @@ fn a_number_on_the_command_line_is_refused_with_its_option_and_its_range() {
         ),
         (
             &["--on", "P"],
-            "error: --on: expected OUTPUT/INPUT, as P/LAT, found \"P\"\n",
+            "error: --on: expected OUTPUT/INPUT, such as P/LAT; found \"P\"\n",
         ),
         (
             &["--reject", "x"],
-            "error: --reject: expected ID:NAME, as 10:nominal, found \"x\"\n",
+            "error: --reject: expected ID:NAME, such as 10:nominal; found \"x\"\n",
         ),
     ] {
         let ended = desk.gdcm(
@@ -297,7 +297,7 @@ fn a_choice_of_words_is_refused_with_the_words_that_may_stand_there() {
         (
             "\"median\"",
             "5",
-            "settings, cost_average: expected a text in quotation marks, found",
+            "settings, cost_average: expected text in quotation marks, found",
         ),
         (
             "\"points\": 200",

@@ -497,7 +497,7 @@ fn records_of_many_conditions_fill_each_its_own_and_leave_the_others_as_they_are
     assert_eq!(ended.status, 0, "{ended:?}");
     assert!(
         ended.error.contains(
-            "note: conditions 1, 2, 4 to 9, 11: no records; the identified models there stay"
+            "note: conditions 1, 2, 4 to 9, 11: no records; its identified models remain"
         ),
         "{}",
         ended.error

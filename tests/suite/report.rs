@@ -119,7 +119,7 @@ fn the_report_of_the_example_has_every_section_and_every_condition() {
     let figures = texts(&document, "figcaption");
     for words in [
         "responses on axis",
-        "what the fit sees",
+        "difference between identified and physics models",
         "magnitude of every response",
         "poles of its models",
     ] {
@@ -166,7 +166,10 @@ fn requirements_are_those_of_the_command_and_time_histories_stand_where_there_ar
         .find(|of| of.omega_bw_rad_s.is_some())
         .unwrap();
     let bandwidth = format!("{:.2}", known.omega_bw_rad_s.unwrap());
-    assert!(cells.contains(&bandwidth) && REPORT.contains("These numbers are no qualification"));
+    assert!(
+        cells.contains(&bandwidth)
+            && REPORT.contains("These values do not replace a qualification")
+    );
     assert!(!REPORT.contains("Share of time"), "no record was given");
 
     let channels = RecordChannels::of_dataset(&FEW.dataset).of_named_records();

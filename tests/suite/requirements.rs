@@ -59,7 +59,7 @@ fn the_embedded_example_has_bandwidths_of_every_role_and_modes_and_costs() {
         "Bandwidth",
         "phase delay [ms]",
         "MUAD",
-        "no qualification",
+        "do not replace a qualification",
         "requirements.csv in asked",
     ] {
         assert!(

@@ -623,7 +623,7 @@ fn all_conditions_come_from_one_archive_as_the_readme_says() {
     wait_until(&mut window, "the archive", |window| {
         used_rows(window) == (99, 11)
     });
-    window.get_by_label("81 records of 9 conditions added; 18 there already");
+    window.get_by_label("81 records of 9 conditions added; 18 already loaded");
     let records = &state(&window).records;
     assert!(
         records
@@ -835,7 +835,7 @@ fn a_record_is_added_once_a_changed_file_takes_its_place_and_another_of_its_name
         ["cond10_flight"],
         "the same is not added twice"
     );
-    window.get_by_label("nothing added: 1 record there already");
+    window.get_by_label("nothing added: 1 record already loaded");
     assert_eq!(
         add(&mut window, &second),
         ["cond10_flight", "cond10_flight (2)"]

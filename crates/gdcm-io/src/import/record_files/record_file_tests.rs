@@ -695,7 +695,7 @@ fn a_first_line_that_numbers_the_columns_is_no_sample() {
         found.tables[0]
             .notes
             .iter()
-            .any(|note| note.contains("numbers the columns"))
+            .any(|note| note.contains("column numbers"))
     );
 }
 

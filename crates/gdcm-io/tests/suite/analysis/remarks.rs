@@ -1,4 +1,4 @@
-//! What the result of a condition says.
+//! Remarks on the results of a condition.
 
 use gdcm_words::condition_remarks::remarks;
 use gdcm_words::remark::{Remark, RemarkKind};
@@ -70,7 +70,7 @@ fn a_tolerance_decides_whether_a_loop_of_held_gains_agrees() {
     let mut study = study_of_example();
     let mut engine = Engine::default();
     study.apply(&setting::POINTS.to(40)).unwrap();
-    // LON and COL to Q and NZ: a loop.
+    // LON and COL to Q and NZ form a loop of four held responses.
     for (output, input) in [("Q", "LON"), ("Q", "COL"), ("NZ", "LON"), ("NZ", "COL")] {
         let pair = study.dataset.find_pair(output, input).unwrap();
         study.apply(&Edit::Hold(pair, true)).unwrap();

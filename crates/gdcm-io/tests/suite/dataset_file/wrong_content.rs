@@ -1,4 +1,4 @@
-//! Datasets that are refused for what they say.
+//! Dataset files rejected because of their content.
 
 use super::*;
 
@@ -74,7 +74,7 @@ fn text_where_a_number_belongs_is_named_by_matrix_row_and_column() {
     );
     assert_refused(
         |file| file["name"] = json!(5),
-        &["name: expected a text in quotation marks, found 5"],
+        &["name: expected text in quotation marks, found 5"],
     );
     assert_refused(
         |file| file["inputs"] = json!({"name": "LON"}),

@@ -61,7 +61,8 @@ impl GdcmApp {
     }
 }
 
-/// Reads a table into the settings; returns cautions.
+/// Reads levels or tolerances from a file into the settings; returns the cautions about the
+/// tolerances.
 fn read_table_into(
     settings: &mut RequirementSettings,
     table: RequirementTable,

@@ -73,7 +73,7 @@ fn figure_entries(view: View) -> [Entry; 2] {
     ]
 }
 
-/// Returns the actions on the displayed condition's flight records.
+/// Returns the entries for the flight records of the displayed condition.
 fn record_entries(state: &State) -> [Entry; 4] {
     let condition = state.condition().id();
     let in_use = state.records.conditions_in_use();
@@ -140,7 +140,7 @@ fn setting_entries(state: &State) -> Vec<Entry> {
     entries
 }
 
-/// Returns the entry that focuses a number field.
+/// Returns the entry that focuses a numeric field of the settings.
 fn field_entry(name: &str, option: &str, label: &'static str) -> Entry {
     Entry::new(
         format!("Set the {name} ({option})…"),

@@ -19,7 +19,7 @@ pub fn curve_entries(state: &State) -> Vec<Entry> {
     entries
 }
 
-/// Returns an entry for each option with two values, which switches to the other value.
+/// Returns an entry for each display option with two values; the entry switches to the other value.
 fn unit_entries(state: &State) -> Vec<Entry> {
     let curves = &state.display.curves;
     let entries = [
@@ -103,7 +103,7 @@ fn phase_error_entry(unit: PhaseErrorUnit) -> Entry {
     }
 }
 
-/// Returns the entries for the other curve colours and for every line width.
+/// Returns the entries for the curve colours that are not in use, and for every line width.
 fn look_entries(looks: PlotStyle) -> Vec<Entry> {
     let mut entries = Vec::new();
     for curve_colors in CurveColors::ALL {
@@ -152,8 +152,8 @@ fn visibility_entries(state: &State) -> Vec<Entry> {
         SelectionCommand::EndIsolation,
     );
     vec![
-        // Fields and menus lose the key of an entry whether or not the entry is enabled, so the
-        // entry has the key only if there is something to end.
+        // An entry takes its key from fields and menus even while it is disabled, so Escape is
+        // bound only while a model is isolated.
         if is_isolated {
             isolation.free_key(Key::Escape)
         } else {

@@ -11,7 +11,7 @@ use super::form::FormCommand;
 use super::study::StudyCommand;
 use crate::gui::state::window_state::State;
 
-/// Returns the Edit menu.
+/// Returns the entries of the Edit menu.
 pub(super) fn edit_entries(state: &State) -> Vec<Entry> {
     let condition = state.condition().id();
     let scheduled = state.study.choice(condition).scheduled;
@@ -105,7 +105,8 @@ fn rejection_entries(state: &State) -> [Entry; 2] {
     ]
 }
 
-/// Returns "Hold LON → Q exactly" or "Release LON → Q"; a response without G cannot be constrained.
+/// Returns the entry "Hold LON → Q exactly" or "Release LON → Q"; the first is disabled for a
+/// response without G, which cannot be constrained.
 pub(super) fn hold_entry(state: &State, pair: Pair) -> Entry {
     let held = state.study.settings.constrained[pair];
     let name = state.dataset().pair_name(pair);
@@ -126,7 +127,7 @@ pub(super) fn hold_entry(state: &State, pair: Pair) -> Entry {
     .enabled(held || !is_undefined)
 }
 
-/// Returns the actions on each model in the displayed condition.
+/// Returns the entries for each model in the displayed condition.
 pub(super) fn model_entries(state: &State) -> Vec<Entry> {
     let condition = state.condition();
     let mut entries = Vec::new();

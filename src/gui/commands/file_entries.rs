@@ -13,7 +13,7 @@ use crate::gui::state::forms::FormKind;
 use crate::gui::state::opens_with::OpensWith;
 use crate::gui::state::window_state::State;
 
-/// Returns the File menu.
+/// Returns the entries of the File menu.
 pub(super) fn file_entries(state: &State) -> Vec<Entry> {
     let open = [
         Entry::new(

@@ -15,7 +15,7 @@ use crate::gui::state::sheet::Sheet;
 use crate::gui::state::view::{View, ViewGroup};
 use crate::gui::state::window_state::State;
 
-/// Returns the View menu.
+/// Returns the entries of the View menu.
 pub(super) fn view_entries(state: &State) -> Vec<Entry> {
     let (unit_name, unit) = match state.display.curves.unit {
         FrequencyUnit::RadPerSecond => ("Frequencies in Hz", FrequencyUnit::Hertz),
@@ -50,7 +50,7 @@ pub(super) fn view_entries(state: &State) -> Vec<Entry> {
         .collect()
 }
 
-/// Tooltip of the steps from region to region.
+/// Tooltip of the entries that move the focus between regions of the window.
 const PARTS: &str =
     "Plots, dock, verdict, result, matrix, settings, conditions, models; each remembers its focus";
 
@@ -91,7 +91,8 @@ fn theme_entries() -> [Entry; 3] {
     ]
 }
 
-/// Returns the entries for view groups, neighbours, panels and folds.
+/// Returns the entries that show a view group or the neighbouring view, or fold a part of the
+/// window.
 fn layout_entries(state: &State) -> impl Iterator<Item = Entry> {
     view_group_entries()
         .into_iter()
@@ -181,7 +182,7 @@ fn fold_entries(state: &State) -> [Entry; 5] {
     ]
 }
 
-/// Returns the steps from the displayed condition and response to their neighbours.
+/// Returns the entries that step to the previous or next condition or response.
 fn steps(state: &State) -> [Entry; 4] {
     let conditions = state.dataset().conditions();
     let shown = state.condition().id();
@@ -208,7 +209,7 @@ fn steps(state: &State) -> [Entry; 4] {
     ]
 }
 
-/// Returns a step to another condition; disabled at the end of the list.
+/// Returns the entry that steps to another condition; disabled at the end of the list.
 fn condition_step(name: &str, other: Option<&Arc<Condition>>, shown: ConditionId) -> Entry {
     let target = match other {
         Some(condition) => condition.id(),
@@ -218,7 +219,8 @@ fn condition_step(name: &str, other: Option<&Arc<Condition>>, shown: ConditionId
     Entry::new(name, "In the order of the list", command).enabled(other.is_some())
 }
 
-/// Returns a step to another response, numbered row by row; disabled at the end of the matrix.
+/// Returns the entry that steps to another response, numbered row by row; disabled at the end of
+/// the matrix.
 fn response_step(name: &str, other: Option<usize>, shown: usize, inputs: usize) -> Entry {
     let place = other.unwrap_or(shown);
     let pair = Pair::new(place / inputs, place % inputs);

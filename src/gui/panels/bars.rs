@@ -152,7 +152,7 @@ fn history_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
 /// Button that undoes or redoes a decision.
 struct HistoryButton<'a> {
     verb: &'a str,
-    /// Decision; `None` disables the button.
+    /// Decision to undo or redo; `None` disables the button.
     label: Option<&'a str>,
     hint: &'a str,
     command: StudyCommand,
@@ -219,7 +219,7 @@ fn title_ui(ui: &mut Ui, bar: Rect, room: Rect, state: &State, palette: &Palette
     response.on_hover_text(format!("{}\n{is_saved}", state.dataset().description()));
 }
 
-/// Draws every bar, oldest first.
+/// Draws every message bar, oldest first.
 pub fn bars_ui(ui: &mut Ui, bars: &[Bar], palette: &Palette, commands: &mut Vec<Command>) {
     for bar in bars {
         let frame = Frame::new()

@@ -103,7 +103,7 @@ fn view_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
     );
 }
 
-/// Draws a joined button for each group.
+/// Draws the view groups as a row of joined buttons.
 fn groups_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let font = medium(BODY_SIZE);
     let widths = ViewGroup::ALL.map(|group| text_width(ui, group.name(), font.clone()) + 24.0);
@@ -340,7 +340,7 @@ fn tools_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    // The figure button of the front view is in the view bar.
+    // Skip the front view: its figure button is in the view bar.
     if view != state.display.layout.arrangement.view() {
         figure_button_ui(ui, state, view, commands);
     }
@@ -352,7 +352,8 @@ fn tools_ui(
     }
 }
 
-/// Draws "LON → Q  condition 10: 60 kt, low altitude, high weight", or a part of it.
+/// Draws a title such as "LON → Q  condition 10: 60 kt, low altitude, high weight"; some views omit
+/// the response or the condition.
 fn title_ui(ui: &mut Ui, state: &State, title: ViewTitle, palette: &Palette) {
     let condition = state.condition();
     let id = condition.id();
@@ -425,7 +426,7 @@ fn dock_ui(
     });
 }
 
-/// View in the dock.
+/// View in the dock, and whether the dock is unfolded.
 #[derive(Clone, Copy)]
 struct Dock {
     view: View,

@@ -71,8 +71,8 @@ impl Marks {
         }
     }
 
-    /// Paints ⚠ for an open decision, a stroke through an excluded condition, an accent on a
-    /// held-out condition.
+    /// Paints ⚠ for open tasks or a missing result, a stroke through a condition left out of the
+    /// schedule, and an accent bar beside a held-out condition.
     pub(super) fn paint(&self, ui: &Ui, row: Rect, palette: &Palette) {
         if self.failure.is_some()
             || self.suggested + self.unmatched_gains + self.unmatched_delays > 0

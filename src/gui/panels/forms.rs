@@ -149,7 +149,7 @@ fn overwrite_ui(form: &mut Form<'_, '_>, kind: FormKind, existing: &[String]) {
     form.ui.add_space(4.0);
     form.line(|form| {
         form.button_ui("Overwrite", false, FormCommand::Overwrite);
-        // Enter must not overwrite anything.
+        // `true` focuses Cancel, so that Enter does not overwrite anything.
         form.button_ui("Cancel", true, FormCommand::ShowForm(Some(kind)));
     });
 }

@@ -17,7 +17,7 @@ use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 /// Width of a note \[pt\].
 const WIDTH: f32 = 300.0;
 
-/// Tour step.
+/// Step in the guided tour.
 struct Step {
     region: Region,
     title: &'static str,
@@ -137,15 +137,15 @@ fn note_ui(
     });
 }
 
-/// Places the note right of the region, left of it, or over it if the region takes the whole width;
-/// returns which corner of the note is placed, and where.
+/// Returns the corner of the note to be aligned, and its position: right of the region, left of it,
+/// or over it if the region takes the whole width.
 fn beside(place: Rect, window: Rect) -> (Align2, egui::Pos2) {
     const GAP: Vec2 = vec2(12.0, 0.0);
     let room = WIDTH + 40.0;
     if window.right() - place.right() > room {
         (Align2::LEFT_TOP, place.right_top() + GAP)
     } else if place.left() - window.left() > room {
-        // A region at the foot of the window has no space below it, so the note grows upwards.
+        // A region near the foot of the window has no space below it, so the note grows upwards.
         let is_low = place.top() > window.center().y;
         if is_low {
             (Align2::RIGHT_BOTTOM, place.left_bottom() - GAP)

@@ -86,7 +86,7 @@ const CAUSES: [Cause; 4] = [
     },
 ];
 
-/// Draws the sheet for the displayed condition.
+/// Draws the sheet with the reasons for the displayed result.
 pub fn reasons_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let Some(Ok(shown)) = state.outcome() else {
         let words = match state.outcome() {
@@ -126,7 +126,7 @@ fn causes_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
     }
 }
 
-/// Draws whether the gains are proven optimal, and how far they may be from the optimum.
+/// Draws whether the gains are proven optimal, and the optimality gap.
 fn proof_ui(ui: &mut Ui, shown: &ConditionAnalysis, is_proving: bool, palette: &Palette) {
     let outcome = shown.gains.proof.outcome;
     let words = match outcome {
@@ -139,7 +139,7 @@ fn proof_ui(ui: &mut Ui, shown: &ConditionAnalysis, is_proving: bool, palette: &
     ui.label(palette.dim(format!("{words} Gap {:.0e}.", outcome.gap())));
 }
 
-/// Draws sentences, each with its possible actions.
+/// Draws remarks as sentences, each with the buttons of its possible actions.
 fn remarks_ui(
     ui: &mut Ui,
     state: &State,

@@ -298,7 +298,8 @@ impl Side<'_> {
     }
 }
 
-/// Paints text that ends at a share of its row's width.
+/// Paints right-aligned text that ends at the share `end` of the row's width; returns its
+/// rectangle.
 fn painted_upto(ui: &Ui, row: Rect, end: f32, words: &str, font: FontId, color: Color32) -> Rect {
     painted_text(
         ui,

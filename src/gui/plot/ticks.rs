@@ -43,7 +43,7 @@ const NAME_GAP: f64 = 6.0;
 pub(super) enum Ticks {
     /// Plain values with labels at least this far apart \[pt\]: decibels, knots, gains.
     Decimal(f64),
-    /// Plain values with labels at fractions of a turn.
+    /// Degrees, labelled at fractions of a turn.
     Degrees,
     /// Values of `log10(omega)`, labelled as frequencies in a unit.
     Frequency(FrequencyUnit),
@@ -80,7 +80,8 @@ impl Ticks {
         }
         let mut gap = self.label_gap();
         let mut found = self.ticks_between(bounds, units_per_point, gap);
-        // A single label does not show the scale: in a low plot the labels may be closer together.
+        // A single label does not show the scale, so the labels of a low plot may be closer
+        // together.
         while count_labels(&found) < 2 && gap > CLOSEST {
             gap = (0.8 * gap).max(CLOSEST);
             found = self.ticks_between(bounds, units_per_point, gap);

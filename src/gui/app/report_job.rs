@@ -77,7 +77,7 @@ impl GdcmApp {
     pub(super) fn give_up_report(&mut self) {
         if let Some(job) = self.work.reporting.take() {
             let path = sanitized_path(&job.path);
-            self.notify_error(format!("{path} was not written: it was stopped"));
+            self.notify_error(format!("{path} was not written: the report was stopped"));
         }
     }
 }

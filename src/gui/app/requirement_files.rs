@@ -31,7 +31,7 @@ impl GdcmApp {
         self.decide(&Edit::SetRequirements(name, Arc::new(settings)));
         if !cautions.is_empty() {
             self.notify_error(format!(
-                "taken, but {}: {}",
+                "tolerances read with cautions from {}: {}",
                 sanitized_path(&path),
                 cautions.join("; ")
             ));

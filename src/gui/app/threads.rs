@@ -129,7 +129,9 @@ impl GdcmApp {
             // This entry, even if it is empty, prevents another automatic search for records.
             self.records_of(self.state.condition().id());
         }
-        self.done(format!("stopped reading {name}; the open study stays"));
+        self.done(format!(
+            "stopped reading {name}; the open study is unchanged"
+        ));
     }
 }
 
@@ -196,7 +198,7 @@ fn message_of(payload: &(dyn Any + Send)) -> String {
     } else if let Some(text) = payload.downcast_ref::<&str>() {
         text
     } else {
-        "a fault without a message"
+        "a panic without a message"
     };
     let words: Vec<&str> = text.split_whitespace().collect();
     words.join(" ")

@@ -87,7 +87,7 @@ fn count_presses(ui: &Ui, key: Key) -> usize {
 /// Draws the search field; returns whether its text has changed.
 fn field_ui(ui: &mut Ui, query: &mut String, opens: bool) -> bool {
     let shown = TextEdit::singleline(query)
-        .hint_text("what to do")
+        .hint_text("name of a command")
         .desired_width(f32::INFINITY)
         .show(ui);
     let response = shown.response.response;

@@ -47,7 +47,7 @@ fn table_entries(kind: TableKind) -> [Entry; 2] {
     [
         Entry::new(
             format!("Copy table: {}", kind.name()),
-            "As text, one line a row",
+            "As text, one line for each row",
             OutputCommand::CopyTable(kind),
         ),
         Entry::new(
@@ -61,13 +61,13 @@ fn table_entries(kind: TableKind) -> [Entry; 2] {
 fn figure_entries(view: View) -> [Entry; 2] {
     [
         Entry::new(
-            format!("Copy numbers of {}", view.name()),
+            format!("Copy values of {}", view.name()),
             "As CSV, to the clipboard",
             OutputCommand::CopyFigure(view),
         ),
         Entry::new(
             format!("Save figure: {}…", view.name()),
-            "As SVG, PNG or PDF, or its numbers as CSV",
+            "As SVG, PNG or PDF, or its values as CSV",
             OutputCommand::AskSaveFigure(view, FigureFormat::Svg),
         ),
     ]
@@ -144,7 +144,7 @@ fn setting_entries(state: &State) -> Vec<Entry> {
 fn field_entry(name: &str, option: &str, label: &'static str) -> Entry {
     Entry::new(
         format!("Set the {name} ({option})…"),
-        "Goes to its field",
+        "Moves the focus to its field",
         LayoutCommand::FocusField(label),
     )
 }

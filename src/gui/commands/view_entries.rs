@@ -51,8 +51,8 @@ pub(super) fn view_entries(state: &State) -> Vec<Entry> {
 }
 
 /// Tooltip of the entries that move the focus between regions of the window.
-const PARTS: &str =
-    "Plots, dock, verdict, result, matrix, settings, conditions, models; each remembers its focus";
+const PARTS: &str = "Moves between plots, dock, verdict, result, matrix, settings, conditions and models; each \
+    remembers the focused control";
 
 fn region_entries() -> [Entry; 2] {
     [
@@ -107,7 +107,7 @@ fn view_group_entries() -> Vec<Entry> {
     for (group, key) in ViewGroup::ALL.into_iter().zip(keys) {
         let entry = Entry::new(
             format!("Views: {}", group.name()),
-            "The group, with its last view",
+            "Shows this group, with the view that was last open in it",
             LayoutCommand::ShowGroup(group),
         );
         entries.push(entry.keys(Modifiers::ALT, key));
@@ -117,7 +117,7 @@ fn view_group_entries() -> Vec<Entry> {
 
 fn neighbour_entries(state: &State) -> [Entry; 2] {
     let arrangement = &state.display.layout.arrangement;
-    let meaning = "Of the group in front";
+    let meaning = "In the group in front";
     [
         Entry::new(
             "Next view",
@@ -142,11 +142,11 @@ fn fold_entries(state: &State) -> [Entry; 5] {
     [
         Entry::new(
             if is_left_open {
-                "Conditions as a rail"
+                "Reduce the left panel to a rail"
             } else {
-                "Conditions and models in full"
+                "Show the left panel in full"
             },
-            "The left side of the window",
+            "Conditions and models; the rail shows numbers, airspeeds and costs",
             LayoutCommand::ShowLeft(!is_left_open),
         )
         .keys(CTRL, Key::B),
@@ -156,7 +156,7 @@ fn fold_entries(state: &State) -> [Entry; 5] {
             } else {
                 "Unfold the settings"
             },
-            "Instead of matrix and card",
+            "Shown in place of the constraint matrix and the response card",
             LayoutCommand::ShowSettings(!display.layout.settings_open),
         )
         .keys(CTRL, Key::Comma),
@@ -170,13 +170,13 @@ fn fold_entries(state: &State) -> [Entry; 5] {
             LayoutCommand::OpenDock(!is_dock_open),
         ),
         Entry::new(
-            "Why the result is so",
-            "Cautions, possible causes of a lag, the proof",
+            "Show the reasons for the result",
+            "Cautions, possible causes of a lag, and the proof of optimality",
             LayoutCommand::ShowSheet(Some(Sheet::Reasons)),
         ),
         Entry::new(
             "Reset the layout",
-            "Every panel and plot goes back to its place",
+            "Return every panel and plot to its default place",
             LayoutCommand::ResetLayout,
         ),
     ]
@@ -225,5 +225,5 @@ fn response_step(name: &str, other: Option<usize>, shown: usize, inputs: usize) 
     let place = other.unwrap_or(shown);
     let pair = Pair::new(place / inputs, place % inputs);
     let command = SelectionCommand::FocusPair(pair);
-    Entry::new(name, "Row by row of the matrix", command).enabled(other.is_some())
+    Entry::new(name, "Row by row through the matrix", command).enabled(other.is_some())
 }

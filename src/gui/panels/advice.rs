@@ -115,14 +115,14 @@ impl Advice {
                 format!("Reject {} suggested", open.len()),
                 Edit::reject_physics(condition.id(), open),
             )],
-            note: format!("of {models} models, first"),
+            note: format!("of {models} models, as a first step"),
         }
     }
 
     /// Recommends using worthwhile couplings, or removing couplings that are not worthwhile.
     fn on_couplings(state: &State) -> Option<Self> {
         let look = Step::new(
-            "Look first",
+            "View couplings",
             Command::Layout(LayoutCommand::ShowView(View::Couplings)),
         );
         if let Some((assessment, cost)) = offered_couplings(state) {

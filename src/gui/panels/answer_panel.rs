@@ -298,7 +298,7 @@ impl StepsLine<'_> {
         });
     }
 
-    /// Draws "of 19 models, first", or only "of 19 models" in a narrow panel.
+    /// Draws "of 19 models, as a first step", or only "of 19 models" in a narrow panel.
     fn note_ui(&self, ui: &mut Ui, palette: &Palette) {
         let fits = text_width(ui, self.note, small()) <= ui.available_width();
         let shown = if fits {

@@ -124,7 +124,7 @@ fn recent_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         let response = ui
             .add_enabled(!file.missing, button)
             .on_hover_text(&file.folder)
-            .on_disabled_hover_text(format!("No longer in {}", file.folder));
+            .on_disabled_hover_text(format!("File not found in {}", file.folder));
         if response.clicked() {
             commands.push(FileCommand::Open(file.path.clone()).into());
             ui.close();
@@ -261,7 +261,7 @@ fn bar_buttons(bar: &Bar) -> Vec<(&'static str, Command)> {
                 "Copy this message",
                 Command::Output(OutputCommand::CopyText(sentence.clone())),
             ),
-            ("Put away", close),
+            ("Close message", close),
         ],
         Bar::Recovery { offer, .. } => vec![
             (
@@ -276,9 +276,12 @@ fn bar_buttons(bar: &Bar) -> Vec<(&'static str, Command)> {
         ],
         Bar::Changed { .. } => vec![
             ("Reload", Command::File(FileCommand::Reload)),
-            ("Keep what is open", Command::File(FileCommand::KeepOpen)),
+            (
+                "Keep the open dataset",
+                Command::File(FileCommand::KeepOpen),
+            ),
         ],
-        Bar::Differences { .. } => vec![("Put the list away", close)],
+        Bar::Differences { .. } => vec![("Close list", close)],
     }
 }
 

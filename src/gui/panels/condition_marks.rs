@@ -98,9 +98,9 @@ impl Marks {
     pub(super) fn menu_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let condition = self.condition;
         let hold_out = if self.held_out {
-            "No longer hold out"
+            "Stop holding out"
         } else {
-            "Hold out, to judge the schedule"
+            "Hold out to validate the schedule"
         };
         let schedule = if self.left_out {
             "Include in the schedule"
@@ -148,7 +148,10 @@ impl Marks {
             ui.label(tasks.join("; "));
         }
         if self.held_out {
-            ui.label("Held out: analysed, and used to judge the schedule; right-click to end");
+            ui.label(
+                "Held out: analysed, but used only to validate the schedule; right-click to \
+                end",
+            );
         } else if self.left_out {
             ui.label("Left out of the schedule; right-click to include");
         }

@@ -122,7 +122,7 @@ fn pin_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
     );
     let response = named(response, Role::Button, "Show the left panel");
     response
-        .on_hover_text("Conditions with their map and models beside the plots (Ctrl+B)")
+        .on_hover_text("Shows conditions, cost map and models beside the plots (Ctrl+B)")
         .asks(LayoutCommand::ShowLeft(true), commands);
 }
 
@@ -521,7 +521,7 @@ fn cost_words(
         let responses = column.pairs.len();
         return format!(
             "{responses} responses not held, condition {condition}: mean J of magnitude \
-             {magnitude}, of phase {phase}; most: {name}"
+            {magnitude}, of phase {phase}; largest: {name}"
         );
     }
     format!("{name} of condition {condition}: J of magnitude {magnitude}, of phase {phase}")

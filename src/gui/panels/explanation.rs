@@ -129,7 +129,7 @@ fn derivation_ui(ui: &mut Ui, found: &Derivation, palette: &Palette, commands: &
             }
         });
     ui.add_space(4.0);
-    ui.label(palette.small("It rests on"));
+    ui.label(palette.small("Based on"));
     for part in &found.rests_on {
         ui.label(RichText::new(part).size(SMALL_SIZE));
     }
@@ -155,7 +155,7 @@ fn toggle_costs_ui(ui: &mut Ui, state: &State, asked: &ExplainTarget, palette: &
     };
     if !costs.is_empty() {
         ui.add_space(4.0);
-        ui.label(palette.small("Cost of holding or releasing it"));
+        ui.label(palette.small("Cost of holding or releasing this response"));
     }
     for cost in costs {
         ui.label(RichText::new(cost).size(SMALL_SIZE));
@@ -207,9 +207,9 @@ pub fn turn_entry(state: &State, channel: Channel, role: Option<SignRole>) -> (S
     let (inputs, outputs) = state.dataset().names_of_channels();
     let name = channel.name(&inputs, &outputs);
     let label = if role.is_some() {
-        format!("Turn {name}")
+        format!("Reverse sign of {name}")
     } else {
-        format!("Turn {name} back")
+        format!("Undo sign reversal of {name}")
     };
     (label, Edit::SetSign { channel, of: role }.into())
 }

@@ -388,7 +388,7 @@ impl<'a> Cell<'a> {
             commands.push(Edit::Hold(self.pair, is_on).into());
             ui.close();
         }
-        let fit = format!("Fit {} in the objective", self.name);
+        let fit = format!("Include {} in the objective", self.name);
         if let Some(is_on) = check_ui(ui, self.fitted, fit, "") {
             commands.push(Edit::Fit(self.pair, is_on).into());
             ui.close();
@@ -396,7 +396,7 @@ impl<'a> Cell<'a> {
         entries_ui(
             ui,
             [(
-                "Hold exactly the on-axis responses",
+                "Hold only the on-axis responses",
                 Edit::ConstrainOnAxis.into(),
             )],
             commands,

@@ -230,7 +230,7 @@ impl<'a> ModelRow<'a> {
             (decide, edit.into()),
             (ask, Command::Form(FormCommand::AskReason(id.clone()))),
             (
-                "Copy its name",
+                "Copy the name",
                 Command::Output(OutputCommand::CopyText(self.model.name.clone())),
             ),
         ];
@@ -460,7 +460,7 @@ impl<'a> ModelRow<'a> {
             rows.push(("discontinuity ratio", format!("{ratio:.3}{verdict}")));
         }
         if let Some(score) = self.score {
-            let words = format!("{score:.3} to the others that are kept");
+            let words = format!("{score:.3} to the other kept models");
             rows.push(("mean distance", words));
         }
         if let Some(why) = &self.set_aside {

@@ -196,7 +196,7 @@ fn rows_ui(
     if models.is_empty() {
         ui.add(
             egui::Label::new(
-                palette.small("No identified models yet: identify them from flight records"),
+                palette.small("No identified models yet; identify them from flight records"),
             )
             .wrap(),
         );

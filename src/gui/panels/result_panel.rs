@@ -97,7 +97,7 @@ fn proof_ui(
     let outcome = shown.gains.proof.outcome;
     let (words, color) = match outcome {
         Outcome::Proven { .. } => ("global optimum ✓", palette.dim_text),
-        Outcome::NotProven { .. } if is_proving => ("proof runs", palette.dim_text),
+        Outcome::NotProven { .. } if is_proving => ("proof running", palette.dim_text),
         Outcome::NotProven { .. } => ("not proven", palette.warning),
     };
     let place = painted_text(ui, row, -0.01, words, small(), color);

@@ -71,7 +71,7 @@ pub fn example_line_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Comman
         ui.spacing_mut().item_spacing.x = 6.0;
         ui.spacing_mut().button_padding = egui::Vec2::ZERO;
         ui.spacing_mut().interact_size.y = 16.0;
-        ui.label(palette.small("The example, simulated. Your own:"));
+        ui.label(palette.small("Simulated example. Your own data:"));
         for (place, way) in ways().into_iter().enumerate() {
             if place > 0 {
                 ui.label(palette.small("·"));
@@ -298,7 +298,7 @@ fn open_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec
         ui.add_space(8.0);
         ui.label(palette.small(
             "Left: remaining J of the held responses in each condition, magnitude and phase; pale \
-             is matched. Right: flight and the corrected model.",
+            means matched. Right: phases of the identified and the corrected model.",
         ));
         ui.add_space(12.0);
         ui.horizontal(|ui| {

@@ -60,7 +60,7 @@ fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut 
     let label = ui.label(text);
     if state.analysis().is_some() {
         let elapsed_ms = state.results.elapsed_ms;
-        label.on_hover_text(format!("The newest analysis took {elapsed_ms:.1} ms"));
+        label.on_hover_text(format!("The latest analysis took {elapsed_ms:.1} ms"));
     }
     let beside = words_beside(state, now);
     if let Some(words) = &beside {
@@ -180,25 +180,25 @@ fn background_words(background: &Background, records: &RecordsState) -> String {
     }
     if let Some((done, total)) = background.couplings {
         return format!(
-            "couplings without each condition, {} % …",
+            "couplings with each condition left out, {} % …",
             percent(done, total)
         );
     }
     if background.views > 0 {
-        "contents of the views …".to_owned()
+        "preparing the views …".to_owned()
     } else {
         "costs of holding and releasing …".to_owned()
     }
 }
 
-/// "identifying condition 10, 40 %, 2 more after it …".
+/// "identifying condition 10, 40 %, then 2 more …".
 fn identification_words(records: &RecordsState, percent: usize) -> String {
     let jobs = records.running.len();
     match records.under_way() {
         Some(job) if jobs >= 2 => {
             let condition = job.condition;
             let more = jobs - 1;
-            format!("identifying condition {condition}, {percent} %, {more} more after it …")
+            format!("identifying condition {condition}, {percent} %, then {more} more …")
         }
         _ => format!("identifying, {percent} % …"),
     }

@@ -119,7 +119,7 @@ impl VerdictRow {
         let here = Self::count_text(self.here);
         let everywhere = Self::count_text(self.everywhere);
         format!(
-            "{}: {here} {}, of all conditions {everywhere}",
+            "{}: {here} {}, in all conditions {everywhere}",
             self.name, self.words
         )
     }
@@ -458,7 +458,7 @@ mod tests {
     fn suggested_models_are_to_be_rejected_before_anything_else() {
         let verdict = Verdict::new(&state_of(&[]));
         assert_eq!(labels(&verdict), ["Reject 3 suggested"]);
-        assert_eq!(verdict.note, "of 19 models, first");
+        assert_eq!(verdict.note, "of 19 models, as a first step");
     }
 
     #[test]

@@ -377,7 +377,8 @@ fn no_samples(whole: &LaidOutRecord, part_s: [f64; 2]) -> String {
     if let Some(span_s) = whole.span_s() {
         let [first, last] = span_s.map(|time_s| telling(time_s, 2));
         message.push_str(&format!(
-            "; it runs from {first} s to {last} s (+{from} +{to} counts from its start)"
+            "; the record runs from {first} s to {last} s (write +{from} and +{to} to count from \
+            its start)"
         ));
     }
     message

@@ -312,7 +312,7 @@ fn tick_width(ui: &Ui, text: &str, palette: &Palette) -> f32 {
     galley.size().x
 }
 
-/// Adopts the ranges after a gesture: the wheel zooms about the pointer, dragging pans.
+/// Updates the visible ranges after a gesture: the wheel zooms about the pointer, dragging pans.
 fn navigate(panel: &Panel, response: &Response, transform: &PlotTransform, view: &mut PanelView) {
     let whole = whole(panel);
     let limits = zoom_limits(panel);

@@ -31,7 +31,7 @@ pub(super) enum Gestures {
     Reported,
     /// None; only clicks are passed to the owner.
     Clicks,
-    /// Dragging pans; pinching, and dragging an axis, zoom.
+    /// Dragging pans; pinching and dragging along an axis zoom.
     PanAndZoom,
     /// Like [`Self::PanAndZoom`], but the ranges follow the data until a gesture changes them;
     /// after a double click they follow the data again.

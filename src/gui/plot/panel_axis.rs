@@ -80,7 +80,7 @@ impl PanelAxis {
         }
     }
 
-    /// Returns the appearance of the axis, if it is drawn.
+    /// Returns the appearance of the axis; empty if the axis is not drawn.
     pub(super) fn hints<'a>(&self, side: Axis, palette: &Palette) -> Vec<AxisHints<'a>> {
         if !self.is_drawn {
             return Vec::new();

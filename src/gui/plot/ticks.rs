@@ -16,14 +16,14 @@ const LABELLED: f64 = 100.0;
 /// Nominal distance between minor marks \[pt\].
 const MINOR: f64 = 25.0;
 
-/// `grid_spacing` with which egui_plot draws marks at the nominal distances in full and half
-/// strength.
+/// Value of `grid_spacing` for which egui_plot draws marks at the distance [`LABELLED`] in full
+/// strength and marks at the distance [`MINOR`] in half strength.
 pub(super) const GRID_SPACING: Rangef = Rangef {
     min: 1.0,
     max: 100.0,
 };
-/// `label_spacing` with which egui_plot labels labelled marks in full strength, and minor marks not
-/// at all.
+/// Value of `label_spacing` for which egui_plot labels marks at the distance [`LABELLED`] in full
+/// strength, and marks at the distance [`MINOR`] not at all.
 pub(super) const LABEL_SPACING: Rangef = Rangef {
     min: 50.0,
     max: 51.0,

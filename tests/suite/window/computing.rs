@@ -127,7 +127,7 @@ fn a_panic_while_computing_is_told_with_what_to_send_and_the_study_stays() {
         3.0,
         "and edited, with a new engine"
     );
-    click(&mut window, "Put away");
+    click(&mut window, "Close message");
     assert!(
         window
             .query_by_label_contains("A fault in the program")

@@ -414,7 +414,7 @@ fn the_values_of_every_role_at_the_cursor_are_listed_and_two_marks_show_what_cha
         pinned.len() == 2 && (pinned[1] / middle - 1.0).abs() < 1e-9,
         "{pinned:?} {middle}"
     );
-    choose_of_curves(&mut window, "List no values at the cursor");
+    choose_of_curves(&mut window, "Hide the values at the cursor");
     assert!(window.query_by_label_contains("Δ corrected: ").is_none());
 }
 
@@ -464,10 +464,10 @@ fn a_model_is_rejected_for_a_reason_in_words() {
         window.run_steps(1);
     }
     window.run_steps(2);
-    window.get_by_label("Reason of the rejection").focus();
+    window.get_by_label("Rejection reason").focus();
     window.run_steps(2);
     window
-        .get_by_label("Reason of the rejection")
+        .get_by_label("Rejection reason")
         .type_text("a step near this trim");
     window.run_steps(2);
     click(&mut window, "Reject with reason");

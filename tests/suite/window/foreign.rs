@@ -77,7 +77,7 @@ fn a_foreign_tree_with_a_turned_channel_and_inches_is_carried_to_corrected_model
     );
     window.get_by_label("its sign seems reversed");
     let before = cost(&window);
-    click(&mut window, "Turn NZ");
+    click(&mut window, "Reverse sign of NZ");
     assert_eq!(doubted(&window), Vec::<String>::new());
     // Half a turn alone is a J of 20 * 0.0175 * 180^2.
     assert!(

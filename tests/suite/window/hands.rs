@@ -45,7 +45,7 @@ fn ask(window: &mut Window, entry: &str, expected: f64) {
         found.title,
         found.value
     );
-    window.get_by_label_contains("It rests on");
+    window.get_by_label_contains("Based on");
     window.key_press(Key::Escape);
     window.run_steps(3);
     assert_eq!(

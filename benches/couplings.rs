@@ -1,7 +1,9 @@
-//! `cargo bench --bench couplings`: the joint fit of mixing and feedback, what depends on it, and what judges it.
+//! `cargo bench --bench couplings`: the joint fit of mixing and feedback, the results that depend
+//! on it, and the assessment of its benefit.
 //!
-//! Figures to reach, two cores, 6 x 4 responses at 200 frequencies in 11 conditions: a fit of five solves <= 60 ms, what depends on it
-//! <= 5 ms more, a drag of alpha as without couplings.
+//! Targets on two cores, for 6 x 4 responses at 200 frequencies in 11 conditions: 60 ms for a fit
+//! with five solves; at most 5 ms more for the dependent results; after a change of alpha, the same
+//! time as without couplings.
 
 use std::hint::black_box;
 use std::path::Path;
@@ -84,7 +86,7 @@ fn live_loop(criterion: &mut Criterion) {
             .apply(&setting::ALPHA_GAIN.to(1.0 + 1e-6 * turn))
             .expect("within its range");
     });
-    // The representative: with another one the fit is another.
+    // The representative is rejected, because the fit depends on it.
     let analysis = Engine::default()
         .analyze(&study(), &Unobserved)
         .expect("nobody stops it");
@@ -121,7 +123,7 @@ fn live_loop(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// The joint fit beside one that writes every row of its least-squares problem out.
+/// Compares the joint fit with a fit that stores every row of the least-squares problem.
 fn ratios(_: &mut Criterion) {
     let problem = problem();
     let unknowns = fit_couplings(&problem, &Sequential, &Unobserved)
@@ -143,7 +145,8 @@ fn ratios(_: &mut Criterion) {
     );
 }
 
-/// One solve: dense rows of each condition, their product with themselves, Cholesky's factors.
+/// Solves the dense least-squares problem once: product of the rows of each condition with their
+/// transpose, Cholesky decomposition.
 fn plain_solve(problem: &CouplingProblem, unknowns: &[Unknown]) -> Option<DMatrix<f64>> {
     let count = unknowns.len();
     let mut normal = DMatrix::zeros(count, count);

@@ -12,7 +12,7 @@ pub struct JudgingDisplay {
     pub mapped_cost: MappedCost,
     pub assessed: AssessedFigures,
     pub assessment_sorting: Sorting,
-    /// Whether responses to a test input are shown although there are flight records.
+    /// Whether responses to a test input are shown even if flight records are available.
     pub shows_test: bool,
     pub requirements_page: RequirementsPage,
     pub requirements_sorting: [Sorting; 2],

@@ -1,6 +1,6 @@
-//! Correction whose costs the condition map shows.
+//! Correction whose costs are shown in the condition map.
 
-/// Correction whose costs the map shows.
+/// Correction whose costs are shown in the condition map.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MappedCost {
     /// The uncorrected physics representative.

@@ -12,7 +12,7 @@ pub enum RecordsPage {
     Histories,
     /// Excitation of the inputs, and its highest frequency.
     Inputs,
-    /// The measured response with the models.
+    /// Measured frequency response, compared with the models.
     Response,
     /// Poles over the model order.
     Stabilisation,

@@ -31,13 +31,13 @@ pub struct Sureness<'a> {
 }
 
 impl<'a> Sureness<'a> {
-    /// Returns the error bar of a value, and its confidence level.
+    /// Returns the error bar of a value with its confidence level; `None` if it is not available.
     pub fn bar(&self, scalar: Scalar) -> Option<(&'a ErrorBar, f64)> {
         let uncertainty = self.uncertainty?;
         Some((uncertainty.bar(self.condition, scalar)?, uncertainty.level))
     }
 
-    /// Returns the half-width of a value's error bar: relative, or in \[s\] for delays.
+    /// Returns the half-width of a value's error bar: a ratio, or \[s\] for delays.
     pub fn half(&self, scalar: Scalar) -> Option<f64> {
         let (bar, level) = self.bar(scalar)?;
         bar.half_width(level)
@@ -60,29 +60,29 @@ pub struct FirstResult {
     pub outcome: Result<ConditionAnalysis, ConditionFailure>,
 }
 
-/// Work in progress, including the live analysis.
+/// Background work in progress, including the analysis of the current settings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Background {
-    /// Live analysis in progress: steps done, total.
+    /// Progress of the analysis of the current settings: steps done, total.
     pub analysis: Option<(usize, usize)>,
     /// Problems whose optimality proof is running or waiting.
     pub proofs: Vec<Arc<Problem>>,
-    /// Whether the costs of constraining and releasing are being computed.
+    /// Whether the costs of constraining and releasing responses are being computed.
     pub toggles: bool,
-    /// Curves in progress: models done, total.
+    /// Progress of the response curves: models done, total.
     pub curves: Option<(usize, usize)>,
-    /// Error bars in progress: steps done, total. Each model contributes its response, and the
+    /// Progress of the error bars: steps done, total. Each model contributes its response, and the
     /// analysis with this model as the representative.
     pub bars: Option<(usize, usize)>,
-    /// Responses to all records in progress: steps done, total.
+    /// Progress of the responses to all records: steps done, total.
     pub time_histories: Option<(usize, usize)>,
-    /// Couplings in progress: steps done, total.
+    /// Progress of the couplings: steps done, total.
     pub couplings: Option<(usize, usize)>,
     /// Number of jobs that the visible views wait for.
     pub views: usize,
-    /// Report in progress: conditions done, total.
+    /// Progress of the report: conditions done, total.
     pub report: Option<(usize, usize)>,
-    /// Identification in progress: parts done, total.
+    /// Progress of the identification: parts done, total.
     pub identification: Option<(usize, usize)>,
     /// Whether some work was stopped, by hand or by a fault.
     pub stopped: bool,
@@ -142,7 +142,7 @@ pub struct Results {
     pub requested: u64,
     /// Number of the request that produced the analysis.
     pub received: u64,
-    /// Time of the oldest unanswered request \[s, window clock\].
+    /// Time of the oldest request without a result \[s, window clock\].
     pub waiting_since: Option<f64>,
     /// Whether a frame with an analysis has been painted.
     pub is_painted: bool,

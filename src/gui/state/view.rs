@@ -41,16 +41,17 @@ impl ViewGroup {
     }
 }
 
-/// Plot between the side panels.
+/// Content shown between the side panels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum View {
     /// Response in focus: magnitude and phase.
     Bode,
-    /// Errors of the response in focus, as used by the fit.
+    /// Magnitude ratio and phase difference of the models in the response in focus, as used by the
+    /// fit.
     Error,
     /// Every response, in small plots.
     Overview,
-    /// A response in every condition.
+    /// The response in focus, in every condition.
     Across,
     /// Poles and modes of every model in the condition.
     Poles,
@@ -68,7 +69,8 @@ pub enum View {
     Requirements,
     /// Net gains over airspeed (Figures 6 and 7).
     NetGain,
-    /// Phase gained and price paid by delay or lead in each channel, up to ten times the band.
+    /// Phase change by delay or lead in each channel, and the gain that leads add above the band,
+    /// up to ten times the band.
     Leads,
     /// Flight records in the condition, and models identified from them.
     Records,
@@ -106,7 +108,7 @@ impl View {
         self.facts().name
     }
 
-    /// Returns the kind of figure on paper, if the view has one.
+    /// Returns the kind of exported figure, if the view has one.
     pub fn figure(self) -> Option<FigureKind> {
         self.facts().figure
     }
@@ -230,22 +232,22 @@ pub struct ViewFacts {
     pub name: &'static str,
     /// Purpose, in a sentence.
     pub purpose: &'static str,
-    /// Whether the view shows results of every condition. It then reports when these belong to
-    /// older settings.
+    /// Whether the view shows results of every condition. Such a view displays a notice while its
+    /// results belong to older settings.
     pub is_of_all_conditions: bool,
     pub group: ViewGroup,
     pub is_docked: bool,
-    /// Whether the view takes the space of the dock.
+    /// Whether the dock is hidden while this view is in front.
     pub takes_dock: bool,
     /// Heading in the dock, if longer than the tab text.
     pub long_name: Option<&'static str>,
-    /// Figure on paper. The variants have none and are saved as tables; for records, the identified
-    /// models are saved.
+    /// Kind of exported figure. The variants have none and are saved as tables; for records, the
+    /// identified models are saved.
     pub figure: Option<FigureKind>,
 }
 
 impl ViewFacts {
-    /// Properties of a view of the first group, to be completed by a name and a figure.
+    /// Default properties, in the first group; name and purpose must be added.
     const PLAIN: Self = Self {
         name: "",
         purpose: "",

@@ -27,7 +27,7 @@ use crate::gui::widgets::tables::{TableLook, table_ui};
 /// Minimum plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(190.0, 150.0);
 
-/// Draws the choices of the header, from right to left.
+/// Draws the selectors in the header, from right to left.
 pub fn assessment_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let shown = state.display.judging.assessed;
     let mut chosen = shown;

@@ -192,7 +192,7 @@ impl EvidencePage<'_> {
         sorting: &mut Sorting,
         commands: &mut Vec<Command>,
     ) {
-        /// Index of the column with the ratio to the expected difference.
+        /// Index of the column with the ratio of the difference to the expected difference.
         const RATIO: usize = 6;
         let (table, differences) = difference_table(state.dataset(), self.uncertainty);
         heading_ui(ui, &table.title);
@@ -232,7 +232,8 @@ impl EvidencePage<'_> {
         });
     }
 
-    /// Draws the errors of each form of the schedule.
+    /// Draws the root mean square error of each form of the schedule, in fitted and in left-out
+    /// conditions.
     fn forms_table_ui(
         &self,
         ui: &mut Ui,

@@ -168,7 +168,7 @@ impl SharesTable<'_> {
             });
     }
 
-    /// Returns a cell's colour: a warning outside the corridor, and for an opposite trend.
+    /// Returns a cell's colour: the warning colour outside the corridor, and for an opposite trend.
     fn color(&self, row: usize, column: usize) -> Option<Color32> {
         let cells = &self.table.rows[row];
         match column {

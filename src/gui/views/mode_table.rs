@@ -183,8 +183,8 @@ fn participation_words(mode: &Mode, model: &Model, most: usize) -> Option<String
 }
 
 /// Builds the mode table of the physics bundle: a row for each mode of the reference model,
-/// followed from model to model. Also returns, for each row, the first model in which the mode
-/// jumps.
+/// followed from model to model. Also returns, for each row, the first model whose pole is an
+/// outlier of the mode.
 fn modes_table(
     state: &State,
     modes: &ConditionModes,

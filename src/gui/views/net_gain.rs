@@ -28,7 +28,7 @@ use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
 /// Width of the controls in a single line \[pt\].
 pub const NET_GAIN_CONTROLS: f32 = 410.0;
 
-/// Describes the plots.
+/// Returns the description of the plots in the view's header.
 pub fn net_gain_words(state: &State) -> String {
     let level = 100.0 * state.study.settings.uncertainty.level;
     let bars = if state.display.gains.hide_bars {
@@ -42,7 +42,7 @@ pub fn net_gain_words(state: &State) -> String {
     )
 }
 
-/// Draws the controls of responses and schedule, from right to left.
+/// Draws the controls for responses and schedule, from right to left.
 pub fn net_gain_header_ui(
     ui: &mut Ui,
     state: &State,

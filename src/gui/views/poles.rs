@@ -222,7 +222,7 @@ impl FigureWords for PoleWords<'_> {
     }
 }
 
-/// Draws the mode table; a click isolates the first model in which the mode jumps.
+/// Draws the mode table; a click isolates the first model whose pole is an outlier of the mode.
 fn modes_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let CachedModes { table, jumping, .. } = &state.display.poles.modes;
     let look = TableLook {

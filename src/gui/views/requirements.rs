@@ -1,5 +1,5 @@
-//! Requirements beyond J as in a qualification, for physics, corrected, scheduled and identified
-//! models side by side (M17).
+//! Requirements in addition to J, as in a qualification, evaluated for the physics, corrected,
+//! scheduled and identified models side by side (M17).
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -152,8 +152,8 @@ pub fn requirements_view_ui(
     }
 }
 
-/// Draws the inputs of the bandwidth requirements: the sticks that command an attitude, and the
-/// engineer's levels.
+/// Draws the settings of the bandwidth requirements: which attitudes are commanded by a stick, and
+/// the engineer's levels.
 fn bandwidth_inputs_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         ui.label(palette.small("attitude command:"));
@@ -163,7 +163,7 @@ fn bandwidth_inputs_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: 
     });
 }
 
-/// Draws a check box for each attitude that a stick may command.
+/// Draws a check box for each attitude that may be commanded by a stick.
 fn attitude_commands_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let mut outputs = BTreeSet::new();
     for pair in state.dataset().measuring_pairs().marked() {
@@ -189,7 +189,7 @@ fn attitude_commands_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>)
     }
 }
 
-/// Draws the number of levels, and the buttons that remove the levels or read them from a file.
+/// Draws the number of level boundaries, and the buttons that remove them or read them from a file.
 fn levels_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let levels = state.study.requirements.levels.all().len();
     let text = if levels == 0 {
@@ -208,14 +208,15 @@ fn levels_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
     button_ui(ui, Button::new("Levels…").small(), hint, ask, commands);
 }
 
-/// View of available requirements.
+/// Context for drawing the computed requirements.
 struct RequirementsView<'a> {
     requirements: &'a Requirements,
     palette: &'a Palette,
 }
 
 impl RequirementsView<'_> {
-    /// Draws which results are missing, and the reservations about the others.
+    /// Draws a line for each kind of missing result, and the reservations about the available
+    /// results.
     fn reservations_ui(&self, ui: &mut Ui) {
         let mut lines = Vec::new();
         for missing in &self.requirements.missing {
@@ -237,7 +238,7 @@ impl RequirementsView<'_> {
         }
     }
 
-    /// Draws phase delay over bandwidth; a click shows the response in Bode.
+    /// Draws phase delay over bandwidth; a click on a mark shows the response in the Bode view.
     fn plots_ui(&self, ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
         let figure: Figure = figure_of(state, View::Requirements).unwrap_or_default();
         let pairs = bandwidth_pairs(self.requirements);

@@ -19,7 +19,7 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
 
-/// Scheduled conditions, and the evidence, in the same order.
+/// Evidence for each form of the schedule; its conditions are in the order of `conditions`.
 #[derive(Clone, Copy)]
 pub(super) struct ScheduleEvidence<'a> {
     pub(super) conditions: &'a [ConditionId],

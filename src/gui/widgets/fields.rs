@@ -71,8 +71,8 @@ pub fn entry_ui(ui: &mut Ui, name: &str, value: &str, hint: &str, width: f32) ->
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RefusedEntry(pub String);
 
-/// Like [`entry_ui`], for a number; refuses any other text with the reason. The inner `None` means
-/// that the field was emptied.
+/// Like [`entry_ui`], but for a number; refuses any other text with the reason. The inner `None`
+/// means that the field was emptied.
 pub fn number_entry_ui<C: From<RefusedEntry>>(
     ui: &mut Ui,
     name: &str,
@@ -111,7 +111,7 @@ const PASSES_AFTER_ESCAPE: u64 = 2;
 pub struct NumberField<'a> {
     /// Accessible name, unique in the window.
     pub name: &'a str,
-    /// Meaning, with the unit.
+    /// Tooltip: meaning and unit.
     pub hint: &'a str,
     /// Unit of the number; empty if dimensionless.
     pub unit: &'static str,
@@ -187,7 +187,7 @@ impl<'a> NumberField<'a> {
         entered
     }
 
-    /// Returns the key under which this program stores `item` for this field.
+    /// Returns the key of `item`, a value that this field keeps in egui's memory between frames.
     fn key(&self, item: &str) -> Id {
         Id::unique((item, self.name))
     }

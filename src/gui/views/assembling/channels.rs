@@ -17,7 +17,7 @@ const SIDES: [ChannelSide; 2] = [ChannelSide::Input, ChannelSide::Output];
 enum ChannelField {
     Name,
     Unit,
-    /// Unit in the files, used where a file names none.
+    /// Unit for files that do not name one.
     UnitInFiles,
 }
 
@@ -40,7 +40,7 @@ impl ChannelField {
         }
     }
 
-    /// Returns the width \[pt\].
+    /// Returns the width of the text field \[pt\].
     fn width(self) -> f32 {
         match self {
             Self::Name => 90.0,

@@ -8,7 +8,7 @@ use crate::gui::widgets::controls::{entry_ui, named};
 use crate::gui::widgets::palette::Palette;
 
 const HEADING_WIDTH: f32 = 180.0;
-/// Maximum number of displayed columns; of further columns only the number is given.
+/// Maximum number of displayed columns; a note gives the number of further columns.
 const MOST_COLUMNS: usize = 60;
 
 /// Shows a field for each column heading; after a change the file is read again.
@@ -46,7 +46,7 @@ pub(super) fn column_headings_ui(
     }
 }
 
-/// Shows buttons with the possible units if a column's unit is unknown.
+/// Shows buttons with the possible units of a column whose unit is unknown.
 fn possible_units_ui(
     ui: &mut Ui,
     assembly: &AssemblyState,

@@ -46,7 +46,7 @@ fn name_and_band_ui(
     }
 }
 
-/// Draws a field for a frequency \[rad/s\]; returns a typed value.
+/// Draws a field for a band limit \[rad/s\]; returns a newly typed value.
 fn band_end_ui(ui: &mut Ui, name: &str, value: f64, commands: &mut Vec<Command>) -> Option<f64> {
     number_entry_ui(ui, name, &number(value), "rad/s", 50.0, commands).flatten()
 }

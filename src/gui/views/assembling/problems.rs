@@ -8,9 +8,10 @@ use crate::gui::commands::command::Command;
 use crate::gui::state::assembling::AssemblyState;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Maximum number of displayed lines; of further lines only the number is given.
+/// Maximum number of displayed lines; a note gives the number of further lines.
 const MOST_LINES: usize = 200;
-/// Maximum number of displayed tables without models; further tables are shown once these are read.
+/// Maximum number of displayed tables without models. Further tables are shown when these have been
+/// read as models.
 const MOST_TABLES: usize = 5;
 
 /// Shows a line for each incomplete item; a click displays its model.

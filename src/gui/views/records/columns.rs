@@ -77,7 +77,7 @@ pub(super) fn columns_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command
         });
 }
 
-/// Shows the time column and its factor to seconds.
+/// Shows the time column and its conversion factor to seconds.
 fn time_row_ui(ui: &mut Ui, record: usize, row: &LaidOutRecord, commands: &mut Vec<Command>) {
     ui.label("time [s]");
     let (chosen, seconds) = match row.layout.time {
@@ -168,8 +168,8 @@ impl ChannelRow<'_> {
         }
     }
 
-    /// Shows the factor to the dataset's unit. If the unit in the file is unknown, shows the
-    /// possible units with none selected.
+    /// Shows the conversion factor to the dataset's unit. If the unit in the file is unknown, shows
+    /// the possible units with none selected.
     fn factor_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let name = &self.signal.name;
         let open_units = match self.column_use {

@@ -44,7 +44,8 @@ pub(super) fn stabilisation_ui(ui: &mut Ui, page: Page<'_>) {
     fill_with_chart(ui, &chart, palette);
 }
 
-/// Returns the nonzero poles that agree with a pole of lower order, or those that do not.
+/// Returns the nonzero poles that agree with a pole of the lower-order model, or the poles that do
+/// not.
 fn stabilisation_marks(found: &Identification, is_stable: bool, palette: &Palette) -> ChartMarks {
     let mut points = Vec::new();
     for point in &found.stabilisation {

@@ -87,7 +87,7 @@ fn note_ui(ui: &mut Ui, text: String, color: Color32) {
     ui.add(Label::new(text).wrap());
 }
 
-/// Shows the check boxes that use a record and hold it out.
+/// Draws two check boxes: whether a record is used, and whether it is held out for validation.
 fn use_ui(ui: &mut Ui, page: Page<'_>, index: usize, commands: &mut Vec<Command>) {
     let row = &page.records.rows[index];
     let name = &row.table.name;
@@ -150,7 +150,7 @@ fn name_ui(ui: &mut Ui, page: Page<'_>, index: usize, width: f32, commands: &mut
     response.asks(RecordsCommand::Choose(index), commands);
 }
 
-/// Shows the fit cost of a record, and a sign if cautions concern the record.
+/// Shows the fit cost of a record, and a warning sign if cautions concern the record.
 fn fit_ui(ui: &mut Ui, page: Page<'_>, index: usize) {
     let Page {
         records, palette, ..
@@ -194,7 +194,8 @@ pub(super) fn cost_text(cost: f64, palette: &Palette) -> RichText {
     RichText::new(format!("{cost:.2}")).color(color)
 }
 
-/// Selects a record's manoeuvre, and removes a part.
+/// Draws the selector of a record's manoeuvre or, for a part of a record, the button that removes
+/// the part.
 fn kind_ui(
     ui: &mut Ui,
     index: usize,
@@ -216,8 +217,8 @@ fn kind_ui(
     });
 }
 
-/// Describes problems; several missing columns are reported in one sentence, as are several unknown
-/// units.
+/// Describes problems of a record; several missing columns share one sentence, as do several
+/// unknown units.
 fn problem_texts(problems: &[LayoutProblem]) -> Vec<String> {
     let mut missing = ChannelProblems::default();
     let mut without_unit = ChannelProblems::default();
@@ -247,7 +248,7 @@ fn problem_texts(problems: &[LayoutProblem]) -> Vec<String> {
     texts
 }
 
-/// Problems that are reported in one sentence.
+/// Problems of the same kind, which share one sentence.
 #[derive(Default)]
 struct ChannelProblems<'a> {
     channels: Vec<&'a str>,
@@ -263,7 +264,8 @@ impl<'a> ChannelProblems<'a> {
         }
     }
 
-    /// Returns the problem's own message, or `shared` with several channel names.
+    /// Returns the message of a single problem, or `shared` applied to the names of several
+    /// channels.
     fn text(self, shared: impl FnOnce(String) -> String) -> Option<String> {
         if self.channels.len() > 1 {
             Some(shared(self.channels.join(", ")))

@@ -21,7 +21,7 @@ pub(super) struct PossibleReference {
     pub(super) is_suggested: bool,
 }
 
-/// Selects the columns with recorded references.
+/// Draws the selector of the columns that hold recorded references.
 pub(super) fn references_ui(
     ui: &mut Ui,
     page: Page<'_>,
@@ -56,7 +56,8 @@ pub(super) fn references_ui(
     ui.end_row();
 }
 
-/// Lists the chosen references that are not columns, then every possible column.
+/// Lists the chosen references that are not columns of the first used record, then every possible
+/// column.
 fn reference_list_ui(ui: &mut Ui, records: &ConditionRecords, commands: &mut Vec<Command>) {
     let possible = possible_references(ui, records);
     for name in &records.references {

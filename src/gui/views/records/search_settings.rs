@@ -38,7 +38,7 @@ impl SearchList {
         }
     }
 
-    /// Describes the values searched if none are given.
+    /// Describes the values that are searched if the field is empty.
     fn default_values(self) -> &'static str {
         match self {
             Self::Orders => "from the records: 1 to 24",
@@ -70,9 +70,10 @@ impl SearchList {
     }
 }
 
-/// Shows the settings under a heading; with an empty field, the identification chooses the values.
+/// Draws the settings in a section that can be folded; with an empty field, the identification
+/// chooses the values.
 ///
-/// Opens the heading and focuses the field named `focused`, once.
+/// Unfolds the section once to focus the field named `focused`.
 pub(super) fn search_settings_ui(
     ui: &mut Ui,
     page: Page<'_>,

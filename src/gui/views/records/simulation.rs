@@ -182,7 +182,7 @@ fn state_space(state: &State, records: &ConditionRecords, model: TimeModel) -> O
     }
 }
 
-/// Selects the models drawn beside the record.
+/// Draws the selector of the models that are compared with the record.
 pub(super) fn time_models_ui(
     ui: &mut Ui,
     state: &State,
@@ -210,7 +210,7 @@ pub(super) fn time_models_ui(
 /// Limit of Theil's coefficient below which a model is good (M14, section 6).
 const GOOD_THEIL: f64 = 0.25;
 
-/// Shows fit tables: by record, by output, and in time.
+/// Shows the fit in tables: by record, by output, and in the time domain.
 pub(super) fn fit_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     ScrollArea::vertical()
         .id_salt("fit")

@@ -50,7 +50,7 @@ fn add_ui(ui: &mut Ui, path: &mut String, commands: &mut Vec<Command>) {
     });
 }
 
-/// Asks once about the missing units of all conditions.
+/// Shows a question about the missing units of all conditions, with buttons that set them.
 fn open_units_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let Some(open) = state.records.open_units() else {
         return;

@@ -25,7 +25,7 @@ struct PaintedSpectrogram {
     spectrogram: Spectrogram,
 }
 
-/// Selects the input, or none.
+/// Draws the selector of the input whose spectrogram is shown; no input is an option.
 pub(super) fn spectrogram_choice_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let state = page.state;
     ui.label(page.palette.small("spectrogram of"));

@@ -196,7 +196,7 @@ fn ratios(_: &mut Criterion) {
         Engine::with_executor(Box::new(Pool)).analyze(&study, &Unobserved)
     });
     println!(
-        "everything anew: one core takes {:.2} times as long as all",
+        "without cached results: one core takes {:.2} times as long as all cores",
         anew.div_duration_f64(together)
     );
     let mut engine = Engine::default();
@@ -210,7 +210,7 @@ fn ratios(_: &mut Criterion) {
         engine.analyze(&dragged, &Unobserved)
     });
     println!(
-        "alpha dragged: everything anew would take {:.0} times as long",
+        "alpha dragged: without cached results the analysis would take {:.0} times as long",
         anew.div_duration_f64(drag)
     );
 }
@@ -276,8 +276,8 @@ fn replaced_model(_: &mut Criterion) {
         replaced = replaced.min(shortest(1, || engine.analyze(&after, &Unobserved)));
     }
     println!(
-        "one of {MODELS} models replaced, one core: analysis {replaced:.2?}, of which everything anew takes {:.1} times as \
-         long; curves for drawing (with the hashes of all models) {drawn:.2?}, anew {:.1} times as long",
+        "one of {MODELS} models replaced, one core: analysis {replaced:.2?} (without cached results {:.1} times as \
+         long); curves for drawing, with the hashes of all models, {drawn:.2?} (without cached results {:.1} times as long)",
         anew.div_duration_f64(replaced),
         drawn_anew.div_duration_f64(drawn)
     );

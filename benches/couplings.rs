@@ -104,7 +104,7 @@ fn live_loop(criterion: &mut Criterion) {
         study.apply(&edit).expect("others are kept");
     };
     again("model rejected, fitted again", &rejected);
-    again("the same without couplings", &|study, turn| {
+    again("model rejected, without couplings", &|study, turn| {
         study
             .apply(&setting::COUPLINGS.to(CouplingCorrection::None))
             .expect("a choice");
@@ -112,7 +112,7 @@ fn live_loop(criterion: &mut Criterion) {
     });
     group.sample_size(10);
     group.bench_function(
-        "what they are worth, everything anew, all cores",
+        "assessment of their benefit, nothing cached, all cores",
         |bencher| {
             let study = study();
             let engine = || Engine::with_executor(Box::new(Pool));
@@ -138,7 +138,7 @@ fn ratios(_: &mut Criterion) {
     let products = (problem.options.solves * rows * unknowns.len() * unknowns.len()) as f64;
     println!(
         "joint fit of {} unknowns, one core: {ours:.2?}; a plain assembly of its {rows} rows takes {:.1} times as long ({:.1} G \
-         multiply-adds, of which the fit's blocks take a part)",
+         multiply-adds, more than the block structure of the fit requires)",
         unknowns.len(),
         plain.div_duration_f64(ours),
         products / 1e9

@@ -99,7 +99,7 @@ fn main() {
         let ratio = found.held_out_cost.unwrap_or(f64::NAN) / found.cost;
         worst = worst.max(ratio);
         println!(
-            "condition {:2}: order {:2}, J/dof {:.3}, held out {ratio:.2} times that; first model {:4.0} ms, everything {ms:4.0} ms",
+            "condition {:2}: order {:2}, J/dof {:.3}, held-out cost {ratio:.2} times as large; first model {:4.0} ms, total {ms:4.0} ms",
             condition.id(),
             found.refined.order().unwrap_or_default(),
             found.cost,

@@ -142,6 +142,6 @@ fn main() {
         dense.as_secs_f64() / together.as_secs_f64()
     );
     if let Some(memory) = peak_memory_mb() {
-        println!("memory: {memory:.0} MB at most, two sets of responses and the models among them");
+        println!("peak memory: {memory:.0} MB, including two sets of responses and the models");
     }
 }

@@ -19,8 +19,8 @@ impl MappedCost {
     /// Returns the menu text.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Before => "before any correction",
-            Self::Own => "each optimum",
+            Self::Before => "the uncorrected model",
+            Self::Own => "each condition's optimum",
             Self::Scheduled => "the schedule",
         }
     }

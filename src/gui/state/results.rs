@@ -179,7 +179,7 @@ impl Results {
         match self.background.bars {
             Some(progress) if !self.is_behind() => bar_words(progress),
             None if self.background.stopped => {
-                "Error bars: stopped; Compute, below, continues them".to_owned()
+                "Error bars: stopped. Choose Compute, below, to continue".to_owned()
             }
             _ => self.absence().to_owned(),
         }

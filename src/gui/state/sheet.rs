@@ -19,7 +19,7 @@ impl Sheet {
     /// Returns the heading, which is also the accessible name.
     pub fn title(self) -> &'static str {
         match self {
-            Self::Reasons => "Why the result is so",
+            Self::Reasons => "Reasons for the result",
             Self::Models => "Physics models",
             Self::Identified => "Identified models",
             Self::Derivation => QUESTION,

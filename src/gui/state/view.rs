@@ -124,13 +124,14 @@ impl View {
             },
             Self::Error => ViewFacts {
                 name: "Error",
-                purpose: "Data of the fit: magnitude ratio and phase difference of the response in focus, with G, D and bounds",
+                purpose: "Magnitude ratio and phase difference between identified and physics \
+                    models in the response in focus, with G, D and bounds",
                 figure: Some(FigureKind::Error),
                 ..ViewFacts::PLAIN
             },
             Self::Overview => ViewFacts {
                 name: "Overview",
-                purpose: "Every response of the condition, small",
+                purpose: "Small plots of all responses of the condition",
                 figure: Some(FigureKind::Overview),
                 ..ViewFacts::PLAIN
             },
@@ -165,7 +166,7 @@ impl View {
             },
             Self::Channels => ViewFacts {
                 name: "Channels",
-                purpose: "Gain of every channel against airspeed",
+                purpose: "Gain or delay of every channel over airspeed",
                 group: ViewGroup::Schedule,
                 is_of_all_conditions: true,
                 figure: Some(FigureKind::Channels),
@@ -190,13 +191,14 @@ impl View {
             },
             Self::Compare => ViewFacts {
                 name: "Compare",
-                purpose: "Variants: decisions kept under names, beside the present decisions",
+                purpose: "Variants (named sets of decisions) compared with the current decisions",
                 group: ViewGroup::Judge,
                 ..ViewFacts::PLAIN
             },
             Self::Requirements => ViewFacts {
                 name: "Requirements",
-                purpose: "Requirements of a qualification: bandwidth and phase delay, modes, summary costs",
+                purpose: "Requirements as in a qualification: bandwidth, phase delay and modes, \
+                    with a summary of J",
                 group: ViewGroup::Judge,
                 takes_dock: true,
                 is_of_all_conditions: true,
@@ -205,7 +207,8 @@ impl View {
             },
             Self::Leads => ViewFacts {
                 name: "Leads",
-                purpose: "Effect of the leads in each channel, and their price above the band",
+                purpose: "Effect of the leads in each channel, and the gain that they add above \
+                    the band",
                 group: ViewGroup::Schedule,
                 is_docked: true,
                 figure: Some(FigureKind::Leads),
@@ -213,7 +216,7 @@ impl View {
             },
             Self::NetGain => ViewFacts {
                 name: "Net gain",
-                purpose: "Net gain of the held responses against airspeed, with the schedule",
+                purpose: "Net gain of the selected responses over airspeed, with the schedule",
                 group: ViewGroup::Schedule,
                 is_docked: true,
                 long_name: Some("Net gain over airspeed"),

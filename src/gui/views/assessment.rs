@@ -126,7 +126,7 @@ fn pairs_choice_ui(ui: &mut Ui, chosen: &mut AssessedFigures) {
         (
             AssessedPairs::Focused,
             "in focus",
-            "The response chosen in the matrix",
+            "Response selected in the matrix",
         ),
         (AssessedPairs::All, "all", "Every response"),
     ];
@@ -177,7 +177,7 @@ pub fn assessment_view_ui(
         .iter()
         .map(|&pair| Plot::new(state.dataset().pair_name(pair)).panel(plots.panel(pair)));
     let figure = Figure::default().plots(panels);
-    let message = "No response of this kind: choose others above";
+    let message = "No response of this kind: choose another kind above";
     let scene = FigureScene {
         selected: Some(MarkId::Condition(state.condition().id())),
         columns: &columns,

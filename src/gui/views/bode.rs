@@ -300,7 +300,10 @@ pub fn error_message(state: &State, pair: Pair) -> String {
             )
         }
         Some(_) => {
-            format!("{name} is not compared: a representative has no such response in the band")
+            format!(
+                "{name} is not compared: a representative has no values of this response \
+                within the band"
+            )
         }
         None => match state.curves_message() {
             Some(message) => message.to_owned(),

@@ -261,7 +261,7 @@ impl CouplingsWords<'_> {
         if let Some(condition) = self.assessment.conditions.get(&self.state.condition().id())
             && let Err(why) = &condition.poles
         {
-            let words = format!("Poles of this condition: {why}");
+            let words = format!("No poles for this condition: {why}");
             ui.add(Label::new(self.palette.dim(words)).wrap());
         }
     }
@@ -315,12 +315,12 @@ impl CouplingsWords<'_> {
         let dataset = self.state.dataset();
         let columns = [
             "condition",
-            "least singular value",
+            "minimum singular value",
             "at [rad/s]",
-            "above the band [dB]",
+            "change above the band [dB]",
             "response",
         ];
-        let mut table = Table::new("The loop of each condition", columns);
+        let mut table = Table::new("Coupling loop in each condition", columns);
         for (id, condition) in &self.assessment.conditions {
             let mut least = String::new();
             let mut at = String::new();

@@ -107,7 +107,8 @@ impl EvidencePage<'_> {
                 .any(|test| test.variable == variable && test.needed);
             if !is_needed {
                 ui.label(self.palette.small_warning(format!(
-                    "The schedule depends on airspeed and {variable}, but no response is found to need {variable}"
+                    "The schedule depends on airspeed and {variable}, but no response depends \
+                    significantly on {variable}"
                 )));
             }
         }

@@ -54,7 +54,8 @@ pub fn leads_view_ui(
     let message = match state.study.settings.phase {
         PhaseCorrection::Lead => state.results.absence(),
         _ => {
-            "No leads: the phase is corrected by delays, or not at all (to change: Settings, phase, \"delay or lead\")"
+            "No leads: the phase is corrected by delays, or not at all. To use leads, choose \
+            Settings, phase, \"delay or lead\""
         }
     };
     let mut view = state
@@ -101,7 +102,7 @@ pub fn leads_table(state: &State) -> Option<Table> {
         "channel".to_owned(),
         "lead [ms]".to_owned(),
         format!("phase at {} [deg]", number(top)),
-        "as if servo [rad/s]".to_owned(),
+        "replaced servo [rad/s]".to_owned(),
         format!("gain at {} [dB]", number(above)),
     ];
     let mut table = Table::new(title, columns);

@@ -203,7 +203,7 @@ fn modes_table(
         "Im λ",
         "spread [rad/s]",
         "states",
-        "outlying at",
+        "outlier in",
     ];
     let mut table = Table::new(title, columns);
     let mut jumping = Vec::new();

@@ -152,8 +152,8 @@ pub fn overview_limits_ui(
         ui.label(palette.small("%, phase delay ±"));
         let phase_delay = LimitField::in_ms("Limit of the phase delay");
         phase_delay.ui(ui, &mut changed.phase_delay_s, commands);
-        ui.label(palette.small("ms, time inside at least"));
-        let share_inside = LimitField::in_percent("Least time inside");
+        ui.label(palette.small("ms, time within tolerance at least"));
+        let share_inside = LimitField::in_percent("Minimum time within tolerance");
         share_inside.ui(ui, &mut changed.share_inside, commands);
         ui.label(palette.small("%"));
     });

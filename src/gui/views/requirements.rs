@@ -42,7 +42,7 @@ use crate::gui::widgets::tables::{TableClick, TableLook, table_grid_ui};
 
 /// Text above every page.
 pub(super) const NO_QUALIFICATION: &str =
-    "Models, not aircraft: these numbers are no qualification (docs/requirements.md)";
+    "These values describe models and do not replace a qualification (docs/requirements.md)";
 /// Minimum plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(220.0, 150.0);
 /// Initial table height, as a share of the view's height.
@@ -55,7 +55,8 @@ pub fn requirements_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Com
         (
             RequirementsPage::Summary,
             "summary",
-            "Corrected against identified models: mean J, shares inside the MUAD envelopes, errors over time",
+            "Corrected models compared with identified models: mean J, shares of the band inside \
+            the MUAD envelopes, deviations over time",
         ),
         (
             RequirementsPage::Modes,
@@ -248,7 +249,8 @@ impl RequirementsView<'_> {
             .figures
             .remove(&View::Requirements)
             .unwrap_or_default();
-        let message = "No on-axis response is an angle or its rate, or none crosses −135° and −180°: the table lists the reasons";
+        let message = "No on-axis response is an angle or an angular rate, or none crosses −135° \
+            and −180°. The table lists the reasons";
         let words = BandwidthWords {
             state,
             requirements: self.requirements,
@@ -452,7 +454,7 @@ impl FigureWords for BandwidthWords<'_> {
                 ));
             }
         }
-        words.push("click: mark in Bode".to_owned());
+        words.push("click: show in Bode".to_owned());
         Some(words.join(" · "))
     }
 }

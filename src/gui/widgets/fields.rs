@@ -247,7 +247,7 @@ impl<'a> NumberField<'a> {
     }
 
     /// Returns the refusal, for example "Band from: expected a number from 0.0001 to 12 rad/s,
-    /// found 30; it stays 0.500 rad/s."
+    /// found 30; 0.500 rad/s is kept."
     fn refusal(&self, found: &str, before: f64) -> String {
         let kind = if self.is_whole {
             "a whole number"
@@ -263,7 +263,8 @@ impl<'a> NumberField<'a> {
         };
         let stays = number_text(self.digits, before);
         format!(
-            "{}: expected {kind} from {least} to {most}{unit}, found {found}; it stays {stays}{unit}",
+            "{}: expected {kind} from {least} to {most}{unit}, found {found}; {stays}{unit} is \
+            kept",
             self.name
         )
     }

@@ -243,8 +243,8 @@ impl CurveColors {
     /// Returns the text of the menu entry.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Standard => "Standard colours of curves",
-            Self::ForAllEyes => "Colours of curves for all eyes",
+            Self::Standard => "Standard curve colours",
+            Self::ForAllEyes => "Curve colours for colour-blind readers",
         }
     }
 }

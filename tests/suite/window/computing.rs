@@ -346,7 +346,7 @@ fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
         format!("{done}; without error bars: their computation was stopped")
     );
     drop(closed);
-    window.get_by_label("Error bars: stopped; Compute, below, continues them");
+    window.get_by_label("Error bars: stopped. Choose Compute, below, to continue");
     click(&mut window, "Compute");
     wait_for_bars(&mut window);
     assert!(

@@ -223,7 +223,7 @@ fn a_number_out_of_order_or_out_of_range_is_refused_with_a_word_and_the_old_one_
         (
             "Band from",
             "30",
-            "from 0.0001 to 12 rad/s, found 30; it stays 0.500 rad/s",
+            "from 0.0001 to 12 rad/s, found 30; 0.500 rad/s is kept",
         ),
         ("Band from", "12", "found min 12, max 12"),
         ("Band to", "0,1", "from 0.5 to 100000 rad/s, found 0.1"),

@@ -580,7 +580,7 @@ fn a_part_counts_from_the_start_of_the_record_too_and_one_without_samples_is_ref
         "{span_s:?}"
     );
     window.get_by_label(
-        "runs from 42.30 s to 81.30 s on its clock, +0.00 s to +39.00 s from its start",
+        "42.30 s to 81.30 s on the record's time axis, +0.00 s to +39.00 s from its start",
     );
     type_into(&mut window, "Part of the record", "5 34");
     let told = state(&window).notice.clone().expect("it is refused");
@@ -1047,7 +1047,7 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
     wait_until(&mut window, "its two topics", |window| {
         rows_shown(window) == 2
     });
-    click(&mut window, "Make a dataset of them…");
+    click(&mut window, "Make a dataset from them…");
     for (field, text) in [
         ("Lower end of the band to identify", "3"),
         ("Upper end of the band to identify", "25"),
@@ -1126,7 +1126,7 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
     wait_until(&mut window, "the models of the sweep", |window| {
         !state(window).records.conditions[&of].changed
     });
-    click(&mut window, "By way of x0");
+    click(&mut window, "Use x0 as reference");
     assert_eq!(state(&window).records.conditions[&of].references, ["x0"]);
     // The list of columns can deselect the reference, and select it again.
     click(&mut window, "Choose a reference…");
@@ -1179,7 +1179,7 @@ fn making_a_dataset(folder: &Path, inputs: &str, outputs: &str) -> Window {
     show(&mut window, View::Records);
     give(&mut window, RecordsCommand::Add(vec![folder.to_owned()]));
     wait_until(&mut window, "the records", |window| rows_shown(window) == 2);
-    click(&mut window, "Make a dataset of them…");
+    click(&mut window, "Make a dataset from them…");
     fill_in(&mut window, "Inputs of the dataset", inputs);
     type_into(&mut window, "Outputs of the dataset", outputs);
     window

@@ -41,7 +41,7 @@ fn bandwidth_modes_and_summary_stand_in_tables_and_a_row_is_marked_in_bode() {
     let requirements = state(&window).requirements().unwrap().clone();
     let said = texts(&window);
     assert!(
-        said.contains("these numbers are no qualification") && said.contains("ω_BW [rad/s]"),
+        said.contains("do not replace a qualification") && said.contains("ω_BW [rad/s]"),
         "{said}"
     );
     // The values equal those of the command: one finding for each condition, on-axis response and
@@ -269,7 +269,7 @@ fn models_answer_to_a_step_or_a_doublet_of_the_input_in_focus() {
         step.models
     );
     window.get_by_label("P [deg/s] over time");
-    click(&mut window, "Course of the test input");
+    click(&mut window, "Shape of the test input");
     click(&mut window, "doublet");
     let doublet = answers(&mut window);
     assert!(
@@ -433,7 +433,7 @@ fn the_summary_has_what_the_records_that_are_open_say() {
     );
     assert!(texts(&window).contains("pitch rate inside") && texts(&window).contains("≥ 90"));
     click(&mut window, "Limits of the overview");
-    type_into(&mut window, "Least time inside", "100.5");
+    type_into(&mut window, "Minimum time within tolerance", "100.5");
     assert!(
         overview(&window).is_outside(pitch, column),
         "nothing is inside for longer than always"
@@ -602,7 +602,7 @@ fn a_condition_without_rates_and_records_says_so_in_words() {
     });
     let said = texts(&window);
     assert!(
-        said.contains("No on-axis response is an angle or its rate"),
+        said.contains("No on-axis response is an angle or an angular rate"),
         "{said}"
     );
     assert!(
@@ -615,7 +615,7 @@ fn a_condition_without_rates_and_records_says_so_in_words() {
     );
     let said = texts(&window);
     assert!(
-        said.contains("No flight record of this condition is used (view Records)"),
+        said.contains("No flight record of this condition is in use (view Records)"),
         "{said}"
     );
 }

@@ -36,7 +36,7 @@ impl ChannelField {
         match self {
             Self::Name => "name",
             Self::Unit => "?",
-            Self::UnitInFiles => "as files say",
+            Self::UnitInFiles => "as in the files",
         }
     }
 
@@ -80,7 +80,7 @@ pub(super) fn channel_table_ui(
         .num_columns(4)
         .spacing([6.0, 3.0])
         .show(ui, |ui| {
-            for heading in ["channel", "unit", "where files give none", ""] {
+            for heading in ["channel", "unit", "unit if a file gives none", ""] {
                 ui.label(palette.small(heading));
             }
             ui.end_row();

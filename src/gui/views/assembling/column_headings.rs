@@ -42,7 +42,7 @@ pub(super) fn column_headings_ui(
         });
     if headings.len() > MOST_COLUMNS {
         let more = headings.len() - MOST_COLUMNS;
-        ui.label(palette.small(format!("and {more} more, which the rules file can name")));
+        ui.label(palette.small(format!("and {more} more; name them in the rules file")));
     }
 }
 
@@ -65,10 +65,10 @@ fn possible_units_ui(
         for unit in &open.units {
             let name = format!("Column {} of {file} is in {unit}", column + 1);
             let hint = if files == 1 {
-                format!("The numbers are in {unit}")
+                format!("The values are in {unit}")
             } else {
                 format!(
-                    "The numbers are in {unit}, here and in the {} other tables with these headings",
+                    "The values are in {unit}, also in the {} other tables with these headings",
                     files - 1
                 )
             };

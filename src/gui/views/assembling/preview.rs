@@ -51,7 +51,7 @@ pub(super) fn preview_ui(
     let scene = BodeScene {
         quantity: BodeQuantity::RESPONSE_OF_FOUND_MODEL,
         unit: FrequencyUnit::default(),
-        message: Some("This response cannot be computed"),
+        message: Some("This response cannot be computed: the model is incomplete or inconsistent"),
         ..BodeScene::new(&names[place], curves, band)
     };
     bode_ui(ui, &scene, &mut assembly.preview.view, palette);

@@ -74,7 +74,8 @@ fn without_reference_ui(ui: &mut Ui, state: &AssemblyState, palette: &Palette) {
     }
     let ids: Vec<String> = conditions.iter().map(i64::to_string).collect();
     let words = format!(
-        "No identified models yet of conditions {}: identify them from flight records afterwards",
+        "Conditions {} have no identified models yet: identify models from flight records \
+        afterwards",
         ids.join(", ")
     );
     ui.add(Label::new(palette.small(words)).wrap());

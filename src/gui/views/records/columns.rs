@@ -23,7 +23,10 @@ const RECORD_FIELD_WIDTH: f32 = 60.0;
 const HEADINGS: [(&str, &str); 6] = [
     ("channel", "Channel of the dataset"),
     ("column of the file", "Column with the channel's samples"),
-    ("factor", "From the unit of the file to that of the dataset"),
+    (
+        "factor",
+        "Converts the unit of the file to the unit of the dataset",
+    ),
     (
         "time skew [ms]",
         "Logging delay of the channel, in every record",
@@ -54,7 +57,7 @@ pub(super) fn columns_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command
     } else {
         "every added record, in all conditions,"
     };
-    ui.label(palette.small(format!("Applies to {scope} with columns of these names")));
+    ui.label(palette.small(format!("Applies to {scope} with the same column names")));
     ScrollArea::vertical()
         .id_salt("columns of a record")
         .auto_shrink(false)
@@ -88,7 +91,7 @@ fn time_row_ui(ui: &mut Ui, record: usize, row: &LaidOutRecord, commands: &mut V
         commands.push(time_command(record, row, column, seconds));
     }
     let value = number(seconds);
-    let name = "Seconds of a unit of time";
+    let name = "Seconds per unit of time";
     let typed = number_entry_ui(ui, name, &value, "1", FIELD_WIDTH, commands);
     if let Some(Some(seconds)) = typed
         && let Some(column) = chosen

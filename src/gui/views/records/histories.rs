@@ -38,7 +38,7 @@ pub(super) fn histories_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comma
         return;
     };
     let Some(flight) = &row.flight else {
-        let text = "Assign its columns to the channels first: page Columns";
+        let text = "First assign the record's columns to channels: page Columns";
         ui.label(RichText::new(text).color(palette.warning));
         return;
     };
@@ -233,13 +233,13 @@ fn part_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
         commands.push(match typed_part(&text, span_s) {
             Some(part_s) => RecordsCommand::AddPart(records.chosen, part_s).into(),
             None => Command::Form(FormCommand::Refuse(format!(
-                "a part: expected two times in s, the earlier first, as in \"12 40\", \
-                 or \"+5 +34\" from the start of the record, found \"{text}\""
+                "part of the record: expected two times in s, the earlier first, as in \"12 40\", \
+                or \"+5 +34\" from the start of the record, found \"{text}\""
             ))),
         });
     }
-    let hint = "Drag over a chart to make that stretch a separate record, fitted or held out, \
-                instead of the whole";
+    let hint = "Drag over a chart to use that part as a separate record, fitted or held out, \
+        instead of the whole record";
     if let Some(chooses) = check_ui(ui, state.records.chooses_parts, "drag parts", hint) {
         commands.push(RecordsCommand::ChooseParts(chooses).into());
     }
@@ -287,7 +287,7 @@ fn span_ui(ui: &mut Ui, page: Page<'_>) {
     let [from, to] = span_s.map(|time_s| telling(time_s, 2));
     let [first, last] = span_s.map(|time_s| telling(time_s - start_s, 2));
     let words = format!(
-        "runs from {from} s to {to} s on its clock, +{first} s to +{last} s from its start"
+        "{from} s to {to} s on the record's time axis, +{first} s to +{last} s from its start"
     );
     ui.add(Label::new(palette.small(words)).truncate());
 }

@@ -23,7 +23,8 @@ pub(super) fn stabilisation_ui(ui: &mut Ui, page: Page<'_>) {
         return;
     };
     ui.label(palette.small(
-        "Cross: within 5 % of a pole of the order two below. Circle: not. Dotted line: band.",
+        "Cross: within 5 % of a pole of the model whose order is lower by two. Circle: no such \
+        pole. Dotted line: band.",
     ));
     let unit = state.display.curves.unit;
     let across = unit.axis_label();

@@ -23,7 +23,7 @@ pub(super) const CHI_SQUARED: &str =
 pub(super) const BAD: f64 = 1.5;
 
 const HEADINGS: [(&str, &str); 4] = [
-    ("use", "Use the record at all"),
+    ("use", "Use the record for identification or validation"),
     (
         "hold",
         "Held out: not fitted, so that it can test the model",
@@ -236,12 +236,12 @@ fn problem_texts(problems: &[LayoutProblem]) -> Vec<String> {
     }
     let mut texts = Vec::new();
     texts.extend(missing.text(|channels| {
-        format!("no column is {channels}; assign them on page Columns (columns: {columns})")
+        format!("no column for {channels}; assign them on page Columns (columns: {columns})")
     }));
     texts.extend(without_unit.text(|channels| {
         format!(
-            "the file does not say the units of {channels}, and their samples can be in several; \
-             choose them on page Columns"
+            "the file does not give the units of {channels}, and their values allow several \
+            units; choose them on page Columns"
         )
     }));
     texts.extend(others);

@@ -47,7 +47,8 @@ pub(super) fn references_ui(
     if is_focused {
         list.response.request_focus();
     }
-    let hint = "Columns of recorded signals that drove the loop from outside (M14.15)";
+    let hint = "Columns with recorded external inputs of the closed loop, used as instrumental \
+        variables (M14.15)";
     named(
         list.response.on_hover_text(hint),
         Role::ComboBox,

@@ -137,16 +137,16 @@ fn hold_remedies(signal: &Signal, hold_s: f64) -> Vec<Remedy> {
     let mut remedies = Vec::new();
     if signal.role == ChannelSide::Input {
         remedies.push(Remedy::new(
-            format!("{name} is a held command"),
+            format!("Treat {name} as a held command"),
             RecordsCommand::SetHold(signal.clone(), Hold::Command { hold_s }),
         ));
     }
     remedies.push(Remedy::new(
-        format!("{name} is a slow sensor"),
+        format!("Treat {name} as a slow sensor"),
         RecordsCommand::SetHold(signal.clone(), Hold::FreshSamples),
     ));
     remedies.push(Remedy::new(
-        format!("{name} is right as it is"),
+        format!("Use {name} unchanged"),
         RecordsCommand::SetHold(signal.clone(), Hold::Acts),
     ));
     remedies
@@ -207,7 +207,7 @@ fn repair_label(fault: &RecordFault, record: &str) -> String {
             )
         }
         RecordFault::Gain(signal, factor) if *factor < 0.0 => {
-            format!("Turn {signal} of {record}")
+            format!("Reverse the sign of {signal} in {record}")
         }
         RecordFault::Gain(signal, factor) => {
             format!("Multiply {signal} of {record} by {factor:.2}")
@@ -307,7 +307,7 @@ fn reference_remedies(ui: &Ui, records: &ConditionRecords) -> Vec<Remedy> {
     {
         let column = &reference.column;
         remedies.push(Remedy::new(
-            format!("By way of {column}"),
+            format!("Use {column} as reference"),
             RecordsCommand::SetReferences(vec![column.clone()]),
         ));
     }

@@ -263,7 +263,7 @@ fn legend_ui(ui: &mut Ui, drawn: &DrawnResponse, palette: &Palette) {
             entry.show(ui, palette);
         }
         if drawn.has_cut_intervals() {
-            ui.label(palette.small("bars and bands end at ± 20 dB and ± 180°"));
+            ui.label(palette.small("bars and bands are cut at ± 20 dB and ± 180°"));
         }
     });
 }
@@ -287,7 +287,7 @@ fn legend_entries(drawn: &DrawnResponse, palette: &Palette) -> Vec<LegendEntry> 
         },
         LegendEntry {
             sample: Sample::Circle,
-            text: "partial coherence below 0.6, or few lines",
+            text: "partial coherence below 0.6, or few spectral lines",
             color: palette.dim_text,
         },
     ];

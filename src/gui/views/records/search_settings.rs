@@ -43,7 +43,7 @@ impl SearchList {
         match self {
             Self::Orders => "from the records: 1 to 24",
             Self::PastWindows => "from the records: 8 to 24",
-            Self::LaguerrePoles => "0.375, 0.54, 0.75 of the band's end",
+            Self::LaguerrePoles => "0.375, 0.54, 0.75 of the upper band limit",
         }
     }
 
@@ -61,7 +61,10 @@ impl SearchList {
             Self::PastWindows => search.pasts = whole_numbers(&list, LONGEST_PAST)?,
             Self::LaguerrePoles => {
                 if let Some(pole) = list.iter().find(|pole| **pole <= 0.0) {
-                    return Err(format!("a pole is positive, found {}", number(*pole)));
+                    return Err(format!(
+                        "Laguerre poles: expected positive values, found {}",
+                        number(*pole)
+                    ));
                 }
                 search.poles = list;
             }

@@ -189,14 +189,14 @@ pub(super) fn time_models_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    ui.label(palette.small("response to the same inputs, and fit, of:"));
+    ui.label(palette.small("compare with the simulated response of:"));
     for model in TimeModel::ALL {
         let mut is_drawn = state.records.time_models.contains(&model);
         let text = RichText::new(format!("{} model", model.name()))
             .size(SMALL_SIZE)
             .color(model.color(palette));
-        let hint = "In windows of 10 s, shorter for an unstable model, each with its own initial \
-                    state and offsets";
+        let hint = "Simulated in windows of 10 s (shorter for an unstable model), each with a \
+            separate initial state and offsets";
         if ui
             .checkbox(&mut is_drawn, text)
             .on_hover_text(hint)
@@ -227,7 +227,7 @@ pub(super) fn fit_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
 /// Shows χ²/dof by record and by output.
 fn frequency_fit_ui(ui: &mut Ui, page: Page<'_>, found: &Identification) {
     let Page { state, palette, .. } = page;
-    let heading = "In frequency: χ² per degree of freedom; 1 if only noise remains";
+    let heading = "Frequency domain: χ² per degree of freedom; 1 if only noise remains";
     ui.label(RichText::new(heading).strong());
     Grid::new("fit of records")
         .num_columns(3)
@@ -268,7 +268,12 @@ fn time_fit_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
         Some(row) => row.table.name.as_str(),
         None => "",
     };
-    ui.label(RichText::new(format!("In time: {name}, fit in % and Theil's coefficient")).strong());
+    ui.label(
+        RichText::new(format!(
+            "Time domain: {name}, fit in % and Theil's coefficient"
+        ))
+        .strong(),
+    );
     time_models_ui(ui, state, palette, commands);
     let models = simulated(state, palette);
     Grid::new("fit in time")
@@ -294,7 +299,8 @@ fn time_fit_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
         model.absence_ui(ui, state, palette);
     }
     ui.label(palette.small(
-        "The fit in time hardly separates models: rank them by the cost of held-out records",
+        "The fit in the time domain hardly distinguishes models: rank them by the cost of \
+        held-out records",
     ));
 }
 

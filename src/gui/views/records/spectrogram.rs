@@ -69,7 +69,10 @@ pub(super) fn spectrogram_ui(ui: &mut Ui, page: Page<'_>, flight: &Arc<FlightRec
         ui.label(palette.small("The record is too short or sampled too slowly for a spectrogram"));
         return;
     };
-    let title = format!("{}: power over time, dB below the greatest", channel.name);
+    let title = format!(
+        "{}: power over time [dB relative to the maximum]",
+        channel.name
+    );
     let unit = state.display.curves.unit;
     let label = unit.axis_label();
     let mut chart = Chart::new(&title, ChartAxis::Linear, "", &label);

@@ -6,7 +6,7 @@ use super::mapped_cost::MappedCost;
 use super::requirements_page::RequirementsPage;
 use crate::gui::widgets::tables::Sorting;
 
-/// Content of the assessment, the requirements, the variants and the cost map.
+/// Display options of the assessment, the requirements, the variants and the cost map.
 #[derive(Debug, Default)]
 pub struct JudgingDisplay {
     pub mapped_cost: MappedCost,

@@ -1,7 +1,7 @@
 //! Messages to the engineer: notices that disappear by themselves, and bars that remain until
 //! closed.
 
-/// Message that stays until it is closed, about the program or its files.
+/// Message about the program or its files, shown until it is closed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Bar {
     /// A computation panicked.
@@ -29,9 +29,7 @@ pub enum Bar {
 /// Outcome that a notice reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoticeKind {
-    /// Success.
     Done,
-    /// Failure.
     Trouble,
 }
 

@@ -9,9 +9,7 @@ pub enum PairSet {
     /// keeps its plot.
     #[default]
     Held,
-    /// Response in focus.
     Focused,
-    /// On-axis responses of the dataset.
     OnAxis,
     All,
     /// Responses picked by the engineer.

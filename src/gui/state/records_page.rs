@@ -112,7 +112,6 @@ impl TimeModel {
         }
     }
 
-    /// Returns the line colour.
     pub fn color(self, palette: &Palette) -> Color32 {
         match self {
             Self::Identified => palette.accent,

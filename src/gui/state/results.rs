@@ -49,7 +49,7 @@ impl<'a> Sureness<'a> {
     }
 }
 
-/// Result of the displayed condition, available before those of the others.
+/// Result of the displayed condition, available before the results of the other conditions.
 #[derive(Clone, Debug)]
 pub struct FirstResult {
     /// Number of the request that produced the result.
@@ -84,7 +84,7 @@ pub struct Background {
     pub report: Option<(usize, usize)>,
     /// Progress of the identification: parts done, total.
     pub identification: Option<(usize, usize)>,
-    /// Whether some work was stopped, by hand or by a fault.
+    /// Whether some work was stopped, by the engineer or by a fault.
     pub stopped: bool,
 }
 
@@ -112,7 +112,7 @@ pub struct Results {
     /// Costs of constraining or releasing each response, with their job; see
     /// `State::toggles`.
     pub toggles: Option<(TogglesJob, Arc<Toggles>)>,
-    /// Responses for drawing, with their job; see `State::curves`.
+    /// Frequency responses of the displayed condition, with their job; see `State::curves`.
     pub curves: Option<(CurvesJob, Arc<ConditionCurves>)>,
     /// Modes by model, with their job; see `State::modes`.
     pub modes: Option<(ModesJob, Arc<ConditionModes>)>,
@@ -122,7 +122,8 @@ pub struct Results {
     pub across: Option<(AcrossJob, Arc<AcrossCurves>)>,
     /// Uncertainty, with its job; see `State::uncertainty`.
     pub uncertainty: Option<(UncertaintyJob, Arc<Uncertainty>)>,
-    /// Benefit of the couplings, in use or not, with the job; see `State::couplings`.
+    /// Assessed benefit of the couplings, whether or not they are in use, with the job; see
+    /// `State::couplings`.
     pub couplings: Option<(CouplingsJob, AssessedCouplings)>,
     /// Requirements, with their job; see `State::requirements`.
     pub requirements: Option<(RequirementsJob, Arc<Requirements>)>,
@@ -148,8 +149,8 @@ pub struct Results {
     pub is_painted: bool,
     /// Computing time of the newest analysis \[ms\].
     pub elapsed_ms: f64,
-    /// Whether the newest request was stopped, by hand or by a fault. The displayed results then
-    /// remain older than the settings.
+    /// Whether the newest request was stopped, by the engineer or by a fault. The displayed results
+    /// then remain older than the settings.
     pub stopped: bool,
 }
 

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use gdcm_plot::figure::FigureKind;
 use gdcm_study::PhaseCorrection;
 
-/// Views grouped by subject.
+/// Group of views on the same subject.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum ViewGroup {
     /// Responses over frequency.

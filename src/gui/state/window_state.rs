@@ -31,9 +31,7 @@ use super::results::{Results, Sureness};
 pub struct RecentFile {
     /// Last known path.
     pub path: PathBuf,
-    /// Displayed name.
     pub name: String,
-    /// Displayed folder.
     pub folder: String,
     /// Whether the file was missing when last checked.
     pub missing: bool,
@@ -227,7 +225,7 @@ impl State {
         Some(table)
     }
 
-    /// Returns the assessment to compute.
+    /// Returns the model, the correction and the average for which the assessment is computed.
     pub fn assessment_choice(&self) -> AssessmentChoice {
         let assessed = &self.display.judging.assessed;
         AssessmentChoice {
@@ -293,8 +291,8 @@ impl State {
         }
     }
 
-    /// Returns the benefit of the couplings, in use or not; until it is ready, the benefit under
-    /// older settings.
+    /// Returns the assessed benefit of the couplings, whether or not they are in use; until it is
+    /// ready, the benefit under older settings.
     pub fn couplings(&self) -> Option<&AssessedCouplings> {
         let (known, assessed) = self.results.couplings.as_ref()?;
         if !self.is_shown_dataset(&known.study.dataset)

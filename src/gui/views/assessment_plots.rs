@@ -98,7 +98,7 @@ impl PlacedChange {
 }
 
 impl AssessmentPlots<'_> {
-    /// Returns the change in a condition; `None` if it is left out.
+    /// Returns the change in a condition; `None` if the assessment omits this condition.
     fn change(&self, condition: ConditionId, pair: Pair) -> Option<CostChange> {
         self.table.change(condition, pair)
     }

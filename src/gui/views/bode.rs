@@ -107,8 +107,8 @@ fn drawn_curve(curves: &[BodeCurve], role: Role) -> Option<&BodeCurve> {
         .find(|curve| !curve.hidden && curve.role == role)
 }
 
-/// Returns the region above the band, where curves only illustrate the price of leads; `None`
-/// without leads (M15.6).
+/// Returns the region above the band in which the corrected model is not valid and only shows the
+/// gain added by leads; `None` without leads (M15.6).
 fn invalid_region(state: &State, curves: &[BodeCurve]) -> Option<InvalidRegion> {
     let leads = &state.shown()?.compensated.as_ref()?.leads;
     leads.filters().iter().find_map(|(_, filter)| *filter)?;
@@ -268,7 +268,7 @@ pub fn error_view_ui(
     state.display.frequency.drawn_errors = curves;
 }
 
-/// Draws the choice between phase differences in degrees and in milliseconds.
+/// Draws the selector between phase differences \[deg\] and equivalent delays \[ms\].
 pub fn error_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let mut unit = state.display.curves.phase_error;
     let units = [
@@ -448,7 +448,7 @@ pub fn across_curves(state: &mut State) -> Vec<BodeCurve> {
     drawn
 }
 
-/// Draws every response in the displayed condition; a click shows a response in Bode.
+/// Draws every response in the displayed condition; a click shows a response in the Bode view.
 pub fn overview_view_ui(
     ui: &mut Ui,
     state: &mut State,

@@ -110,7 +110,7 @@ fn variant_button_ui(ui: &mut Ui, verb: &str, name: &str, hint: &str) -> bool {
         .clicked()
 }
 
-/// Returns the analyses that the comparison needs.
+/// Returns the jobs that analyse the variants.
 pub fn variant_jobs(state: &State) -> Vec<VariantJob> {
     let mut jobs = Vec::new();
     for variant in &state.study.variants {

@@ -345,7 +345,7 @@ impl CouplingsWords<'_> {
         let mut table = pole_table(self.assessment);
         table.title = format!("Poles of the physics representative of condition {id}");
         table.rows.retain(|row| row[0] == id);
-        // All rows have the same condition.
+        // Remove the condition column, because all rows have the same condition.
         for row in &mut table.rows {
             row.remove(0);
         }

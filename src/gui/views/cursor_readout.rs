@@ -184,7 +184,7 @@ impl<'a> ReadoutSource<'a> {
                 continue;
             };
             let error = summand(db, deg);
-            // Among equal errors, the one at the highest frequency is chosen.
+            // `is_ge`: among equal values, the highest frequency is chosen.
             if largest.is_none_or(|largest| error.total_cmp(&largest.error).is_ge()) {
                 largest = Some(ErrorAt { omega, error });
             }

@@ -30,7 +30,8 @@ const TEXT_WIDTH: f32 = 400.0;
 /// Minimum bar width \[pt\].
 const LEAST_BAR: f32 = 60.0;
 
-/// Shows whether the scatter at a given airspeed is due to trim, due to identification, or real.
+/// Shows whether the scatter at equal airspeed is due to trim, due to identification, or
+/// unexplained by both.
 pub fn evidence_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -138,7 +139,8 @@ impl EvidencePage<'_> {
         ui.add_space(6.0);
     }
 
-    /// Draws a scatter: its name, a bar divided among its sources, and its values.
+    /// Draws a row for one kind of scatter: its name, a bar divided among its sources, and its
+    /// values.
     fn split_ui(&self, ui: &mut Ui, name: &str, split: Option<&VarianceDecomposition>) {
         let size = vec2(ui.available_width(), BAR_HEIGHT + 3.0);
         let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
@@ -284,7 +286,7 @@ fn heading_ui(ui: &mut Ui, text: &str) {
     ui.label(RichText::new(text).size(SMALL_SIZE).strong());
 }
 
-/// Names a painted text for screen readers.
+/// Gives a painted text an accessible name for screen readers.
 fn name_label(response: &Response, name: String) {
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, &name));
 }

@@ -38,7 +38,7 @@ pub(super) struct FrequencyPlot<'a> {
 
 impl FrequencyPlot<'_> {
     /// Draws the plot with cursors, values at the cursor and chips. Pushes the resulting commands,
-    /// and a description for the element under the pointer.
+    /// and a description of the element under the pointer.
     pub(super) fn ui(self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let Self {
             state,

@@ -42,7 +42,8 @@ pub struct GainPlots<'a> {
 }
 
 impl GainPlots<'_> {
-    /// Returns the scene, with marks at the displayed condition and at the one under the pointer.
+    /// Returns the scene, with marks at the displayed condition and at the condition under the
+    /// pointer.
     pub fn scene<'b>(
         &'b self,
         name: &'static str,

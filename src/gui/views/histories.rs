@@ -92,7 +92,7 @@ pub fn histories_ui(
         )
     };
     if let OverTime::Test(_) = responses {
-        // The first plot is the input.
+        // `1 +`: the first plot shows the input.
         scene.accented = Some(1 + state.display.selection.pair.output);
         scene.least = LEAST_PLOT;
     }
@@ -236,7 +236,7 @@ fn set_test_input(state: &State, name: &'static str, test: TestInput) -> Command
     }
 }
 
-/// Descriptions of the plots over time.
+/// Accessible names of the plots over time.
 struct HistoryWords<'a>(&'a Figure);
 
 impl FigureWords for HistoryWords<'_> {

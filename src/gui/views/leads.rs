@@ -1,4 +1,4 @@
-//! Effect of delay or lead in each channel, and the price paid for leads above the band.
+//! Effect of delay or lead in each channel, and the gain that leads add above the band.
 
 use egui::{Panel, Ui, vec2};
 
@@ -83,8 +83,8 @@ fn figure(state: &State) -> Figure {
 }
 
 /// Builds the channel table: delay or lead, phase at the upper end of the band, replaced servo, and
-/// the gain added above the band as the price. The title gives the highest frequency at which the
-/// corrected model is valid. `None` without leads.
+/// the gain added above the band. The title gives the highest frequency at which the corrected
+/// model is valid. `None` without leads.
 pub fn leads_table(state: &State) -> Option<Table> {
     let leads = state.shown()?.correction.leads.as_ref()?;
     let price = LeadPrice::of(leads);

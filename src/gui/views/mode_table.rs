@@ -113,8 +113,8 @@ fn reference_index(state: &State, modes: &ConditionModes) -> usize {
     modes.condition.nominal()
 }
 
-/// Describes a mode: its values, its name, its largest participations, and the meaning of the pole
-/// of a discrete-time model.
+/// Describes a mode: its values, its name, its largest participations and, for a discrete-time
+/// model, the conversion of its pole to `s`.
 pub(super) fn mode_description(mode: &Mode, model: &Model) -> Vec<String> {
     let mut words = vec![mode_values(mode)];
     words.extend(mode_name(mode, model));

@@ -284,7 +284,7 @@ impl RequirementsView<'_> {
         state.display.figures.insert(View::Requirements, view);
     }
 
-    /// Draws the tables of the page; a click on a row shows its subject.
+    /// Draws the tables of the page; a click on a row shows its response or condition.
     fn tables_ui(&self, ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
         let condition = state.condition().id();
         let mut sortings = state.display.judging.requirements_sorting;
@@ -396,8 +396,8 @@ fn role_at(
     None
 }
 
-/// Returns the commands that show the response in Bode, with marks at the frequencies that define
-/// its bandwidth and phase delay.
+/// Returns the commands that show the response in the Bode view, with marks at the frequencies that
+/// define its bandwidth and phase delay.
 fn bode_commands(requirements: &Requirements, model: BandwidthModel) -> Vec<Command> {
     let mut commands: Vec<Command> = vec![
         SelectionCommand::SelectCondition(model.condition).into(),
@@ -421,7 +421,7 @@ fn bode_commands(requirements: &Requirements, model: BandwidthModel) -> Vec<Comm
     commands
 }
 
-/// Descriptions of the bandwidth plots.
+/// Accessible names of the bandwidth plots, and descriptions of their marks.
 struct BandwidthWords<'a> {
     state: &'a State,
     requirements: &'a Requirements,

@@ -122,7 +122,7 @@ fn percent_text(rms_ln: Option<f64>) -> String {
     }
 }
 
-/// Formats a delay error \[ms\].
+/// Formats a delay error \[s\] in milliseconds; "–" for `None`.
 fn delay_text(error_s: Option<f64>) -> String {
     match error_s {
         Some(error_s) => format!("{:.2}", s_to_ms(error_s)),

@@ -39,7 +39,7 @@ pub fn named(response: Response, role: Role, name: impl Into<String>) -> Respons
     response
 }
 
-/// Names an on/off control.
+/// Names an on/off control and reports its state for screen readers and tests.
 pub fn named_switch(
     response: Response,
     role: Role,

@@ -296,7 +296,7 @@ fn number_in(text: &str, unit: &str) -> Option<f64> {
     if value.is_finite() { Some(value) } else { None }
 }
 
-/// Formats a number for a field.
+/// Formats a number with the digits chosen for the field.
 fn number_text(digits: Digits, value: f64) -> String {
     match digits {
         Digits::Significant => significant(value),

@@ -41,7 +41,7 @@ const HEADINGS: [(&str, &str); 6] = [
     ),
 ];
 
-/// Shows a line for the time and for each channel.
+/// Shows a row for the time and for each channel.
 pub(super) fn columns_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page {
         state,

@@ -97,8 +97,8 @@ pub(super) fn identified_poles_ui(ui: &mut Ui, page: Page<'_>) {
     fill_with_chart(ui, &chart, palette);
 }
 
-/// Returns the poles with their 95 % intervals; undetermined poles without, because their long
-/// intervals would hide the others.
+/// Returns the poles with their 95 % intervals. Poles that the records do not determine have no
+/// interval, because it would hide other poles.
 fn pole_marks(poles: &[PoleEstimate], is_determined: bool, palette: &Palette) -> ChartMarks {
     let mut points = Vec::new();
     let mut sideways = Vec::new();

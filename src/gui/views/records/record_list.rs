@@ -32,7 +32,7 @@ const HEADINGS: [(&str, &str); 4] = [
     ("χ²/dof", CHI_SQUARED),
 ];
 
-/// Shows a line for each record: whether it is used or held out, and the model's fit.
+/// Shows a row for each record: whether it is used or held out, and the model's fit.
 pub(super) fn record_list_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page {
         records, palette, ..
@@ -174,7 +174,7 @@ fn fit_ui(ui: &mut Ui, page: Page<'_>, index: usize) {
     }
 }
 
-/// Returns χ²/dof of the recommended model in a record.
+/// Returns χ²/dof of the recommended model for a record; `None` without a current identification.
 fn fit_cost(page: Page<'_>, index: usize) -> Option<f64> {
     let found = page.current_identification()?;
     let fit = found

@@ -14,7 +14,7 @@ use crate::gui::plot::chart_view::chart_ui;
 use crate::gui::widgets::controls::{named, painted_text, text_width};
 use crate::gui::widgets::palette::{Palette, small};
 
-/// Band \[rad/s\] of models without a job.
+/// Substitute band \[rad/s\] for an identification without a job.
 const UNKNOWN_BAND: [f64; 2] = [0.1, 10.0];
 /// Half-height of the marks along the curve of the recommended model.
 const MARK_DB: f64 = 2.0;

@@ -23,7 +23,6 @@ use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 /// A model compared with the displayed record.
 pub(super) struct Simulated<'a> {
     pub(super) model: TimeModel,
-    /// Line colour.
     pub(super) color: Color32,
     /// Response of the model, or the reason for its absence; `None` while it is being computed.
     pub(super) result: Option<&'a Result<Arc<Validation>, String>>,
@@ -207,7 +206,7 @@ pub(super) fn time_models_ui(
     }
 }
 
-/// Limit of Theil's coefficient below which a model is good (M14, section 6).
+/// Limit of Theil's coefficient below which the fit of a model counts as good (M14, section 6).
 const GOOD_THEIL: f64 = 0.25;
 
 /// Shows the fit in tables: by record, by output, and in the time domain.

@@ -42,7 +42,7 @@ const SECTIONS: [&str; 11] = [
 ];
 const REASON: &str = "steps at 2 rad/s <see the & bode plot>";
 
-/// A few conditions in the example, with the nominal model at condition 10 rejected for a reason.
+/// A few conditions of the example, with the nominal model in condition 10 rejected for a reason.
 static ANALYSIS: LazyLock<Analysis> = LazyLock::new(|| {
     let mut study = Study::new(FEW.dataset.clone());
     let model = ModelId::new(ConditionId(10), BundleKind::Physics, "nominal");
@@ -74,7 +74,7 @@ fn without_records(analysis: &Analysis) -> ReportSubject<'_> {
     }
 }
 
-/// The page as XML; its document type is HTML's, which names no other file.
+/// Parses the page as XML; its document type is HTML, without a reference to another file.
 fn parsed(text: &str) -> Document<'_> {
     Document::parse_with_options(
         text,
@@ -311,7 +311,7 @@ fn the_report_of_the_whole_example_is_not_too_long() {
     assert!(text.len() < 15_000_000, "{} bytes", text.len());
 }
 
-/// Stops after so many conditions.
+/// Progress that cancels the work after this number of conditions.
 struct Impatient(AtomicUsize);
 
 impl Progress for Impatient {
@@ -341,7 +341,8 @@ fn a_report_that_is_not_wanted_any_more_is_given_up() {
     );
 }
 
-/// The small dataset with names that are markup, and a condition that has no result.
+/// Writes the small dataset with names that contain markup, and with a condition that has no
+/// result.
 fn write_odd(desk: &Desk) {
     desk.write("odd.json", |file| {
         file["name"] = json!("<script>alert(\"1\")</script> & co\u{1b}[2J");

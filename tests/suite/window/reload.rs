@@ -1,10 +1,10 @@
-//! A dataset whose file changes on the disk while it is open.
+//! A dataset whose file changes while it is open.
 
 use std::path::PathBuf;
 
 use super::*;
 
-/// A copy of the small dataset that may be changed.
+/// Copy of the small dataset whose file the tests change.
 struct Copy {
     _folder: tempfile::TempDir,
     path: PathBuf,
@@ -27,12 +27,12 @@ impl Copy {
         }
     }
 
-    /// Writes another name of the dataset into the file: the figures stay.
+    /// Changes the dataset's name in the file, but no values.
     fn rename(&self, name: &str) {
         self.change("\"name\": \"two", &format!("\"name\": \"{name} two"));
     }
 
-    /// Writes one thing differently into the file.
+    /// Replaces `before` in the file.
     fn change(&self, before: &str, after: &str) {
         assert!(self.text.contains(before), "{before}");
         std::fs::write(&self.path, self.text.replacen(before, after, 1)).unwrap();

@@ -1,7 +1,8 @@
-//! `cargo bench --bench analysis`: each stage of the example's analysis, and the live loop as a whole.
+//! `cargo bench --bench analysis`: each stage of the example's analysis, and the complete analysis
+//! after a change of the study.
 //!
-//! Figures to reach: a drag of alpha <= 4 ms, a drag of alpha, n or R_max under lead <= 6 ms, a rejected model <= 10 ms, a moved band
-//! edge <= 40 ms for all 11 conditions.
+//! Targets, for all 11 conditions: 4 ms after a change of alpha; 6 ms after a change of alpha, n or
+//! R_max with leads; 10 ms after a model is rejected; 40 ms after a band limit is moved.
 
 use std::hint::black_box;
 use std::path::Path;
@@ -36,7 +37,8 @@ mod stopwatch;
 use random_model::dense_responses;
 use stopwatch::shortest;
 
-/// The dataset that the figures to reach are for: 19 physics and 3 identified models in each of 11 conditions.
+/// Returns the dataset to which the targets apply: 11 conditions, each with 19 physics and 3
+/// identified models.
 fn example() -> Arc<Dataset> {
     let path = concat!(
         env!("CARGO_MANIFEST_DIR"),
@@ -47,7 +49,7 @@ fn example() -> Arc<Dataset> {
         .dataset
 }
 
-/// One condition: 19 physics and 12 identified models, 200 frequencies.
+/// Measures each stage in a single condition: 19 physics and 3 identified models, 200 frequencies.
 fn stages(criterion: &mut Criterion) {
     let dataset = example();
     let condition = &dataset.conditions()[9];
@@ -100,7 +102,8 @@ fn stages(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// All 11 conditions, as the window asks for them: on all cores, and on one.
+/// Measures the analysis of all 11 conditions as requested by the window, on all cores and on one
+/// core.
 fn live_loop(criterion: &mut Criterion) {
     all_conditions(criterion, "all conditions, all cores", || {
         Engine::with_executor(Box::new(Pool))
@@ -163,7 +166,8 @@ fn all_conditions(criterion: &mut Criterion, name: &str, engine: impl Fn() -> En
     group.finish();
 }
 
-/// What the stages are worth beside plain ways, in the same run: the shortest of a few runs each.
+/// Prints the speed-up of each stage over a plain method, measured in the same run: minimum time of
+/// a few repetitions each.
 fn ratios(_: &mut Criterion) {
     let dataset = example();
     let condition = &dataset.conditions()[9];
@@ -192,7 +196,7 @@ fn ratios(_: &mut Criterion) {
         Engine::with_executor(Box::new(Pool)).analyze(&study, &Unobserved)
     });
     println!(
-        "everything anew: one core takes {:.2} times as long as all",
+        "without cached results: one core takes {:.2} times as long as all cores",
         anew.div_duration_f64(together)
     );
     let mut engine = Engine::default();
@@ -206,12 +210,13 @@ fn ratios(_: &mut Criterion) {
         engine.analyze(&dragged, &Unobserved)
     });
     println!(
-        "alpha dragged: everything anew would take {:.0} times as long",
+        "alpha dragged: without cached results the analysis would take {:.0} times as long",
         anew.div_duration_f64(drag)
     );
 }
 
-/// One model of two hundred replaced by another of its name: what is computed is its response, and what rests on it.
+/// Measures the analysis after one of two hundred models is replaced by another model of the same
+/// name: only its response, and what depends on it, is computed again.
 fn replaced_model(_: &mut Criterion) {
     const MODELS: usize = 200;
     let example = example();
@@ -271,15 +276,16 @@ fn replaced_model(_: &mut Criterion) {
         replaced = replaced.min(shortest(1, || engine.analyze(&after, &Unobserved)));
     }
     println!(
-        "one of {MODELS} models replaced, one core: analysis {replaced:.2?}, of which everything anew takes {:.1} times as \
-         long; curves for drawing (with the hashes of all models) {drawn:.2?}, anew {:.1} times as long",
+        "one of {MODELS} models replaced, one core: analysis {replaced:.2?} (without cached results {:.1} times as \
+         long); curves for drawing, with the hashes of all models, {drawn:.2?} (without cached results {:.1} times as long)",
         anew.div_duration_f64(replaced),
         drawn_anew.div_duration_f64(drawn)
     );
 }
 
-/// How sure every figure is: a swap for each model of all conditions. Figure to reach: 150 ms on two cores after a rejection, with 20
-/// swaps a condition; the embedded example has some 29, for its identified bundles have 11 or 12 models.
+/// Measures the error bars of all conditions, which require an analysis for each substituted model.
+/// Target: 150 ms on two cores after a rejection, with 20 substitutions per condition; the embedded
+/// example needs about 29, because its identified bundles have 11 or 12 models.
 fn bars(criterion: &mut Criterion) {
     bars_of(criterion, "error bars of all conditions", example());
     let embedded = embedded_example()
@@ -300,7 +306,7 @@ fn bars_of(criterion: &mut Criterion, name: &str, dataset: Arc<Dataset>) {
         let mut turn = 0.0;
         bencher.iter(|| {
             turn += 1.0;
-            // What every swap depends on, and no response.
+            // All substitutions depend on alpha, but no response does.
             study
                 .apply(&setting::ALPHA_GAIN.to(1.0 + 1e-6 * turn))
                 .expect("within its range");
@@ -327,8 +333,9 @@ fn bars_of(criterion: &mut Criterion, name: &str, dataset: Arc<Dataset>) {
     group.finish();
 }
 
-/// What a qualification asks of all conditions without records, with its intervals; 11 conditions, 19 + 11 or 12 models each. Figure to
-/// reach: 50 ms on two cores, beside the live answer.
+/// Measures the requirements of all conditions without records, with and without intervals: 11
+/// conditions, each with 19 physics and 11 or 12 identified models. Target: 50 ms on two cores, in
+/// addition to the analysis.
 fn requirements(criterion: &mut Criterion) {
     let mut study = Study::new(
         embedded_example()

@@ -1,7 +1,9 @@
-//! `cargo bench --bench couplings`: the joint fit of mixing and feedback, what depends on it, and what judges it.
+//! `cargo bench --bench couplings`: the joint fit of mixing and feedback, the results that depend
+//! on it, and the assessment of its benefit.
 //!
-//! Figures to reach, two cores, 6 x 4 responses at 200 frequencies in 11 conditions: a fit of five solves <= 60 ms, what depends on it
-//! <= 5 ms more, a drag of alpha as without couplings.
+//! Targets on two cores, for 6 x 4 responses at 200 frequencies in 11 conditions: 60 ms for a fit
+//! with five solves; at most 5 ms more for the dependent results; after a change of alpha, the same
+//! time as without couplings.
 
 use std::hint::black_box;
 use std::path::Path;
@@ -84,7 +86,7 @@ fn live_loop(criterion: &mut Criterion) {
             .apply(&setting::ALPHA_GAIN.to(1.0 + 1e-6 * turn))
             .expect("within its range");
     });
-    // The representative: with another one the fit is another.
+    // The representative is rejected, because the fit depends on it.
     let analysis = Engine::default()
         .analyze(&study(), &Unobserved)
         .expect("nobody stops it");
@@ -102,7 +104,7 @@ fn live_loop(criterion: &mut Criterion) {
         study.apply(&edit).expect("others are kept");
     };
     again("model rejected, fitted again", &rejected);
-    again("the same without couplings", &|study, turn| {
+    again("model rejected, without couplings", &|study, turn| {
         study
             .apply(&setting::COUPLINGS.to(CouplingCorrection::None))
             .expect("a choice");
@@ -110,7 +112,7 @@ fn live_loop(criterion: &mut Criterion) {
     });
     group.sample_size(10);
     group.bench_function(
-        "what they are worth, everything anew, all cores",
+        "assessment of their benefit, nothing cached, all cores",
         |bencher| {
             let study = study();
             let engine = || Engine::with_executor(Box::new(Pool));
@@ -121,7 +123,7 @@ fn live_loop(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// The joint fit beside one that writes every row of its least-squares problem out.
+/// Compares the joint fit with a fit that stores every row of the least-squares problem.
 fn ratios(_: &mut Criterion) {
     let problem = problem();
     let unknowns = fit_couplings(&problem, &Sequential, &Unobserved)
@@ -136,14 +138,15 @@ fn ratios(_: &mut Criterion) {
     let products = (problem.options.solves * rows * unknowns.len() * unknowns.len()) as f64;
     println!(
         "joint fit of {} unknowns, one core: {ours:.2?}; a plain assembly of its {rows} rows takes {:.1} times as long ({:.1} G \
-         multiply-adds, of which the fit's blocks take a part)",
+         multiply-adds, more than the block structure of the fit requires)",
         unknowns.len(),
         plain.div_duration_f64(ours),
         products / 1e9
     );
 }
 
-/// One solve: dense rows of each condition, their product with themselves, Cholesky's factors.
+/// Solves the dense least-squares problem once: product of the rows of each condition with their
+/// transpose, Cholesky decomposition.
 fn plain_solve(problem: &CouplingProblem, unknowns: &[Unknown]) -> Option<DMatrix<f64>> {
     let count = unknowns.len();
     let mut normal = DMatrix::zeros(count, count);

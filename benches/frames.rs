@@ -1,7 +1,9 @@
-//! `cargo bench --bench frames`: what a frame of the window costs the processor, for each tab, beside plain lines.
+//! `cargo bench --bench frames`: processor time of a frame of the window, for each tab, compared
+//! with plain lines.
 //!
-//! Figure to reach: <= 4 ms, tessellation included, for the Bode plot with the net gains below. The baseline gives the curves of both
-//! panes to egui_plot as they are, point by point, and draws nothing else: no panels, no legend, no dashes.
+//! Target: 4 ms, including tessellation, for the Bode plot with the net gains below. The baseline
+//! passes the curves of both panes to egui_plot point by point, and draws nothing else: no panels,
+//! no legend, no dashes.
 
 mod window;
 
@@ -19,22 +21,22 @@ use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
 use window::Window;
 
 const SIZE: egui::Vec2 = vec2(1600.0, 900.0);
-/// Curves and their points: first the size that the figure to reach is for.
+/// Number of curves, and points on each; the target applies to the first pair.
 const SIZES: [(usize, usize); 5] = [(25, 500), (25, 5000), (100, 500), (6, 500), (1000, 500)];
-/// Frames of which the middle one counts in the table.
+/// Number of measured frames; the table shows the medians of their times.
 const FRAMES: usize = 301;
 
-/// What the engineer does from frame to frame.
+/// Activity of the engineer from frame to frame.
 #[derive(Clone, Copy, PartialEq)]
 enum Doing {
     Nothing,
     /// The pointer crosses the large plot.
     Pointing,
-    /// The window changes its size, so that nothing of the frame before fits.
+    /// The window changes its size, so that no layout of the previous frame can be reused.
     Resizing,
 }
 
-/// Something that draws a frame.
+/// Screen on which frames are drawn and timed.
 struct Screen<'a> {
     ctx: Context,
     draw: Box<dyn FnMut(&mut Ui) + 'a>,
@@ -50,14 +52,14 @@ impl<'a> Screen<'a> {
             doing,
             frames: 0,
         };
-        // Sizes settle, and the texts of the first frames are laid out.
+        // In the first frames, sizes still change and texts are laid out.
         for _ in 0..10 {
             screen.tessellated_frame();
         }
         screen
     }
 
-    /// Input is taken, everything is laid out and painted as shapes.
+    /// Processes the input, lays out everything, and paints it as shapes.
     fn shapes(&mut self) -> FullOutput {
         self.frames += 1;
         let step = (self.frames % 100) as f32;
@@ -66,11 +68,11 @@ impl<'a> Screen<'a> {
         } else {
             SIZE
         };
-        // On a slant through the magnitude plot.
+        // Moves along a slanted line through the magnitude plot.
         let pointer = Event::PointerMoved(pos2(400.0 + 7.0 * step, 100.0 + 2.0 * step));
         let input = RawInput {
             screen_rect: Some(Rect::from_min_size(pos2(0.0, 0.0), size)),
-            // Long after everything that was animated.
+            // Late enough that all animations have ended.
             time: Some(1e4 + f64::from(self.frames) / 60.0),
             events: if self.doing == Doing::Pointing {
                 vec![pointer]
@@ -82,7 +84,8 @@ impl<'a> Screen<'a> {
         self.ctx.run_ui(input, &mut self.draw)
     }
 
-    /// A whole frame; how long its shapes took and how long their triangles, and the number of vertices.
+    /// Draws a whole frame; returns the times for the shapes and for their tessellation, and the
+    /// number of vertices.
     fn tessellated_frame(&mut self) -> (Duration, Duration, usize) {
         let start = Instant::now();
         let mut output = self.shapes();
@@ -104,7 +107,7 @@ impl<'a> Screen<'a> {
     }
 }
 
-/// A second-order lag with a notch: as many bends as a coupled response has.
+/// Returns a second-order lag with a notch, whose curve has as many bends as a coupled response.
 fn curve(number: usize, points: usize) -> BodeCurve {
     let omega: Vec<f64> = (0..points)
         .map(|k| 0.3 * (20.0f64 / 0.3).powf(k as f64 / (points - 1) as f64))
@@ -148,7 +151,7 @@ fn curve(number: usize, points: usize) -> BodeCurve {
     }
 }
 
-/// The Bode plot alone, as the window draws it.
+/// Returns a screen with the Bode plot alone, as in the window.
 fn bode(curves: &[BodeCurve]) -> Screen<'_> {
     let mut view = BodeView::default();
     let palette = Palette::dark();
@@ -158,7 +161,7 @@ fn bode(curves: &[BodeCurve]) -> Screen<'_> {
     })
 }
 
-/// The same curves as plain lines in two plots.
+/// Returns a screen with the same curves as plain lines in two plots.
 fn plain(curves: &[BodeCurve]) -> Screen<'_> {
     Screen::new(Context::default(), Doing::Nothing, move |ui| {
         let height = 0.5 * ui.available_height() - 4.0;
@@ -185,15 +188,15 @@ fn plain(curves: &[BodeCurve]) -> Screen<'_> {
 
 /// Times of a frame \[ms\].
 struct Figures {
-    /// Median of making the shapes.
+    /// Median time to create the shapes.
     shapes: f64,
-    /// Median of tessellating them.
+    /// Median time to tessellate the shapes.
     tessellation: f64,
-    /// Median of both.
+    /// Median of the total time.
     both: f64,
-    /// The shortest of both: what the machine does when nothing disturbs it.
+    /// Minimum of the total time, without disturbance by other processes.
     shortest: f64,
-    /// Vertices of the last frame.
+    /// Number of vertices in the last frame.
     vertices: usize,
 }
 
@@ -219,16 +222,17 @@ impl Figures {
     }
 }
 
-/// One line of the table.
+/// Row of the printed table.
 struct Row {
     name: String,
     figures: Figures,
-    /// What plain lines take \[ms\].
+    /// Median total time of plain lines \[ms\].
     plain: f64,
 }
 
 fn frames(criterion: &mut Criterion) {
-    // First, so that the heap is as large for the plain lines as for the window.
+    // The window is created first, so that the heap has the same size for plain lines and for the
+    // window.
     let mut window = Window::settled();
     println!("The window shows {}.", window.curves_drawn());
     let mut rows: Vec<Row> = Vec::new();

@@ -1,8 +1,9 @@
-//! `cargo bench --bench identification`: models of the example's eleven conditions from their flight records, stage by stage, and
-//! beside it the normal matrix of the polish as a plain product.
+//! `cargo bench --bench identification`: models of the example's eleven conditions from their
+//! flight records, stage by stage, compared with the normal matrix of the refinement as a plain
+//! product.
 //!
-//! Figures to reach, two cores, 9 records of 60 s at 50 Hz, 4 inputs, 6 outputs: the first model in 0.4 s, everything in 1 s, all eleven
-//! conditions in 12 s.
+//! Targets on two cores, for 9 records of 60 s at 50 Hz, 4 inputs and 6 outputs: 0.4 s to the first
+//! model, 1 s in total, 12 s for all eleven conditions.
 
 use std::path::Path;
 use std::sync::Mutex;
@@ -25,7 +26,7 @@ impl FolderProgress for Silent {
     fn reading(&self, _: usize, _: usize, _: &str) {}
 }
 
-/// Notes when each step begins.
+/// Records the start time of each step.
 struct Stages {
     start: Instant,
     steps: Mutex<Vec<(f64, String)>>,
@@ -98,7 +99,7 @@ fn main() {
         let ratio = found.held_out_cost.unwrap_or(f64::NAN) / found.cost;
         worst = worst.max(ratio);
         println!(
-            "condition {:2}: order {:2}, J/dof {:.3}, held out {ratio:.2} times that; first model {:4.0} ms, everything {ms:4.0} ms",
+            "condition {:2}: order {:2}, J/dof {:.3}, held-out cost {ratio:.2} times as large; first model {:4.0} ms, total {ms:4.0} ms",
             condition.id(),
             found.refined.order().unwrap_or_default(),
             found.cost,
@@ -130,8 +131,9 @@ fn borrowed(names: &[String]) -> Vec<&str> {
     names.iter().map(String::as_str).collect()
 }
 
-/// The normal matrix of one Gauss-Newton step as the product of a stored Jacobian: 8 records of 150 lines, 6 outputs, real and
-/// imaginary parts, 200 parameters. A refinement takes some 30 of them.
+/// Prints the time to compute the normal matrix of a Gauss-Newton step from a stored Jacobian: 8
+/// records of 150 spectral lines, 6 outputs, real and imaginary parts, 200 parameters. A refinement
+/// takes about 30 steps.
 fn plain_normal_matrix() {
     let jacobian = DMatrix::from_fn(8 * 150 * 6 * 2, 200, |row, column| {
         ((row * 31 + column * 17) % 101) as f64 / 101.0

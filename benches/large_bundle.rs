@@ -1,6 +1,7 @@
-//! `cargo bench --bench large_bundle`: a bundle of 1000 models of 60 states on 500 frequencies, ten times the paper's and more.
+//! `cargo bench --bench large_bundle`: a bundle of 1000 models with 60 states, at 500 frequencies;
+//! more than ten times the size of the bundles in the paper.
 //!
-//! Figures to reach: responses <= 1 s on two cores, memory <= 1 GB.
+//! Targets: 1 s for the responses on two cores, 1 GB of memory.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -34,7 +35,8 @@ const MODELS: usize = 1000;
 const STATES: usize = 60;
 const FREQUENCIES: usize = 500;
 
-/// One model and its neighbours, whose system matrices differ in proportion to two coordinates of the trim.
+/// Returns a condition with a nominal model and its neighbours, whose system matrices change
+/// linearly with two trim coordinates.
 fn condition() -> Condition {
     let base = model(STATES);
     let change = |seed: f64| {
@@ -86,7 +88,8 @@ fn condition() -> Condition {
         .expect("one nominal model, all names different")
 }
 
-/// Most memory that the process has had, resident \[MB\], where the system tells.
+/// Returns the peak resident memory of the process \[MB\]; `None` on systems without
+/// `/proc/self/status`.
 fn peak_memory_mb() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmHWM"))?;
@@ -139,6 +142,6 @@ fn main() {
         dense.as_secs_f64() / together.as_secs_f64()
     );
     if let Some(memory) = peak_memory_mb() {
-        println!("memory: {memory:.0} MB at most, two sets of responses and the models among them");
+        println!("peak memory: {memory:.0} MB, including two sets of responses and the models");
     }
 }

@@ -1,8 +1,7 @@
-//! Time of the gains with their proof, of the delays, and of plain methods for the same problems in the same run.
-//!
-//! `cargo bench --bench optimiser`.
+//! `cargo bench --bench optimiser`: time for the gains with their optimality proof and for the
+//! delays, compared with plain methods for the same problems in the same run.
 
-// `criterion_group!` makes a public function, which cannot be documented.
+// `criterion_group!` generates a public function, to which no doc comment can be added.
 
 use std::hint::black_box;
 use std::time::Duration;
@@ -13,7 +12,7 @@ use gdcm_method::correction::solve::solve;
 use gdcm_method::correction::{Problem, ProofBudget, Solution};
 
 #[path = "../crates/gdcm-io/tests/suite/optimiser/instances.rs"]
-// The tests use more of it.
+// The tests use other parts of this module.
 #[allow(dead_code)]
 mod instances;
 mod plain;

@@ -1,16 +1,17 @@
-//! The frequency response of a model on each instruction set: beside a plain dense LU decomposition at each frequency,
-//! and beside the rate at which the processor can multiply and add.
+//! `cargo bench --bench responses`: the frequency response of a model on each instruction set,
+//! compared with a plain dense LU decomposition at each frequency, and with the peak rate of
+//! multiply-adds.
 //!
-//! Counted are the fused multiply-adds on real numbers of one frequency when no rows are interchanged, for n states, m
-//! inputs and p outputs with m <= p:
+//! The share of the peak rate counts the real fused multiply-adds of one frequency without row
+//! interchanges, for n states, m inputs and p outputs with m <= p:
 //!
 //! ```text
-//! n^2 m  (elimination of the columns of states)  +  2 n m p  (of those of outputs)
+//! n^2 m  (elimination of the state columns)  +  2 n m p  (elimination of the output columns)
 //! ```
 //!
-//! The time has everything in it: balancing, reduction to Hessenberg form, allocation and storing. If the environment
-//! variable `GDCM_EXPORT_RESPONSES` names a folder, models and responses are written there for other programs to
-//! compare.
+//! The measured time includes balancing, reduction to Hessenberg form, allocation and storing. If
+//! the environment variable `GDCM_EXPORT_RESPONSES` names a folder, models and responses are
+//! written there for comparison with other programs.
 
 use std::hint::black_box;
 use std::path::Path;
@@ -36,7 +37,7 @@ use stopwatch::shortest;
 const FREQUENCIES: usize = 500;
 const ORDERS: [usize; 3] = [12, 30, 60];
 
-/// The instruction sets of this machine.
+/// Returns the instruction sets of this machine, the widest first.
 fn instruction_sets() -> Vec<(&'static str, Arch)> {
     let mut sets = Vec::new();
     #[cfg(target_arch = "x86_64")]
@@ -50,7 +51,7 @@ fn instruction_sets() -> Vec<(&'static str, Arch)> {
     sets
 }
 
-/// Independent chains of multiply-adds; returns how many there were.
+/// Independent chains of multiply-adds; returns the number of operations.
 struct MultiplyAdds;
 
 impl WithSimd for MultiplyAdds {
@@ -58,7 +59,8 @@ impl WithSimd for MultiplyAdds {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
-        // Two units with a latency of four or five cycles need ten; sixteen registers hold twelve.
+        // Two units with a latency of four or five cycles need up to ten chains; sixteen registers
+        // hold twelve.
         const CHAINS: usize = 12;
         const ROUNDS: usize = 10_000;
         let factor = simd.splat_f64s(black_box(0.999));
@@ -78,7 +80,7 @@ fn multiply_adds(order: usize) -> usize {
     order * INPUTS * (order + 2 * OUTPUTS)
 }
 
-/// One row of the table for each instruction set.
+/// Prints a table row for each instruction set.
 fn compare(order: usize, omega: &[f64]) {
     let model = model(order);
     let dense = shortest(5, || dense_responses(&model, omega)).as_secs_f64() / FREQUENCIES as f64;
@@ -99,7 +101,7 @@ fn compare(order: usize, omega: &[f64]) {
     }
 }
 
-/// How much faster two threads are than one on a batch of models.
+/// Prints the speed-up by a second thread on a batch of models.
 fn scaling(omega: &[f64]) {
     let models: Vec<StateSpace> = vec![model(30); 64];
     let run = |models: &[StateSpace]| {
@@ -122,7 +124,8 @@ fn scaling(omega: &[f64]) {
     );
 }
 
-/// Writes a model and its response to `<order>-states.json`, indices `[frequency][output][input]`.
+/// Writes a model and its response to `<order>-states.json`, with indices
+/// `[frequency][output][input]`.
 fn export(folder: &Path, order: usize, omega: &[f64]) {
     let model = model(order);
     let (name, arch) = instruction_sets()[0];
@@ -162,7 +165,8 @@ fn by_frequency(
 }
 
 fn main() {
-    // A heap from which something large was freed once keeps its pages: their first touch is not what is measured.
+    // After a large block was freed, the heap keeps its pages, so that page faults are not
+    // measured.
     drop(black_box(vec![1_u8; 8 << 20]));
     let grid = FrequencyGrid::logarithmic(Band::new(0.1, 100.0).expect("a band"), FREQUENCIES);
     let omega = grid.omega();

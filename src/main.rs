@@ -1,4 +1,4 @@
-//! The executable: opens the window, or carries out a command.
+//! Executable: opens the window, or carries out a command.
 
 use std::process::ExitCode;
 

@@ -1,14 +1,16 @@
-//! What a plain method costs: projected gradient on the channel gains or delays with the held entries as a penalty, no proof.
+//! Plain method for comparison, without a proof: projected gradient for the channel gains or
+//! delays, with a penalty on the errors of constrained entries.
 
 use gdcm_method::correction::Problem;
 
-/// Steps after which the plain method gives up.
+/// Maximum number of steps.
 const STEPS: usize = 400;
 
-/// Weight of the held entries in the penalty.
+/// Penalty weight of the constrained entries.
 const PENALTY: f64 = 100.0;
 
-/// Objective of the gains that a projected gradient with a penalty for the held entries reaches.
+/// Returns the objective of the gains found by a projected gradient with a penalty on constrained
+/// entries.
 pub fn projected_gradient(problem: &Problem) -> f64 {
     let outputs = problem.delta.outputs();
     let inputs = problem.delta.inputs();
@@ -40,7 +42,8 @@ pub fn projected_gradient(problem: &Problem) -> f64 {
     problem.objective_at(&point[..inputs], &point[inputs..])
 }
 
-/// Objective of the delays that the same method reaches, in units of 0.1 s.
+/// Returns the objective of the delays found by a projected gradient with a penalty on constrained
+/// entries; the delays are scaled to units of 0.1 s.
 pub fn delay_gradient(problem: &Problem) -> f64 {
     let outputs = problem.delta.outputs();
     let inputs = problem.delta.inputs();

@@ -1,15 +1,16 @@
-//! Models that several benches share, and the plain way to their responses.
+//! Models shared by several benches, and a plain method for their responses.
 
 use nalgebra::{Complex, DMatrix};
 
 use gdcm_model::dataset::StateSpace;
 
-/// Number of outputs.
+/// Number of outputs of the random models.
 pub const OUTPUTS: usize = 6;
-/// Number of inputs.
+/// Number of inputs of the random models.
 pub const INPUTS: usize = 4;
 
-/// A stable model without structure: a random matrix whose eigenvalues fill a disc of radius 8 rad/s about -9 rad/s.
+/// Returns a stable model without structure: a random matrix whose eigenvalues fill a disc of
+/// radius 8 rad/s about -9 rad/s.
 pub fn model(order: usize) -> StateSpace {
     let mut state = 88_172_645_463_325_252_u64;
     let mut uniform = || {
@@ -18,7 +19,7 @@ pub fn model(order: usize) -> StateSpace {
         state ^= state << 17;
         (state >> 11) as f64 / (1_u64 << 53) as f64 * 2.0 - 1.0
     };
-    // The sum of three such numbers has variance 1.
+    // The sum of three uniform numbers in (-1, 1) has variance 1.
     let mut matrix =
         |rows, columns| DMatrix::from_fn(rows, columns, |_, _| uniform() + uniform() + uniform());
     let a = matrix(order, order) * (8.0 / (order as f64).sqrt())
@@ -29,7 +30,7 @@ pub fn model(order: usize) -> StateSpace {
     StateSpace::new(a, b, c, d).expect("the shapes agree")
 }
 
-/// The plain way: a dense complex LU decomposition at each frequency.
+/// Computes the responses by a plain method: a dense complex LU decomposition at each frequency.
 pub fn dense_responses(model: &StateSpace, omega: &[f64]) -> Vec<DMatrix<Complex<f64>>> {
     let [a, b, c, d] =
         [model.a(), model.b(), model.c(), model.d()].map(|matrix| matrix.map(Complex::from));

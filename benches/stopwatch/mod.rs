@@ -1,9 +1,9 @@
-//! Times of what is run outside criterion.
+//! Timing of code that is not run by criterion.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-/// The shortest of a few runs: what the machine does when nothing disturbs it.
+/// Returns the minimum time of a few runs, which is least affected by other processes.
 pub fn shortest<T>(runs: usize, mut run: impl FnMut() -> T) -> Duration {
     let time = |_| {
         let start = Instant::now();

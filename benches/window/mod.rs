@@ -1,4 +1,4 @@
-//! The program's window without a display, its analysis done.
+//! The program's window without a display, after its analysis.
 
 use std::time::Duration;
 
@@ -10,13 +10,13 @@ use egui_kittest::kittest::Queryable;
 use gdcm::gui::app::GdcmApp;
 use gdcm_io::{Opened, embedded_example};
 
-/// The window on the embedded example.
+/// Window with the embedded example.
 pub struct Window {
     harness: Harness<'static, GdcmApp>,
 }
 
 impl Window {
-    /// The window once nothing is being computed any more.
+    /// Opens the window and waits until its analysis is complete.
     pub fn settled() -> Self {
         let build = |creation: &mut eframe::CreationContext<'static>| {
             let example = embedded_example().expect("the embedded example is a dataset");
@@ -34,7 +34,7 @@ impl Window {
         Self { harness }
     }
 
-    /// Goes to a tab by its name.
+    /// Shows a tab, given its name.
     pub fn show(&mut self, tab: &str) {
         self.harness.ctx.enable_accesskit();
         self.harness.run_steps(2);
@@ -42,17 +42,17 @@ impl Window {
         self.harness.run_steps(4);
     }
 
-    /// How many curves of how many points the large plot holds.
+    /// Returns the numbers of curves and points in the large plot: "25 curves of 500 points".
     pub fn curves_drawn(&self) -> String {
         let drawn = &self.harness.state().state().display.frequency.drawn;
         let points = drawn.first().map_or(0, |curve| curve.omega.len());
         format!("{} curves of {points} points", drawn.len())
     }
 
-    /// The window's context, and what draws it.
+    /// Returns the window's context and a function that draws the window.
     pub fn drawn(&mut self) -> (Context, impl FnMut(&mut Ui)) {
         let ctx = self.harness.ctx.clone();
-        // Names for screen readers are made only where one listens.
+        // As without a screen reader, no accessible names are generated.
         ctx.disable_accesskit();
         let app = self.harness.state_mut();
         let mut frame = eframe::Frame::_new_kittest();

@@ -10,7 +10,7 @@ use super::study_options::{CommandStudy, ErrorBars, StudyAnalysis, analyze_study
 use super::summary::summary;
 use super::terminal::print;
 
-/// Analyses, writes the results, and prints a summary.
+/// Analyses a study, writes the result files, and prints a summary.
 pub(super) fn analyze(arguments: &AnalyzeArguments) -> Result<(), Failure> {
     let CommandStudy {
         study,

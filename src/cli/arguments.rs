@@ -1,4 +1,4 @@
-//! The command line.
+//! Arguments and commands of the command line.
 
 use std::path::PathBuf;
 
@@ -43,7 +43,7 @@ pub enum Command {
         after_help = "Examples:\n  gdcm figure example-dataset.json --view net-gain --bars --out net-gain.pdf\n  gdcm figure example-dataset.json --view bode --condition 3 --pair Q/LON --out bode.svg"
     )]
     Figure(Box<FigureArguments>),
-    /// Write the full report, ready to print: settings, rejections with their reasons, gains, delays, unmatched responses and why,
+    /// Write the full report, ready to print: settings, rejections, gains and delays, unmatched responses with reasons,
     /// the schedule, the assessment, and every plot.
     #[command(
         after_help = "Examples:\n  gdcm report flight.gdcm-study.json --out report.html\n  gdcm report example-dataset.json --reject-suggested --out report.html --force"
@@ -51,7 +51,7 @@ pub enum Command {
     Report(Box<ReportArguments>),
     /// Compute the quantities required for a qualification from the models of every condition: bandwidth and phase delay, time
     /// histories within tolerances about flight records, summary costs, modes; write requirements.json and requirements.csv, and
-    /// print a short table. This is no qualification.
+    /// print a short table. These values do not replace a qualification.
     #[command(
         after_help = "Examples:\n  gdcm requirements example-dataset.json --reject-suggested --out requirements\n  gdcm requirements flight.gdcm-study.json --records sweeps --tolerances mine.json --out requirements --force"
     )]
@@ -61,12 +61,12 @@ pub enum Command {
         after_help = "Examples:\n  gdcm export flight.gdcm-study.json --as py --out corrections.py\n  gdcm export example-dataset.json --as state-space --condition 3 --out models.mat"
     )]
     Export(Box<ExportArguments>),
-    /// Make a dataset from a folder with model files: MATLAB, NumPy, JSON, text. Without rules, propose them and list the missing items.
+    /// Make a dataset from a folder with model files: MATLAB, NumPy, JSON, text. Without --rules, propose rules and list the missing items.
     #[command(
         after_help = "Examples:\n  gdcm assemble models --out dataset.json.gz\n  gdcm assemble models --rules dataset.gdcm-rules.json --out dataset.json.gz --force"
     )]
     Assemble(AssembleArguments),
-    /// Write every model and response in any file as JSON.
+    /// Write every model and response in files of any supported format as JSON.
     #[command(
         after_help = "Examples:\n  gdcm convert model.mat --out models.json\n  gdcm convert folder other.npz --out models.json --force"
     )]
@@ -76,7 +76,7 @@ pub enum Command {
         after_help = "Examples:\n  gdcm identify sweeps --inputs LON,LAT --outputs P,Q=pitch_rate --band 0.5 12 --out identified\n  gdcm identify records --into dataset.json.gz --every-condition --hold-out validation.csv --out identified"
     )]
     Identify(Box<IdentifyArguments>),
-    /// Print the contents of a dataset or a study, or its faults and their places.
+    /// Print the contents of a dataset or a study, or every fault and its place in the file.
     #[command(
         after_help = "Examples:\n  gdcm check example-dataset.json\n  gdcm check flight.gdcm-study.json --dataset moved/example-dataset.json --strict"
     )]

@@ -1,4 +1,4 @@
-//! `gdcm assemble`: a dataset made from model files.
+//! `gdcm assemble`: makes a dataset from model files.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -78,7 +78,7 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
     }
 }
 
-/// Reads the models, and applies the rules in a file, or proposed rules without a file, together
+/// Reads the models, and applies the rules from a file (proposed rules if none is given) together
 /// with the declarations on the command line.
 fn assembled_models(arguments: &AssembleArguments) -> Result<Assembly, Failure> {
     let given = match &arguments.rules {
@@ -103,7 +103,7 @@ fn assembled_models(arguments: &AssembleArguments) -> Result<Assembly, Failure> 
     Ok(Assembly::new(found.models, rules))
 }
 
-/// Loads the rules from a file; prints their cautions on standard error.
+/// Loads the rules from a file; prints the cautions about it on standard error.
 fn rules_of_file(path: &Path) -> Result<Rules, Failure> {
     let (rules, cautions) = load_rules(path)?;
     for words in cautions {
@@ -112,7 +112,7 @@ fn rules_of_file(path: &Path) -> Result<Rules, Failure> {
     Ok(rules)
 }
 
-/// Reports the conditions without an identified model as reference.
+/// Reports the conditions that have no identified model, which is needed as the reference.
 fn report_missing_references(dataset: &Dataset) {
     let without = dataset.without_reference();
     if !without.is_empty() {
@@ -121,7 +121,7 @@ fn report_missing_references(dataset: &Dataset) {
     }
 }
 
-/// Rejects duplicate declarations of a channel for the same models.
+/// Rejects a second declaration of a channel's sign, unit or factor for the same models.
 fn check_declared_once(arguments: &AssembleArguments) -> Result<(), Failure> {
     let mut signs = BTreeSet::new();
     for FileValue { channel, scope, .. } in &arguments.sign {
@@ -145,7 +145,7 @@ fn check_declared_once(arguments: &AssembleArguments) -> Result<(), Failure> {
 }
 
 fn converted_already(option: &'static str, channel: &str, scope: &FileScope) -> Failure {
-    let reason = format!("{channel} of {scope} has a unit or a factor already");
+    let reason = format!("{channel} of {scope} already has a unit or a factor");
     Failure::coded_option(option, "given-twice", reason)
 }
 
@@ -182,7 +182,8 @@ fn declare(
     Ok(())
 }
 
-/// Adds a declaration to the rules of a single model, or to those of a scope.
+/// Adds a declaration to the rules of a single model if `scope` is its key, otherwise to the rules
+/// of the scope.
 fn declare_for_scope(
     scope: &FileScope,
     declared: &ChannelDeclarations,
@@ -223,14 +224,14 @@ fn check_declared<T>(
         && !models.iter().any(|model| scope.holds(model, None))
     {
         let reason = format!(
-            "{channel}: no model is in \"{pattern}\"; models are named as in the last column, file"
+            "{channel}: no model matches \"{pattern}\"; use the names in the last column (file)"
         );
         return Err(Failure::coded_option(option, "unknown-model", reason));
     }
     Ok(())
 }
 
-/// Returns the proposed name of the dataset: that of the first folder.
+/// Returns the default name of the dataset: the name of the first folder; empty without a folder.
 fn dataset_name(folders: &[PathBuf]) -> String {
     match folders.first().and_then(|folder| folder.file_name()) {
         Some(name) => name.to_string_lossy().into_owned(),
@@ -238,7 +239,7 @@ fn dataset_name(folders: &[PathBuf]) -> String {
     }
 }
 
-/// Returns a table with a line for each model and its role in the dataset.
+/// Returns a table with condition, role, flight state and file of each model.
 fn model_table(assembly: &Assembly) -> String {
     let headings = [
         "condition",

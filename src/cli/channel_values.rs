@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use gdcm_model::assembly::FileScope;
 use gdcm_study::decisions::signs::SignRole;
 
-/// A value that an option declares for a channel.
+/// Value that an option declares for a channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelValue<T> {
     pub channel: String,
@@ -27,7 +27,7 @@ impl<T> ChannelValue<T> {
     }
 }
 
-/// Returns the first channel that is named by more than one declaration.
+/// Returns the first channel that occurs in more than one declaration.
 pub(super) fn first_duplicate<'a, T: 'a>(
     declarations: impl IntoIterator<Item = &'a ChannelValue<T>>,
 ) -> Option<&'a str> {
@@ -38,7 +38,7 @@ pub(super) fn first_duplicate<'a, T: 'a>(
         .find(|channel| !seen.insert(*channel))
 }
 
-/// A channel in a single record.
+/// Channel in a single record, written as "RECORD:CHANNEL".
 pub(super) struct RecordChannel<'a> {
     pub(super) record: &'a str,
     pub(super) channel: &'a str,
@@ -62,7 +62,8 @@ pub type ChannelSign = ChannelValue<Option<SignRole>>;
 pub(super) fn channel_sign(text: &str) -> Result<ChannelSign, String> {
     valid_sign(text).ok_or_else(|| {
         format!(
-            "expected CHANNEL=-1, with :identified, :physics or :all behind it, or CHANNEL=1; found {text}"
+            "expected CHANNEL=-1, optionally followed by :identified, :physics or :all, or \
+            CHANNEL=1; found {text}"
         )
     })
 }
@@ -110,14 +111,15 @@ fn text_value(text: &str) -> Option<String> {
 /// Parses a channel and the unit of its samples: "P=rad/s".
 pub(super) fn channel_unit(text: &str) -> Result<ChannelValue<String>, String> {
     ChannelValue::parse(text, text_value)
-        .ok_or_else(|| format!("expected CHANNEL=UNIT, as P=rad/s, found \"{text}\""))
+        .ok_or_else(|| format!("expected CHANNEL=UNIT, such as P=rad/s; found \"{text}\""))
 }
 
 /// Parses a channel and the factor of its samples: "LON=25".
 pub(super) fn channel_factor(text: &str) -> Result<ChannelValue<f64>, String> {
     ChannelValue::parse(text, factor).ok_or_else(|| {
         format!(
-            "expected CHANNEL=X with X a number other than 0, as LON=25 or NZ=-1, found \"{text}\""
+            "expected CHANNEL=X with a number X other than 0, such as LON=25 or NZ=-1; found \
+            \"{text}\""
         )
     })
 }
@@ -126,7 +128,8 @@ pub(super) fn channel_factor(text: &str) -> Result<ChannelValue<f64>, String> {
 pub(super) fn channel_topic(text: &str) -> Result<ChannelValue<String>, String> {
     ChannelValue::parse(text, |column| text_value(column.trim_matches('"'))).ok_or_else(|| {
         format!(
-            "expected CHANNEL=TOPIC.FIELD, as P=vehicle_angular_velocity.xyz[0], found \"{text}\""
+            "expected CHANNEL=TOPIC.FIELD, such as P=vehicle_angular_velocity.xyz[0]; found \
+            \"{text}\""
         )
     })
 }
@@ -135,24 +138,24 @@ pub(super) fn channel_topic(text: &str) -> Result<ChannelValue<String>, String> 
 pub(super) fn channel_delay(text: &str) -> Result<ChannelValue<f64>, String> {
     /// Maximum plausible delay \[s\] of a sensor or bus.
     const MOST_S: f64 = 2.0;
-    let expected = || format!("expected CHANNEL=SECONDS, as P=0.02, found \"{text}\"");
+    let expected = || format!("expected CHANNEL=SECONDS, such as P=0.02; found \"{text}\"");
     let delay = ChannelValue::parse(text, |seconds| seconds.parse().ok()).ok_or_else(expected)?;
     if (-MOST_S..=MOST_S).contains(&delay.value) {
         Ok(delay)
     } else {
         Err(format!(
-            "{}; a delay is from -{MOST_S} to {MOST_S} s",
+            "{}; a delay must be between -{MOST_S} and {MOST_S} s",
             expected()
         ))
     }
 }
 
-/// A value that an option declares for a channel in some of the assembled files.
+/// Value that an option declares for a channel in some of the assembled files.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileValue<T> {
     pub channel: String,
     pub value: T,
-    /// Files to which the value applies; by default those of the identified models.
+    /// Files to which the value applies; by default the files of the identified models.
     pub scope: FileScope,
 }
 
@@ -174,24 +177,27 @@ impl<T> FileValue<T> {
     }
 }
 
-/// Hint about the scope of an option, for its error message.
-const SCOPE_HINT: &str =
-    ":identified, :physics, :all or : and the file of a model or a pattern of folders may follow";
+/// Explanation of the scope syntax, appended to error messages.
+const SCOPE_HINT: &str = "optionally followed by :identified, :physics, :all or :FILE (a model's file or folder pattern)";
 
 pub(super) fn file_sign(text: &str) -> Result<FileValue<f64>, String> {
     FileValue::parse(text, sign_factor).ok_or_else(|| {
-        format!("expected a channel with 1 or -1, as NZ=-1; {SCOPE_HINT}; found \"{text}\"")
+        format!("expected CHANNEL=1 or CHANNEL=-1, such as NZ=-1, {SCOPE_HINT}; found \"{text}\"")
     })
 }
 
 pub(super) fn file_unit(text: &str) -> Result<FileValue<String>, String> {
-    FileValue::parse(text, text_value)
-        .ok_or_else(|| format!("expected CHANNEL=UNIT, as LON=in; {SCOPE_HINT}; found \"{text}\""))
+    FileValue::parse(text, text_value).ok_or_else(|| {
+        format!("expected CHANNEL=UNIT, such as LON=in, {SCOPE_HINT}; found \"{text}\"")
+    })
 }
 
 pub(super) fn file_factor(text: &str) -> Result<FileValue<f64>, String> {
     FileValue::parse(text, factor).ok_or_else(|| {
-        format!("expected CHANNEL=X with X a number other than 0, as LON=8 or NZ=-1; {SCOPE_HINT}; found \"{text}\"")
+        format!(
+            "expected CHANNEL=X with a number X other than 0, such as LON=8 or NZ=-1, \
+            {SCOPE_HINT}; found \"{text}\""
+        )
     })
 }
 

@@ -1,4 +1,4 @@
-//! `gdcm check`: contents and faults of a dataset or a study.
+//! `gdcm check`: prints the contents and faults of a dataset or a study.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -36,7 +36,7 @@ pub(super) fn check(
     signs: &[ChannelSign],
 ) -> Result<(), Failure> {
     if file.is_file() && !holds_models(file) {
-        // Finds structural errors before a large file is read completely.
+        // Reports structural errors before the whole of a large file is read.
         check_beginning(file)?;
     }
     let opened = match open(file, arguments) {
@@ -61,8 +61,8 @@ fn has_several_faults(error: &FileError) -> bool {
     matches!(error, FileError::Content { fault, .. } if matches!(**fault, ContentFault::Dataset(_)))
 }
 
-/// Reports every fault in a dataset. Returns a single fault itself; several faults as a failure
-/// that gives their number.
+/// Prints every fault in a dataset. Returns the failure with the number of faults; if there is only
+/// one, the failure is that fault.
 fn report_faults(file: &Path, first: FileError) -> Failure {
     match dataset_faults(file) {
         Ok(faults) if faults.len() > 1 => {
@@ -74,7 +74,7 @@ fn report_faults(file: &Path, first: FileError) -> Failure {
                 count: faults.len(),
             }
         }
-        // For a single fault, or a study, the first message is complete.
+        // If there is a single fault, or the file is a study, the first error is complete.
         _ => Failure::File(first),
     }
 }
@@ -112,7 +112,7 @@ fn on_axis_words(dataset: &Dataset) -> String {
         .map(|pair| sanitized(&dataset.pair_name(pair)))
         .collect();
     if pairs.is_empty() {
-        "none given: every response counts".to_owned()
+        "none marked: all responses enter the objective".to_owned()
     } else {
         pairs.join(", ")
     }
@@ -197,7 +197,7 @@ fn with_unit(value: Option<f64>, unit: &str) -> String {
     }
 }
 
-/// Returns the sample times and delays of each bundle, with the models that share them (M2a).
+/// Returns the sample times and delays in each bundle, with the models that have them (M2a).
 fn timings(dataset: &Dataset) -> String {
     let mut text = String::new();
     for condition in dataset.conditions() {
@@ -240,7 +240,7 @@ fn records(dataset: &Dataset) -> String {
     text
 }
 
-/// Counts records by kind and use: "3 sweep, 1 doublet, 1 held out".
+/// Counts records by kind, and those held out or not used: "3 sweep, 1 doublet, 1 held out".
 fn record_words(records: &[ConditionRecord]) -> String {
     let mut counts: Vec<(usize, &str)> = Vec::new();
     for kind in RecordKind::ALL {
@@ -259,7 +259,7 @@ fn record_words(records: &[ConditionRecord]) -> String {
     words.join(", ")
 }
 
-/// Returns the number of states of the models: "39", "11-14", "measured", "12, measured".
+/// Describes the orders of the models: "39", "11-14", "measured", "12, measured".
 fn order_words(models: &[Model]) -> String {
     let mut orders: Vec<usize> = Vec::new();
     for model in models {

@@ -12,7 +12,7 @@ use super::model_arguments::ConvertArguments;
 use super::terminal::print;
 use super::text::counted;
 
-/// Writes all models in the given files as JSON.
+/// Writes all models in the given files into one JSON file.
 pub(super) fn convert(arguments: &ConvertArguments) -> Result<(), Failure> {
     let mut outputs = OutputSet::new(existing(arguments.force), arguments.files.clone());
     outputs.check(&[&arguments.out])?;

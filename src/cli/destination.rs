@@ -18,7 +18,7 @@ use super::study_options::{condition_ids, condition_of};
 use super::terminal::{caution, note};
 use super::text::listed_conditions;
 
-/// Records that are identified jointly.
+/// Records from which models are identified jointly.
 pub(super) struct RecordGroup {
     /// Condition of the records; `None` without a dataset.
     pub(super) condition: Option<ConditionId>,
@@ -36,7 +36,7 @@ pub(super) struct Destination {
 }
 
 impl Destination {
-    /// Opens the dataset named on the command line, if any.
+    /// Opens the dataset given by `--into`; `None` without this option.
     pub(super) fn open(arguments: &IdentifyArguments) -> Result<Option<Self>, Failure> {
         let Some(path) = arguments.into.as_deref() else {
             return Ok(None);
@@ -59,7 +59,7 @@ impl Destination {
         }))
     }
 
-    /// Groups the records by condition, in the order of the dataset; omitted records are reported
+    /// Groups the records by condition, in the order of the dataset. Omitted records are reported
     /// on standard error.
     pub(super) fn groups(&self, records: Vec<LaidOutRecord>) -> Result<Vec<RecordGroup>, Failure> {
         match self.condition {
@@ -83,7 +83,7 @@ impl Destination {
             match group {
                 Some(group) => group.records.push(record),
                 None => caution(&format!(
-                    "{}: left out: its name gives no condition of the dataset",
+                    "{}: left out, because its name gives no condition of the dataset",
                     record.table.name
                 )),
             }
@@ -95,14 +95,15 @@ impl Destination {
             .collect();
         if !without.is_empty() {
             note(&format!(
-                "{}: no records; the identified models there stay unchanged",
+                "{}: no records; its identified models remain unchanged",
                 listed_conditions(&without)
             ));
         }
         groups.retain(|group| !group.records.is_empty());
         if groups.is_empty() {
             let reason = format!(
-                "no name gives a condition of the dataset ({}), as cond03 does",
+                "no record name gives a condition of the dataset ({}); a name with cond03 gives \
+                condition 3",
                 condition_ids(&self.dataset)
             );
             return Err(Failure::coded_option(
@@ -114,7 +115,7 @@ impl Destination {
         Ok(groups)
     }
 
-    /// Adds models and records to a condition.
+    /// Adds identified models and their records to a condition.
     pub(super) fn adopt(
         &mut self,
         condition: ConditionId,
@@ -124,14 +125,14 @@ impl Destination {
             models
                 .put_into(&self.dataset, condition)
                 .map_err(|error| Failure::NoModels {
-                    reason: format!("the dataset cannot hold the models: {error}"),
+                    reason: format!("the models cannot be added to the dataset: {error}"),
                 })?;
         self.dataset = Arc::new(dataset);
         Ok(())
     }
 }
 
-/// Returns the records of a condition; those whose names give another condition are omitted and
+/// Returns the group of a condition. Records whose names give another condition are omitted and
 /// reported on standard error.
 fn group_for_condition(
     condition: ConditionId,
@@ -165,7 +166,7 @@ fn group_for_condition(
     })
 }
 
-/// Returns the conditions given in record names, as "3, 7".
+/// Lists the conditions given in record names: "3, 7".
 pub(super) fn named_conditions(records: &[LaidOutRecord]) -> String {
     let named: BTreeSet<i64> = records
         .iter()
@@ -175,8 +176,8 @@ pub(super) fn named_conditions(records: &[LaidOutRecord]) -> String {
     named.join(", ")
 }
 
-/// Returns the dataset for a file in another folder: record paths lead through `folder`, and a new
-/// description replaces the old one.
+/// Adapts a dataset to a file in another folder: prefixes the paths of records with `folder`, and
+/// replaces the description if a new one is given.
 fn moved_dataset(
     dataset: &Dataset,
     folder: &str,

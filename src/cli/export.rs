@@ -1,4 +1,4 @@
-//! `gdcm export`: corrections for other tools.
+//! `gdcm export`: writes corrections in formats for other tools.
 
 use gdcm_io::export::{
     EXPORTERS, ExportRequest, ExportSource, ExportedRole, check_export, export_contents,
@@ -14,7 +14,7 @@ use super::study_arguments::StudyArguments;
 use super::study_options::{CommandStudy, ErrorBars, StudyAnalysis, analyze_study, condition_of};
 use super::terminal::print;
 
-/// Analyses, writes the requested export, and prints its notes and cautions.
+/// Analyses a study, writes the requested export, and prints its notes and cautions.
 pub(super) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
     let CommandStudy {
         study,
@@ -49,7 +49,7 @@ pub(super) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
     print(&text)
 }
 
-/// Returns the name of the source stated in an export: the study file or the dataset file.
+/// Returns the file name of the study or dataset, which the export states as its source.
 fn source_name(arguments: &StudyArguments) -> String {
     let file = arguments.file.as_ref().and_then(|file| file.file_name());
     match file {
@@ -98,7 +98,7 @@ fn check_options(arguments: &ExportArguments) -> Result<(), Failure> {
             .filter(|exporter| exporter.options.contains(&option))
             .map(|exporter| exporter.name)
             .collect();
-        let reason = format!("is an option of --as {}", names.join(" and "));
+        let reason = format!("applies only to --as {}", names.join(" and "));
         return Err(Failure::coded_option(option, "misplaced-option", reason));
     }
     Ok(())

@@ -23,36 +23,37 @@ pub(super) enum Failure {
         code: &'static str,
         reason: String,
     },
-    /// The first word is neither a command nor a file, but resembles a command.
+    /// The first argument is neither a command nor a file, but resembles a command.
     #[error("{found}: no such command or file; did you mean gdcm {suggestion}?")]
     UnknownCommand { found: String, suggestion: String },
     /// The dataset has changed since the study was saved, and `--strict` was given.
-    #[error("{path}: {} from the dataset of the study, refused by --strict", counted(*count, "difference"))]
+    #[error("{path}: {} from the dataset of the study, not accepted with --strict", counted(*count, "difference"))]
     Different { path: String, count: usize },
     /// Several faults in a dataset, each of which has already been reported.
     #[error("{path}: {count} faults; correct them and check the file again")]
     Faulty { path: String, count: usize },
-    /// A model file instead of a dataset or a study.
+    /// The file contains models instead of a dataset or a study.
     #[error(
         "{path}: neither a dataset nor a study; make a dataset of model files with gdcm assemble \
          {path} --out dataset.json.gz, or with Import models in the window"
     )]
     Models { path: String },
-    /// The rules are incomplete, so the files do not form a dataset yet.
+    /// The rules lack items, so no dataset can be made from the files.
     #[error("no dataset was written: complete {} in {rules} and pass it with --rules", counted(*count, "item"))]
     Incomplete { count: usize, rules: String },
-    /// Records with unclear or invalid columns, each of which has already been reported.
+    /// The columns of some records are unclear or invalid, which has already been reported for each
+    /// record.
     #[error(
         "{wrong} of {} cannot be used: give their columns (--inputs P=COLUMN, --time) and units \
          (--unit P=deg/s), or leave them out",
         counted(*count, "record")
     )]
     Records { wrong: usize, count: usize },
-    /// No usable content in the files.
+    /// The files have no usable content.
     #[error("{paths}: no usable {noun}")]
     Nothing { paths: String, noun: &'static str },
-    /// Named records that could not be read completely; the others were used.
-    #[error("{paths}: not read, or only in part; the results are without the rest")]
+    /// Some of the requested records could not be read completely; the others were used.
+    #[error("{paths}: not read, or read only in part; the results do not include the missing data")]
     Unread { paths: String },
     /// Identification was completed, but the records identify no input.
     #[error("no input is identified by these records; the models do not describe {inputs}")]
@@ -69,7 +70,7 @@ pub(super) enum Failure {
     StandardOutput { reason: String },
 }
 
-/// Returns a hint, appended to the message of a file's error, at the option that helps.
+/// Returns a hint for the message of a file error: the option that solves the problem.
 fn file_remedy(error: &FileError) -> &'static str {
     match error {
         FileError::Exists { .. } => "; --force overwrites",
@@ -91,7 +92,7 @@ impl Failure {
         Self::coded_option(option, "wrong-option", reason)
     }
 
-    /// Returns the failure for an invalid option value, with its own code.
+    /// Returns the failure for an invalid option value, with a specific code.
     pub(super) fn coded_option(
         option: &'static str,
         code: &'static str,
@@ -104,18 +105,18 @@ impl Failure {
         }
     }
 
-    /// Returns the failure for an option given twice on one subject.
+    /// Returns the failure for an option that is given twice for the same subject.
     pub(super) fn given_twice(option: &'static str, subject: &str) -> Self {
         Self::coded_option(option, "given-twice", format!("{subject} is given twice"))
     }
 
     /// Returns the failure for an option that names an unknown record.
     pub(super) fn unknown_record(option: &'static str, record: &str) -> Self {
-        let reason = format!("\"{record}\" is none of the records");
+        let reason = format!("no record is called \"{record}\"");
         Self::coded_option(option, "unknown-record", reason)
     }
 
-    /// Returns the stable code for scripts; `None` for a file error without a code.
+    /// Returns the stable code for scripts; `None` for a file error that has no code.
     pub(super) fn code(&self) -> Option<&'static str> {
         let code = match self {
             Failure::File(error) => return error.code(),
@@ -138,7 +139,7 @@ impl Failure {
         Some(code)
     }
 
-    /// Returns the exit status.
+    /// Returns the exit status of the program.
     pub(super) fn status(&self) -> u8 {
         match self {
             Failure::File(FileError::Unwritable { .. })

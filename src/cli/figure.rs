@@ -27,7 +27,7 @@ use super::study_options::{
 };
 use super::terminal::print;
 
-/// Writes a figure to a file and reports it.
+/// Writes a figure to a file, and prints its path.
 pub(super) fn figure(arguments: &FigureArguments) -> Result<(), Failure> {
     let CommandStudy { study, outputs, .. } =
         CommandStudy::open(&arguments.study, arguments.force)?;
@@ -86,12 +86,12 @@ fn assessed_couplings(
             reason: why.words(&study.dataset.names_of_channels().0),
         }),
         None => Err(Failure::NoResult {
-            reason: "no couplings".to_owned(),
+            reason: "there are no couplings to assess".to_owned(),
         }),
     }
 }
 
-/// Draws a condition's figure from the curves that the window shows.
+/// Draws a figure of a condition from the same curves as the window.
 fn figure_of_condition(
     request: &FigureRequest,
     analysis: &Analysis,
@@ -160,7 +160,7 @@ fn bode_options(dataset: &Dataset, arguments: &FigureArguments) -> Result<BodeOp
         Some(list) => pairs_of(dataset, list, "--zeros")?.first().copied(),
         None => None,
     };
-    // Only the window can show the curves with couplings.
+    // Hide the curves with couplings, which only the window can show.
     let mut hidden = vec![Role::Coupled];
     hidden.extend(arguments.hide.iter().copied());
     Ok(BodeOptions {
@@ -221,7 +221,7 @@ fn named_channel(dataset: &Dataset, name: &str) -> Result<Channel, Failure> {
         })
 }
 
-/// Returns the condition of a figure that shows a single condition.
+/// Returns the condition of the figure; `None` for a figure of all conditions.
 fn figure_condition(
     study: &Study,
     arguments: &FigureArguments,

@@ -25,13 +25,12 @@ use super::record_parts::{
 use super::terminal::{caution, error, note};
 use super::text::indented;
 
-/// Records read from files.
+/// Records read from files, with the messages about them.
 pub(super) struct ReadRecords {
-    /// The records with their columns.
     pub(super) records: Vec<LaidOutRecord>,
-    /// Named files that could not be read completely.
+    /// Requested files that could not be read completely.
     pub(super) unread: Vec<PathBuf>,
-    /// Notes about choices made while reading.
+    /// Notes about assumptions made while reading, such as recognised columns.
     pub(super) reading: Vec<String>,
     pub(super) duplicates: Vec<Duplicate>,
     /// Whole records from which parts were cut, with their time spans.
@@ -40,12 +39,12 @@ pub(super) struct ReadRecords {
 
 /// A record whose samples equal those of another record.
 pub(super) struct Duplicate {
-    /// Name of the other record.
+    /// Name of the record with the same samples.
     pub(super) original: String,
     pub(super) caution: CautionNote,
 }
 
-/// Reads the records from files and folders; reports skipped content on standard error.
+/// Reads the records in files and folders; reports skipped content on standard error.
 pub(super) fn found_records(paths: &[PathBuf]) -> Result<FoundRecords, Failure> {
     let found = read_records(paths, &ReadingProgress::new())?;
     for fault in &found.faults {
@@ -61,8 +60,8 @@ pub(super) fn found_records(paths: &[PathBuf]) -> Result<FoundRecords, Failure> 
     }
 }
 
-/// Reads and lays out the records; choices and faults are reported on standard error. Channels
-/// without a unit take the unit stated by a record.
+/// Reads the records and assigns their columns to channels. Assumptions and faults are reported on
+/// standard error. Channels without a unit take the unit stated by a record.
 pub(super) fn laid_out_records(
     arguments: &IdentifyArguments,
     channels: &mut RecordChannels,
@@ -117,26 +116,27 @@ pub(super) fn laid_out_records(
     })
 }
 
-/// Lays out records and reports notes, cautions and problems.
+/// Assigns the columns of records to channels, and reports notes, cautions and problems.
 struct RecordLayouts<'a> {
     dataset: Option<&'a Dataset>,
     wish: TimeWish,
     reported: Reported,
 }
 
-/// Messages reported so far; a record's messages are omitted if they equal those of the previous
-/// record.
+/// Messages reported so far. If the messages of a record equal those of the previous record, they
+/// are not repeated.
 #[derive(Default)]
 struct Reported {
-    /// Notes about choices made while reading, each prefixed with its record.
+    /// Notes about assumptions made while reading, each prefixed with the name of its record.
     reading: Vec<String>,
     last_notes: Vec<String>,
     last_problems: Vec<String>,
 }
 
 impl RecordLayouts<'_> {
-    /// Lays out a record, according to its entry in the dataset if there is one, and returns it
-    /// with the notes about choices. The record is used in any case, because it was requested.
+    /// Assigns the columns of a record, as stated in the dataset if it lists the record; returns
+    /// the notes about assumptions too. The record is marked as used even if the dataset excludes
+    /// it, because it was requested.
     fn lay_out(
         &self,
         table: RecordTable,
@@ -151,8 +151,8 @@ impl RecordLayouts<'_> {
         (record, notes)
     }
 
-    /// Lays out all records and reports notes, cautions and problems; the channels take the
-    /// records' units.
+    /// Assigns the columns of all records, and reports notes, cautions and problems. Channels
+    /// without a unit take the unit stated by a record.
     fn lay_out_all(
         &mut self,
         tables: Vec<RecordTable>,
@@ -163,7 +163,7 @@ impl RecordLayouts<'_> {
             let (record, mut notes) = self.lay_out(table, channels);
             let name = &record.table.name;
             if is_empty_part(&record) {
-                note(&format!("{name}: no samples at these times"));
+                note(&format!("{name}: no samples in the requested part"));
                 continue;
             }
             if is_log(&record.table) {
@@ -180,8 +180,8 @@ impl RecordLayouts<'_> {
         records
     }
 
-    /// Lays out the usable records again with the final units: a record read before the first
-    /// record with units may lack them.
+    /// Repeats the assignment for the usable records with the final units, which records before the
+    /// first one with units lack.
     fn lay_out_again(
         &self,
         records: Vec<LaidOutRecord>,
@@ -230,8 +230,8 @@ impl Reported {
     }
 }
 
-/// Returns whether a record is a part without samples. A part requested of all records is cut even
-/// from those without samples at its times.
+/// Returns whether a record is a part without samples: a part requested for all records may lie
+/// outside some of them.
 fn is_empty_part(record: &LaidOutRecord) -> bool {
     match (&record.table.part_s, &record.flight) {
         (Some(_), Some(flight)) => flight.time_s.len() < 2,
@@ -247,7 +247,7 @@ fn is_log(table: &RecordTable) -> bool {
         .any(|column| column.topic.is_some() || column.meaning.is_some())
 }
 
-/// Rejects a requested part without samples in any record.
+/// Rejects a requested part in which no record has samples.
 fn check_parts(
     parts: &[RecordPart],
     records: &[LaidOutRecord],
@@ -264,8 +264,8 @@ fn check_parts(
     Ok(())
 }
 
-/// Holds out the requested records or parts; `wholes` are the records that were cut. Without a
-/// request, records whose names say so stay held out.
+/// Holds out the requested records or parts; `wholes` are the records from which parts were cut.
+/// Without a request, the records whose names mark them as validation are held out.
 pub(super) fn hold_out(
     names: &[String],
     records: &mut [LaidOutRecord],
@@ -292,7 +292,7 @@ pub(super) fn hold_out(
         }
         if !is_found {
             let reason =
-                format!("\"{name}\" is none of the records; name its file as a record too");
+                format!("no record is called \"{name}\"; give its file among the records too");
             return Err(Failure::coded_option(
                 "--hold-out",
                 "unknown-record",
@@ -303,7 +303,7 @@ pub(super) fn hold_out(
     Ok(())
 }
 
-/// Reports a record that has the same samples as others, and returns the cautions.
+/// Reports each record with the same samples as `record`, and returns the cautions about them.
 pub(super) fn report_duplicates(record: &LaidOutRecord) -> Vec<Duplicate> {
     let mut duplicates = Vec::new();
     for reason in &record.cautions {

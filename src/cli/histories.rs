@@ -20,7 +20,7 @@ use super::result_arguments::HistoryArguments;
 use super::terminal::{caution, note};
 use crate::executor::Pool;
 
-/// Flight records of each condition.
+/// Flight records of each condition, and those that could not be read.
 #[derive(Default)]
 pub(super) struct ReadHistories {
     pub(super) conditions: Vec<HistoryRecords>,
@@ -29,7 +29,8 @@ pub(super) struct ReadHistories {
 }
 
 impl ReadHistories {
-    /// Returns the outcome of a command that used these records: a failure if some were not read.
+    /// Returns the outcome of a command that used these records: a failure if some of them were not
+    /// read completely.
     pub(super) fn into_outcome(self) -> Result<(), Failure> {
         if self.unread.is_empty() {
             return Ok(());
@@ -95,7 +96,7 @@ pub(super) fn read_histories(
     Ok(ReadHistories { conditions, unread })
 }
 
-/// Computes the responses of the models to the records, with progress on a terminal.
+/// Computes the responses of the models to the records; shows the progress on a terminal.
 pub(super) fn simulated_histories(
     analysis: &Analysis,
     records: &ReadHistories,
@@ -109,7 +110,7 @@ pub(super) fn simulated_histories(
     )?)
 }
 
-/// A record with its condition, if that is known.
+/// A record and its condition; `None` if the condition is unknown.
 struct ConditionRecord {
     condition: Option<ConditionId>,
     record: LaidOutRecord,
@@ -127,7 +128,8 @@ impl ConditionRecord {
     }
 }
 
-/// Lays out a record according to its entry in the dataset, if there is one.
+/// Assigns the columns of a record, as stated in the dataset if it lists the record, and determines
+/// the condition.
 fn laid_out_record(
     table: RecordTable,
     dataset: &Dataset,
@@ -155,7 +157,7 @@ fn report_record(laid_out: &ConditionRecord) {
     let name = &record.table.name;
     if laid_out.condition.is_none() {
         caution(&format!(
-            "{name}: left out: its name gives no condition of the dataset"
+            "{name}: left out, because its name gives no condition of the dataset"
         ));
         return;
     }
@@ -166,11 +168,13 @@ fn report_record(laid_out: &ConditionRecord) {
         caution(&format!("{name}: left out: {words}"));
     }
     if !record.used {
-        note(&format!("{name}: left out: the dataset excludes it"));
+        note(&format!(
+            "{name}: left out, because the dataset excludes it"
+        ));
     }
 }
 
-/// Returns the preparation that leaves every channel unchanged.
+/// Returns preparation settings that leave every channel unchanged.
 fn unchanged_channels(dataset: &Dataset) -> Preparation {
     let (inputs, outputs) = dataset.names_of_channels();
     let inputs: Vec<&str> = inputs.iter().map(String::as_str).collect();

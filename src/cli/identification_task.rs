@@ -27,7 +27,7 @@ pub(super) const IDENTIFIED_FILE: &str = "identified.json";
 
 /// Identification of models from a group of records.
 pub(super) struct IdentificationTask {
-    /// The condition in the dataset; `None` without a dataset.
+    /// Condition in the dataset; `None` without a dataset.
     pub(super) condition: Option<ConditionId>,
     pub(super) records: Vec<LaidOutRecord>,
     request: IdentificationRequest,
@@ -55,7 +55,7 @@ impl IdentificationTask {
         })
     }
 
-    /// Runs the identification, with progress on a terminal.
+    /// Identifies the models; shows the progress on a terminal.
     pub(super) fn run(&self) -> Result<Identification, IdentificationError> {
         let work = match self.condition {
             Some(id) => format!("identifying condition {id}"),
@@ -69,8 +69,8 @@ impl IdentificationTask {
         self.records.iter().any(|record| record.table.name == name)
     }
 
-    /// Returns the cautions, each with the options that remedy it; with a dataset, also about a
-    /// channel that lags.
+    /// Returns the cautions, each with the options that solve the problem; with a dataset, also a
+    /// caution about a channel that lags behind the physics model.
     pub(super) fn cautions(
         &self,
         found: &Identification,
@@ -87,8 +87,8 @@ impl IdentificationTask {
         cautions
     }
 
-    /// Returns a caution about a channel that in the measured responses lags behind the condition's
-    /// nominal physics model, with the option that removes its delay.
+    /// Returns a caution if a channel of the measured responses lags behind the nominal physics
+    /// model of the condition; it names the option that removes the delay.
     fn late_channel(&self, found: &Identification, dataset: &Dataset) -> Option<CautionNote> {
         let condition = dataset.condition(self.condition?)?;
         let options = &self.request.options;
@@ -108,7 +108,7 @@ impl IdentificationTask {
         })
     }
 
-    /// Returns a caution together with the options that remedy it.
+    /// Returns a caution with the options that solve the problem.
     fn caution_with_remedy(&self, caution: &IdentificationCaution) -> CautionNote {
         let mut note = caution.note();
         let IdentificationCaution::Contradiction { records, .. } = caution else {
@@ -148,7 +148,8 @@ impl IdentificationTask {
             .collect()
     }
 
-    /// Returns a table with a line for each record, under a heading with the condition if any.
+    /// Returns a table with a line for each record; with a dataset, under a heading with the
+    /// condition.
     pub(super) fn table(&self) -> String {
         match self.condition {
             Some(id) => format!("condition {id}\n{}", record_table(&self.records, 2)),
@@ -156,7 +157,8 @@ impl IdentificationTask {
         }
     }
 
-    /// Returns the output path of the identified models: with several conditions, a file for each.
+    /// Returns the path for the identified models; with `--every-condition`, the file name contains
+    /// the condition.
     pub(super) fn output_path(&self, arguments: &IdentifyArguments) -> PathBuf {
         match self.condition {
             Some(id) if arguments.every_condition => arguments
@@ -166,10 +168,10 @@ impl IdentificationTask {
         }
     }
 
-    /// Returns a line about the result and its file.
+    /// Returns a line with the result and the path of its file.
     pub(super) fn outcome(&self, file: &Path, found: &Identification) -> String {
         let held_out = match found.held_out_cost {
-            Some(cost) => format!(", of the held-out records {cost:.2}"),
+            Some(cost) => format!(", {cost:.2} for the held-out records"),
             None => String::new(),
         };
         format!(

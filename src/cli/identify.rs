@@ -67,7 +67,7 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
     }
 }
 
-/// Checks those outputs whose names are known before the records are read.
+/// Checks the output paths that are known before the records are read.
 fn check_known_outputs(
     arguments: &IdentifyArguments,
     destination: Option<&Destination>,
@@ -81,12 +81,12 @@ fn check_known_outputs(
     Ok(outputs.check(&places)?)
 }
 
-/// The identifications to run.
+/// The identifications to be run, and what was reported while reading.
 struct IdentificationTasks {
     tasks: Vec<IdentificationTask>,
-    /// Files that could not be read, or only in part.
+    /// Requested files that could not be read completely.
     unread: Vec<PathBuf>,
-    /// Notes about choices made while the records were read.
+    /// Notes about assumptions made while the records were read.
     reading: Vec<String>,
     duplicates: Vec<Duplicate>,
 }
@@ -127,7 +127,7 @@ fn identification_tasks(
     })
 }
 
-/// Puts all records into one group; reports names that give several conditions.
+/// Puts all records into one group; prints a caution if their names give different conditions.
 fn single_group(records: Vec<LaidOutRecord>) -> RecordGroup {
     let conditions = named_conditions(&records);
     if conditions.contains(',') {
@@ -141,8 +141,8 @@ fn single_group(records: Vec<LaidOutRecord>) -> RecordGroup {
     }
 }
 
-/// Sets the sample-and-hold behaviour of the inputs, judged from a record that was not resampled:
-/// resampling already shifts the time stamps.
+/// Sets the hold of each input, judged from a record that was not resampled, because resampling
+/// already shifts the time stamps.
 fn set_holds(preparation: &mut Preparation, records: &[LaidOutRecord], channels: &RecordChannels) {
     let as_logged = records
         .iter()
@@ -154,8 +154,8 @@ fn set_holds(preparation: &mut Preparation, records: &[LaidOutRecord], channels:
         if !channels.resampling.held.contains(&input.name) {
             continue;
         }
-        // A signal logged as a staircase acts as logged; a command logged once per hold acts on
-        // average half a hold later (M14.1).
+        // A signal logged as a staircase is used as logged; a command logged once per hold acts
+        // half a hold later on average (M14.1).
         let values: Vec<f64> = flight.inputs.column(index).iter().copied().collect();
         input.hold = match median_step(&flight.time_s) {
             Some(hold_s) if !is_held(&values) => Hold::Command { hold_s },
@@ -164,7 +164,7 @@ fn set_holds(preparation: &mut Preparation, records: &[LaidOutRecord], channels:
     }
 }
 
-/// A delay or factor of channels in single records.
+/// Delay or factor that an option gives for a channel in a single record.
 struct RecordRemedy<'a> {
     option: &'static str,
     record: &'a str,
@@ -172,7 +172,7 @@ struct RecordRemedy<'a> {
     remedy: ChannelRemedy,
 }
 
-/// Returns the delays and factors of channels in single records.
+/// Returns the options that give a delay or a factor for a channel in a single record.
 fn record_remedies(arguments: &IdentifyArguments) -> Vec<RecordRemedy<'_>> {
     let mut remedies = Vec::new();
     for delay in &arguments.delay {
@@ -204,7 +204,10 @@ fn record_remedies(arguments: &IdentifyArguments) -> Vec<RecordRemedy<'_>> {
     remedies
 }
 
-/// Applies the given delays and factors of channels in single records; rejects duplicates.
+/// Applies the delays and factors given for single records.
+///
+/// # Errors
+/// The channel or the record is unknown, or a value is given twice.
 fn apply_record_remedies(
     arguments: &IdentifyArguments,
     records: &mut [LaidOutRecord],
@@ -247,7 +250,7 @@ fn apply_record_remedies(
     Ok(())
 }
 
-/// Results of the identifications and outputs made so far.
+/// Results of the identifications so far, and the output files.
 struct Identifications<'a> {
     arguments: &'a IdentifyArguments,
     channels: &'a RecordChannels,
@@ -255,11 +258,11 @@ struct Identifications<'a> {
     duplicates: &'a [Duplicate],
     destination: Option<Destination>,
     outputs: OutputSet,
-    /// Printed lines about the results.
+    /// Lines to be printed about the results.
     lines: String,
-    /// Successful identifications.
+    /// Number of successful identifications.
     count: usize,
-    /// Whether the records identify at least one input.
+    /// Whether any records identify at least one input.
     identifies_input: bool,
     cautions: Vec<ConditionMessage>,
 }
@@ -295,7 +298,7 @@ impl Identifications<'_> {
         Ok(())
     }
 
-    /// Adds the result of a task to the outputs, and reports its notes and cautions.
+    /// Adds the result of a task to the output files, and prints its notes and cautions.
     fn take(
         &mut self,
         task: &IdentificationTask,
@@ -342,8 +345,8 @@ impl Identifications<'_> {
         Ok(())
     }
 
-    /// Returns the cautions of a task. They are also stored for printing at the end, except those
-    /// about duplicates, which have already been reported.
+    /// Returns the cautions of a task, and stores them to be printed at the end. Those about
+    /// duplicates are not stored: they have already been printed.
     fn cautions_of(
         &mut self,
         task: &IdentificationTask,
@@ -363,7 +366,8 @@ impl Identifications<'_> {
         cautions
     }
 
-    /// Returns the channels of the model, without the reference channels after the inputs.
+    /// Returns the channels of the model, that is, without the reference channels that follow the
+    /// inputs.
     fn model_channels(&self) -> RecordChannels {
         let mut channels = self.channels.clone();
         let references = self.arguments.references().len();
@@ -371,7 +375,7 @@ impl Identifications<'_> {
         channels
     }
 
-    /// Writes the outputs and prints the cautions and the lines about the results.
+    /// Writes the output files and prints the cautions and the lines about the results.
     ///
     /// # Errors
     /// No task has a result, or the records identify no input.
@@ -381,7 +385,7 @@ impl Identifications<'_> {
         }
         if self.count == 0 {
             return Err(Failure::NoModels {
-                reason: format!("in none of {task_count} conditions"),
+                reason: format!("all {task_count} conditions failed"),
             });
         }
         if let Some(destination) = &self.destination {
@@ -411,7 +415,7 @@ fn identifies_any_input(found: &Identification, channels: &RecordChannels) -> bo
 }
 
 /// Returns whether the records identify an input: the other inputs do not explain it, and at least
-/// one response to it is known (M14).
+/// one response to it is identified (M14).
 fn is_identified(found: &Identification, input: usize, outputs: usize) -> bool {
     let excitation = found.measured.excitation();
     if excitation.not_identified().any(|other| other == input) {

@@ -20,7 +20,7 @@ pub struct IdentifyArguments {
     /// Flight records at one condition, or with --every-condition at many: files, or folders with their subfolders (text, MATLAB, NumPy, JSON, zip; logs of PX4, ArduPilot and Betaflight).
     #[arg(value_name = "RECORD", required = true)]
     pub records: Vec<PathBuf>,
-    /// Inputs, separated by commas (LON,LAT), each as CHANNEL, if needed with its unit in square brackets, or CHANNEL=COLUMN (the column's name, quoted if it has a comma, or #3 for the third column) [default: the dataset's].
+    /// Inputs, separated by commas (LON,LAT), each as CHANNEL, with its unit in square brackets if necessary, or CHANNEL=COLUMN (the column's name, in quotation marks if it contains a comma, or #3 for the third column) [default: the dataset's].
     #[arg(long, value_name = "NAMES", required_unless_present = "into")]
     pub inputs: Option<ChannelList>,
     /// Outputs, written like inputs.
@@ -42,13 +42,13 @@ pub struct IdentifyArguments {
     /// Channel location: its topic and field (TOPIC.FIELD), or its column; may be repeated.
     #[arg(long, value_name = "CHANNEL=TOPIC.FIELD", value_parser = channel_topic)]
     pub topic: Vec<ChannelValue<String>>,
-    /// Sample rate for all records, with the same low-pass filter for every channel; by default only topics with clocks of their own are resampled, at a rate that suits the band.
+    /// Sample rate for all records, with the same low-pass filter for every channel; by default only topics with their own time stamps are resampled, at a rate that suits the band.
     #[arg(long, value_name = "HZ", value_parser = positive_rate, allow_negative_numbers = true)]
     pub resample: Option<f64>,
-    /// Input that acts as logged until its next sample (sample and hold); may be repeated.
+    /// Input that keeps its logged value until the next sample (sample and hold); may be repeated.
     #[arg(long, value_name = "CHANNEL")]
     pub held: Vec<String>,
-    /// Use only the part of each record from A to B seconds on its own clock, or +A:+B from its start, or of one record (RECORD:A:B); may be repeated, and --hold-out A:B holds out a part.
+    /// Part of each record to be used, A:B in seconds on the record's time axis, +A:+B from its start, or RECORD:A:B for a single record; may be repeated, and --hold-out A:B holds out a part.
     #[arg(long, value_name = "A:B", value_parser = record_part, allow_hyphen_values = true)]
     pub part: Vec<RecordPart>,
     /// Sample rate for records without a time column.
@@ -114,7 +114,7 @@ pub struct IdentifyArguments {
 }
 
 impl IdentifyArguments {
-    /// Returns the references, each with its column if given.
+    /// Returns the recorded references; empty if none are given.
     pub fn references(&self) -> &[SaidChannel] {
         match &self.reference {
             Some(list) => &list.channels,
@@ -122,7 +122,7 @@ impl IdentifyArguments {
         }
     }
 
-    /// Returns the search settings that replace the defaults.
+    /// Returns the search settings given on the command line; they replace the defaults.
     pub fn search(&self) -> SearchSpace {
         SearchSpace {
             orders: self.order.clone(),
@@ -131,7 +131,7 @@ impl IdentifyArguments {
         }
     }
 
-    /// Returns the requested time column or sample time.
+    /// Returns the requested time column or sample rate.
     pub fn time_wish(&self) -> TimeWish {
         TimeWish {
             column: self.time.clone(),
@@ -143,18 +143,18 @@ impl IdentifyArguments {
 /// Identified models that are added to a dataset.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum OfferedChoice {
-    /// The refined model, its neighbours in order, and the models without each record.
+    /// The refined model, the models of neighbouring orders, and the models identified without one record each.
     #[default]
     Refined,
-    /// The same, and CT-PBSID without refinement.
+    /// The models of "refined", and the unrefined CT-PBSID model.
     #[value(alias = "with-plain")]
     WithUnrefined,
-    /// The measured response alone.
+    /// Only the measured response.
     Measured,
 }
 
 impl OfferedChoice {
-    /// Returns the models of the choice.
+    /// Returns the selection of identified models for the dataset.
     pub fn offered(self) -> OfferedModels {
         match self {
             Self::Refined => OfferedModels::REFINED,

@@ -29,7 +29,8 @@ pub(super) fn misspelt_command(arguments: &[OsString]) -> Option<Failure> {
         .get_subcommands()
         .flat_map(|command| command.get_name_and_visible_aliases())
         .min_by_key(|name| edit_distance(word, name))?;
-    // In a short word, two different letters make another word.
+    // A word of fewer than five letters may differ by one letter only; with two, it would be a
+    // different word.
     let most = if word.chars().count() < 5 { 1 } else { 2 };
     if edit_distance(word, nearest) > most {
         return None;

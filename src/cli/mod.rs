@@ -59,14 +59,15 @@ use failure::{Failure, WRONG_INPUT};
 use study_arguments::OpeningArguments;
 use terminal::{OutputFormat, caution, coded_error, print};
 
-/// Carries out a command line. Without a command, opens the window with a file or with the embedded
-/// example. Help, version and errors of the command line are printed here.
+/// Runs the command on the command line. Without a command, opens the window with a file or with
+/// the embedded example. Help, version and errors of the command line are printed here.
 pub fn run(
     arguments: impl IntoIterator<Item = OsString>,
     open_window: impl FnOnce(Option<PathBuf>) -> ExitCode,
 ) -> ExitCode {
     let mut arguments = with_values_joined(arguments);
-    // A command line that cannot be parsed is still reported in the requested format.
+    // Read the switches before parsing, so that an invalid command line is reported in the
+    // requested format too.
     terminal::set_output(OutputFormat {
         quiet: has_argument(&arguments, "--quiet"),
         json: has_argument(&arguments, "--json"),
@@ -105,9 +106,10 @@ fn has_argument(arguments: &[OsString], option: &str) -> bool {
     arguments.iter().any(|argument| argument == option)
 }
 
-/// Removes `--json` and `--quiet` before the command and returns the output that they request. The
-/// parser itself rejects a command after any option, because it must reject one after the window's
-/// file. The first element of `arguments` is the program.
+/// Removes `--json` and `--quiet` before the command, and returns the output format that they
+/// request. The parser itself cannot accept them there: it rejects a command after any other
+/// argument, because it must reject one after the window's file. The first element of `arguments`
+/// is the program.
 fn take_leading_switches(arguments: &mut Vec<OsString>) -> OutputFormat {
     let mut output = OutputFormat::default();
     while let Some(argument) = arguments.get(1) {
@@ -123,8 +125,9 @@ fn take_leading_switches(arguments: &mut Vec<OsString>) -> OutputFormat {
     output
 }
 
-/// Joins an option and its value if the number of values is variable: `--gain-bounds auto FILE`
-/// must not take the file as its second number, nor `--schedule-delays FILE` as its value.
+/// Joins an option and its value by "=" if the option takes a variable number of values. Otherwise
+/// `--gain-bounds auto FILE` would take the file as its second number, and `--schedule-delays FILE`
+/// as its value.
 fn with_values_joined(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
     let mut joined: Vec<OsString> = Vec::new();
     for argument in arguments {
@@ -210,8 +213,9 @@ fn open(file: &Path, arguments: &OpeningArguments) -> Result<Opened, Failure> {
 fn example(directory: &Path, existing: Existing) -> Result<(), Failure> {
     let path = write_example(directory, existing)?;
     print(&format!(
-        "{}: the example dataset (synthetic data)\nits flight records, example-records.zip, are in the folder assets of the program's \
-         source; the window finds them beside the dataset\n",
+        "{}: the example dataset (synthetic data)\nits flight records, example-records.zip, are \
+        in the folder assets of the program's source code; the window finds them if they are \
+        beside the dataset\n",
         sanitized_path(&path)
     ))
 }
@@ -224,7 +228,7 @@ fn existing(force: bool) -> Existing {
     }
 }
 
-/// Reports a failure and returns the exit status.
+/// Prints the error if there is one; returns the exit status.
 fn finish(result: Result<(), Failure>) -> ExitCode {
     let status = match result {
         Ok(()) => 0,
@@ -236,8 +240,8 @@ fn finish(result: Result<(), Failure>) -> ExitCode {
     ExitCode::from(terminal::end(status))
 }
 
-/// Returns the message of clap on one line, without the usage, which is printed separately; for an
-/// invalid value, the option and the reason.
+/// Returns clap's error message on one line, without the usage, which is printed separately. For an
+/// invalid value, returns the option and the reason.
 fn usage_words(error: &clap::Error) -> String {
     if let (Some(ContextValue::String(option)), Some(reason)) =
         (error.get(ContextKind::InvalidArg), error.source())

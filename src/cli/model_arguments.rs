@@ -19,16 +19,16 @@ pub struct AssembleArguments {
     /// Column headings for tables without headings, separated by commas: `omega [rad/s],mag [dB],phase [deg]`.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     pub headings: Vec<String>,
-    /// Channel sign, if its name does not give it: CHANNEL=-1 (the identified models), CHANNEL=-1:physics, CHANNEL=-1:all, CHANNEL=-1:FILE (a model, or the folders of a pattern as flight_*); may be repeated.
+    /// Channel sign, if its name does not give it: CHANNEL=-1 (the identified models), CHANNEL=-1:physics, CHANNEL=-1:all, CHANNEL=-1:FILE (a model, or a pattern of folders such as flight_*); may be repeated.
     #[arg(long, value_name = "CHANNEL=SIGN[:OF]", value_parser = file_sign, allow_hyphen_values = true)]
     pub sign: Vec<FileValue<f64>>,
-    /// Channel unit, which overrides the files, with models chosen as for --sign: LON=in, LON=in:physics; may be repeated.
+    /// Channel unit, which overrides the files, for the models selected as with --sign: LON=in, LON=in:physics; may be repeated.
     #[arg(long, value_name = "CHANNEL=UNIT[:OF]", value_parser = file_unit)]
     pub unit: Vec<FileValue<String>>,
-    /// Factor from a channel to the dataset's unit, negative for the opposite sign, with models chosen as for --sign: LON=8, NZ=-9.81:all; may be repeated.
+    /// Factor from a channel's unit to the dataset's, negative for the opposite sign, for the models selected as with --sign: LON=8, NZ=-9.81:all; may be repeated.
     #[arg(long, value_name = "CHANNEL=X[:OF]", value_parser = file_factor, allow_hyphen_values = true)]
     pub factor: Vec<FileValue<f64>>,
-    /// Sample time in seconds of models without their own; 0 for continuous time.
+    /// Sample time in seconds of models that state none; 0 for continuous time.
     #[arg(long, value_name = "SECONDS", value_parser = real_number)]
     pub sample_time: Option<f64>,
     /// Dataset to write, compressed if the name ends in .gz.

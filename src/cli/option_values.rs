@@ -4,7 +4,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 use gdcm_model::units::number;
 
-/// Returns a parser that accepts the names of these values.
+/// Returns a parser that accepts the names of `values`.
 pub(super) fn one_of<T, const N: usize>(
     values: [T; N],
     name: fn(T) -> &'static str,
@@ -42,7 +42,7 @@ pub(super) fn positive_rate(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(rate) if rate.is_finite() && rate > 0.0 => Ok(rate),
         _ => Err(format!(
-            "expected a positive number of samples in a second, found \"{text}\""
+            "expected a positive number of samples per second, found \"{text}\""
         )),
     }
 }
@@ -61,7 +61,7 @@ pub(super) fn breakpoints(text: &str) -> Result<Breakpoints, String> {
         Ok(airspeeds_kt)
     } else {
         Err(format!(
-            "expected airspeeds that rise, as 40,60,80, found {text}"
+            "expected increasing airspeeds, such as 40,60,80; found {text}"
         ))
     }
 }
@@ -73,7 +73,8 @@ pub struct PairName {
     pub input: String,
 }
 
-/// A list of responses. An alias, because the parser takes a plain vector for a repeated option.
+/// A list of responses. The alias is necessary because clap would take a `Vec` for an option that
+/// can be repeated.
 pub type PairList = Vec<PairName>;
 
 /// Parses "P/LAT,Q/LON", or "none".
@@ -91,7 +92,9 @@ fn pair_name(text: &str) -> Result<PairName, String> {
             output: output.to_owned(),
             input: input.to_owned(),
         }),
-        _ => Err(format!("expected OUTPUT/INPUT, as P/LAT, found \"{text}\"")),
+        _ => Err(format!(
+            "expected OUTPUT/INPUT, such as P/LAT; found \"{text}\""
+        )),
     }
 }
 
@@ -122,7 +125,7 @@ pub struct Rejection {
 }
 
 pub(super) fn rejection(text: &str) -> Result<Rejection, String> {
-    let expected = || format!("expected ID:NAME, as 10:nominal, found \"{text}\"");
+    let expected = || format!("expected ID:NAME, such as 10:nominal; found \"{text}\"");
     let (id, model) = text.split_once(':').ok_or_else(expected)?;
     Ok(Rejection {
         condition: id.trim().parse().map_err(|_| expected())?,
@@ -142,7 +145,8 @@ pub struct RecordPart {
 }
 
 impl RecordPart {
-    /// Returns the first and last time \[s\] on the time axis of a record that starts at `start_s`.
+    /// Returns the first and last time \[s\] on the record's time axis, whose first sample is at
+    /// `start_s`.
     pub(super) fn on_clock_s(&self, start_s: f64) -> [f64; 2] {
         if self.is_from_start {
             self.part_s.map(|time_s| start_s + time_s)
@@ -164,7 +168,8 @@ impl RecordPart {
 pub(super) fn record_part(text: &str) -> Result<RecordPart, String> {
     valid_part(text).ok_or_else(|| {
         format!(
-            "expected A:B, as 29:58, or +A:+B from the start of a record, or RECORD:A:B, with A less than B, found \"{text}\""
+            "expected A:B, such as 29:58, or +A:+B from the start of a record, or RECORD:A:B, \
+            with A less than B; found \"{text}\""
         )
     })
 }

@@ -1,4 +1,4 @@
-//! Progress on a terminal, and interruption by Ctrl+C.
+//! Progress on a terminal, and cancellation by Ctrl+C.
 
 #[cfg(unix)]
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -32,7 +32,7 @@ pub(super) struct ReadingProgress {
 impl ReadingProgress {
     pub(super) fn new() -> Self {
         let bar = ProgressBar::with_draw_target(None, progress_target());
-        // An invalid template leaves the default style.
+        // If the template is invalid, the default style remains.
         if let Ok(style) = ProgressStyle::with_template("reading {pos} of {len}: {msg}") {
             bar.set_style(style);
         }
@@ -71,7 +71,7 @@ impl TerminalProgress {
     /// Creates the bar with the label `work`.
     pub(super) fn new(work: &str) -> Self {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
-        // An invalid template leaves the default style.
+        // If the template is invalid, the default style remains.
         if let Ok(style) =
             ProgressStyle::with_template(&format!("{work} {{bar:40}} {{percent}} % (Ctrl+C stops)"))
         {
@@ -98,7 +98,8 @@ impl Progress for TerminalProgress {
         Interruptible::is_requested()
     }
 
-    /// On other systems Ctrl+C ends the process at once, which leaves no partial file either.
+    /// Returns false: without SIGINT, Ctrl+C ends the process at once, which leaves no partial file
+    /// either.
     #[cfg(not(unix))]
     fn cancelled(&self) -> bool {
         false
@@ -135,7 +136,8 @@ static INTERRUPTION: LazyLock<Interruption> = LazyLock::new(|| {
         is_requested: Arc::default(),
         ends_process: Arc::new(AtomicBool::new(true)),
     };
-    // The order matters: the first interruption during work only prepares for the second. If the
+    // The order matters: at the first interruption during work, the first handler still finds
+    // `ends_process` unset, so that only the second interruption ends the process. If a
     // registration fails, Ctrl+C ends the process.
     let _ = flag::register_conditional_default(SIGINT, Arc::clone(&interruption.ends_process));
     let _ = flag::register(SIGINT, Arc::clone(&interruption.ends_process));

@@ -8,7 +8,7 @@ use gdcm_sysid::records::{LaidOutRecord, RecordSource, RecordTable};
 use super::failure::Failure;
 use super::option_values::RecordPart;
 
-/// A record of which a part is requested.
+/// Record from which parts are cut.
 pub(super) struct WholeRecord {
     name: String,
     source: RecordSource,
@@ -23,7 +23,8 @@ impl WholeRecord {
         format!("{} runs from {first} s to {last} s", self.name)
     }
 
-    /// Returns whether a part may belong to this record, judging by the record name in the part.
+    /// Returns whether a part may belong to this record, judging by the record name given with the
+    /// part.
     fn matches(&self, part: &RecordPart) -> bool {
         let Some(record) = &part.record else {
             return true;
@@ -36,15 +37,15 @@ impl WholeRecord {
     }
 }
 
-/// Records cut into their requested parts.
+/// Parts cut from records, and the records with unclear columns, which are kept whole.
 pub(super) struct CutRecords {
     pub(super) tables: Vec<RecordTable>,
-    /// The records that were cut.
+    /// Records from which parts were cut.
     pub(super) wholes: Vec<WholeRecord>,
 }
 
-/// Cuts the requested parts from the records. If the columns of a record are unclear, the whole
-/// record is kept so that its problems are reported.
+/// Cuts the requested parts from the records. A record with unclear columns is kept whole, so that
+/// its problems are reported.
 pub(super) fn cut_parts(
     tables: &[RecordTable],
     parts: &[RecordPart],
@@ -74,7 +75,8 @@ pub(super) fn cut_parts(
 }
 
 impl CutRecords {
-    /// Adds a part of a record; if the record's columns are unclear, the whole record, once only.
+    /// Adds a part of a record. If the record's columns are unclear, adds the whole record, but
+    /// only once.
     fn add(
         &mut self,
         table: &RecordTable,
@@ -117,7 +119,7 @@ pub(super) fn is_part(table: &RecordTable, part: &RecordPart, wholes: &[WholeRec
     }
 }
 
-/// Returns whether `wanted` identifies a record: as its file, its name, or its name within the
+/// Returns whether `wanted` identifies a record, by its file, its name, or its name within the
 /// file.
 pub(super) fn is_called(table: &RecordTable, wanted: &str) -> bool {
     let source = &table.source;
@@ -130,8 +132,8 @@ pub(super) fn is_called(table: &RecordTable, wanted: &str) -> bool {
         || source.variable.as_deref() == Some(wanted)
 }
 
-/// Returns whether a record is a part of the record `wanted`: the name of a part is that of the
-/// whole record followed by the times.
+/// Returns whether a record is a part of the record `wanted`: the name of a part is the name of the
+/// whole record, a comma and the times.
 fn is_called_before_part(table: &RecordTable, wanted: &str) -> bool {
     let rest = table.name.strip_prefix(wanted);
     table.part_s.is_some() && rest.is_some_and(|rest| rest.starts_with(", "))
@@ -154,9 +156,9 @@ pub(super) fn part_without_samples(part: &RecordPart, wholes: &[WholeRecord]) ->
     }
     let times = part.words();
     let mut reason = if part.is_from_start {
-        format!("no record has samples at {times} s from its start: {listed}")
+        format!("no record has samples in the part {times} (seconds from its start): {listed}")
     } else {
-        format!("no record has samples at {times} s on its own clock: {listed}")
+        format!("no record has samples in the part {times} (seconds on its time axis): {listed}")
     };
     let [from, to] = part.part_s;
     if !part.is_from_start && from >= 0.0 {

@@ -1,4 +1,4 @@
-//! `gdcm report`: full report, ready to print.
+//! `gdcm report`: writes a full report, ready to print.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ use super::study_options::{CommandStudy, ErrorBars, StudyAnalysis, analyze_study
 use super::terminal::print;
 use super::text::counted;
 
-/// Analyses, and writes the full report.
+/// Analyses a study and writes the full report.
 pub(super) fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     let CommandStudy {
         study,
@@ -69,7 +69,8 @@ fn check_ending(path: &Path) -> Result<(), Failure> {
         _ => Err(Failure::option(
             "--out",
             format!(
-                "expected a name that ends in .html, found {}; print the report as PDF from a browser",
+                "expected a name that ends in .html, found {}; for a PDF, print the report from a \
+                browser",
                 sanitized_path(path)
             ),
         )),

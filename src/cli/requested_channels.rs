@@ -58,7 +58,7 @@ pub(super) fn requested_channels(
     Ok(channels)
 }
 
-/// Returns the declarations that apply to all records, not to a single one.
+/// Returns the declarations without a record name, which apply to all records.
 fn for_all_records<T>(declarations: &[ChannelValue<T>]) -> Vec<&ChannelValue<T>> {
     declarations
         .iter()
@@ -73,7 +73,8 @@ fn listed(list: &Option<ChannelList>) -> &[SaidChannel] {
     }
 }
 
-/// Returns the channels listed on the command line, in the units of the first record.
+/// Returns the channels listed on the command line; channels without a unit take the unit of the
+/// first record.
 fn named_channels(arguments: &IdentifyArguments) -> RecordChannels {
     let inputs = listed(&arguments.inputs).iter();
     let outputs = listed(&arguments.outputs).iter();
@@ -99,7 +100,7 @@ fn channels_of_dataset(
     Ok(channels)
 }
 
-/// Sets the column of a channel of the dataset; rejects a unit other than the dataset's.
+/// Sets the column of a channel of the dataset; rejects a unit that differs from the dataset's.
 fn set_column(
     option: &'static str,
     channel: &SaidChannel,
@@ -109,7 +110,7 @@ fn set_column(
     let Some(index) = rules.iter().position(|rule| rule.name == *name) else {
         let names: Vec<&str> = rules.iter().map(|rule| rule.name.as_str()).collect();
         let reason = format!(
-            "the dataset has no {name} there; it has {}",
+            "the dataset has no {name} among these channels: {}",
             names.join(", ")
         );
         return Err(Failure::coded_option(option, "unknown-channel", reason));
@@ -131,7 +132,8 @@ fn set_column(
     Ok(())
 }
 
-/// Adds the reference channels after the model's inputs, because both are read in the same way.
+/// Adds the reference channels to the inputs, after those of the model, because both are read in
+/// the same way.
 fn add_references(
     arguments: &IdentifyArguments,
     channels: &mut RecordChannels,
@@ -139,7 +141,7 @@ fn add_references(
     for reference in arguments.references() {
         if has_channel(channels, &reference.name) {
             let reason = format!(
-                "{} is already an input or an output; a reference is neither",
+                "{} is already an input or an output; a reference must be another channel",
                 reference.name
             );
             return Err(Failure::option("--reference", reason));
@@ -170,11 +172,11 @@ fn set_locations(
     Ok(())
 }
 
-/// Rejects a channel of `--held` that is not an input.
+/// Rejects names given by `--held` that are not inputs.
 fn check_held(arguments: &IdentifyArguments, channels: &RecordChannels) -> Result<(), Failure> {
     for held in &arguments.held {
         if channels.inputs.iter().all(|rule| rule.name != *held) {
-            let reason = format!("{held} is none of the inputs");
+            let reason = format!("{held} is not an input");
             return Err(Failure::coded_option("--held", "unknown-channel", reason));
         }
     }
@@ -217,7 +219,7 @@ fn without_delays(rules: &[ChannelRule], delays: &[&ChannelValue<f64>]) -> Vec<C
     prepared
 }
 
-/// Returns whether a channel with this name exists.
+/// Returns whether an input or output has this name.
 pub(super) fn has_channel(channels: &RecordChannels, name: &str) -> bool {
     let mut rules = channels.inputs.iter().chain(&channels.outputs);
     rules.any(|rule| rule.name == name)
@@ -225,11 +227,11 @@ pub(super) fn has_channel(channels: &RecordChannels, name: &str) -> bool {
 
 /// Returns the failure for an option that names an unknown channel.
 pub(super) fn unknown_channel(option: &'static str, channel: &str) -> Failure {
-    let reason = format!("{channel} is none of the channels");
+    let reason = format!("there is no channel {channel}");
     Failure::coded_option(option, "unknown-channel", reason)
 }
 
-/// Applies the declarations of an option to the channels; rejects duplicates.
+/// Applies the declarations of an option to the channels; rejects unknown channels and duplicates.
 pub(super) fn declare_conversions<'a, T: Clone + 'a>(
     option: &'static str,
     declarations: impl IntoIterator<Item = &'a ChannelValue<T>>,
@@ -244,7 +246,7 @@ pub(super) fn declare_conversions<'a, T: Clone + 'a>(
             .said
             .insert(channel.clone(), conversion(value.clone()));
         if known.is_some() {
-            let reason = format!("{channel} has a unit or a factor already");
+            let reason = format!("{channel} already has a unit or a factor");
             return Err(Failure::coded_option(option, "given-twice", reason));
         }
     }

@@ -1,5 +1,5 @@
-//! `gdcm requirements`: metrics required for a qualification, computed for the models of every
-//! condition; written to files, with a short printed table.
+//! `gdcm requirements`: computes the metrics required for a qualification for the models of every
+//! condition, writes them to files and prints a short table.
 
 use std::collections::BTreeSet;
 
@@ -49,7 +49,7 @@ pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Fail
     let requirements = engine.requirements(
         &analysis,
         &KnownPoles::default(),
-        &TerminalProgress::new("reading bandwidths"),
+        &TerminalProgress::new("computing bandwidths"),
     )?;
     let histories = simulated_histories(&analysis, &records)?;
     let results = RequirementResults {
@@ -70,14 +70,14 @@ pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Fail
     text += &summary_section(&requirements);
     text += &mode_section(&requirements);
     text += &history_section(&histories);
-    text += &line("", "these numbers are no qualification");
+    text += &line("", "these values do not replace a qualification");
     text += &line("Written", &files);
     text += &tolerances;
     print(&text)?;
     records.into_outcome()
 }
 
-/// Adds the tolerance file, if requested, and returns a line about it.
+/// Adds the tolerance file to the outputs if requested, and returns a line about it.
 fn tolerance_line(
     arguments: &RequirementsArguments,
     study: &Study,
@@ -106,7 +106,7 @@ fn report_cautions(requirements: &Requirements) {
 /// Reports missing results, first those that concern all conditions. Missing records are not
 /// reported if none were given.
 fn report_missing(requirements: &Requirements, histories: &TimeHistories) {
-    // Conditions without a result have already been reported.
+    // Skip conditions without a result, which have already been reported.
     let mut missing: Vec<&MissingFinding> = requirements
         .missing
         .iter()
@@ -125,7 +125,7 @@ fn report_missing(requirements: &Requirements, histories: &TimeHistories) {
     }
 }
 
-/// Formats a number; a dash for `None`.
+/// Formats a number with `digits` decimals; a dash for `None`.
 fn cell(value: Option<f64>, digits: usize) -> String {
     match value {
         Some(value) => format!("{value:.digits$}"),
@@ -149,8 +149,8 @@ fn has_number(finding: &BandwidthFinding) -> bool {
     finding.omega_bw_rad_s.is_some() || finding.phase_delay_s.is_some()
 }
 
-/// Returns bandwidth and phase delay, by role, of every response in which either is defined; for
-/// the others the reasons.
+/// Returns a table of bandwidth and phase delay of the responses for which either is defined, and
+/// the reasons why the other responses have none.
 fn bandwidth_section(study: &Study, requirements: &Requirements) -> String {
     let responses: Vec<ResponseBandwidths> = requirements
         .bandwidth
@@ -187,8 +187,8 @@ fn absent_bandwidths(responses: &[ResponseBandwidths]) -> Vec<ConditionMessage> 
         .collect()
 }
 
-/// Returns the reasons for missing phase delays; omits a reason if its first result lacks the
-/// bandwidth too, since the reason for that is given.
+/// Returns the reasons for missing phase delays. A reason is omitted if the first result to which
+/// it applies also lacks the bandwidth, for which a reason is given anyway.
 fn absent_delays(responses: &[ResponseBandwidths]) -> Vec<ConditionMessage> {
     responses
         .iter()
@@ -210,7 +210,7 @@ fn absent_lines(label: &str, messages: Vec<ConditionMessage>) -> String {
 struct AbsentReason<'a> {
     /// First result to which the reason applies.
     finding: &'a BandwidthFinding,
-    /// "LON → Q (physics, corrected): …".
+    /// Response, roles and reason: "LON → Q (physics, corrected): …".
     words: String,
 }
 
@@ -220,8 +220,8 @@ impl AbsentReason<'_> {
     }
 }
 
-/// Returns the distinct reasons why a quantity is missing in the results of a response, each with
-/// its roles unless it applies to all.
+/// Returns the distinct reasons why a quantity is missing in the results of a response. Each names
+/// its roles, unless it applies to all.
 fn absent_reasons<'a>(response: &ResponseBandwidths<'a>, quantity: &str) -> Vec<AbsentReason<'a>> {
     let findings = response.findings;
     let reasons: BTreeSet<&String> = findings
@@ -324,8 +324,8 @@ fn summary_section(requirements: &Requirements) -> String {
     line("Summary", words) + &indented(&table, 2)
 }
 
-/// Returns how many modes are within their tolerances for the physics models and, where couplings
-/// change the modes, for the corrected models.
+/// Counts the modes within their tolerances: of the physics models and, if couplings change the
+/// modes, of the corrected models.
 fn mode_section(requirements: &Requirements) -> String {
     let modes = &requirements.modes;
     let physics: Vec<ModeVerdict> = modes.iter().map(|mode| mode.verdict).collect();
@@ -335,7 +335,7 @@ fn mode_section(requirements: &Requirements) -> String {
         .collect();
     let mut text = line("Modes", &verdict_counts("physics", &physics));
     if !corrected.is_empty() {
-        let words = verdict_counts("corrected with its couplings", &corrected);
+        let words = verdict_counts("corrected with couplings", &corrected);
         text += &line("", &words);
     }
     text
@@ -353,11 +353,11 @@ fn verdict_counts(model: &str, verdicts: &[ModeVerdict]) -> String {
         let count = verdicts.iter().filter(|found| **found == verdict).count();
         format!("{count} {label}")
     });
-    format!("of {model} against identified: {}", counts.join(", "))
+    format!("{model} compared with identified: {}", counts.join(", "))
 }
 
-/// Returns the share of time inside the tolerances, by condition, of models that leave them, and
-/// the rms errors.
+/// Returns a table of the shares of time within the tolerances, limited to quantities for which a
+/// model leaves them, and a table of the rms errors.
 fn history_section(histories: &TimeHistories) -> String {
     const HEADING: &str = "Time history";
     if histories.records.is_empty() {
@@ -378,8 +378,9 @@ fn history_section(histories: &TimeHistories) -> String {
         source => format!(" of {}", sanitized(source)),
     };
     let words = format!(
-        "share of time inside the tolerances{source}, over all records of a condition; attitudes are integrals of rates; without {} of \
-         {count} rows, in which every model is always inside:",
+        "share of time inside the tolerances{source}, over all records of a condition; attitudes \
+        are integrals of rates; omitting {} of {count} rows, in which every model is always \
+        inside:",
         count - table.rows.len()
     );
     let costs = format!(

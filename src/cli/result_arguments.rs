@@ -24,7 +24,7 @@ pub struct AnalyzeArguments {
     /// Directory for the results, created if missing.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// Judge the schedule by each condition in turn, which it is then made without: print the change of each J.
+    /// Assess the schedule by leaving each condition in turn out of its fit: print the change of J in that condition.
     #[arg(long)]
     pub leave_one_out: bool,
     /// Overwrite existing results.
@@ -37,10 +37,10 @@ pub struct AnalyzeArguments {
 pub struct FigureArguments {
     #[command(flatten)]
     pub study: StudyArguments,
-    /// The figure.
+    /// Figure to write.
     #[arg(long, value_name = "VIEW", value_parser = one_of(FigureKind::ALL, FigureKind::name))]
     pub view: FigureKind,
-    /// Condition, by its id, for bode, error and overview.
+    /// Condition, by its id, for the figures bode, error and overview.
     #[arg(long, value_name = "ID", allow_negative_numbers = true)]
     pub condition: Option<i64>,
     /// Responses, OUTPUT/INPUT, separated by commas (P/LAT,Q/LON), or "on-axis", "off-axis", "all" [default: on-axis; for net-gain,
@@ -56,22 +56,22 @@ pub struct FigureArguments {
     /// Show channels over conditions instead of airspeed.
     #[arg(long)]
     pub over_conditions: bool,
-    /// Roles to omit from bode, error and overview, separated by commas (perturbed,identified,rejected).
+    /// Roles to omit from the figures bode, error and overview, separated by commas (perturbed,identified,rejected).
     #[arg(long, value_name = "ROLES", value_delimiter = ',', value_parser = one_of(Role::ALL, Role::word))]
     pub hide: Vec<Role>,
-    /// Add error bars and the bands of the schedule to net-gain and channels; evidence always has them.
+    /// Add error bars and the bands of the schedule to the figures net-gain and channels; the figure evidence always has them.
     #[arg(long)]
     pub bars: bool,
     /// Frequencies in Hz instead of rad/s.
     #[arg(long)]
     pub hertz: bool,
-    /// Each condition's model in airspeeds: nominal, representative, corrected or identified.
+    /// Model of each condition in the figure airspeeds: nominal, representative, corrected or identified.
     #[arg(long, value_name = "MODEL", default_value = "nominal", value_parser = one_of(AcrossRole::ALL, AcrossRole::name))]
     pub model: AcrossRole,
-    /// Response, OUTPUT/INPUT, whose zeros are added to the poles: those of the nominal model and of the representatives.
+    /// Response, OUTPUT/INPUT, whose zeros are added to the figure poles: zeros of the nominal model and of the representatives.
     #[arg(long, value_name = "PAIR", value_parser = pair_list)]
     pub zeros: Option<PairList>,
-    /// Add the limits of differences that a pilot does not notice (MUAD, MIL-STD-1797A) to bode and error.
+    /// Add the envelopes of maximum unnoticeable added dynamics (MUAD, MIL-STD-1797A) to the figures bode and error.
     #[arg(long)]
     pub muad: bool,
     /// Width on paper: a single journal column (84 mm) or both columns (174 mm).
@@ -89,7 +89,7 @@ pub struct FigureArguments {
 #[derive(Debug, Args)]
 pub struct HistoryArguments {
     /// Flight records, each with its condition in its name: files, or folders with their subfolders. The models respond to the recorded
-    /// inputs, and their share of time within tolerances is reported; may be repeated.
+    /// inputs, and the share of time for which they are within the tolerances is reported; may be repeated.
     #[arg(long, value_name = "PATH")]
     pub records: Vec<PathBuf>,
     /// Unit of a channel's samples in records without units; may be repeated.
@@ -138,7 +138,7 @@ pub struct ExportArguments {
     /// Format to write.
     #[arg(long = "as", value_name = "FORMAT", value_parser = export_formats())]
     pub format: ExportFormat,
-    /// Lookup-table airspeeds, in kt, rising, separated by commas (40,60,80) [default: those of the scheduled conditions].
+    /// Airspeeds of the lookup table in kt, increasing, separated by commas (40,60,80) [default: the airspeeds of the scheduled conditions].
     #[arg(long, value_name = "AIRSPEEDS", value_parser = breakpoints, allow_negative_numbers = true)]
     pub breakpoints: Option<Breakpoints>,
     /// Condition, by its id, whose corrected model is written [default: all].
@@ -150,7 +150,7 @@ pub struct ExportArguments {
     /// Correction of the models: scheduled, or each condition's own [default: scheduled].
     #[arg(long, value_name = "CORRECTION", value_parser = assessed_corrections())]
     pub correction: Option<AssessedCorrection>,
-    /// Order of the Pade approximants for delays of models, 1 to 8 [default: 2].
+    /// Order of the Pade approximants of the models' delays, 1 to 8 [default: 2].
     #[arg(long, value_name = "N", value_parser = whole_number::<1, HIGHEST_PADE_ORDER>, allow_negative_numbers = true)]
     pub pade: Option<usize>,
     /// File to write; for corrected models the ending selects the format: .mat, .json or .npz.

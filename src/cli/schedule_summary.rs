@@ -1,5 +1,5 @@
-//! Printed summary of the schedule: its net gains and delays, the sources of their scatter, and its
-//! assessment at conditions left out of its fit.
+//! Printed summary of the schedule: scheduled net gains and delays, the sources of their scatter,
+//! and the assessment in conditions left out of the fit.
 
 use gdcm_method::schedule::{Schedule, ScheduleCaution, ScheduledQuantity};
 use gdcm_model::dataset::Pair;
@@ -18,16 +18,16 @@ use gdcm_words::uncertainty::{
 use super::terminal::keep_coded_caution;
 use super::text::{detail, fixed_digits, indented, indented_untitled, line};
 
-/// Returns the responses listed in tables: the on-axis responses, which measure a model, and the
-/// constrained responses.
+/// Returns the responses listed in tables: the responses in the objective (on-axis; all if none is
+/// on-axis) and the constrained responses.
 pub(super) fn shown_pairs(study: &Study) -> Vec<Pair> {
     let measuring = study.dataset.measuring_pairs();
     let shown = measuring.map(|pair, measures| *measures || study.settings.constrained[pair]);
     shown.marked().collect()
 }
 
-/// Returns the usual choice for the assessment of a correction: nominal models, with the study's
-/// average.
+/// Returns the default choice for assessing a correction: the nominal models, with the average of J
+/// that the study sets.
 pub(super) fn nominal_choice(
     analysis: &Analysis,
     correction: AssessedCorrection,
@@ -39,8 +39,8 @@ pub(super) fn nominal_choice(
     }
 }
 
-/// Returns the scheduled net gains and delays of the on-axis and constrained responses over
-/// airspeed.
+/// Returns tables of the scheduled net gains and delays over airspeed, for the responses in
+/// [`shown_pairs`].
 pub(super) fn schedule_section(analysis: &Analysis) -> String {
     let schedule = match &analysis.schedule {
         Ok(schedule) => schedule,
@@ -71,7 +71,7 @@ pub(super) fn schedule_section(analysis: &Analysis) -> String {
     text
 }
 
-/// Returns the schedule's kind, range and second variable.
+/// Describes the kind, airspeed range and second variable of a schedule.
 fn schedule_words(schedule: &Schedule) -> String {
     let quantity = match schedule.settings.quantity {
         ScheduledQuantity::LnGain => "ln k",
@@ -85,7 +85,7 @@ fn schedule_words(schedule: &Schedule) -> String {
     words += &format!(", {} to {} kt", number(range.min_kt), number(range.max_kt));
     if let Some(term) = &schedule.second {
         words += &format!(
-            "; with {}, here in the middle of its range, {} {}",
+            "; with {} as second variable, here at the middle of its range, {} {}",
             term.variable,
             number(term.middle()),
             term.variable.unit()
@@ -94,7 +94,7 @@ fn schedule_words(schedule: &Schedule) -> String {
     words
 }
 
-/// Scheduled quantity.
+/// Quantity tabulated over airspeed.
 #[derive(Clone, Copy)]
 enum NetQuantity {
     Gain,
@@ -102,9 +102,9 @@ enum NetQuantity {
     Delay,
 }
 
-/// Returns a table with a scheduled quantity over airspeed.
+/// Returns a table of a scheduled quantity over airspeed.
 fn schedule_table(analysis: &Analysis, schedule: &Schedule, quantity: NetQuantity) -> String {
-    /// Listed airspeeds as fractions of the range: the ends, the middle and the quarters.
+    /// Fractions of the airspeed range at which the table has rows.
     const SHOWN: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
     let min = schedule.airspeeds.min_kt;
     let max = schedule.airspeeds.max_kt;
@@ -128,8 +128,8 @@ fn schedule_table(analysis: &Analysis, schedule: &Schedule, quantity: NetQuantit
     indented(&table, 2)
 }
 
-/// Returns the sources of scatter, the differences at equal airspeed, and the need for a second
-/// variable; empty if the error bars were not computed.
+/// Returns the sources of the scatter, the differences at equal airspeed, and the need for a second
+/// variable. Empty if the error bars were not computed.
 pub(super) fn evidence_section(analysis: &Analysis) -> String {
     let Some(uncertainty) = &analysis.uncertainty else {
         return String::new();
@@ -177,7 +177,8 @@ fn second_variable_lines(study: &Study, uncertainty: &Uncertainty) -> String {
         && needed.iter().all(|test| test.variable != variable)
     {
         let words = format!(
-            "the schedule depends on airspeed and {variable}, though no response is found to need {variable}"
+            "the schedule depends on airspeed and {variable}, although no response needs \
+            {variable}"
         );
         text += &line("Caution", &words);
     }
@@ -191,14 +192,14 @@ fn second_variable_lines(study: &Study, uncertainty: &Uncertainty) -> String {
     text
 }
 
-/// Returns the change in J of each condition's nominal model due to a schedule fitted to the other
-/// conditions.
+/// Returns the change in J of each condition's nominal model when the schedule is fitted to the
+/// other conditions only.
 pub(super) fn leave_one_out_section(analysis: &Analysis) -> String {
     let seen = assessment(analysis, AssessedCorrection::Scheduled);
     let unseen = assessment(analysis, AssessedCorrection::ScheduleOfOthers);
     let mut text = line(
         "Left out",
-        "change of J of each condition under the schedule of the others, on-axis mean:",
+        "change of J in each condition with a schedule fitted to the others, on-axis mean:",
     );
     let mut table = Table::new("", ["condition", "kt", "schedule of all", "of the others"]);
     for condition in &unseen.conditions {
@@ -223,7 +224,8 @@ pub(super) fn leave_one_out_section(analysis: &Analysis) -> String {
         text += &detail("", &format!("condition {}: {why}", left_out.condition));
     }
     if analysis.fitted_couplings().is_some() {
-        let words = "the couplings here are those of all conditions; for J with couplings fitted without each condition, see Couplings";
+        let words = "these couplings are fitted to all conditions; for J with couplings fitted \
+            without each condition, see Couplings";
         text += &detail("", words);
     }
     text

@@ -1,5 +1,5 @@
-//! Cautions about many conditions: a table of the remarks of recurring kinds, and a line for each
-//! other caution.
+//! Cautions that recur in many conditions: a table of the remarks of such kinds, and a line for
+//! each other caution.
 
 use gdcm_model::dataset::{ConditionId, Dataset, Pair};
 use gdcm_model::message_text::sanitized;
@@ -12,14 +12,14 @@ use gdcm_words::remark::{Remark, RemarkKind, Repeated};
 use super::terminal::keep_caution;
 use super::text::{ConditionMessage, indented, line, shared_messages};
 
-/// Remarks on a condition, of kinds that typically recur at other conditions.
+/// Remarks on a condition that typically recur in other conditions.
 struct RemarkRow {
     condition: ConditionId,
     remarks: Vec<Remark>,
 }
 
 impl RemarkRow {
-    /// Returns the facts stated by the remarks.
+    /// Returns the tabulated facts of the remarks.
     fn facts(&self) -> impl Iterator<Item = &Repeated> {
         self.remarks
             .iter()
@@ -58,7 +58,7 @@ pub(super) fn cautions_section(analysis: &Analysis) -> String {
     if let [row] = &rows[..]
         && let [alone] = &row.remarks[..]
     {
-        // A sentence suffices if only a single remark on a single condition remains.
+        // A single remark on a single condition needs no table.
         let message = ConditionMessage::new(row.condition, alone.text.clone());
         others.insert(0, message);
     } else if !rows.is_empty() {
@@ -124,24 +124,28 @@ fn pair_sentences(facts: &[&Repeated]) -> Vec<&'static str> {
         .iter()
         .any(|fact| matches!(fact, Repeated::NeedsLead(_)))
     {
-        sentences
-            .push("held responses need lead [ms]: the physics model lags, and a delay cannot lead");
+        sentences.push(
+            "held responses need lead [ms]: the physics model lags, which no delay can correct",
+        );
     }
     if facts
         .iter()
         .any(|fact| matches!(fact, Repeated::Farther(_)))
     {
-        sentences.push("* is farther from flight (larger J) than without a correction");
+        sentences.push(
+            "* marks a response that is farther from flight (larger J) than without a correction",
+        );
     }
     sentences
 }
 
-/// Returns whether the facts say that a response needs lead or moves away from flight.
+/// Returns whether the table has an entry for a response: it needs a lead, or the correction moves
+/// it away from flight.
 fn has_entry(facts: &[&Repeated], pair: Pair) -> bool {
     needed_lead_ms(facts, pair).is_some() || is_farther(facts, pair)
 }
 
-/// Returns the lead \[ms\] that a response needs.
+/// Returns the lead \[ms\] that a response needs; `None` if it needs none.
 fn needed_lead_ms<'a>(facts: &[&'a Repeated], pair: Pair) -> Option<&'a str> {
     for fact in facts {
         let Repeated::NeedsLead(needed) = fact else {
@@ -173,7 +177,7 @@ fn pair_cell(facts: &[&Repeated], pair: Pair) -> String {
     }
 }
 
-/// Cell without an entry.
+/// Text of an empty cell.
 const NO_ENTRY: &str = "-";
 
 /// A column of the table for a repeated remark other than those on responses.

@@ -17,7 +17,7 @@ pub struct OpeningArguments {
     /// The study's dataset, if it has moved.
     #[arg(long, value_name = "FILE")]
     pub dataset: Option<PathBuf>,
-    /// End with status 2 if the dataset differs from the dataset that the study was made with.
+    /// End with status 2 if the dataset has changed since the study was saved.
     #[arg(long)]
     pub strict: bool,
 }
@@ -108,7 +108,7 @@ pub struct StudyArguments {
     pub on: Option<PairList>,
     #[command(flatten)]
     pub opening: OpeningArguments,
-    /// Conditions, by their ids, separated by commas, that the schedule is made without and judged by.
+    /// Conditions held out of the schedule, which is then assessed with them: ids, separated by commas.
     #[arg(
         long,
         value_name = "IDS",
@@ -120,17 +120,17 @@ pub struct StudyArguments {
     /// CHANNEL=-1:all; CHANNEL=1 restores them. May be repeated.
     #[arg(long, value_name = "CHANNEL=SIGN", value_parser = channel_sign, allow_hyphen_values = true)]
     pub sign: Vec<ChannelSign>,
-    /// Outputs whose attitude the stick commands, separated by commas: their bandwidth is that of the phase alone (ADS-33E-PRF).
+    /// Outputs whose attitude the stick commands, separated by commas: only the phase determines their bandwidth (ADS-33E-PRF).
     #[arg(long, value_name = "OUTPUTS", value_delimiter = ',')]
     pub attitude_command: Vec<String>,
-    /// File of the levels that are drawn beside bandwidth and phase delay (docs/requirements.md).
+    /// File with the boundaries of levels to be drawn in the plot of bandwidth and phase delay (docs/requirements.md).
     #[arg(long, value_name = "FILE")]
     pub levels: Option<PathBuf>,
-    /// File of the tolerances of time histories [default: those of the study, initially 14 CFR part 60, appendix C, table C2A]
+    /// File with the tolerances of time histories [default: those of the study, initially 14 CFR part 60, appendix C, table C2A]
     /// (docs/requirements.md).
     #[arg(long, value_name = "FILE")]
     pub tolerances: Option<PathBuf>,
-    /// Reject every physics model that is suggested as an outlier.
+    /// Reject every physics model that the analysis suggests as an outlier.
     #[arg(long)]
     pub reject_suggested: bool,
     /// Reject a model of a condition; may be repeated.

@@ -1,4 +1,4 @@
-//! The study of a command, modified by the options on the command line.
+//! The study analysed by a command, as modified by the options on the command line.
 
 use std::sync::Arc;
 
@@ -22,7 +22,7 @@ use super::text::{ConditionMessage, SharedMessage, listed_conditions, shared_mes
 use super::{existing, open};
 use crate::executor::Pool;
 
-/// The study of a command.
+/// The study that a command analyses, with its files.
 pub(super) struct CommandStudy {
     pub(super) study: Study,
     /// Dataset as loaded from the file, before options are applied.
@@ -132,7 +132,7 @@ fn report_failed_conditions(analysis: &Analysis) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Returns the condition with the id given by an option.
+/// Returns the condition with the id given by an option; an error if the dataset lacks it.
 pub(super) fn condition_of(dataset: &Dataset, id: i64) -> Result<ConditionId, Failure> {
     match dataset.condition(ConditionId(id)) {
         Some(condition) => Ok(condition.id()),
@@ -158,14 +158,14 @@ pub(super) fn condition_ids(dataset: &Dataset) -> String {
     ids.join(", ")
 }
 
-/// Applies a decision requested by an option.
+/// Applies an edit requested by an option.
 fn apply(study: &mut Study, option: &'static str, edit: &Edit) -> Result<(), Failure> {
     study
         .apply(edit)
         .map_err(|refusal| Failure::option(option, refusal))
 }
 
-/// Applies the options to the study, overriding its own settings.
+/// Applies the options to the study; they override its settings.
 fn apply_options(study: &mut Study, arguments: &StudyArguments) -> Result<(), Failure> {
     for GivenSetting { setting, words } in &arguments.settings.given {
         let option = setting.option;
@@ -194,7 +194,7 @@ fn apply_options(study: &mut Study, arguments: &StudyArguments) -> Result<(), Fa
     Ok(())
 }
 
-/// Applies the options about requirements, overriding the study's own.
+/// Applies the options about requirements; they override the study's settings.
 fn apply_requirements(study: &mut Study, arguments: &StudyArguments) -> Result<(), Failure> {
     let mut settings = RequirementSettings::clone(&study.requirements);
     let (_, outputs) = study.dataset.names_of_channels();
@@ -217,7 +217,7 @@ fn apply_requirements(study: &mut Study, arguments: &StudyArguments) -> Result<(
         let unknown = settings.levels.unknown_axes(&outputs);
         if !unknown.is_empty() {
             caution(&sanitized(&format!(
-                "levels of {} are not drawn: outputs are {}",
+                "levels of {} are not drawn: the outputs are {}",
                 unknown.join(", "),
                 outputs.join(", ")
             )));
@@ -237,8 +237,8 @@ fn apply_requirements(study: &mut Study, arguments: &StudyArguments) -> Result<(
     Ok(())
 }
 
-/// Rejects a second variable that a scheduled condition lacks. Checked before the analysis, whose
-/// schedule would fail.
+/// Rejects a second variable for which a scheduled condition has no value. Checked in advance,
+/// because the schedule could not be fitted after the analysis.
 fn check_second_variable(study: &Study) -> Result<(), Failure> {
     let Some(variable) = study.settings.schedule.second else {
         return Ok(());
@@ -266,7 +266,7 @@ fn check_second_variable(study: &Study) -> Result<(), Failure> {
     ))
 }
 
-/// Inverts the channels whose signs an option declares, or restores them.
+/// Inverts the channels given by `--sign`, or restores their signs.
 pub(super) fn apply_signs(study: &mut Study, signs: &[ChannelSign]) -> Result<(), Failure> {
     const OPTION: &str = "--sign";
     if let Some(channel) = first_duplicate(signs) {
@@ -358,7 +358,8 @@ fn reject(study: &mut Study, rejection: &Rejection) -> Result<(), Failure> {
         }
         _ => {
             let reason = format!(
-                "\"{name}\" is both a physics and an identified model of condition {id}; use a study"
+                "\"{name}\" is both a physics and an identified model of condition {id}; reject \
+                it in a study instead"
             );
             Err(Failure::coded_option(OPTION, "ambiguous-model", reason))
         }

@@ -1,4 +1,4 @@
-//! The printed summary of `gdcm analyze`.
+//! Summary printed by `gdcm analyze`.
 
 use std::path::Path;
 
@@ -31,7 +31,8 @@ use super::shared_cautions::cautions_section;
 use super::terminal::keep_caution;
 use super::text::{detail, detail_list, fixed_digits, indented, line};
 
-/// Returns the printed results: settings, each condition, schedule, assessment, and output files.
+/// Returns the printed summary: settings, results of each condition, schedule, assessment, and
+/// output files.
 pub(super) fn summary(analysis: &Analysis, loaded: &LoadedDataset, out: &Path) -> String {
     let mut text = heading(analysis, loaded);
     text += &doubts_section(analysis);
@@ -71,7 +72,7 @@ pub(super) fn doubt_words(doubt: &ConventionDoubt, dataset: &Dataset) -> String 
     words
 }
 
-/// Returns the dataset and the settings.
+/// Describes the dataset and the settings.
 fn heading(analysis: &Analysis, loaded: &LoadedDataset) -> String {
     let study = &analysis.study;
     let settings = &study.settings;
@@ -97,7 +98,7 @@ fn heading(analysis: &Analysis, loaded: &LoadedDataset) -> String {
     text + &line("Held", &held_words(analysis))
 }
 
-/// Returns how the phase is corrected.
+/// Describes the phase correction: none, delays, or delays and lead filters.
 fn phase_words(analysis: &Analysis) -> String {
     let settings = &analysis.study.settings;
     match settings.phase {
@@ -165,8 +166,8 @@ fn couplings_section(analysis: &Analysis) -> String {
     text
 }
 
-/// Returns the improvement of the nominal models due to the scheduled correction, and the
-/// conditions without an assessment.
+/// Returns the change of J of the nominal models due to the scheduled correction, and the
+/// conditions that were not assessed.
 fn assessment_lines(analysis: &Analysis) -> String {
     let mut text = line("Assessment", &sanitized(&assessment_sentence(analysis)));
     let choice = nominal_choice(analysis, AssessedCorrection::Scheduled);
@@ -178,7 +179,7 @@ fn assessment_lines(analysis: &Analysis) -> String {
     text
 }
 
-/// Returns the results of the schedule at the held-out conditions.
+/// Returns the assessment of the schedule in the held-out conditions.
 fn held_out_line(analysis: &Analysis) -> String {
     let choice = nominal_choice(analysis, AssessedCorrection::Scheduled);
     match held_out_verdict(analysis, choice) {
@@ -187,8 +188,8 @@ fn held_out_line(analysis: &Analysis) -> String {
     }
 }
 
-/// Returns the section on a condition: representatives, rejections, the on-axis and constrained
-/// responses, and unmatched entries.
+/// Returns the section on a condition: representatives, rejected models, on-axis and constrained
+/// responses, and unmatched responses.
 fn condition_section(analysis: &Analysis, condition: &Condition) -> String {
     let state = condition.flight_state();
     let title = format!(
@@ -333,8 +334,8 @@ fn channel_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     detail_list("gains", &gains) + &detail_list("delays", &delays)
 }
 
-/// Returns a table of gain and delay or lead of each channel. Its lead filter has the effect of
-/// replacing a servo with one bandwidth by a servo with another; both are listed (M15).
+/// Returns a table of gain and delay or lead of each channel. A lead filter acts as if a servo were
+/// replaced by one with a higher bandwidth; the table lists both bandwidths (M15).
 fn lead_table(dataset: &Dataset, correction: &ChannelCorrection, leads: &ChannelLeads) -> Table {
     let columns = [
         "channel",
@@ -366,10 +367,10 @@ fn lead_table(dataset: &Dataset, correction: &ChannelCorrection, leads: &Channel
     table
 }
 
-/// Lists the unmatched entries with reasons, and results without a proof.
+/// Lists the unmatched responses with reasons, and the results without an optimality proof.
 fn trouble_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let mut text = String::new();
-    // The unmatched entries come first, then the reasons and remedies.
+    // Unmatched responses come first, followed by the reasons and remedies.
     let mut label = "not matched";
     // Doubts about signs and units are printed above all conditions; cautions are collected in
     // their own section.

@@ -1,5 +1,5 @@
-//! Output of a command: results on standard output; notes, cautions and errors on standard error;
-//! or everything as one JSON object.
+//! Output of a command: results on standard output; notes, cautions and errors on standard error.
+//! Alternatively, a single JSON object with all of these.
 
 use std::io::{ErrorKind, Write};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -17,9 +17,9 @@ use super::text::with_conditions;
 /// Output format of a command.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct OutputFormat {
-    /// Omits notes.
+    /// Whether notes are omitted.
     pub(super) quiet: bool,
-    /// Prints one JSON object at the end.
+    /// Whether a single JSON object is printed at the end.
     pub(super) json: bool,
 }
 
@@ -40,10 +40,10 @@ struct Messages {
     error_codes: Vec<Option<&'static str>>,
 }
 
-/// A caution with its conditions; the list is empty if it is about the whole result.
+/// A caution with its conditions; without conditions, it concerns the whole result.
 #[derive(Debug, Serialize)]
 struct Caution {
-    /// Stable code of the kind of caution, if there is one.
+    /// Stable code of the kind of caution, if it has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     code: Option<&'static str>,
     text: String,
@@ -80,8 +80,8 @@ pub(super) fn shows_progress() -> bool {
     messages().output == OutputFormat::default()
 }
 
-/// Prints a text, which includes its line end. A reader that closes the pipe early, as in
-/// `gdcm … | head`, is not a failure.
+/// Prints a text, which includes its line end. If a reader closes the pipe early, as in `gdcm … |
+/// head`, this is not a failure.
 pub(super) fn print(text: &str) -> Result<(), Failure> {
     let mut plain_text = String::new();
     for line in text.split_inclusive('\n') {
@@ -122,7 +122,7 @@ fn write_standard_error(kind: &str, words: &str) {
     let _ = writeln!(std::io::stderr(), "{kind}: {}", plain(words));
 }
 
-/// Reports a choice or an assumption that needs no action.
+/// Prints a note about an assumption that needs no action, or adds it to the JSON output.
 pub(super) fn note(words: &str) {
     let mut messages = messages();
     if messages.output.json {
@@ -132,17 +132,17 @@ pub(super) fn note(words: &str) {
     }
 }
 
-/// Reports a problem that may need action although the command continues.
+/// Prints a caution about a problem that may need action although the command continues.
 pub(super) fn caution(words: &str) {
     caution_for(&[], words);
 }
 
-/// Reports a caution about several conditions once, with a list of the conditions.
+/// Prints a caution about several conditions once, with a list of the conditions.
 pub(super) fn caution_for(conditions: &[ConditionId], words: &str) {
     coded_caution(None, conditions, words);
 }
 
-/// Reports a caution with a stable code.
+/// Prints a caution with a stable code, or adds it to the JSON output.
 pub(super) fn coded_caution(code: Option<&'static str>, conditions: &[ConditionId], words: &str) {
     if messages().output.json {
         keep_coded_caution(code, conditions, words);
@@ -169,12 +169,12 @@ pub(super) fn keep_coded_caution(
     });
 }
 
-/// Reports an error.
+/// Prints an error without a code, or adds it to the JSON output.
 pub(super) fn error(words: &str) {
     coded_error(None, words);
 }
 
-/// Reports an error with a stable code for programs that read the JSON object.
+/// Prints an error with a stable code, or adds it to the JSON output.
 pub(super) fn coded_error(code: Option<&'static str>, words: &str) {
     let mut messages = messages();
     if messages.output.json {
@@ -185,15 +185,16 @@ pub(super) fn coded_error(code: Option<&'static str>, words: &str) {
     }
 }
 
-/// Ends the command; prints the JSON object if requested. Returns the exit status: `status`, or
-/// that of a failure to print.
+/// Ends the command: prints the JSON object if requested. Returns the exit status, which is
+/// `status` unless printing fails.
 pub(super) fn end(status: u8) -> u8 {
     let mut messages = messages();
     messages.status = status;
     if !messages.output.json {
         return status;
     }
-    // Texts, numbers and lists always serialise, and a vector always grows.
+    // Cannot fail: strings, numbers and lists can always be serialised, and writing to a vector
+    // never fails.
     let mut object = Vec::new();
     let written = write_pretty(&*messages, &mut object);
     debug_assert!(written.is_ok(), "the messages serialise");

@@ -1,4 +1,5 @@
-//! Printed text: labelled lines, lists, tables, and merging of messages about several conditions.
+//! Printed text: labelled lines, lists, tables, and the merging of equal messages about several
+//! conditions.
 
 use std::path::PathBuf;
 
@@ -6,10 +7,10 @@ use gdcm_model::dataset::ConditionId;
 use gdcm_model::message_text::{sanitized_path, shortened, shortened_message};
 use gdcm_words::Table;
 
-/// Maximum line width in columns.
+/// Maximum width of a line, in columns.
 const PAGE_WIDTH: usize = 110;
 
-/// Width of labels in columns.
+/// Width of a label, in columns.
 const LABEL_WIDTH: usize = 14;
 
 /// Indentation of lines within a section, in columns.
@@ -19,7 +20,7 @@ const DETAIL_INDENT: usize = 2;
 #[derive(Clone, Copy)]
 struct Label<'a> {
     text: &'a str,
-    /// Number of columns before the label.
+    /// Number of columns to the left of the label.
     indent: usize,
 }
 
@@ -71,12 +72,12 @@ impl<'a> Label<'a> {
     }
 }
 
-/// Returns a line with a section's label.
+/// Returns a line with the label of a section.
 pub(super) fn line(label: &str, words: &str) -> String {
     Label::of_section(label).before(words)
 }
 
-/// Returns an indented line within a section.
+/// Returns an indented, labelled line within a section.
 pub(super) fn detail(label: &str, words: &str) -> String {
     Label::of_detail(label).before(words)
 }
@@ -116,7 +117,8 @@ pub(super) fn indented_untitled(table: Table) -> String {
     indented(&table, DETAIL_INDENT)
 }
 
-/// Formats a number with this many decimals, or with an exponent from 1e7 on; "-" for `None`.
+/// Formats a number with `digits` decimals, or with an exponent if it is 1e7 or larger; "-" for
+/// `None`.
 pub(super) fn fixed_digits(value: Option<f64>, digits: usize) -> String {
     let Some(value) = value else {
         return "-".to_owned();
@@ -130,7 +132,7 @@ pub(super) fn fixed_digits(value: Option<f64>, digits: usize) -> String {
     format!("{rounded:.digits$}")
 }
 
-/// Formats "1 model", "3 models".
+/// Returns a count with its noun: "1 model", "3 models".
 pub(super) fn counted(count: usize, noun: &str) -> String {
     if count == 1 {
         format!("1 {noun}")
@@ -168,7 +170,7 @@ pub(super) fn with_conditions(conditions: &[ConditionId], words: &str) -> String
     }
 }
 
-/// A message about a condition; without a condition, about the whole result.
+/// A message about a condition, or about the whole result.
 pub(super) struct ConditionMessage {
     condition: Option<ConditionId>,
     text: String,
@@ -183,7 +185,7 @@ impl ConditionMessage {
     }
 }
 
-/// A message with all conditions to which it applies; the list is empty if it is about the whole
+/// A message with all conditions to which it applies; without conditions, it concerns the whole
 /// result.
 pub(super) struct SharedMessage {
     pub(super) conditions: Vec<ConditionId>,

@@ -1,4 +1,4 @@
-//! The window.
+//! The window: application, commands, panels, plots, state, views and widgets.
 
 pub mod app;
 pub mod commands;

@@ -1,4 +1,4 @@
-//! Datasets made from folders, by the command line and by the library.
+//! Datasets assembled from folders, by the command line and by the library.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -69,7 +69,7 @@ fn cell(texts: &[String]) -> Value {
     })
 }
 
-/// Names and units of the example's channels, as MATLAB names their lists.
+/// Returns the names and units of the example's channels, under the keys used by MATLAB.
 fn labels(dataset: &Dataset) -> [(&'static str, Vec<String>); 4] {
     let of = |channels: &[gdcm_model::dataset::Channel],
               part: fn(&gdcm_model::dataset::Channel) -> &String| {
@@ -86,7 +86,8 @@ fn labels(dataset: &Dataset) -> [(&'static str, Vec<String>); 4] {
     ]
 }
 
-/// Name of a model's file: "nominal", or the kind of an identified model.
+/// Returns the file name of a model without extension: "nominal", or the kind of an identified
+/// model.
 fn stem(kind: BundleKind, model: &Model) -> String {
     match kind {
         BundleKind::Physics if model.is_nominal() => "nominal".to_owned(),
@@ -95,7 +96,7 @@ fn stem(kind: BundleKind, model: &Model) -> String {
     }
 }
 
-/// Writes every model of the example into a folder for each condition, one file a model.
+/// Writes the models of the example: a folder for each condition, a file for each model.
 fn write_folders(root: &Path, dataset: &Dataset, write: impl Fn(&Path, &Model)) {
     fn class(class: &Option<String>) -> String {
         class.clone().unwrap()
@@ -125,7 +126,7 @@ fn write_as_mat(dataset: &Dataset, path: &Path, model: &Model) {
     write_sys(path, matrices(model), labels(dataset));
 }
 
-/// A system in a struct of MATLAB, with names and units.
+/// Writes a system as a MATLAB struct with channel names and units.
 fn write_sys(path: &Path, matrices: [&DMatrix<f64>; 4], labels: [(&'static str, Vec<String>); 4]) {
     let names = ["A", "B", "C", "D"]
         .into_iter()
@@ -146,7 +147,7 @@ fn write_sys(path: &Path, matrices: [&DMatrix<f64>; 4], labels: [(&'static str, 
     std::fs::write(path.with_file_name(file_name(path, "mat")), bytes).unwrap();
 }
 
-/// The example's models in a folder with MATLAB files.
+/// Writes the example's models to MATLAB files in a folder for each condition.
 pub(crate) fn example_folder(root: &Path) {
     let example = &crate::EXAMPLE.dataset;
     write_folders(root, example, |path, model| {
@@ -154,11 +155,11 @@ pub(crate) fn example_folder(root: &Path) {
     });
 }
 
-/// Share of the longitudinal stick's travel in an inch \[%\].
+/// Share of the longitudinal stick's travel per inch \[%\].
 pub(crate) const PERCENT_IN_AN_INCH: f64 = 12.5;
 
-/// Conditions 1 and 3 of the example as files of two programs: in the identified models NZ is positive the other way round, and the
-/// longitudinal stick is in inches, under a name of its own.
+/// Writes conditions 1 and 3 of the example as files of two programs. In the identified models, NZ
+/// has the opposite sign, and the longitudinal stick is in inches under another name.
 pub(crate) fn foreign_tree(root: &Path) {
     let example = &crate::EXAMPLE.dataset;
     let of_tree = |condition: &&Arc<Condition>| [1, 3].contains(&condition.id().0);
@@ -256,7 +257,8 @@ fn write_as_literals(dataset: &Dataset, path: &Path, model: &Model) {
     std::fs::write(path.with_file_name(file_name(path, "m")), text).unwrap();
 }
 
-/// "roll+5" and "mat" make "roll+5.mat"; `with_extension` would cut names at their points.
+/// Appends the extension: "roll+5" and "mat" give "roll+5.mat". `with_extension` would cut names at
+/// their last point.
 fn file_name(path: &Path, extension: &str) -> String {
     format!(
         "{}.{extension}",
@@ -264,7 +266,7 @@ fn file_name(path: &Path, extension: &str) -> String {
     )
 }
 
-/// Asserts that a dataset has the example's numbers, bit for bit, with the names of the files.
+/// Asserts that a dataset has the example's values, bit for bit, and the names of the files.
 fn assert_same_numbers(made: &Dataset, example: &Dataset, route: &str) {
     assert_eq!(
         made.conditions().len(),
@@ -305,7 +307,7 @@ fn assert_same_numbers(made: &Dataset, example: &Dataset, route: &str) {
     }
 }
 
-/// Name of a format, with its writer.
+/// Format name and the function that writes a model in this format.
 type Route<'w> = (&'static str, &'w dyn Fn(&Path, &Model));
 
 #[test]
@@ -377,7 +379,7 @@ fn a_folder_of_matrices_without_names_is_made_a_dataset_by_rules_from_the_shell(
         "{said}"
     );
     assert!(!out.exists(), "nothing half made");
-    // The rules that were proposed, with the names and units of the channels.
+    // Complete the proposed rules with the names and units of the channels.
     let path = folder.path().join("made.gdcm-rules.json");
     let mut rules: serde_json::Value =
         serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
@@ -401,7 +403,7 @@ fn a_folder_of_matrices_without_names_is_made_a_dataset_by_rules_from_the_shell(
     assert!(
         second
             .error
-            .contains("caution: no names of channels in the file"),
+            .contains("caution: channels without names in the file"),
         "{}",
         second.error
     );
@@ -419,7 +421,7 @@ fn a_folder_of_matrices_without_names_is_made_a_dataset_by_rules_from_the_shell(
         caution["text"]
             .as_str()
             .unwrap()
-            .contains("taken by their position")
+            .contains("assigned by position")
     };
     let cautions: Vec<&serde_json::Value> = said["cautions"]
         .as_array()
@@ -457,7 +459,7 @@ fn a_folder_of_matrices_without_names_is_made_a_dataset_by_rules_from_the_shell(
     assert!(again.error.contains("--force"), "{}", again.error);
 }
 
-/// Two physics models and a measured response of one input and one output, as files.
+/// Writes files with two physics models and a measured response of one input and one output.
 pub(crate) fn small_folder(root: &Path) {
     fn model(gain: f64) -> Vec<u8> {
         let values = [
@@ -569,7 +571,7 @@ fn channels_are_matched_and_units_converted_as_declared_and_never_in_silence() {
     let dataset = assembly.dataset("there").unwrap();
     let nominal = &dataset.conditions()[0].bundle(BundleKind::Physics)[0];
     let [_, b, c, _] = matrices(nominal);
-    // One inch is 8 %, one radian 57.3 degrees.
+    // One inch is 8 % of the stick's travel, one radian 57.3 degrees.
     assert_eq!(
         (b[(0, 0)], c[(0, 0)]),
         (1.0 / 8.0, 180.0 / std::f64::consts::PI)
@@ -590,7 +592,8 @@ fn channels_are_matched_and_units_converted_as_declared_and_never_in_silence() {
     assert!(response.coherence().is_some());
 }
 
-/// A stack with physics models and a stack with identified models, a file each, without condition names.
+/// A stack with physics models and a stack with identified models, each in a file without condition
+/// names.
 #[test]
 fn stacks_with_airspeeds_become_conditions_and_what_is_not_used_is_noted_once_a_file() {
     fn stack(gains: [f64; 3], airspeeds: [f64; 3]) -> serde_json::Value {
@@ -976,7 +979,7 @@ fn a_folder_without_identified_models_makes_a_dataset_that_says_what_it_needs_ne
     );
 }
 
-/// Every file below a folder.
+/// Returns every file below a folder.
 fn walk(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
     for entry in std::fs::read_dir(folder).unwrap() {
@@ -990,7 +993,8 @@ fn walk(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// A channel pair's response, dB and degrees over rad/s, in a file with this name.
+/// Writes the response of a channel pair, magnitude in dB and phase in degrees over rad/s, to a
+/// file with this name.
 fn write_response(folder: &Path, name: &str) {
     let mut frf = String::from("omega [rad/s],mag [dB],phase [deg]\n");
     for step in 0..40 {
@@ -1005,7 +1009,7 @@ fn write_response(folder: &Path, name: &str) {
     std::fs::write(folder.join(name), frf).unwrap();
 }
 
-/// A model with a single state in a MATLAB file: gain, and the names and units of input and output.
+/// Writes a model with a single state to a MATLAB file: gain, names and units of input and output.
 fn write_small(path: &Path, gain: f64, names: [&str; 2], units: [Option<&str>; 2]) {
     let scalar = |value: f64| DMatrix::from_element(1, 1, value);
     let lists = [("InputName", names[0]), ("OutputName", names[1])]
@@ -1031,7 +1035,8 @@ fn write_small(path: &Path, gain: f64, names: [&str; 2], units: [Option<&str>; 2
     std::fs::write(path, write_mat(&variables).unwrap()).unwrap();
 }
 
-/// The gain C B for the first model in a bundle at the first condition, in the dataset's units.
+/// Returns the gain C B of the first model of a bundle in the first condition, in the dataset's
+/// units.
 fn gain_of(dataset: &Path, kind: BundleKind) -> f64 {
     let dataset = load_dataset(dataset).unwrap().dataset;
     let [_, b, c, _] = matrices(&dataset.conditions()[0].bundle(kind)[0]);
@@ -1064,14 +1069,15 @@ fn a_response_whose_name_says_no_channels_makes_no_dataset_and_one_that_does_is_
         .concat())
     };
     let units = ["--unit", "LON=%", "--unit", "Q=deg/s"];
-    // It names the pedals, which the dataset lacks; a dataset with zeros was made from it.
+    // The file name contains the pedals, which the dataset lacks. Without this check, the dataset
+    // would contain a response of zeros.
     write_response(&models, "frf_r_ped_run2.csv");
     let ended = assemble(&units);
     assert_eq!(ended.status, 2, "{}{}", ended.out, ended.error);
     assert!(
         ended
             .error
-            .contains("frf_r_ped_run2.csv: no input of the measured response"),
+            .contains("frf_r_ped_run2.csv: the measured response has no input of the dataset"),
         "{}",
         ended.error
     );
@@ -1110,7 +1116,8 @@ fn a_response_whose_name_says_no_channels_makes_no_dataset_and_one_that_does_is_
 fn units_factors_and_signs_are_said_for_a_role_a_folder_or_a_file_by_the_option_that_is_printed() {
     let folder = tempfile::tempdir().unwrap();
     let root = folder.path().join("models");
-    // The identified file has another unit without stating it, another name for the input, and an output with an unknown sign.
+    // The identified file has another unit that it does not state, another name for the input, and
+    // an output with an unknown sign.
     write_small(
         &root.join("c1_60kt/nominal.mat"),
         1.0,
@@ -1140,7 +1147,7 @@ fn units_factors_and_signs_are_said_for_a_role_a_folder_or_a_file_by_the_option_
     let rules = folder.path().join("made.gdcm-rules.json");
     let ended = assemble(&[]);
     assert_eq!(ended.status, 2, "{}", ended.error);
-    // The engineer's dataset has the channels of the physics model.
+    // The rules define the channels as in the physics model.
     let mut said: serde_json::Value =
         serde_json::from_slice(&std::fs::read(&rules).unwrap()).unwrap();
     said["inputs"] = json!([{"name": "LON", "unit": "%"}]);

@@ -1,4 +1,4 @@
-//! The commands, through the program itself.
+//! Commands, run as separate processes.
 
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
@@ -16,7 +16,7 @@ use crate::{entries, members};
 
 pub(crate) const SMALL: &str = include_str!("../data/small-dataset.json");
 
-/// A directory with the small dataset in it, where commands are run.
+/// Temporary directory with the small dataset, in which commands are run.
 pub(crate) struct Desk {
     pub(crate) directory: tempfile::TempDir,
 }
@@ -32,7 +32,7 @@ impl Desk {
         self.directory.path().join(name)
     }
 
-    /// The directory with a few conditions of the example in it, too.
+    /// Returns a directory that also contains a few conditions of the example.
     pub(crate) fn with_few() -> Self {
         let desk = Self::new();
         fs::write(desk.path("few.json"), &*crate::FEW_TEXT).unwrap();
@@ -50,7 +50,7 @@ impl Desk {
         Ended::from_output(&output)
     }
 
-    /// Runs a command line with further arguments.
+    /// Runs a command line with additional arguments.
     pub(crate) fn run(&self, line: &[&str], more: &[&str]) -> Ended {
         self.gdcm(&[line, more].concat())
     }
@@ -61,7 +61,7 @@ impl Desk {
         fs::read_to_string(self.path(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
     }
 
-    /// Runs a command that fails, with its messages as JSON.
+    /// Runs a command that fails, and returns its messages from its JSON output.
     #[track_caller]
     pub(crate) fn refusal(&self, arguments: &[&str]) -> Refusal {
         Refusal::from_json(&self.gdcm(&[arguments, &["--json"]].concat()))
@@ -124,7 +124,7 @@ impl Refusal {
         self
     }
 
-    /// Asserts that an error, a caution or a note holds these words.
+    /// Asserts that an error, a caution or a note contains these words.
     #[track_caller]
     pub(crate) fn assert_reported(&self, words: &str) -> &Self {
         let mut messages = self.errors.iter().chain(&self.cautions).chain(&self.notes);
@@ -136,7 +136,7 @@ impl Refusal {
     }
 }
 
-/// The texts of a list in JSON.
+/// Returns the strings in a JSON list.
 fn texts(list: &Value) -> Vec<String> {
     entries(list)
         .iter()
@@ -144,7 +144,7 @@ fn texts(list: &Value) -> Vec<String> {
         .collect()
 }
 
-/// How a command ended.
+/// Exit status and output of a command.
 #[derive(Debug)]
 pub(crate) struct Ended {
     pub(crate) status: i32,
@@ -161,7 +161,8 @@ impl Ended {
         }
     }
 
-    /// Asserts a failure with one or two lines on standard error that contain these words, and no standard output.
+    /// Asserts this exit status, an error message of one or two lines that contains these words,
+    /// and no standard output.
     #[track_caller]
     pub(crate) fn assert_failed(&self, status: i32, words: &[&str]) {
         assert_eq!((self.status, self.out.as_str()), (status, ""), "{self:?}");
@@ -244,7 +245,7 @@ fn the_embedded_example_is_analysed_without_a_file() {
     assert!(widest <= 120, "{widest} columns");
 }
 
-/// A condition's result in a corrections file.
+/// Returns the result of a condition in a corrections file.
 fn condition_of<'j>(corrections: &'j Value, id: &str) -> &'j Value {
     entries(&corrections["conditions"])
         .iter()
@@ -368,7 +369,7 @@ fn the_phase_is_corrected_as_an_option_says() {
     let reference = crate::REFERENCE_DATASET.path().unwrap().to_str().unwrap();
     let analyze = ["analyze", reference, "--out", "out", "--force"];
     let corrections = desk.path("out/corrections.json");
-    // The leads do not depend on the source of G, and the text reports that.
+    // The leads do not depend on the source of G; the printed text must say so.
     let ended = desk.run(&analyze, &["--phase", "lead", "--gain-from", "mean"]);
     ended.assert_done();
     for words in [
@@ -399,7 +400,7 @@ fn the_phase_is_corrected_as_an_option_says() {
     );
     let condition = &led["conditions"][0];
     let lat = &condition["lead"]["inputs"]["LAT"];
-    // From independent numpy code.
+    // Reference values from independent numpy code.
     for (key, value, allowed) in [
         ("tau_s", -0.041_244_995_923_2, 1e-9),
         ("lead_s", 0.037_522_384_891_1, 1e-9),
@@ -570,7 +571,7 @@ fn what_cannot_be_held_together_is_told_with_the_reason() {
             &entry["short_db"],
         ]
         .map(|of| of.as_f64().unwrap());
-        // The products are held at their targets within 1e-8 of the logarithm.
+        // The products match their targets within 1e-8 in the logarithm.
         assert!((gain / target).ln().abs() < 1e-8, "{entry}");
         assert!(
             (short_db - 20.0 * (target / wanted).log10()).abs() < 1e-9,
@@ -749,7 +750,7 @@ fn an_output_directory_that_cannot_be_made_is_status_2_before_any_work() {
         2,
         &[
             "small.json: cannot be written",
-            "a file has the name of this directory",
+            "a file with the name of this directory exists",
         ],
     );
 }
@@ -923,7 +924,7 @@ fn a_study_whose_dataset_has_changed_or_moved_is_used_and_told_about_unless_it_h
     });
     let told = desk.gdcm(&["check", "a.gdcm-study.json"]);
     assert!(
-        told.status == 0 && told.error.contains("condition 7 is flown at 61 kt"),
+        told.status == 0 && told.error.contains("condition 7 is at 61 kt"),
         "{told:?}"
     );
     let strict = desk.gdcm(&["check", "a.gdcm-study.json", "--strict"]);
@@ -933,7 +934,7 @@ fn a_study_whose_dataset_has_changed_or_moved_is_used_and_told_about_unless_it_h
     );
     desk.refusal(&["check", "a.gdcm-study.json", "--strict"])
         .assert_code("different-dataset", &["a.gdcm-study.json", "--strict"])
-        .assert_reported("condition 7 is flown at 61 kt");
+        .assert_reported("condition 7 is at 61 kt");
     fs::rename(&dataset, desk.path("moved.json")).unwrap();
     desk.gdcm(&["check", "a.gdcm-study.json"])
         .assert_failed(2, &["small.json: there is no such file", "--dataset"]);
@@ -1022,7 +1023,7 @@ fn the_numbers_of_a_figure_of_several_panels_are_one_table() {
     let mut table = csv::Reader::from_path(desk.path("a.csv")).unwrap();
     let columns: Vec<String> = table.headers().unwrap().iter().map(str::to_owned).collect();
     assert_eq!(columns[..3], ["figure", "panel", "curve"]);
-    // A reader that is not flexible refuses rows of another length.
+    // The CSV reader is strict: it refuses rows of unequal length.
     let rows: Vec<csv::StringRecord> = table.records().collect::<Result<_, _>>().unwrap();
     let panels: BTreeSet<&str> = rows.iter().map(|row| &row[1]).collect();
     let mut expected = BTreeSet::new();
@@ -1143,13 +1144,13 @@ fn check_finds_a_wrong_structure_without_reading_a_large_file_to_its_end() {
         .write(true)
         .open(desk.path("large.json"))
         .unwrap();
-    // Longer than the limit: only commands that read the file to its end report that.
+    // The file is longer than the limit; only commands that read it to its end report this.
     file.set_len(gdcm_model::dataset::limits::LARGEST_TEXT + 1)
         .unwrap();
     desk.gdcm(&["check", "large.json"])
         .assert_failed(2, &["large.json: inputs: expected a list, found 5"]);
     desk.gdcm(&["analyze", "large.json", "--out", "out"])
-        .assert_failed(2, &["holds more than 128 MiB"]);
+        .assert_failed(2, &["exceeds 128 MiB"]);
 }
 
 #[test]
@@ -1235,7 +1236,7 @@ fn conditions_can_be_held_out_and_each_be_left_out_in_turn() {
         .assert_failed(2, &["--hold-out", "no condition 99"]);
 }
 
-/// Output and exit status of a command about a file.
+/// Returns the exit status and the output of a command for a file of edge cases.
 fn said_of_edge(file: &str, command: &str) -> (i32, String) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("tests/data/edges")
@@ -1246,7 +1247,7 @@ fn said_of_edge(file: &str, command: &str) -> (i32, String) {
         &[]
     };
     let ended = Desk::new().gdcm(&[&[command, path.to_str().unwrap()], options].concat());
-    // Long lines are broken and indented.
+    // The output is printed with line breaks and indentation, which are removed here.
     (
         ended.status,
         (ended.out + &ended.error)

@@ -1,4 +1,4 @@
-//! Mixing and feedback from the command line: printed text and files (M16).
+//! Mixing and feedback on the command line: printed text and files (M16).
 
 use std::fs;
 
@@ -26,12 +26,12 @@ fn analyze_says_what_couplings_mean_are_worth_and_cost_and_writes_them() {
     ended.assert_done();
     for words in [
         "mixing and feedback fitted to 11 conditions",
-        "LAT takes 4.",
-        "as a swashplate phase of 2.",
-        "Off the axis, J of conditions left out is ",
+        "LAT receives 4.",
+        "equivalent to a swashplate phase of 2.",
+        "Off-axis J of conditions left out of the fit is ",
         "condition left out",
         "Above the band, at 120 rad/s, the couplings change ",
-        "newly unstable with the couplings",
+        "unstable with the couplings",
     ] {
         assert!(ended.out.contains(words), "{words}: {}", ended.out);
     }
@@ -129,7 +129,8 @@ fn octave_closes_the_loop_of_an_exported_function_as_state_space_has_it() {
         &[&one[..], &["none"]].concat(),
     );
     exported(&desk, "m", "plain_gains.m", &["--couplings", "none"]);
-    // The loop of the exported function, closed through the feed-through around the plain model, beside the exported matrices.
+    // Closes the loop of the exported function around the plain model, including its feed-through,
+    // and compares the result with the exported matrices.
     let program = "load with.mat; w = models; load plain.mat; p = models; w3 = 3i * eye(size(w.A)); p3 = 3i * eye(size(p.A)); \
         [Mi, Mo, ~, ~] = plain_gains(w.airspeed_kt); \
         h = Mo \\ (p.C * ((p3 - p.A) \\ p.B) + p.D) / Mi; d = Mo \\ p.D / Mi; \
@@ -179,7 +180,7 @@ fn a_schedule_over_airspeed_and_altitude_has_its_couplings_beside_it() {
     .concat();
     let expected: Vec<f64> = rows.into_iter().flatten().collect();
     assert_eq!(values.len(), 2 + expected.len());
-    // Seventeen digits of each coefficient.
+    // The coefficients are printed with seventeen digits.
     assert!(
         values[2..]
             .iter()
@@ -214,11 +215,11 @@ fn couplings_that_nothing_can_be_fitted_to_are_told_in_words() {
     assert!(
         ended
             .out
-            .contains("Couplings of 1 condition: three are needed"),
+            .contains("The couplings are fitted to 1 condition; "),
         "{}",
         ended.out
     );
-    // Exported models must not lack requested couplings.
+    // Without the requested couplings, models must not be exported.
     let all: Vec<&str> = ids
         .iter()
         .flat_map(|id| ["--hold-out", id.as_str()])
@@ -237,7 +238,7 @@ fn couplings_that_nothing_can_be_fitted_to_are_told_in_words() {
     assert!(
         refused
             .error
-            .contains("the study asks for couplings, and there are none: "),
+            .contains("the study requests couplings, but they are unavailable: "),
         "{}",
         refused.error
     );
@@ -282,7 +283,7 @@ fn a_figure_shows_the_poles_of_the_condition_that_is_asked_for() {
     assert!(text.contains("Poles of condition 3") && text.contains("close to ringing"));
 }
 
-/// Exports the example without a correction of the phase, and returns the printed text.
+/// Exports the example without phase correction, and returns the printed text.
 fn exported(desk: &Desk, format: &str, name: &str, more: &[&str]) -> String {
     let line = ["export", "--as", format, "--out", name, "--phase", "none"];
     let ended = desk.run(&line, more);

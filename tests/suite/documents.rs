@@ -1,4 +1,4 @@
-//! The pictures of the documentation: the commands that the page names make them.
+//! Figures in the documentation: the commands given on the page reproduce them.
 
 use std::fs;
 use std::path::Path;
@@ -7,10 +7,11 @@ use roxmltree::Document;
 
 use crate::commands::Desk;
 
-/// How far a text may have moved \[pt\]: a digit of a number may round to the other side on another processor.
+/// Permitted displacement of a text \[pt\]: on another processor, a digit may be rounded
+/// differently.
 const MOVED_PT: f64 = 0.5;
 
-/// The commands of the page, each without `gdcm`, and the file that it makes.
+/// Returns the commands on the page, without the leading `gdcm`.
 fn commands(page: &str) -> Vec<Vec<&str>> {
     let lines = page
         .lines()
@@ -24,7 +25,7 @@ fn commands(page: &str) -> Vec<Vec<&str>> {
         .collect()
 }
 
-/// The words of a picture with their places.
+/// Returns the words in an SVG figure with their positions.
 fn words(svg: &str) -> Vec<(String, [f64; 2])> {
     let document = Document::parse(svg).unwrap();
     let texts = document
@@ -78,7 +79,7 @@ fn every_figure_of_the_paper_has_a_picture_on_the_page() {
     for picture in &pictures {
         assert!(docs.join("figures").join(picture).is_file(), "{picture}");
     }
-    // figure-08-12.svg shows 8 to 12.
+    // For example, figure-08-12.svg shows figures 8 to 12.
     let mut shown: Vec<u32> = Vec::new();
     for picture in pictures {
         let numbers: Vec<u32> = picture

@@ -1,4 +1,4 @@
-//! Corrections for other tools, through the program itself.
+//! Export of corrections to other tools, by the command line.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ use gdcm_model::response::{FrequencyGrid, FrequencyResponse, evaluate};
 use crate::commands::Desk;
 use crate::{entries, members};
 
-/// The numbers of JSON; NaN where there is none.
+/// Returns numbers from JSON; NaN for entries that are not numbers.
 fn numbers<'j>(json: impl IntoIterator<Item = &'j Value>) -> Vec<f64> {
     json.into_iter()
         .map(|number| number.as_f64().unwrap_or(f64::NAN))
@@ -212,7 +212,8 @@ fn the_options_of_a_study_come_first() {
         !text.contains("delays are not scheduled")
             && !ended.out.contains("delays are not scheduled")
     );
-    // Held responses in this dataset have net delays: they are scheduled by default, and omitted on request.
+    // In this dataset, constrained responses have net delays: they are scheduled by default, and
+    // omitted on request.
     let unscheduled = "delays are not scheduled in this study: they are zero here";
     let unasked = desk.gdcm(&["export", "small.json", "--as", "py", "--out", "b.py"]);
     unasked.assert_done();
@@ -239,7 +240,8 @@ fn the_options_of_a_study_come_first() {
     }
 }
 
-/// The small dataset, flown with the nominal physics model behind delays of the inputs \[s\], which differ from condition to condition.
+/// Input delays \[s\] by condition. The flown model is the nominal physics model behind these
+/// delays.
 const FLOWN_DELAYS_S: [[f64; 2]; 2] = [[0.03, 0.05], [0.04, 0.03]];
 
 fn desk_with_lagging_flight() -> Desk {
@@ -305,12 +307,12 @@ fn delays_of_held_responses_are_exported_unless_that_is_not_wanted() {
             assert_eq!(contains[place]["delays"], "scheduled");
             assert_eq!(contains[place]["left_out"], json!([]));
             let flown = &condition.bundle(gdcm_model::dataset::BundleKind::Identified)[0];
-            // With its delays, which `evaluate` leaves to the caller.
+            // The delays must be included; `evaluate` omits them.
             let flown = FrequencyResponse::of(&flown.dynamics, &FrequencyGrid::at(omega.to_vec()));
             let found = evaluate(&state_space(&found[place]), &omega);
             for pair in [Pair::new(0, 1), Pair::new(1, 0)] {
                 for (found, flown) in found.curve(pair).iter().zip(flown.curve(pair)) {
-                    // Two airspeeds bear a straight line, which goes through both.
+                    // Through two airspeeds, the scheduled straight line is exact.
                     assert!(
                         (found - flown).norm() <= 1e-6 * flown.norm(),
                         "{pair:?} of condition {}",
@@ -539,7 +541,7 @@ fn a_table_says_how_far_it_is_off() {
     assert!(
         ended
             .out
-            .contains("table of the gain of input LON: off by up to "),
+            .contains("table of the gain of input LON: maximum error "),
         "{}",
         ended.out
     );
@@ -560,7 +562,7 @@ fn a_table_says_how_far_it_is_off() {
     );
 }
 
-/// The corrected models of the example by their own corrections, in three formats that say the same.
+/// The corrected models of the example, each with its own correction, are equal in three formats.
 #[test]
 fn corrected_models_are_the_program_s_in_every_format() {
     let desk = Desk::new();
@@ -612,7 +614,7 @@ fn corrected_models_are_the_program_s_in_every_format() {
             (&mat.inputs, &mat.outputs, &mat.draft.states)
         );
     }
-    // Against the physics models and the corrections as `analyze` writes them.
+    // Compare with the physics models and the corrections written by `analyze`.
     desk.gdcm(&["analyze", "--out", "."]).assert_done();
     let corrections = crate::read_json(&desk.path("corrections.json"));
     let omega = [0.5, 3.0, 12.0];
@@ -651,7 +653,8 @@ fn corrected_models_are_the_program_s_in_every_format() {
                         * output_gain
                         * input_gain;
                     let expected = plain[at] * factor;
-                    // The error of order 8 for these delays is below rounding.
+                    // The error of the Padé approximation of order 8 is below rounding for these
+                    // delays.
                     assert!(
                         (corrected[at] - expected).norm() <= 1e-9 * expected.norm(),
                         "condition {}",
@@ -664,18 +667,20 @@ fn corrected_models_are_the_program_s_in_every_format() {
     assert!(delayed > 0, "some responses are delayed");
 }
 
-/// Value of a lead filter of second order at s: Butterworth polynomials at its zero and its lag (M15).
+/// Returns the value of a second-order lead filter at s: ratio of Butterworth polynomials at its
+/// zero and at its lag (M15).
 fn lead_filter(lead: &Value, s: nalgebra::Complex<f64>) -> nalgebra::Complex<f64> {
     butterworth(&lead["zero_rad_s"], s) / butterworth(&lead["lag_rad_s"], s)
 }
 
-/// 1 + sqrt(2) x + x^2 with x = s / omega.
+/// Computes `1 + sqrt(2) x + x^2` with `x = s / omega`.
 fn butterworth(omega: &Value, s: nalgebra::Complex<f64>) -> nalgebra::Complex<f64> {
     let x = s / omega.as_f64().unwrap();
     x * x + x * 2.0_f64.sqrt() + 1.0
 }
 
-/// A corrected model with leads is the model between its channels' filters, exactly; programs give the filters themselves.
+/// A corrected model with leads equals the model between its channel filters; programs contain the
+/// filters themselves.
 #[test]
 fn leads_are_exact_in_corrected_models_and_in_programs() {
     let desk = Desk::with_few();
@@ -713,7 +718,8 @@ fn leads_are_exact_in_corrected_models_and_in_programs() {
                 let filters =
                     lead_filter(output_leads[output], s) * lead_filter(input_leads[input], s);
                 let expected = plain.curve(pair)[place] * filters * output_gain * input_gain;
-                // Responses have a rounding error relative to the largest response, about 1; far above the band most are 1e-6.
+                // Responses have a rounding error relative to the largest response, about 1; far
+                // above the band most responses are about 1e-6.
                 let allowed = 1e-9 * expected.norm() + 1e-11;
                 assert!(
                     (corrected.curve(pair)[place] - expected).norm() <= allowed,
@@ -782,7 +788,8 @@ fn leads_are_exact_in_corrected_models_and_in_programs() {
     }
 }
 
-/// The header's filter, step by step, against the analytical gain: 1 at rest, and at a frequency within the band.
+/// Compares the filter of the C header, executed step by step, with the analytical gain: 1 at rest,
+/// and the response to a sine within the band.
 #[test]
 fn the_filter_of_the_c_header_leads_a_sine() {
     let desk = Desk::new();
@@ -835,7 +842,8 @@ fn the_filter_of_the_c_header_leads_a_sine() {
         1.0 / 36.0,
     );
     let expected = filter.at(std::f64::consts::TAU);
-    // Tustin's rule takes 6.2832 rad/s for 6.2832 (1 + (w h)^2 / 12): 3e-6 of it.
+    // Tustin's rule shifts the frequency of 6.2832 rad/s by the factor 1 + (w h)^2 / 12, that is by
+    // 3e-6.
     assert!(
         (s - expected.re).abs() < 1e-4 && (c - expected.im).abs() < 1e-4,
         "{text} {expected}"
@@ -872,7 +880,8 @@ fn delays_of_discrete_time_are_exact_or_refused() {
         "{}",
         ended.out
     );
-    // Conditions 7 and 10; the correction has no delays, and no message reports that.
+    // Conditions 7 and 10. The correction has no delays, so no message says that delays are left
+    // out.
     assert_eq!(
         ended.out.matches("the model's own delays exact\n").count(),
         2,
@@ -1038,7 +1047,8 @@ fn octave_computes_the_response_of_a_corrected_model() {
 #[test]
 fn every_export_of_leads_says_what_they_cost_and_so_does_the_command() {
     let desk = Desk::with_few();
-    // Condition 10 has the strongest lead on LON in the example: as if a servo of 36 rad/s replaced a servo of 18 rad/s.
+    // In the example, condition 10 has the strongest lead, on LON: as if a servo of 36 rad/s
+    // replaced a servo of 18 rad/s.
     let limit = "not valid above 12 rad/s: at 120 rad/s the leads add +";
     for ExportFormat {
         name: format,
@@ -1064,7 +1074,8 @@ fn every_export_of_leads_says_what_they_cost_and_so_does_the_command() {
         let text = String::from_utf8_lossy(&bytes);
         let is_said = text.contains(limit) || text.contains("not_valid_above_rad_s");
         assert!(is_said || extension == "mat", "{format}");
-        // Characters that compilers or old editors do not show are spelled by their numbers: the program's own words have none.
+        // Exports spell unusual characters by their code, such as `<U+2212>`; the program's own
+        // texts must not need this.
         assert!(!text.contains("<U+2212>"), "{format}");
     }
     let without = desk.gdcm(&["export", "few.json", "--as", "py", "--out", "delays.py"]);
@@ -1076,12 +1087,12 @@ fn every_export_of_leads_says_what_they_cost_and_so_does_the_command() {
     );
 }
 
-/// Numbers of a table in JSON, row by row.
+/// Returns the numbers of a JSON table, row by row.
 fn table_numbers(table: &Value) -> Vec<f64> {
     numbers(entries(table).iter().flat_map(entries))
 }
 
-/// Numbers of an object in JSON, in the order of its members.
+/// Returns the numbers of a JSON object, in the order of its members.
 fn member_numbers(object: &Value) -> Vec<f64> {
     numbers(members(object))
 }

@@ -1,4 +1,4 @@
-//! Cycles of imports between the files of one folder.
+//! Import cycles between the files of a folder.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -6,8 +6,8 @@ use std::path::Path;
 
 use super::structure::{code_of, sources};
 
-/// Files of each package that still import one another in a circle. The numbers may only fall: whoever breaks a cycle lowers
-/// them.
+/// Number of files in each package that import one another in a cycle. The numbers may only fall: a
+/// change that breaks a cycle must lower them.
 const FILES_IN_CYCLES: &[(&str, usize)] = &[
     ("crates/gdcm-model", 0),
     ("crates/gdcm-method", 0),
@@ -18,10 +18,10 @@ const FILES_IN_CYCLES: &[(&str, usize)] = &[
     (".", 0),
 ];
 
-/// A module by its path below the root of its crate.
+/// Module path, relative to the crate root.
 type ModulePath = Vec<String>;
 
-/// The modules of a package with their code, without tests and comments.
+/// Returns the modules of a package with their code, without tests and comments.
 fn modules(package: &str) -> BTreeMap<ModulePath, String> {
     let src = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join(package)
@@ -44,7 +44,8 @@ fn modules(package: &str) -> BTreeMap<ModulePath, String> {
     found
 }
 
-/// The paths that a module names, from the root of its crate: `super::a::{B, c::D}` in `x::y` gives `x::a::B` and `x::a::c`.
+/// Returns the paths that a module names, relative to the crate root: `super::a::{B, c::D}` in
+/// `x::y` gives `x::a::B` and `x::a::c`.
 fn named_paths(module: &ModulePath, code: &str) -> Vec<ModulePath> {
     fn is_path(c: char) -> bool {
         c.is_ascii_alphanumeric() || c == '_' || c == ':'
@@ -92,7 +93,7 @@ fn named_paths(module: &ModulePath, code: &str) -> Vec<ModulePath> {
     paths
 }
 
-/// For each folder, its children and the children that each of them names.
+/// Returns the children of each folder, each with the siblings that it names.
 fn imports_between_siblings(
     modules: &BTreeMap<ModulePath, String>,
 ) -> BTreeMap<ModulePath, BTreeMap<ModulePath, BTreeSet<ModulePath>>> {
@@ -129,7 +130,7 @@ fn imports_between_siblings(
     folders
 }
 
-/// All that is reached from a module along imports.
+/// Returns all modules that a module reaches along imports.
 fn reached(
     from: &ModulePath,
     imports: &BTreeMap<ModulePath, BTreeSet<ModulePath>>,

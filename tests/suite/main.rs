@@ -1,4 +1,5 @@
-//! All tests that are not beside their code, as one program, because linking the window library takes most of the build time.
+//! All tests outside the source files, linked into one program, because linking the window library
+//! takes most of the build time.
 
 use std::path::Path;
 use std::sync::LazyLock;
@@ -27,7 +28,7 @@ fn read_json(path: &Path) -> serde_json::Value {
     serde_json::from_slice(&std::fs::read(path).expect("it can be read")).expect("it is JSON")
 }
 
-/// Members of a JSON object, in their order.
+/// Returns the members of a JSON object, in file order.
 fn members(json: &serde_json::Value) -> Vec<&serde_json::Value> {
     json.as_object()
         .expect("it is an object")
@@ -35,16 +36,17 @@ fn members(json: &serde_json::Value) -> Vec<&serde_json::Value> {
         .collect()
 }
 
-/// Entries of a JSON list.
+/// Returns the entries of a JSON list.
 fn entries(json: &serde_json::Value) -> &[serde_json::Value] {
     json.as_array().expect("it is a list")
 }
 
-/// The embedded example, read once for most tests of the window and of whole studies.
+/// The embedded example, loaded once for most tests of the window and of whole studies.
 static EXAMPLE: LazyLock<LoadedDataset> =
     LazyLock::new(|| embedded_example().expect("the embedded example is a dataset"));
 
-/// Conditions 3, 7 and 10 of the example as a file, for tests that need no more: a quarter of the computing time.
+/// Conditions 3, 7 and 10 of the example as a file. They take a quarter of the example's computing
+/// time.
 static FEW_TEXT: LazyLock<Vec<u8>> = LazyLock::new(|| {
     let packed = std::fs::File::open(concat!(
         env!("CARGO_MANIFEST_DIR"),
@@ -59,13 +61,14 @@ static FEW_TEXT: LazyLock<Vec<u8>> = LazyLock::new(|| {
     serde_json::to_vec(&file).expect("it can be written")
 });
 
-/// The same, read; flight records of conditions 3 and 10 are inside the program.
+/// The conditions of [`FEW_TEXT`], loaded. The program contains flight records of conditions 3 and
+/// 10.
 static FEW: LazyLock<LoadedDataset> = LazyLock::new(|| {
     load_dataset_bytes(&FEW_TEXT, DatasetOrigin::EmbeddedExample).expect("it is a dataset")
 });
 
-/// Dataset of the reference figures, which independent code computed: the example's physics models, and three identified models
-/// per condition from elsewhere.
+/// Dataset for which independent code computed the reference values: the example's physics models,
+/// and three identified models per condition from another source.
 static REFERENCE_DATASET: LazyLock<LoadedDataset> = LazyLock::new(|| {
     let path =
         Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/reference/example-dataset.json.gz");

@@ -1,4 +1,4 @@
-//! Messages about odd names, numbers and mistakes.
+//! Messages about unusual names, numbers and mistakes.
 
 use std::io::Write;
 use std::path::Path;
@@ -20,7 +20,8 @@ use gdcm_study::decisions::setting_row::Kind;
 
 use crate::commands::{Desk, SMALL};
 
-/// Turns the writing direction, parts letters, ends a line and a paragraph, clears the screen.
+/// Characters that reverse the writing direction, split words, end a line or paragraph, and clear
+/// the screen.
 const NASTY: &str = "a\u{202e}b\u{200b}c\u{2028}d\u{2066}e\u{1b}[2Jf\ng";
 
 fn is_plain(text: &str) -> bool {
@@ -199,11 +200,11 @@ fn a_number_on_the_command_line_is_refused_with_its_option_and_its_range() {
         ),
         (
             &["--on", "P"],
-            "error: --on: expected OUTPUT/INPUT, as P/LAT, found \"P\"\n",
+            "error: --on: expected OUTPUT/INPUT, such as P/LAT; found \"P\"\n",
         ),
         (
             &["--reject", "x"],
-            "error: --reject: expected ID:NAME, as 10:nominal, found \"x\"\n",
+            "error: --reject: expected ID:NAME, such as 10:nominal; found \"x\"\n",
         ),
     ] {
         let ended = desk.gdcm(
@@ -217,7 +218,7 @@ fn a_number_on_the_command_line_is_refused_with_its_option_and_its_range() {
     }
 }
 
-/// Every value of a JSON text, by its pointer.
+/// Collects the JSON pointers of all values.
 fn pointers(value: &Value, at: &str, found: &mut Vec<String>) {
     found.push(at.to_owned());
     match value {
@@ -234,7 +235,7 @@ fn pointers(value: &Value, at: &str, found: &mut Vec<String>) {
     }
 }
 
-/// Values that are wrong in most places.
+/// Generates values that are wrong in most places.
 fn wrong_values() -> impl Strategy<Value = Value> {
     prop::sample::select(vec![
         json!(null),
@@ -297,7 +298,7 @@ fn a_choice_of_words_is_refused_with_the_words_that_may_stand_there() {
         (
             "\"median\"",
             "5",
-            "settings, cost_average: expected a text in quotation marks, found",
+            "settings, cost_average: expected text in quotation marks, found",
         ),
         (
             "\"points\": 200",
@@ -386,7 +387,7 @@ fn lists_beyond_their_limits_are_refused_with_their_place() {
             &message[..message.len().min(400)]
         );
     }
-    // Each bundle is within its limit, all together are not.
+    // Each bundle is within its limit, but the total is not.
     let mut text = small;
     let condition = text["conditions"][0].clone();
     let models: Vec<Value> = (0..5000)
@@ -402,7 +403,7 @@ fn lists_beyond_their_limits_are_refused_with_their_place() {
         .collect();
     let message = dataset_refusal(&text.to_string());
     assert!(
-        message.contains("conditions: expected at most 50000 models in all, found more"),
+        message.contains("conditions: expected at most 50000 models in total, found more"),
         "{message}"
     );
     let conditions = many(
@@ -420,7 +421,8 @@ fn lists_beyond_their_limits_are_refused_with_their_place() {
     );
 }
 
-/// Three million models without anything in them, in 36 MB of text and far less when packed: held in memory they would be a gigabyte.
+/// Three million empty models: 36 MB of text, much less when compressed, and about a gigabyte if
+/// they were held in memory.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_file_that_is_refused_for_its_length_takes_memory_for_its_text_only() {
@@ -433,7 +435,7 @@ fn a_file_that_is_refused_for_its_length_takes_memory_for_its_text_only() {
     (0..300).for_each(|_| packed.write_all(&some).unwrap());
     packed.write_all(after.as_bytes()).unwrap();
     packed.finish().unwrap();
-    // KiB of addresses: the program itself, the text while it grows, and the models that are read.
+    // Address space in KiB: enough for the program, the growing text and the models read so far.
     let line = "ulimit -v 400000; exec \"$0\" check bomb.json.gz";
     let mut command = std::process::Command::new("sh");
     command

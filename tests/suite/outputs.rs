@@ -1,4 +1,5 @@
-//! Written files: existing files stay unless replacing is requested, inputs always stay, and no file is written in part.
+//! Written files: existing files are kept unless overwriting is requested, inputs are always kept,
+//! and no file is written in part.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -29,7 +30,7 @@ fn names(directory: &Path) -> Vec<String> {
     names
 }
 
-/// Runs a line of shell in which `gdcm` is the program.
+/// Runs a shell line in which `gdcm` is the tested program.
 #[cfg(unix)]
 fn shell(desk: &Desk, line: &str) -> Ended {
     let mut command = std::process::Command::new("sh");
@@ -104,7 +105,7 @@ fn an_input_is_not_overwritten_even_by_force() {
     desk.gdcm(&["analyze", study, "--out", "study", "--force"])
         .assert_failed(2, &refused);
 
-    // The dataset of a study, through a link.
+    // The output is a link to the study's dataset.
     #[cfg(unix)]
     {
         fs::create_dir(desk.path("linked")).unwrap();
@@ -167,7 +168,8 @@ fn a_file_larger_than_the_system_allows_is_status_1_and_leaves_what_was_there() 
     );
 }
 
-/// Runs a command that has to end by itself: a command that waits for a pipe is killed after a minute, and fails the test.
+/// Runs a command that must end by itself: a command that waits for a pipe is killed after a
+/// minute, and the test fails.
 #[cfg(unix)]
 fn ends(desk: &Desk, arguments: &[&str]) -> Ended {
     use std::process::Stdio;
@@ -295,7 +297,7 @@ fn a_named_pipe_as_input_is_refused_at_once_by_every_command() {
             .unwrap()
             .success()
     );
-    // An output that is there already is compared with every input.
+    // An existing output is compared with every input.
     fs::write(desk.path("there.json"), "{}").unwrap();
     let identify = [
         "identify",
@@ -406,7 +408,7 @@ fn an_export_over_existing_files_asks_first() {
     );
     assert_eq!(fs::read_to_string(&csv).unwrap(), "mine");
 
-    // The form is larger than the question, and takes some frames to find its place.
+    // The form is larger than the question, and needs some frames to be placed.
     window.run_steps(10);
     click(&mut window, "Export");
     click(&mut window, "Overwrite");
@@ -430,7 +432,7 @@ fn a_study_saved_to_a_typed_path_asks_before_it_overwrites_a_file_that_is_not_it
     assert!(window.query_by_label("This file exists already").is_some());
     click(&mut window, "Overwrite");
     assert!(fs::read_to_string(&path).unwrap().contains("gdcm-study"));
-    // Now it is the study's own.
+    // The file now belongs to the study and is overwritten without a question.
     save_as(&mut window, &path);
     settle(&mut window);
     assert!(state(&window).forms.existing.is_empty());
@@ -443,7 +445,7 @@ fn a_study_saved_to_a_typed_path_asks_before_it_overwrites_a_file_that_is_not_it
 #[cfg(unix)]
 #[test]
 fn a_directory_that_may_not_be_written_to_is_status_1_without_the_name_of_a_temporary_file() {
-    // Nobody can make a file here, the superuser included.
+    // Nobody can create a file in `/proc/self`, not even the superuser.
     let desk = Desk::new();
     let ended = Ended::from_output(
         &desk
@@ -511,7 +513,7 @@ fn names_that_are_formulas_or_commands_of_a_terminal_do_no_harm_in_what_is_writt
             .assert_done();
         let written = names(desk.directory.path());
         assert!(written.len() >= 10, "{written:?}");
-        // JSON is data: it holds the names as they are.
+        // JSON files are excluded: as data, they contain the names unchanged.
         for name in written.iter().filter(|name| !name.ends_with(".json")) {
             let text = fs::read_to_string(desk.path(name)).unwrap();
             let control = text

@@ -1,4 +1,4 @@
-//! Flight records of the example, and `gdcm identify` up to where records are understood.
+//! Flight records of the example, and `gdcm identify` up to the interpretation of the records.
 
 use std::fs;
 use std::path::Path;
@@ -17,7 +17,7 @@ use gdcm_sysid::records::{RecordChannels, RecordLayout, TimeWish};
 use crate::commands::{Desk, Refusal};
 use crate::window::records::late_dataset;
 
-/// The 99 records of the example.
+/// Returns the archive with the 99 records of the example.
 pub(crate) fn archive() -> Vec<u8> {
     fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/example-records.zip")).unwrap()
 }
@@ -73,12 +73,13 @@ fn every_record_of_the_example_is_understood_without_a_word_from_the_engineer() 
     }
 }
 
-/// Record units in the late dataset, which the files do not give.
+/// Options with the record units of the late dataset, which its files do not state.
 pub(crate) const LATE_UNITS: [&str; 8] = [
     "--unit", "LON=%", "--unit", "LAT=%", "--unit", "P=deg/s", "--unit", "Q=deg/s",
 ];
 
-/// A desk with two short records of the small dataset's channels, the first in other units and under other names.
+/// Returns a directory with two short records of the small dataset's channels; the first has other
+/// units and other channel names.
 fn desk() -> Desk {
     fn text(head: &str, rate: f64) -> String {
         let row = |k: u32| {
@@ -163,12 +164,12 @@ fn a_unit_that_no_file_says_is_refused_with_the_option_that_says_it_and_never_ch
         ];
         desk.gdcm(&[&["identify"], records, &of[..], more].concat())
     };
-    // In either order: rad/s in a file implies nothing about the other file.
+    // The order does not matter: rad/s in a file implies nothing about the other file.
     for records in [["sweep_1.csv", "bare.csv"], ["bare.csv", "sweep_1.csv"]] {
         let ended = identify(&records, &[]);
         assert_eq!(ended.status, 2, "{ended:?}");
         for words in [
-            "error: bare: the file does not give the unit of P (column \"P\"), and its samples can be in rad/s or deg/s; choose it \
+            "error: bare: the file does not give the unit of P (column \"P\"), and its samples can be in rad/s or deg/s; choose the unit \
              with --unit \"P=rad/s\"",
             "error: bare: the file does not give the unit of Q",
             "error: 1 of 2 records cannot be used",
@@ -182,7 +183,7 @@ fn a_unit_that_no_file_says_is_refused_with_the_option_that_says_it_and_never_ch
         &["--unit", "P=rad/s", "--unit", "Q=rad/s"],
     );
     assert!(!said.error.contains("does not give the unit"), "{said:?}");
-    // Into a dataset of deg/s; the sticks, from 40 to 60, can be nothing but per cent.
+    // The dataset is in deg/s. The stick values from 40 to 60 can only be per cent.
     let into = [
         "identify",
         "bare.csv",
@@ -201,9 +202,9 @@ fn a_unit_that_no_file_says_is_refused_with_the_option_that_says_it_and_never_ch
         ended.error
     );
     assert!(
-        ended
-            .error
-            .contains("note: bare: LON: column \"LON\", taken to be in %: the file does not say"),
+        ended.error.contains(
+            "note: bare: LON: column \"LON\", assumed to be in %: the file gives no unit"
+        ),
         "{ended:?}"
     );
     let outputs = ["--outputs", "P [deg/s],Q [deg/s]"];
@@ -214,7 +215,7 @@ fn a_unit_that_no_file_says_is_refused_with_the_option_that_says_it_and_never_ch
             .contains("P: column \"P\", in deg/s as set for the channel"),
         "{ended:?}"
     );
-    // The same holds for records that models are compared with.
+    // The unit also applies to records with which models are compared.
     fs::rename(desk.path("bare.csv"), desk.path("cond7_bare.csv")).unwrap();
     let report = [
         "report",
@@ -431,17 +432,17 @@ fn what_cannot_be_is_refused_with_the_place_and_nothing_is_written() {
         &["--hold-out: every record is held out"],
     )
     .assert_reported("same samples as ")
-    .assert_reported("left out, because evidence counts once");
+    .assert_reported("left out, so that no measurement counts twice");
 }
 
-/// Arguments of an identification of a sweep, without its directory.
+/// Returns the arguments for identification from a sweep, without the output directory.
 fn identify_line<'a>(record: &'a str, options: &[&'a str]) -> Vec<&'a str> {
     let channels = ["--inputs", "LON,LAT", "--outputs", "P,Q"];
     let band = ["--band", "0.5", "12"];
     [&["identify", record], &channels[..], &band, options].concat()
 }
 
-/// Asserts that an identification of a sweep is refused with this code and writes nothing.
+/// Asserts that identification from a sweep is refused with this code and writes nothing.
 #[track_caller]
 fn refused_sweep(
     desk: &Desk,
@@ -480,7 +481,7 @@ fn records_of_many_conditions_fill_each_its_own_and_leave_the_others_as_they_are
         "--out",
         "out",
     ];
-    // The dataset does not name these records, and they do not say their units.
+    // The records are not listed in the dataset, and their files do not state units.
     let units = [
         "P=deg/s", "Q=deg/s", "R=deg/s", "NX=m/s2", "NY=m/s2", "NZ=m/s2",
     ]
@@ -497,7 +498,7 @@ fn records_of_many_conditions_fill_each_its_own_and_leave_the_others_as_they_are
     assert_eq!(ended.status, 0, "{ended:?}");
     assert!(
         ended.error.contains(
-            "note: conditions 1, 2, 4 to 9, 11: no records; the identified models there stay"
+            "note: conditions 1, 2, 4 to 9, 11: no records; its identified models remain"
         ),
         "{}",
         ended.error
@@ -523,7 +524,8 @@ fn records_of_many_conditions_fill_each_its_own_and_leave_the_others_as_they_are
                 "{}",
                 ended.out
             );
-            // The models taken by the window, in its order: the refined models, then CT-PBSID (unrefined).
+            // The command adopts the same models as the window, in the same order: the refined
+            // models, then CT-PBSID (unrefined).
             let names: Vec<&str> = new
                 .bundle(BundleKind::Identified)
                 .iter()
@@ -604,7 +606,7 @@ fn a_channel_that_is_late_in_all_records_is_told_with_the_option_that_takes_its_
         .lines()
         .find(|line| line.contains("Q seems to be logged"))
         .unwrap_or_else(|| panic!("{said}"));
-    // Three samples of 40 ms.
+    // The delay is three samples of 40 ms.
     let option = line
         .rsplit_once("(--delay Q=")
         .unwrap()
@@ -662,10 +664,11 @@ fn units_that_were_said_once_are_kept_by_the_dataset_with_its_records() {
     let (kept, told) = identified("said/late.json", &[], "kept");
     assert_eq!(said, kept, "{told}");
     assert!(
-        told.contains("Q: times 57.29") && told.contains("removed, from the dataset"),
+        told.contains("Q: multiplied by 57.29")
+            && told.contains("removed, as stored in the dataset"),
         "{told}"
     );
-    // The command line overrides it.
+    // Options on the command line override the dataset.
     let (anew, told) = identified("said/late.json", &units, "anew");
     assert_eq!(said, anew, "{told}");
 }
@@ -683,7 +686,7 @@ fn a_record_in_which_a_channel_is_late_or_turned_is_named_with_the_option_that_p
 
     let desk = Desk::new();
     late_dataset(&desk.path("."));
-    // In the last flight Q is two samples of 40 ms late, and P has the opposite sign.
+    // In the last flight, Q is delayed by two samples of 40 ms, and P has the opposite sign.
     let text = fs::read_to_string(desk.path("flight_3.csv")).unwrap();
     let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
     let place = |name: &str| rows[0].iter().position(|of| of.starts_with(name)).unwrap();
@@ -711,7 +714,7 @@ fn a_record_in_which_a_channel_is_late_or_turned_is_named_with_the_option_that_p
             "flight_2.csv",
             "flight_3.csv",
         ];
-        // Above that no input moves any output enough.
+        // Above 9 rad/s no input excites the outputs sufficiently.
         let into = [
             "--into",
             "late.json",
@@ -742,14 +745,15 @@ fn a_record_in_which_a_channel_is_late_or_turned_is_named_with_the_option_that_p
             file.contains(&format!("\"code\": \"{code}\""))
                 || file.contains(&format!("\"code\":\"{code}\""))
         );
-        // For a pair, the options for both records are given, the last record's behind.
+        // For two contradicting records, the options of both are given; the options of the last
+        // record come last.
         let said = line
             .rsplit_once(&format!("{option} "))
             .unwrap()
             .1
             .trim_end_matches(')');
         let again = identified(&[option, said], &format!("{code}-again"));
-        // A large delay is underestimated (M14.16): the remainder is proposed again.
+        // A large delay is underestimated (M14.16), so the remainder is proposed in the next run.
         assert!(
             contrast(&again) < 0.5 * contrast(line),
             "{said}: {line}\n{again}"
@@ -783,7 +787,8 @@ fn a_record_in_which_a_channel_is_late_or_turned_is_named_with_the_option_that_p
     .assert_code("unknown-record", &["--delay: \"x\""]);
 }
 
-/// Magnitude \[dB\] of the first response of the first identified model in a file, at a frequency \[rad/s\].
+/// Returns the magnitude \[dB\] of the first response of the first identified model in a file, at a
+/// frequency \[rad/s\].
 fn magnitude_db(identified: &Value, omega: f64) -> f64 {
     fn row(row: &Value) -> Vec<f64> {
         row.as_array()
@@ -829,7 +834,7 @@ fn the_quadrotor_is_identified_from_its_log_as_it_was_logged() {
         "{ended:?}"
     );
     let identified = crate::read_json(&desk.path("out/identified.json"));
-    // Independent numpy code (M14.14).
+    // Reference values from independent numpy code (M14.14).
     for (omega, expected) in [(5.0, 35.9), (8.0, 30.8), (20.0, 22.6)] {
         let found = magnitude_db(&identified, omega);
         assert!(
@@ -879,7 +884,7 @@ fn parts_of_records_are_records_of_their_own_in_the_dataset_too() {
     let first = (json!([0.0, 20.0]), json!(false));
     let second = (json!([20.0, 40.0]), json!(true));
     assert_eq!(records, [first.clone(), first, second.clone(), second]);
-    // The used part of each lies within it, at 25 Hz.
+    // The used span of each part lies within the part; the sample rate is 25 Hz.
     let used = &identified["records"][2]["used_s"][0];
     assert!(
         used[0].as_f64().unwrap() >= 20.0 && used[1].as_f64().unwrap() <= 40.0,
@@ -898,7 +903,7 @@ fn parts_of_records_are_records_of_their_own_in_the_dataset_too() {
         ([20.0, 40.0], true),
     ];
     assert_eq!(parts, expected);
-    // A whole record no longer counts beside its parts; a whole other record does.
+    // A whole record is no longer used if its parts are; other whole records still are.
     let wholes: Vec<_> = entries
         .iter()
         .filter(|record| record.part_s.is_none())
@@ -907,7 +912,7 @@ fn parts_of_records_are_records_of_their_own_in_the_dataset_too() {
     assert_eq!(wholes, [false, false, true, true]);
 }
 
-/// Channels of `prbs.csv`, whose clock starts at 42.3 s.
+/// Arguments with the channels of `prbs.csv`, whose time axis starts at 42.3 s.
 const PRBS: [&str; 9] = [
     "identify",
     "prbs.csv",
@@ -920,7 +925,7 @@ const PRBS: [&str; 9] = [
     "25",
 ];
 
-/// A desk with the flight of the quadrotor, its clock starting at 42.3 s.
+/// Returns a directory with the flight of a quadrotor, whose time axis starts at 42.3 s.
 fn desk_of_prbs() -> Desk {
     let desk = Desk::new();
     let text = fs::read_to_string(
@@ -973,7 +978,8 @@ fn a_part_outside_the_clock_of_a_record_is_refused_with_its_span_and_one_from_it
         "{ended:?}"
     );
 
-    // From its start, by the record's name and held out by the same words.
+    // Times relative to the start of the record; the first part also has the record's name, and the
+    // second is held out by the same text.
     let parts = [
         "--part",
         "prbs:+0:+15",
@@ -998,7 +1004,7 @@ fn a_part_outside_the_clock_of_a_record_is_refused_with_its_span_and_one_from_it
         [&records[0]["held_out"], &records[1]["held_out"]],
         [&json!(false), &json!(true)]
     );
-    // The same as on its own clock.
+    // The same parts on the record's time axis.
     let ended = identified(&[
         "--part",
         "42.3:57.3",
@@ -1068,7 +1074,7 @@ fn models_are_identified_into_a_dataset_that_has_none_yet() {
         panic!("two conditions")
     };
     assert!(filled.has_reference() && !empty.has_reference());
-    // A single condition is analysed; the other is reported without a reference.
+    // A condition is analysed; the other is reported to have no reference.
     let ended = desk.gdcm(&["analyze", "out/late.json", "--out", "results", "--json"]);
     assert_eq!(ended.status, 0, "{ended:?}");
     let said: Value = serde_json::from_str(&ended.out).unwrap();

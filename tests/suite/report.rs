@@ -42,7 +42,7 @@ const SECTIONS: [&str; 11] = [
 ];
 const REASON: &str = "steps at 2 rad/s <see the & bode plot>";
 
-/// A few conditions in the example, with the nominal model at condition 10 rejected for a reason.
+/// A few conditions of the example, with the nominal model in condition 10 rejected for a reason.
 static ANALYSIS: LazyLock<Analysis> = LazyLock::new(|| {
     let mut study = Study::new(FEW.dataset.clone());
     let model = ModelId::new(ConditionId(10), BundleKind::Physics, "nominal");
@@ -74,7 +74,7 @@ fn without_records(analysis: &Analysis) -> ReportSubject<'_> {
     }
 }
 
-/// The page as XML; its document type is HTML's, which names no other file.
+/// Parses the page as XML; its document type is HTML, without a reference to another file.
 fn parsed(text: &str) -> Document<'_> {
     Document::parse_with_options(
         text,
@@ -119,7 +119,7 @@ fn the_report_of_the_example_has_every_section_and_every_condition() {
     let figures = texts(&document, "figcaption");
     for words in [
         "responses on axis",
-        "what the fit sees",
+        "difference between identified and physics models",
         "magnitude of every response",
         "poles of its models",
     ] {
@@ -166,7 +166,10 @@ fn requirements_are_those_of_the_command_and_time_histories_stand_where_there_ar
         .find(|of| of.omega_bw_rad_s.is_some())
         .unwrap();
     let bandwidth = format!("{:.2}", known.omega_bw_rad_s.unwrap());
-    assert!(cells.contains(&bandwidth) && REPORT.contains("These numbers are no qualification"));
+    assert!(
+        cells.contains(&bandwidth)
+            && REPORT.contains("These values do not replace a qualification")
+    );
     assert!(!REPORT.contains("Share of time"), "no record was given");
 
     let channels = RecordChannels::of_dataset(&FEW.dataset).of_named_records();
@@ -210,7 +213,7 @@ fn requirements_are_those_of_the_command_and_time_histories_stand_where_there_ar
         cells.contains(&format!("{rms:.2}"))
             && report.contains("J_rms over all records of a condition")
     );
-    assert!(report.contains("Conditions 7, 10: no flight record of it was given."));
+    assert!(report.contains("Conditions 7, 10: no flight record of this condition was given."));
 }
 
 #[test]
@@ -228,7 +231,7 @@ fn a_rejected_model_stands_with_the_words_that_the_analyst_typed() {
             && REPORT.contains(concat!("gdcm ", env!("CARGO_PKG_VERSION")))
     );
     assert!(
-        REPORT.contains("A delay cannot give it."),
+        REPORT.contains("A delay cannot provide it."),
         "what could not be matched is said in words"
     );
 }
@@ -308,7 +311,7 @@ fn the_report_of_the_whole_example_is_not_too_long() {
     assert!(text.len() < 15_000_000, "{} bytes", text.len());
 }
 
-/// Stops after so many conditions.
+/// Progress that cancels the work after this number of conditions.
 struct Impatient(AtomicUsize);
 
 impl Progress for Impatient {
@@ -338,7 +341,8 @@ fn a_report_that_is_not_wanted_any_more_is_given_up() {
     );
 }
 
-/// The small dataset with names that are markup, and a condition that has no result.
+/// Writes the small dataset with names that contain markup, and with a condition that has no
+/// result.
 fn write_odd(desk: &Desk) {
     desk.write("odd.json", |file| {
         file["name"] = json!("<script>alert(\"1\")</script> & co\u{1b}[2J");

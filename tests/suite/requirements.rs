@@ -1,4 +1,4 @@
-//! `gdcm requirements`, through the program itself.
+//! `gdcm requirements` on the command line.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use crate::commands::Desk;
 use crate::entries;
 
-/// The rows of a table, each by its headings.
+/// Returns the rows of a CSV table, with cells by heading.
 fn rows(path: &Path) -> Vec<std::collections::BTreeMap<String, String>> {
     csv::Reader::from_path(path)
         .unwrap()
@@ -59,7 +59,7 @@ fn the_embedded_example_has_bandwidths_of_every_role_and_modes_and_costs() {
         "Bandwidth",
         "phase delay [ms]",
         "MUAD",
-        "no qualification",
+        "do not replace a qualification",
         "requirements.csv in asked",
     ] {
         assert!(
@@ -167,7 +167,8 @@ fn a_dataset_without_a_rate_has_words_in_place_of_bandwidths() {
 #[test]
 fn what_leads_make_above_the_band_is_refused_and_not_given() {
     let desk = Desk::with_few();
-    // The band ends below twice the crossing of -180 deg; up to 12 rad/s no number in the example depends on frequencies above the band.
+    // The band ends below twice the frequency of -180 deg. With a band up to 12 rad/s, no value in
+    // the example depends on frequencies above the band.
     let ended = desk.gdcm(&[
         "requirements",
         "few.json",
@@ -187,8 +188,9 @@ fn what_leads_make_above_the_band_is_refused_and_not_given() {
         .filter_map(|finding| Some((finding["role"].as_str()?, finding["absent"].as_object()?)));
     let refused = reasons.filter(|(_, absent)| {
         absent.values().any(|why| {
-            why.as_str()
-                .is_some_and(|why| why.starts_with("rests on the leads above the band"))
+            why.as_str().is_some_and(|why| {
+                why.starts_with("the value depends on lead filters above the band")
+            })
         })
     });
     let roles: Vec<&str> = refused.map(|(role, _)| role).collect();
@@ -218,7 +220,8 @@ fn the_models_of_the_example_answer_to_its_records_and_the_files_say_the_same() 
         "lead",
     ]);
     assert_eq!(ended.status, 0, "{ended:?}");
-    let without = "note: condition 7: no time histories: no flight record of it was given";
+    let without =
+        "note: condition 7: no time histories: no flight record of this condition was given";
     assert!(ended.error.contains(without), "{}", ended.error);
     assert!(
         ended
@@ -230,7 +233,7 @@ fn the_models_of_the_example_answer_to_its_records_and_the_files_say_the_same() 
     let written = crate::read_json(&desk.path("requirements.json"));
     let histories = &written["time_histories"];
     let records = entries(&histories["records"]);
-    // Nine records each of conditions 3 and 10, four models.
+    // Nine records in each of the conditions 3 and 10, four models.
     assert_eq!(records.len(), 72);
     assert!(
         records
@@ -397,7 +400,7 @@ fn what_a_stick_commands_is_an_option_and_levels_are_drawn() {
         ruled("P").iter().all(|rule| **rule == "phase"),
         "of attitude command the phase margin alone"
     );
-    // The intervals lie about their number, also for swapped models.
+    // Each interval contains its value, also for substituted models.
     let mut swapped = 0;
     for of in findings.iter().filter(|of| of["role"] == "physics") {
         let bandwidth = &of["omega_bw_rad_s"];
@@ -479,7 +482,7 @@ fn what_requirements_are_asked_with_comes_back_with_the_study() {
     gdcm_io::save_study(&study, &loaded, &path).unwrap();
     let opened = gdcm_io::files::study_file::open_study(&path).unwrap();
     assert_eq!(opened.study.requirements, study.requirements);
-    // The command takes them from the study.
+    // The command reads the tolerances from the study.
     desk.gdcm(&[
         "requirements",
         "a.gdcm-study.json",

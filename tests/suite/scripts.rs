@@ -8,7 +8,7 @@ use crate::commands::Desk;
 use crate::records::LATE_UNITS;
 use crate::window::records::late_dataset;
 
-/// A desk with a dataset that leaves condition 10 without a result.
+/// Returns a directory with a dataset whose condition 10 has no result.
 fn desk_with_half() -> Desk {
     let desk = Desk::new();
     desk.write("half.json", |file| {
@@ -19,7 +19,7 @@ fn desk_with_half() -> Desk {
     desk
 }
 
-/// A record of a second and a half, too short to identify anything from.
+/// Writes a record of 1.5 s, too short for any identification.
 fn write_record(desk: &Desk) {
     fn row(k: u32) -> String {
         let at = f64::from(k);
@@ -86,7 +86,7 @@ fn notes_cautions_and_errors_are_told_apart_by_how_their_lines_begin() {
 #[test]
 fn records_that_identify_no_input_are_status_1() {
     let desk = Desk::new();
-    // A sweep of the stick, and an output that has nothing to do with it.
+    // A sweep of the stick, and an output that does not depend on it.
     let mut noise = 12_345_u64;
     let mut row = |k: u32| {
         let t = 0.02 * f64::from(k);
@@ -121,7 +121,7 @@ fn records_that_identify_no_input_are_status_1() {
         "what was computed can be looked at"
     );
 
-    // The same record under a second name counts once, with a code for programs.
+    // A copy of the record under a second name is counted once, and is reported with a code.
     fs::copy(desk.path("a.csv"), desk.path("b.csv")).unwrap();
     let more = [
         "--inputs",
@@ -150,7 +150,7 @@ fn records_that_identify_no_input_are_status_1() {
     );
 }
 
-/// Runs a command whose messages are a JSON object, and returns the object.
+/// Runs a command that prints its messages as a JSON object, and returns the object.
 #[track_caller]
 fn message_object(desk: &Desk, arguments: &[&str]) -> Value {
     let ended = desk.gdcm(arguments);
@@ -208,7 +208,7 @@ fn the_switches_of_every_command_may_stand_before_it() {
     let both = desk.gdcm(&["--quiet", "--json", "check", "missing.json", "--json"]);
     let object: Value = serde_json::from_str(&both.out).unwrap();
     assert_eq!((both.status, &object["status"]), (2, &json!(2)), "{both:?}");
-    // The file of the window and a command exclude each other, with or without switches.
+    // A file for the window and a command exclude each other, with or without switches.
     for line in [
         &["half.json", "analyze", "--out", "other"][..],
         &["half.json", "--json", "analyze", "--out", "other"],
@@ -245,7 +245,7 @@ fn a_command_that_is_written_wrongly_is_told_which_one_is_meant() {
             "{words}"
         );
     }
-    // Another word is an argument too many, as before.
+    // Words that do not resemble a command are reported as excess arguments.
     desk.gdcm(&["something", "else"])
         .assert_failed(2, &["else"]);
 }
@@ -382,7 +382,7 @@ fn names_of_seventy_thousand_letters_are_shortened_and_control_codes_are_spelt_o
 #[test]
 fn no_thread_to_be_had_is_an_error_in_words() {
     let desk = Desk::new();
-    // More than any machine can map.
+    // A stack size that no machine can map.
     let mut command = desk.command(&["check", "small.json"]);
     let ended = crate::commands::Ended::from_output(
         &command
@@ -426,7 +426,7 @@ fn crc_32(bytes: &[u8]) -> u32 {
     sum.sum()
 }
 
-/// An archive of files that are not packed (APPNOTE 4.3).
+/// Returns a ZIP archive of uncompressed files (APPNOTE 4.3).
 fn stored_zip(files: &[(&str, &[u8])]) -> Vec<u8> {
     let mut archive = Vec::new();
     let mut directory = Vec::new();
@@ -490,7 +490,7 @@ fn a_file_that_is_broken_is_told_from_a_good_one_of_its_name_and_in_its_archive(
         desk.refusal(&line)
             .assert_status_and_code(1, "not-read", &["one/cond7_a.csv: "]);
     }
-    // A good archive, and an archive with a broken second file.
+    // A valid archive, and an archive whose second file is broken.
     let archive = |name: &str, broken: &str| {
         let text = fs::read(desk.path("two/cond7_a.csv")).unwrap();
         let files = [
@@ -513,7 +513,7 @@ fn a_file_that_is_broken_is_told_from_a_good_one_of_its_name_and_in_its_archive(
     }
 }
 
-/// A command with two files of records, and the units of their channels.
+/// Returns a command line with two record files and the units of their channels.
 fn with_records<'a>(command: [&'a str; 5], records: [&'a str; 2]) -> Vec<&'a str> {
     let records = ["--records", records[0], "--records", records[1]];
     let units = [
@@ -529,12 +529,12 @@ fn invert(row: &mut Value) {
     }
 }
 
-/// Undoes the wrapping of printed text.
+/// Joins wrapped text into a single line.
 fn on_one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// Conditions in the corrections file of a folder.
+/// Returns the conditions in the corrections file of a folder.
 fn corrected_conditions(desk: &Desk, folder: &str) -> Value {
     let path = desk.path(&format!("{folder}/corrections.json"));
     crate::read_json(&path)["conditions"].clone()
@@ -543,7 +543,8 @@ fn corrected_conditions(desk: &Desk, folder: &str) -> Value {
 #[test]
 fn a_turned_channel_is_said_first_by_analyze_and_check_and_turned_by_the_option() {
     let desk = Desk::new();
-    // Q of the identified models, matrices and the measured response, is positive the other way round.
+    // Q has the opposite sign in the identified models: in the matrices and in the measured
+    // response.
     desk.write("turned.json", |file| {
         for condition in file["conditions"].as_array_mut().unwrap() {
             for model in condition["identified_models"].as_array_mut().unwrap() {
@@ -566,7 +567,7 @@ fn a_turned_channel_is_said_first_by_analyze_and_check_and_turned_by_the_option(
     let said = desk.gdcm(&["analyze", "turned.json", "--out", "turned"]);
     let out = on_one_line(&said.out);
     assert!(
-        out.contains(words) && out.contains("has the other sign. Turn it? (--sign Q=-1)"),
+        out.contains(words) && out.contains("has the opposite sign. Reverse it? (--sign Q=-1)"),
         "{out}"
     );
     assert!(
@@ -598,7 +599,7 @@ fn a_sign_that_is_said_of_files_is_in_the_dataset_that_is_made_of_them() {
     crate::assembling::foreign_tree(&desk.path("models"));
     let assemble = |out: &str, more: &[&str]| {
         let ended = desk.gdcm(&[&["assemble", "models", "--out", out], more].concat());
-        // The rules define the inch.
+        // The inch is undefined until the rules give a factor, so the first run fails.
         assert_eq!(ended.status, 2, "{ended:?}");
         let rules = out.replace(".json", ".gdcm-rules.json");
         let mut said = crate::read_json(&desk.path(&rules));
@@ -664,7 +665,7 @@ fn what_many_conditions_have_is_one_table_and_one_sentence() {
     assert_eq!(names_and_units(&corrections["outputs"]), rates);
 }
 
-/// Names and units of channels in a corrections file.
+/// Returns the names and units of the channels in a corrections file.
 fn names_and_units(channels: &Value) -> Vec<(&str, &str)> {
     let mut found = Vec::new();
     for channel in channels.as_array().unwrap() {
@@ -700,7 +701,8 @@ fn long_names_of_short_words_are_shortened_and_remedies_name_the_file() {
     );
 }
 
-/// Words that command lines are made of: commands, options, values that belong to some of them, and values that belong to none.
+/// Words from which random command lines are made: commands, options, values that suit some of
+/// them, and values that suit none.
 const WORDS: [&str; 72] = [
     "analyze",
     "check",
@@ -782,7 +784,7 @@ fn command_lines_put_together_at_random_end_with_a_status_and_words() {
     write_record(&desk);
     let mut state = 1_u64;
     let mut below = |bound: usize| {
-        // Knuth's generator (MMIX), whose upper bits are used.
+        // Knuth's linear congruential generator (MMIX); only the upper bits are used.
         state = state
             .wrapping_mul(6_364_136_223_846_793_005)
             .wrapping_add(1_442_695_040_888_963_407);

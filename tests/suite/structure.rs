@@ -1,14 +1,15 @@
-//! Who may import whom.
+//! Permitted imports between crates and modules.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Modules in a crate, each with the modules in the same crate that it may name.
+/// Modules of a crate, each with the modules of the same crate that it may name.
 type ModuleTable = &'static [(&'static str, &'static [&'static str])];
 
-/// The crates from the bottom up, each with its modules and, for each module, the modules of the same crate that it may name.
-/// Cargo forbids imports of crates above; none of these knows files or windows.
+/// The crates from the bottom up, each with its modules and, for each module, the modules of the
+/// same crate that it may name. Cargo rules out imports of higher crates; none of these crates uses
+/// files or windows.
 const CRATES: &[(&str, ModuleTable)] = &[
     (
         "gdcm-model",
@@ -114,7 +115,8 @@ const CRATES: &[(&str, ModuleTable)] = &[
     ("gdcm-plot", &[("figure", &[]), ("paper", &["figure"])]),
 ];
 
-/// Modules of gdcm-io, the only crate that touches files, from the bottom up: each may name those above it in this list.
+/// Modules of gdcm-io, the only crate that accesses files. Each may name only the modules listed
+/// before it.
 const FILE_MODULES: &[&str] = &[
     "reading_budget",
     "export_fault",
@@ -167,7 +169,7 @@ const MAY_DEPEND: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// Drawing names no files, no threads and no shell of the window.
+/// Paths that drawing code may not name: files, threads, and the shell of the window.
 const DRAWING_MAY_NOT_NAME: &[&str] = &[
     "crate::gui::app",
     "crate::cli",
@@ -178,7 +180,7 @@ const DRAWING_MAY_NOT_NAME: &[&str] = &[
     "rfd::",
 ];
 
-/// Folders of the program with the paths that they may not name.
+/// Folders of the program, each with the paths that it may not name.
 const MAY_NOT_NAME: &[(&str, &[&str])] = &[
     ("gui/commands", DRAWING_MAY_NOT_NAME),
     ("gui/panels", DRAWING_MAY_NOT_NAME),
@@ -191,7 +193,7 @@ const MAY_NOT_NAME: &[(&str, &[&str])] = &[
     ("executor.rs", &["crate::"]),
 ];
 
-/// Folders of the window from the bottom up: each names only those before it.
+/// Folders of the window. Each may name only the folders listed before it.
 const GUI_FOLDERS: &[&str] = &[
     "widgets", "plot", "state", "commands", "views", "panels", "app",
 ];
@@ -209,7 +211,8 @@ pub(super) fn sources(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// Every source file under `src` of a package with the module it belongs to and its code without tests and comments.
+/// Returns every source file under `src` of a package: its module, its path, and its code without
+/// tests and comments.
 fn modules(package: &str) -> Vec<(String, PathBuf, String)> {
     let src = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join(package)
@@ -236,13 +239,13 @@ fn modules(package: &str) -> Vec<(String, PathBuf, String)> {
         .collect()
 }
 
-/// Returns whether a file holds tests alone.
+/// Returns whether a file contains only tests.
 fn is_test_file(path: &Path) -> bool {
     path.file_stem()
         .is_some_and(|name| name.to_string_lossy().ends_with("tests"))
 }
 
-/// The text before the first test module that is written out in it.
+/// Returns the text before the first inline test module.
 fn without_tests(text: &str) -> &str {
     const START: &str = "#[cfg(test)]\nmod ";
     for (at, _) in text.match_indices(START) {
@@ -377,7 +380,7 @@ fn every_folder_of_the_window_imports_only_folders_before_it() {
                 .take_while(|c| c.is_ascii_alphanumeric() || *c == '_')
                 .collect();
             seen += 1;
-            // A path that names no folder, such as `crate::gui::{`, escapes this test.
+            // Paths that name no folder, such as `crate::gui::{`, are not checked.
             if rank(&named).is_none_or(|place| place > own) {
                 wrong.push(format!("{} names gui::{named}", path.display()));
             }
@@ -426,7 +429,7 @@ fn the_front_page_of_a_crate_names_every_module() {
     }
 }
 
-/// Every code line in the workspace, with its place.
+/// Returns every line of code in the workspace, with its location.
 fn lines_of_code() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut lines = Vec::new();
@@ -451,7 +454,7 @@ fn lines_of_code() -> Vec<(String, String)> {
 fn imports_are_explicit() {
     let mut wrong = Vec::new();
     for (path, line) in lines_of_code() {
-        // Modules of tests inside a file are indented.
+        // Lines of inline test modules are indented, and therefore not checked.
         let code = line.as_str();
         let is_import =
             code.starts_with("use ") || (code.starts_with("pub") && code.contains(" use "));

@@ -11,7 +11,7 @@ use gdcm_words::table::Table;
 use crate::file_error::FileError;
 use crate::output_set::OutputSet;
 
-/// Writes records of equal length, one on each line; the cells pass through [`plain`].
+/// Writes records of equal length, one per line; each cell passes through [`plain`].
 pub(crate) fn write_records<R>(
     file: &mut dyn Write,
     records: impl Iterator<Item = R>,
@@ -28,8 +28,8 @@ where
     table.flush()
 }
 
-/// Returns the system's error inside an error of the CSV writer, so that a full disk is reported as
-/// such.
+/// Returns the system error inside an error of the CSV writer, so that causes such as a full disk
+/// are reported as such.
 fn io_error(error: csv::Error) -> io::Error {
     match error.into_kind() {
         csv::ErrorKind::Io(error) => error,
@@ -39,9 +39,9 @@ fn io_error(error: csv::Error) -> io::Error {
 
 /// Returns a cell that no spreadsheet interprets as a formula, and no terminal as a command.
 ///
-/// A text that begins with `=`, `+`, `-` or `@` and is not a number is preceded by an apostrophe;
-/// control and invisible characters are spelled out. Numbers have the ASCII minus, and zero has no
-/// sign. A lone dash, which marks a missing value, is unchanged.
+/// A string that begins with `=`, `+`, `-` or `@` and is not a number is preceded by an apostrophe;
+/// control characters and invisible characters become escape sequences. Numbers have the ASCII
+/// minus, and zero has no sign. A lone dash, which marks a missing value, is unchanged.
 pub(crate) fn plain(cell: &str) -> String {
     let number = cell.replacen('\u{2212}', "-", 1);
     if number.parse::<f64>().is_ok() {
@@ -55,8 +55,8 @@ pub(crate) fn plain(cell: &str) -> String {
     }
 }
 
-/// Writes tables: a single table as headings and rows; several one after another, each under a line
-/// with its title, separated by an empty line.
+/// Writes tables: a single table as headings and rows; several tables one after another, each under
+/// a line with its title, separated by an empty line.
 pub(crate) fn write_tables(file: &mut dyn Write, tables: &[Table]) -> io::Result<()> {
     for (index, table) in tables.iter().enumerate() {
         if tables.len() > 1 {
@@ -78,8 +78,7 @@ pub fn csv_text(tables: &[Table]) -> String {
     String::from_utf8_lossy(&text).into_owned()
 }
 
-/// Writes tables as CSV: headings, then a line for each row. Existing files are kept or replaced
-/// according to `outputs`.
+/// Writes tables as CSV. `outputs` determines whether an existing file is kept or replaced.
 pub fn save_tables(tables: &[Table], path: &Path, mut outputs: OutputSet) -> Result<(), FileError> {
     outputs.add(path, |file| write_tables(file, tables))?;
     outputs.persist()

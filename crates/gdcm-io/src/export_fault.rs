@@ -9,27 +9,31 @@ use crate::reading_budget::VariableFault;
 /// Reason why an export is impossible.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ExportFault {
-    /// A curve contains a value that is not finite.
+    /// A scheduled curve contains a value that is not finite.
     #[error(
-        "the {curve} of {channel} has a number that is not finite; correct it before it is exported"
+        "the {curve} of {channel} has a value that is not finite; correct the schedule before \
+        exporting it"
     )]
     Curve {
         channel: String,
         /// "gain" or "delay".
         curve: &'static str,
     },
-    /// The requested airspeeds do not form a table.
-    #[error("the airspeeds of the table must be finite, increase, and be at least one")]
-    Breakpoints,
-    /// The name of a MATLAB file is not a valid function name.
+    /// The requested airspeeds are not finite and increasing, or there are none.
     #[error(
-        "MATLAB calls a function by the name of its file: a letter, then letters, digits and _, 63 at most, and neither a \
-         keyword nor a name that the file uses itself; found {}",
+        "the airspeeds of the table must be finite and increasing, and there must be at least \
+        one"
+    )]
+    Breakpoints,
+    /// The file name of a MATLAB function is not a valid function name.
+    #[error(
+        "invalid name for the file of a MATLAB function: use a letter, then letters, digits and \
+        _, at most 63 characters, and neither a keyword nor a name used inside the file; found {}",
         quoted(found)
     )]
     FunctionName { found: String },
-    /// The file extension belongs to no model format.
-    #[error("models are written to a name that ends in .mat, .json or .npz")]
+    /// The file extension does not belong to a format for models.
+    #[error("the file name of exported models must end in .mat, .json or .npz")]
     ModelsFormat,
     /// The values cannot be written.
     #[error(transparent)]
@@ -37,28 +41,25 @@ pub enum ExportFault {
     /// There is no schedule to export.
     #[error(transparent)]
     Schedule(#[from] ScheduleError),
-    /// The study requests couplings and has none, so that the export would differ from the request.
+    /// Couplings are requested but unavailable, so that the export would differ from the request.
     #[error(
-        "the study asks for couplings, and there are none: {why}; correct that, or set couplings to none"
+        "the study requests couplings, but they are unavailable: {why}; correct this, or set \
+        couplings to none"
     )]
     NoCouplings { why: String },
     /// A condition has no result of its own.
     #[error("condition {condition}: {why}")]
     NoResult { condition: ConditionId, why: String },
-    /// The dataset has no such condition.
     #[error("the dataset has no condition {condition}")]
     NoCondition { condition: ConditionId },
-    /// A condition has no physics model with this name.
-    #[error(
-        "condition {condition} has no physics model \"{model}\"; name the condition that has it"
-    )]
+    #[error("condition {condition} has no physics model \"{model}\"; name a condition that has it")]
     NoModel {
         condition: ConditionId,
         model: String,
     },
-    /// A model is a measured response and has no matrices.
+    /// A model is a measured response, which has no matrices.
     #[error(
-        "condition {condition}, model \"{model}\": it is a measured response and has no matrices to be exported"
+        "condition {condition}, model \"{model}\": a measured response has no matrices to export"
     )]
     NoMatrices {
         condition: ConditionId,
@@ -69,14 +70,14 @@ pub enum ExportFault {
     Model {
         condition: ConditionId,
         model: String,
-        /// Reason, see
+        /// Reason, from
         /// [`CorrectedModelError`](gdcm_method::correction::corrected_model::CorrectedModelError).
         words: String,
     },
 }
 
 impl ExportFault {
-    /// Whether the analysis did not produce the requested content; any other fault is in the
+    /// Returns whether the analysis lacks the requested content; all other faults are in the
     /// request.
     pub fn is_of_analysis(&self) -> bool {
         matches!(

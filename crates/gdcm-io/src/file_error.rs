@@ -14,19 +14,17 @@ use crate::export_fault::ExportFault;
 use crate::location::line_of;
 use crate::reading_budget::VariableFault;
 
-/// Reason why a file could not be read or written: a line with the file and the place in it.
+/// Reason why a file could not be read or written; the message names the file and the place in it.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
-    /// There is no file with this name.
     #[error("{}: there is no such file", sanitized_path(path))]
     Missing { path: PathBuf },
-    /// The path is a directory.
     #[error(
         "{}: this is a directory; give the name of a file",
         sanitized_path(path)
     )]
     Directory { path: PathBuf },
-    /// The path is neither a file nor a directory: reading it might never end.
+    /// The path is neither a file nor a directory; reading it might never end.
     #[error(
         "{}: this is {kind}, not a file; save its content as a file, and give the name of that file",
         sanitized_path(path)
@@ -34,47 +32,45 @@ pub enum FileError {
     NotAFile { path: PathBuf, kind: &'static str },
     /// The output path is a named pipe, a socket or a device.
     #[error(
-        "{}: this is {kind}, not a file, and is not written to; give the name of a file",
+        "{}: this is {kind}, not a file, so nothing is written to it; give the name of a file",
         sanitized_path(path)
     )]
     OutputNotAFile { path: PathBuf, kind: &'static str },
     /// The system does not permit reading the file.
     #[error("{}: cannot be read: {reason}", sanitized_path(path))]
     Unreadable { path: PathBuf, reason: String },
-    /// The file, or its uncompressed content, exceeds the size limit.
+    /// The size of the file, or of its uncompressed content, exceeds the limit.
     #[error(
-        "{}: holds more than {most_mib} MiB, the limit for a file; split the file",
+        "{}: exceeds {most_mib} MiB, the limit for a file; split the file",
         sanitized_path(path)
     )]
     TooLarge { path: PathBuf, most_mib: u64 },
-    /// The compressed data are damaged.
     #[error(
         "{}: the gzip data are damaged; pack or copy the file again",
         sanitized_path(path)
     )]
     Gzip { path: PathBuf },
-    /// The compressed data end too early.
     #[error(
-        "{}: the gzip data end too early, the file is cut off; copy it again",
+        "{}: the gzip data end too early: the file is truncated; copy it again",
         sanitized_path(path)
     )]
     GzipCutOff { path: PathBuf },
-    /// The text ends within the JSON.
-    #[error("{}: {}the JSON ends too early (line {line}, column {column}), the file is cut off; copy it again", sanitized_path(path), place.before())]
+    /// The text ends within a JSON value.
+    #[error("{}: {}the JSON ends too early (line {line}, column {column}): the file is truncated; \
+        copy it again", sanitized_path(path), place.before())]
     CutOff {
         path: PathBuf,
-        /// Place that the reader had reached.
+        /// Place in the content that the reader had reached.
         place: Box<Location>,
         /// Line, counted from 1.
         line: usize,
         /// Column in bytes, counted from 1.
         column: usize,
     },
-    /// The text is not JSON.
     #[error("{}: {}this is not JSON (line {line}, column {column}: {reason})", sanitized_path(path), place.before())]
     NotJson {
         path: PathBuf,
-        /// Place that the reader had reached.
+        /// Place in the content that the reader had reached.
         place: Box<Location>,
         /// Line, counted from 1.
         line: usize,
@@ -82,19 +78,19 @@ pub enum FileError {
         column: usize,
         reason: String,
     },
-    /// The file has another format.
+    /// The file states a format other than expected.
     #[error(
         "{}: expected \"format\": \"{expected}\", found {found}",
         sanitized_path(path)
     )]
     Format {
         path: PathBuf,
-        /// The expected format or formats.
+        /// Names of the permitted formats.
         expected: &'static str,
-        /// Format in the file, for the message.
+        /// Stated format, as displayed in the message.
         found: String,
     },
-    /// The file has an unknown version.
+    /// The file states a version that this program does not read.
     #[error(
         "{}: expected version {newest} of {format}, found {found}; a newer gdcm may be able to read it",
         sanitized_path(path)
@@ -102,86 +98,83 @@ pub enum FileError {
     Version {
         path: PathBuf,
         format: &'static str,
-        /// The version that this program reads.
+        /// Newest version that this program reads.
         newest: u64,
-        /// Version in the file, for the message.
+        /// Stated version, as displayed in the message.
         found: String,
     },
-    /// Some content is invalid.
+    /// The text is JSON of the expected format, but has an invalid entry.
     #[error("{}: {}{fault}{}", sanitized_path(path), place.before(), line_words(*line))]
     Content {
         path: PathBuf,
-        /// Place in the file.
         place: Box<Location>,
-        /// Fault at that place.
         fault: Box<ContentFault>,
         /// Line at which the condition or the model begins, counted from 1; `None` if the fault
-        /// gives a line.
+        /// itself contains a line number.
         line: Option<usize>,
     },
-    /// Variables cannot be read or written.
+    /// Variables in a file for MATLAB, Octave or NumPy cannot be read or written.
     #[error("{}: {}", sanitized_path(path), sanitized(&.fault.to_string()))]
     Variables { path: PathBuf, fault: VariableFault },
-    /// Folders are nested more deeply than the search limit.
+    /// Folders are nested more deeply than the search for files descends.
     #[error(
         "{}: folders are nested too deeply; give a folder farther down",
         sanitized_path(path)
     )]
     FolderTooDeep { path: PathBuf },
-    /// The requested record is not in the file.
     #[error("{}: {}", sanitized_path(path), no_record_words(record.as_deref(), *held))]
     NoRecord {
         path: PathBuf,
-        /// Requested record; `None` if the file should hold a single record.
+        /// Name of the requested record; `None` if the file should contain a single record.
         record: Option<String>,
-        /// Record count in the file.
+        /// Number of records in the file.
         held: usize,
     },
     #[error(
-        "{}: holds more than {most} files; give a folder with fewer",
+        "{}: contains more than {most} files; give a folder with fewer files",
         sanitized_path(path)
     )]
     TooManyFiles { path: PathBuf, most: usize },
-    /// A study's dataset cannot be read.
+    /// The dataset of a study cannot be read.
     #[error(
-        "{}: the study's dataset cannot be opened: {dataset}; give its present path with --dataset",
+        "{}: the study's dataset cannot be opened: {dataset}; give its current path with --dataset",
         sanitized_path(path)
     )]
     StudyDataset {
         path: PathBuf,
-        /// The reason, with the dataset's path.
+        /// Reason, with the path of the dataset.
         dataset: Box<FileError>,
     },
-    /// A file exists at the path of a new directory.
+    /// A directory cannot be created because a file has its name.
     #[error(
-        "{}: cannot be written: a file has the name of this directory",
+        "{}: cannot be written: a file with the name of this directory exists",
         sanitized_path(path)
     )]
     NotADirectory { path: PathBuf },
-    /// Files exist, and replacing them was not requested.
+    /// Output files exist, and replacing them was not requested.
     #[error("{}", existing_words(paths))]
     Exists { paths: Vec<PathBuf> },
-    /// The output file is an input.
+    /// The output file is also read as an input.
     #[error(
-        "{}: the data are read from this file, so it is not overwritten; choose another name or directory",
+        "{}: the data are read from this file, so it is not overwritten; choose another name or \
+        directory",
         sanitized_path(path)
     )]
     Input { path: PathBuf },
-    /// The file extension belongs to no figure format.
+    /// The file extension does not belong to a format for figures.
     #[error(
-        "{}: a figure is written to a name that ends in .svg, .png, .pdf or .csv",
+        "{}: the file name of a figure must end in .svg, .png, .pdf or .csv",
         sanitized_path(path)
     )]
     FigureFormat { path: PathBuf },
-    /// A figure that shows no values was to be written as values.
+    /// A figure without values was to be written as CSV.
     #[error(
-        "{}: \"{}\" shows no numbers that could be written: none of the requested responses or channels has a result; request others, or \
-         .svg",
+        "{}: \"{}\" has no values to write: none of the requested responses or channels has a \
+        result; request others, or use .svg",
         sanitized_path(path),
         sanitized(title)
     )]
     FigureWithoutNumbers { path: PathBuf, title: String },
-    /// The requested export is impossible.
     #[error("{}: {}", sanitized_path(path), sanitized(&.fault.to_string()))]
     Export { path: PathBuf, fault: ExportFault },
     /// The file could not be written; an existing file is unchanged.
@@ -216,7 +209,8 @@ impl FileError {
         }
     }
 
-    /// Creates the error for unreadable variables in a file; inserts the file name into a remedy.
+    /// Creates the error for variables that cannot be read or written, and inserts the file name
+    /// into its remedy.
     pub(super) fn variables(path: &Path, mut fault: VariableFault) -> Self {
         if let VariableFault::Unsupported { remedy, .. } = &mut fault {
             *remedy = remedy
@@ -229,8 +223,8 @@ impl FileError {
         }
     }
 
-    /// Returns the stable code by which scripts distinguish an error; `None` if no code is
-    /// assigned.
+    /// Returns the stable code by which scripts distinguish errors; `None` if this error has no
+    /// code.
     pub fn code(&self) -> Option<&'static str> {
         match self {
             Self::NotAFile { .. } => Some("input-not-a-file"),
@@ -239,7 +233,7 @@ impl FileError {
         }
     }
 
-    /// Returns whether the reader was stopped by the caller.
+    /// Returns whether reading was stopped at the caller's request.
     pub fn is_stopped(&self) -> bool {
         matches!(
             self,
@@ -257,7 +251,7 @@ impl FileError {
         }
     }
 
-    /// Creates the error for invalid content.
+    /// Creates the error for an invalid entry, without a line number.
     pub(super) fn content(path: &Path, error: ContentError) -> Self {
         FileError::Content {
             path: path.to_owned(),
@@ -267,8 +261,8 @@ impl FileError {
         }
     }
 
-    /// Creates an error like [`FileError::content`], with the line of the JSON text at which the
-    /// condition or the model begins.
+    /// Creates the same error as [`FileError::content`], with the line of the JSON text at which
+    /// the condition or the model begins.
     pub(super) fn content_of(path: &Path, error: ContentError, text: &[u8]) -> Self {
         FileError::Content {
             path: path.to_owned(),
@@ -292,13 +286,16 @@ fn line_words(line: Option<usize>) -> String {
 
 fn no_record_words(record: Option<&str>, held: usize) -> String {
     let held = match held {
-        0 => "holds no record".to_owned(),
-        1 => "holds another record".to_owned(),
-        _ => format!("holds {held} records"),
+        0 => "contains no record".to_owned(),
+        1 => "contains another record".to_owned(),
+        _ => format!("contains {held} records"),
     };
     match record {
-        Some(record) => format!("the record {} is not in it; it {held}", quoted(record)),
-        None => format!("a single record is requested; it {held}"),
+        Some(record) => format!(
+            "the record {} is not in this file, which {held}",
+            quoted(record)
+        ),
+        None => format!("a single record is required, but the file {held}"),
     }
 }
 
@@ -308,11 +305,11 @@ fn existing_words(paths: &[PathBuf]) -> String {
     format!("{} {verb} already", listed.join(", "))
 }
 
-/// Returns the system's message without its error number.
+/// Returns the operating system's message, without the error number.
 pub fn system_words(error: &std::io::Error) -> String {
     let words = match error.kind() {
         ErrorKind::StorageFull => "the disk is full",
-        ErrorKind::QuotaExceeded => "the disk quota is used up",
+        ErrorKind::QuotaExceeded => "the disk quota is exceeded",
         ErrorKind::FileTooLarge => "it would be larger than the system allows (ulimit -f)",
         ErrorKind::PermissionDenied => "permission denied",
         ErrorKind::ReadOnlyFilesystem => "the file system is read-only",
@@ -324,10 +321,9 @@ pub fn system_words(error: &std::io::Error) -> String {
     words.to_owned()
 }
 
-/// Fault at a place in a file: expected, found, remedy.
+/// Fault in an entry of a file; the message states the expected and the actual content.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ContentFault {
-    /// The value has the wrong type.
     #[error("expected {expected}, found {found} (line {line}, column {column})")]
     Type {
         expected: String,
@@ -346,7 +342,7 @@ pub enum ContentFault {
         /// Column in bytes, counted from 1.
         column: usize,
     },
-    /// Lists are nested more deeply than this format allows.
+    /// Lists or objects are nested too deeply.
     #[error("lists or objects are nested too deeply (line {line}, column {column})")]
     TooDeep {
         /// Line, counted from 1.
@@ -354,10 +350,8 @@ pub enum ContentFault {
         /// Column in bytes, counted from 1.
         column: usize,
     },
-    /// A required key is missing.
     #[error("the key \"{key}\" is missing; add it")]
     MissingKey { key: String },
-    /// Duplicate key.
     #[error("duplicate key {}; remove one", quoted(key))]
     DuplicateKey { key: String },
     /// Any other fault in the text.
@@ -373,20 +367,19 @@ pub enum ContentFault {
     #[error("expected at most {most} entries, found {found}")]
     TooMany {
         most: usize,
-        /// Entry count.
+        /// Number of entries.
         found: usize,
     },
-    /// A text is not among the permitted words.
+    /// A string is not one of the permitted words.
     #[error("expected {expected}, found {}", quoted(found))]
     Word {
-        /// The permitted words.
+        /// Permitted words, as displayed in the message.
         expected: String,
         found: String,
     },
     /// A row in a tolerance table is invalid.
     #[error(transparent)]
     Tolerance(#[from] ToleranceError),
-    /// The band ends are invalid.
     #[error(transparent)]
     Band(#[from] BandError),
     /// The content is not a valid dataset.
@@ -400,8 +393,7 @@ pub enum ContentFault {
     Refused(#[from] EditRefusal),
 }
 
-/// A fault in a file with its place. Boxed, so that results, which are mostly successful, stay
-/// small.
+/// A fault in a file, with its place. Both are boxed to keep `Result`s small.
 #[derive(Debug)]
 pub(super) struct ContentError {
     pub(super) place: Box<Location>,

@@ -1,4 +1,4 @@
-//! serde_json errors in the words of engineers.
+//! Translates serde_json errors into terms familiar to engineers.
 
 use std::path::Path;
 
@@ -18,7 +18,8 @@ struct Position {
     column: usize,
 }
 
-/// Translates a serde_json error at a place in a file.
+/// Translates a serde_json error into a file error; `place` is the part of the file in which it
+/// occurred.
 pub(super) fn json_error(
     text: &[u8],
     path: &Path,
@@ -48,7 +49,7 @@ pub(super) fn json_error(
     }
 }
 
-/// Translates an error in the JSON itself.
+/// Translates a syntax error, a number outside the range of JSON, or nesting that is too deep.
 fn syntax_error(
     text: &[u8],
     path: &Path,
@@ -71,11 +72,11 @@ fn syntax_error(
         };
         return FileError::content(path, ContentError::new(place, fault));
     }
-    // serde_json also reports a syntax error in valid JSON if a value is not a text where one of
-    // several words is expected.
+    // serde_json also reports a syntax error in valid JSON if a value is not a string where an
+    // enumeration is expected.
     if is_json_so_far(text) {
         let fault = ContentFault::Type {
-            expected: "a text in quotation marks".to_owned(),
+            expected: "text in quotation marks".to_owned(),
             found: "something else".to_owned(),
             line,
             column,
@@ -99,20 +100,23 @@ fn is_json_so_far(text: &[u8]) -> bool {
     }
 }
 
-/// Translates serde_json's syntax errors that mention its internals.
+/// Rewords serde_json's syntax errors that mention its internals.
 fn syntax_words(reason: &str) -> String {
     match reason {
-        "expected ident" => "a word that JSON does not know".to_owned(),
-        "expected value" => "expected a number, a text, a list or an object".to_owned(),
+        "expected ident" => "unknown word; JSON permits only true, false and null".to_owned(),
+        "expected value" => {
+            "expected a number, text in quotation marks, a list or an object".to_owned()
+        }
         "invalid unicode code point" => "the text is not UTF-8".to_owned(),
         _ if reason.starts_with("control character") => {
-            "a text in quotation marks goes over the end of a line".to_owned()
+            "text in quotation marks continues beyond the end of the line".to_owned()
         }
         _ => reason.replace('`', "\""),
     }
 }
 
-/// Translates an error about a value with the wrong type.
+/// Translates an error about a missing, unknown or duplicate key, or about a value with the wrong
+/// type.
 fn data_fault(reason: &str, position: Position) -> ContentFault {
     let Position { line, column } = position;
     if let Some(key) = text_between(reason, "missing field `", "`") {
@@ -149,10 +153,10 @@ fn data_fault(reason: &str, position: Position) -> ContentFault {
     }
 }
 
-/// Text that begins serde errors about the length of a list.
+/// Start of serde's messages about the length of a list.
 const INVALID_LENGTH: &str = "invalid length ";
 
-/// Returns the text between a beginning and an end.
+/// Returns the text between the prefix `start` and the suffix `end`; `None` if either is missing.
 fn text_between(text: &str, start: &str, end: &str) -> Option<String> {
     let inner = text.strip_prefix(start)?.strip_suffix(end)?;
     Some(inner.to_owned())
@@ -164,7 +168,7 @@ fn found_words(found: &str, is_length: bool) -> String {
         return format!("{found} entries");
     }
     let unquoted = found.replace('`', "");
-    // serde writes all digits.
+    // Shorten the number: serde writes all its digits.
     if let Some(Ok(value)) = unquoted.strip_prefix("floating point ").map(str::parse) {
         return number(value);
     }
@@ -186,7 +190,7 @@ fn expected_words(expected: &str) -> String {
         "f64" => "a number (without quotation marks)".to_owned(),
         "i64" => "a whole number".to_owned(),
         "u64" | "usize" => "a whole number not below 0".to_owned(),
-        "a string" => "a text in quotation marks".to_owned(),
+        "a string" => "text in quotation marks".to_owned(),
         "a sequence" => "a list".to_owned(),
         "a map" => "an object".to_owned(),
         "a tuple of size 2" | "an array of length 2" => "a list of 2 entries".to_owned(),

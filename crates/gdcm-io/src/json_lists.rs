@@ -1,5 +1,5 @@
-//! Lists and objects in JSON: numbers in nested lists, as in matrices and tables, and limits on
-//! lengths, so that content rejected for its length never occupies memory.
+//! JSON lists and objects with limits on their lengths: nested lists of numbers (matrices, response
+//! tables) and maps of numbers. Content that exceeds a limit is rejected before it occupies memory.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -12,15 +12,15 @@ use serde::{Deserialize, Serialize};
 
 use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_FREQUENCIES, MOST_STATES};
 
-/// A rectangular array with `DEPTH` dimensions, the last running fastest: `[[1, 2], [3, 4]]` has
+/// A rectangular array with `DEPTH` dimensions; the last index runs fastest: `[[1, 2], [3, 4]]` has
 /// the shape 2 x 2.
 ///
-/// Read flat, so that a file with empty lists cannot take more memory than its own length. The
-/// dimensions of a matrix are limited by the maximum number of states, those of a response table by
-/// the maximum numbers of channels and frequencies.
+/// The values are stored in a flat vector, so that a file with empty lists cannot take more memory
+/// than its own length. The dimensions of a matrix are limited by the maximum number of states,
+/// those of a response table by the maximum numbers of channels and frequencies.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Nested<const DEPTH: usize> {
-    /// Entries along each dimension; 0 if a previous dimension is empty.
+    /// Length of each dimension; 0 if a previous dimension is empty.
     pub(super) shape: [usize; DEPTH],
     pub(super) values: Vec<f64>,
 }
@@ -39,7 +39,7 @@ impl<const DEPTH: usize> Nested<DEPTH> {
 impl Nested<2> {
     /// Converts a matrix; its values are in row order.
     pub(super) fn of_matrix(matrix: &DMatrix<f64>) -> Self {
-        // nalgebra stores columns, a file has rows.
+        // nalgebra stores matrices by columns, a file by rows.
         Self {
             shape: [matrix.nrows(), matrix.ncols()],
             values: matrix.transpose().as_slice().to_vec(),
@@ -65,14 +65,14 @@ impl<'de, const DEPTH: usize> Deserialize<'de> for Nested<DEPTH> {
     }
 }
 
-/// An array being read.
+/// Array under construction while its nested lists are read.
 struct Filling<const DEPTH: usize> {
     /// List length at each depth; `None` until the first list at this depth has ended.
     lengths: [Option<usize>; DEPTH],
     values: Vec<f64>,
 }
 
-/// A list at a depth, 0 being the outermost.
+/// Reader for a list at `depth`, 0 being the outermost.
 struct List<'f, const DEPTH: usize> {
     filling: &'f mut Filling<DEPTH>,
     depth: usize,
@@ -140,7 +140,7 @@ impl<const DEPTH: usize> Serialize for Nested<DEPTH> {
     }
 }
 
-/// A list in an array being written.
+/// Writer for a list within an array.
 struct Part<'v> {
     shape: &'v [usize],
     values: &'v [f64],
@@ -186,7 +186,7 @@ impl<'de, T: Deserialize<'de>, const MOST: usize> Deserialize<'de> for Limited<T
 }
 
 impl<T, const MOST: usize> Limited<T, MOST> {
-    /// Wraps a list; `None` if it is empty.
+    /// Wraps a list; `None` if it is empty, so that its key is omitted from the file.
     pub(super) fn some(list: Vec<T>) -> Option<Self> {
         if list.is_empty() {
             None
@@ -195,13 +195,14 @@ impl<T, const MOST: usize> Limited<T, MOST> {
         }
     }
 
-    /// Returns the entries in an optional list.
+    /// Returns the entries of a list; empty if there is no list.
     pub(super) fn entries(list: Option<Self>) -> Vec<T> {
         list.map(|list| list.0).unwrap_or_default()
     }
 }
 
-/// Reads a list with at most `most` entries, as long as `check` accepts the next.
+/// Reads a list with at most `most` entries; ends with an error at the first entry that `check`
+/// rejects.
 pub(super) fn list_while<'de, T, D>(
     deserializer: D,
     most: usize,

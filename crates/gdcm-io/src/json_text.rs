@@ -15,8 +15,8 @@ use crate::reading_budget::ReadingBudget;
 pub(super) use crate::json_errors::json_error;
 pub(super) use crate::json_lists::{Limited, Nested, Numbers, list, list_while};
 
-/// Maximum memory per byte of a file of this program \[bytes\]: a number takes at least a digit and
-/// a comma, in a list that grows into twice its memory.
+/// Maximum memory per byte of a JSON file \[bytes\]: a number takes at least two bytes in the file
+/// (a digit and a comma) and eight in memory, in a list with up to twice the necessary capacity.
 const MEMORY_PER_BYTE: u64 = 8;
 
 /// Writes a value as JSON with line breaks, for people to read.
@@ -31,13 +31,15 @@ pub(super) fn write_compact(value: &impl Serialize, file: &mut dyn Write) -> io:
     file.write_all(b"\n")
 }
 
-/// Writes JSON with escaped control and invisible characters, including those that JSON permits: a
-/// file shown on a terminal cannot affect it, and no name reads as another.
+/// Writes JSON with escaped control and invisible characters, including those that JSON permits. A
+/// file shown on a terminal can thus not affect the terminal, and two different names never look
+/// alike because of invisible characters.
 struct EscapingWriter<W>(W);
 
 impl<W: Write> Write for EscapingWriter<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        // Outside strings JSON is ASCII, and a piece of a string ends with a whole character.
+        // serde_json writes pieces of strings that end at character boundaries; everything outside
+        // strings is ASCII.
         match std::str::from_utf8(bytes) {
             Ok(text) if !text.is_ascii() && text.contains(is_unprintable) => {
                 self.0.write_all(escaped(text).as_bytes())?;
@@ -67,7 +69,7 @@ fn escaped(text: &str) -> String {
     escaped
 }
 
-/// A file format: the expected "format" and "version".
+/// A file format: the expected values of "format" and "version".
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Format {
     pub(super) name: &'static str,
@@ -75,8 +77,8 @@ pub(super) struct Format {
 }
 
 impl Format {
-    /// Reads the value in a text, with a caution for each unknown key. Its memory is first taken
-    /// from the budget.
+    /// Reads the value in a text; returns a caution for each unknown key. The memory for the value
+    /// is first taken from the budget.
     ///
     /// # Errors
     /// Another format or version, which is reported before any other error; text that is not JSON;
@@ -107,7 +109,7 @@ impl Format {
         }
     }
 
-    /// Rejects a file with another format or version.
+    /// Rejects a file with another "format" or "version".
     fn check(self, text: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<(), FileError> {
         let (format, version) = Outline::format_and_version(text, budget);
         let Some(format) = format else {
@@ -132,7 +134,7 @@ impl Format {
     }
 }
 
-/// Rejects a list at the top, which serde would read as an object without its keys.
+/// Rejects a list at the top level, which serde would read as an object without its keys.
 fn check_object(text: &[u8], path: &Path) -> Result<(), FileError> {
     if text.trim_ascii_start().first() != Some(&b'[') {
         return Ok(());
@@ -170,7 +172,7 @@ mod tests {
             .chars()
             .filter(|letter| is_unprintable(*letter))
             .collect();
-        // The line ends of the JSON layout, and DEL, which has no effect on a terminal.
+        // The line breaks of the JSON layout, and DEL, which has no effect on a terminal.
         assert_eq!(left, ['\n', '\u{7f}', '\n'], "{text:?}");
         assert!(
             text.contains("\\u009b31m")

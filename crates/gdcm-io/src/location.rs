@@ -1,4 +1,4 @@
-//! Locations in a JSON text, in the words of engineers.
+//! Locations in a JSON text, described in terms familiar to engineers.
 
 use std::collections::BTreeMap;
 
@@ -11,12 +11,12 @@ use gdcm_model::message_text::{quoted, sanitized, shortened};
 
 use crate::reading_budget::ReadingBudget;
 
-/// A step on the path from the top to a value in a JSON text.
+/// A step on the path from the top level of a JSON text to a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Step {
-    /// Into an object, to this key.
+    /// To the value under this key of an object.
     Key(String),
-    /// Into a list, to this entry, counted from 0.
+    /// To the entry of a list with this index, counted from 0.
     Entry(usize),
 }
 
@@ -24,7 +24,7 @@ const CONDITIONS: &str = "conditions";
 const PHYSICS_MODELS: &str = "physics_models";
 const IDENTIFIED_MODELS: &str = "identified_models";
 
-/// Returns the location to which these steps lead.
+/// Returns the location to which `steps` lead, with the labels in `outline`.
 pub(super) fn location_of(steps: &[Step], outline: &Outline) -> Location {
     let mut location = Location::default();
     let mut rest = steps;
@@ -51,7 +51,7 @@ pub(super) fn location_of(steps: &[Step], outline: &Outline) -> Location {
     location
 }
 
-/// Returns the bundle under a key in a condition.
+/// Returns the kind of bundle that a condition stores under a key; `None` for other keys.
 fn bundle_with_key(key: &str) -> Option<BundleKind> {
     match key {
         PHYSICS_MODELS => Some(BundleKind::Physics),
@@ -60,7 +60,7 @@ fn bundle_with_key(key: &str) -> Option<BundleKind> {
     }
 }
 
-/// Returns the key for a bundle in a condition.
+/// Returns the key under which a condition stores a bundle.
 fn bundle_key(bundle: BundleKind) -> &'static str {
     match bundle {
         BundleKind::Physics => PHYSICS_MODELS,
@@ -72,7 +72,7 @@ fn bundle_key(bundle: BundleKind) -> &'static str {
 /// 2, entry 5".
 pub(super) fn entry_words(steps: &[Step]) -> String {
     let mut words: Vec<String> = Vec::new();
-    // Words for the next indices.
+    // Names of the indices that follow.
     let mut index_names: &[&str] = &[];
     for step in steps {
         match step {
@@ -119,27 +119,27 @@ const MOST_LABELS: usize = 50_000;
 /// Maximum nesting depth of lists and objects; labels are nested far less deeply.
 const DEEPEST: usize = 100;
 
-/// Labels in a file, for naming places in it; labels after an error in the text are missing.
+/// Labels in a file, with which messages name places in it. If the text has an error, the labels
+/// after it are missing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Outline {
-    /// Value of "format": a text, or the type of another value.
+    /// Value of "format" as stated in messages: a string in quotation marks, a number, or only the
+    /// type.
     pub(super) format: Option<String>,
-    /// Value of "version".
+    /// Value of "version", in the same form.
     pub(super) version: Option<String>,
     /// Condition ids, by condition index.
     ids: BTreeMap<usize, i64>,
-    /// Model names.
     names: BTreeMap<ModelIndex, String>,
 }
 
-/// Place of a model in a file.
+/// Position of a model in a file.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct ModelIndex {
-    /// Condition index.
     condition: usize,
-    /// Bundle key.
+    /// Key of the bundle in the condition.
     bundle: String,
-    /// Index in the bundle.
+    /// Index of the model in the bundle.
     model: usize,
 }
 
@@ -151,7 +151,8 @@ impl Outline {
         })
     }
 
-    /// Returns the format in the file; reads no further, and stops when the budget is exhausted.
+    /// Returns the value of "format" in a file. Reads no further than that, and stops when the
+    /// budget is exhausted.
     pub(super) fn format_of(text: &[u8], budget: &ReadingBudget<'_>) -> Option<String> {
         let outline = Self::read_until(text, |outline| {
             outline.format.is_some() || budget.work(0, "").is_err()
@@ -159,7 +160,8 @@ impl Outline {
         outline.format
     }
 
-    /// Returns format and version in the file; reads no further than those.
+    /// Returns the values of "format" and "version" in a file. Reads no further than these, and
+    /// stops when the budget is exhausted.
     pub(super) fn format_and_version(
         text: &[u8],
         budget: &ReadingBudget<'_>,
@@ -171,7 +173,7 @@ impl Outline {
         (outline.format, outline.version)
     }
 
-    /// Returns a condition id, by index.
+    /// Returns the id of a condition, given its index.
     pub(super) fn id(&self, condition: usize) -> Option<i64> {
         self.ids.get(&condition).copied()
     }
@@ -223,7 +225,7 @@ impl Outline {
         outline
     }
 
-    /// Stores a value if it is a label.
+    /// Stores a value if it is a label: an id, a name, the format or the version.
     fn note(&mut self, steps: &[Step], value: &JsonEvent<'_>) {
         match steps {
             [Step::Key(key)] => match key.as_str() {
@@ -264,15 +266,15 @@ impl Outline {
     }
 }
 
-/// Moves to the next entry if the value that ended is in a list.
+/// Moves to the next entry if the value that has just ended is in a list.
 fn end_value(steps: &mut [Step]) {
     if let Some(Step::Entry(index)) = steps.last_mut() {
         *index += 1;
     }
 }
 
-/// Describes a value: a text in quotation marks, a number unchanged, a list or an object only by
-/// its type.
+/// Describes a value: a string in quotation marks, the digits of a number, only the type of a list
+/// or an object.
 fn words(value: &JsonEvent<'_>) -> String {
     match value {
         JsonEvent::String(text) => quoted(text),
@@ -284,16 +286,16 @@ fn words(value: &JsonEvent<'_>) -> String {
     }
 }
 
-/// Maximum number of keys reported individually; a file with more comes from another program, or
-/// was made to fill the memory.
+/// Maximum number of keys reported individually: a file with more was written by another program,
+/// or was made to fill the memory.
 const MOST_KEYS: usize = 50;
 
 /// Keys unknown to the program; keys whose paths differ only in indices are counted together.
 #[derive(Debug, Default)]
 pub(super) struct UnknownKeys {
-    /// By the keys on the path, without the indices.
+    /// First occurrence and count, for each path of keys without the indices.
     found: BTreeMap<Vec<String>, UnknownKey>,
-    /// Number of keys that are not kept, because there are too many.
+    /// Number of further keys, which are only counted because there are too many.
     beyond: usize,
 }
 
@@ -306,7 +308,7 @@ struct UnknownKey {
 }
 
 impl UnknownKeys {
-    /// Adds a key or an entry that was skipped.
+    /// Adds the path of a key or an entry that serde has skipped.
     pub(super) fn add(&mut self, path: &serde_ignored::Path<'_>) {
         let mut steps = Vec::new();
         collect_steps(path, &mut steps);
@@ -367,7 +369,7 @@ impl UnknownKey {
     }
 }
 
-/// Appends the steps on a path, from the top.
+/// Appends the steps of a path, from the top level on.
 fn collect_steps(path: &serde_ignored::Path<'_>, steps: &mut Vec<Step>) {
     use serde_ignored::Path as Ignored;
     let (parent, step) = match path {
@@ -397,7 +399,7 @@ pub(super) fn line_of(text: &[u8], place: &Location) -> Option<usize> {
     Some(1 + text[..offset].iter().filter(|byte| **byte == b'\n').count())
 }
 
-/// Returns an entry in a list, counted from 1; the list is under a key in an object.
+/// Returns an entry of the list under `key` in an object; `position` is counted from 1.
 pub(super) fn entry<'t>(object: &'t RawValue, key: &str, position: usize) -> Option<&'t RawValue> {
     let object: BTreeMap<String, &RawValue> = serde_json::from_str(object.get()).ok()?;
     let list: Vec<&RawValue> = serde_json::from_str(object.get(key)?.get()).ok()?;

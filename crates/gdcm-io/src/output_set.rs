@@ -1,4 +1,4 @@
-//! Files that are written whole, or not at all; individually or as a set.
+//! Files that are written completely or not at all, individually or as a set.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -22,7 +22,7 @@ pub enum Existing {
     Replace,
 }
 
-/// A set of files that are put in their places together, or not at all.
+/// A set of files that are renamed to their paths together, or not at all.
 ///
 /// ```text
 /// check    reject paths that must not be written to      (before any work)
@@ -44,18 +44,18 @@ pub struct OutputSet {
     staged: Vec<Staged>,
 }
 
-/// A file that is written, but not yet in its place.
+/// A file that has been written beside its path, but not yet renamed to it.
 #[derive(Debug)]
 struct Staged {
-    /// The requested place.
+    /// Requested path, for messages.
     path: PathBuf,
-    /// The file to which a link at `path` leads, or `path` itself.
+    /// Target of the link at `path`, or `path` itself if it is no link.
     target: PathBuf,
     temporary: NamedTempFile,
 }
 
 impl OutputSet {
-    /// Creates an empty set; `inputs`, from which the program reads, are never replaced.
+    /// Creates an empty set; the files `inputs`, from which the program reads, are never replaced.
     pub fn new(existing: Existing, inputs: Vec<PathBuf>) -> Self {
         Self {
             existing,
@@ -64,22 +64,22 @@ impl OutputSet {
         }
     }
 
-    /// Returns the set with more inputs, which are not replaced either.
+    /// Adds files from which the program reads and which are not replaced either.
     #[must_use]
     pub fn also_reading(mut self, inputs: impl IntoIterator<Item = PathBuf>) -> Self {
         self.inputs.extend(inputs);
         self
     }
 
-    /// Rejects places that cannot or must not be written to, before the work.
+    /// Rejects paths that cannot or must not be written to; to be called before any work is done.
     pub fn check<P: AsRef<Path>>(&self, places: &[P]) -> Result<(), FileError> {
         let mut existing = Vec::new();
         for path in places.iter().map(AsRef::as_ref) {
             let Ok(found) = fs::metadata(path) else {
                 continue;
             };
-            // Before the path is opened for any purpose: opening a pipe waits for its other end.
-            // Replacing a pipe or a device by a file would break its other users.
+            // The path is not opened: opening a pipe waits for its other end. Replacing a pipe or a
+            // device by a file would break its other users.
             if let Some(kind) = kind_of(found.file_type()) {
                 return Err(FileError::OutputNotAFile {
                     path: path.to_owned(),
@@ -108,7 +108,8 @@ impl OutputSet {
         }
     }
 
-    /// Writes a file beside its place, flushed to the disk.
+    /// Writes a temporary file beside `path` and flushes it to the disk; [`OutputSet::persist`]
+    /// renames it.
     pub fn add(
         &mut self,
         path: &Path,
@@ -128,8 +129,8 @@ impl OutputSet {
         Ok(())
     }
 
-    /// Adds the SHA-256 of every file so far, in the format of `sha256sum`. This file takes its
-    /// place last, and shows whether the others belong together.
+    /// Adds the SHA-256 of every file so far, in the format of `sha256sum`. This file is renamed
+    /// last; it reveals whether the other files belong together.
     pub fn add_checksums(&mut self, path: &Path) -> Result<(), FileError> {
         let mut lines = String::new();
         for staged in &self.staged {
@@ -141,7 +142,7 @@ impl OutputSet {
         self.add(path, |file| file.write_all(lines.as_bytes()))
     }
 
-    /// Puts every file in its place, or none.
+    /// Renames all temporary files to their paths; on an error, restores the previous files.
     pub fn persist(self) -> Result<(), FileError> {
         let _locks = self.directory_locks();
         let mut placed: Vec<Placed> = Vec::new();
@@ -169,7 +170,7 @@ impl OutputSet {
         Ok(())
     }
 
-    /// Locks each directory in a set; a single file needs no lock, as the last writer wins.
+    /// Locks the directories of a set. A single file needs no lock: the last writer wins.
     fn directory_locks(&self) -> Vec<SetLock> {
         if self.staged.len() <= 1 {
             return Vec::new();
@@ -189,7 +190,7 @@ impl OutputSet {
     }
 }
 
-/// Writes a temporary file for the place `target`, flushed to the disk.
+/// Writes a temporary file, flushed to the disk, that will replace `target`.
 fn write_temporary_file(
     target: &Path,
     directory: &Path,
@@ -204,8 +205,8 @@ fn write_temporary_file(
     Ok(temporary)
 }
 
-/// Whether an output is an input, through any links. An input that is a pipe or a device does not
-/// count, and is not opened.
+/// Whether an output path leads to the file of an input, through any links. An input that is a pipe
+/// or a device does not count, and is not opened.
 fn is_same_file(path: &Path, input: &Path) -> bool {
     let Ok(found) = fs::metadata(input) else {
         return false;
@@ -213,13 +214,13 @@ fn is_same_file(path: &Path, input: &Path) -> bool {
     kind_of(found.file_type()).is_none() && same_file::is_same_file(path, input).unwrap_or(false)
 }
 
-/// Returns the checksum line for a file.
+/// Returns the line about a file in the format of `sha256sum`.
 fn checksum(name: &str, bytes: &[u8]) -> String {
     format!("{:x}  {name}\n", Sha256::digest(bytes))
 }
 
-/// Lock for putting a set of files into a directory: a locked file there, for which the next set
-/// waits. It ends with its process, however that ends.
+/// Lock for renaming the files of a set in a directory: a locked file there, for which the next set
+/// waits. The lock is released when its process ends, for whatever reason.
 struct SetLock {
     path: PathBuf,
     _file: File,
@@ -253,10 +254,10 @@ impl Drop for SetLock {
     }
 }
 
-/// A file in its place.
+/// A file that has been renamed to its path.
 struct Placed {
     target: PathBuf,
-    /// The previous file, under a second name.
+    /// The file that it replaced, under a second name.
     earlier: Option<NamedTempFile>,
 }
 
@@ -278,7 +279,7 @@ impl Placed {
         Ok(Self { target, earlier })
     }
 
-    /// Restores the previous file; a failure to do so has no remedy.
+    /// Restores the previous file; if this fails, nothing more can be done.
     fn take_back(self) {
         match self.earlier {
             Some(earlier) => drop(earlier.persist(&self.target)),
@@ -295,8 +296,8 @@ fn kept_aside(target: &Path) -> io::Result<NamedTempFile> {
             Err(error) if error.kind() != ErrorKind::AlreadyExists => drop(fs::copy(target, path)?),
             linked => linked?,
         }
-        // Another process may remove it as a leftover before the lock. This error makes `make_in`
-        // try another name.
+        // Before the lock is taken, another process may remove the file as a leftover. Its absence
+        // is returned as `AlreadyExists`, so that `make_in` tries another name.
         let removed = ErrorKind::AlreadyExists;
         let file = match File::open(path) {
             Err(error) if error.kind() == ErrorKind::NotFound => return Err(removed.into()),
@@ -311,8 +312,8 @@ fn kept_aside(target: &Path) -> io::Result<NamedTempFile> {
     })
 }
 
-/// Writes a file, replacing an existing file, which an error leaves untouched. Links are followed:
-/// their target is replaced.
+/// Writes a file, replacing an existing file; on an error, the existing file is unchanged. A link
+/// is followed: its target is replaced.
 pub(super) fn write_whole(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -332,10 +333,11 @@ pub fn make_directory(path: &Path) -> Result<(), FileError> {
     })
 }
 
-/// Turns the signal for a file beyond the system's size limit (`ulimit -f`) into an ordinary error,
-/// instead of ending the program.
+/// Turns the signal for exceeding the system's file size limit (`ulimit -f`), which would end the
+/// program, into an ordinary error.
 pub fn report_size_limit() {
-    // If that fails, the program ends as before, and still leaves no partial file.
+    // If the registration fails, the signal still ends the program, which leaves no partial file
+    // either.
     #[cfg(unix)]
     let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::<AtomicBool>::default());
 }
@@ -356,12 +358,12 @@ fn directory_of(file: &Path) -> &Path {
     }
 }
 
-/// Creates a temporary file, locked as long as it is open: the lock ends with its process, however
-/// that ends, and on any machine.
+/// Creates a temporary file, locked as long as it is open. The system releases the lock when the
+/// process ends, for whatever reason.
 fn temporary_file(target: &Path, directory: &Path) -> io::Result<NamedTempFile> {
     let mut builder = named();
-    // The permissions of the replaced file, or reading and writing for all, reduced by the
-    // process's mask.
+    // Use the permissions of the replaced file; for a new file, reading and writing for all,
+    // reduced by the process's mask.
     #[cfg(unix)]
     builder.permissions(
         fs::metadata(target)
@@ -372,20 +374,21 @@ fn temporary_file(target: &Path, directory: &Path) -> io::Result<NamedTempFile> 
             }),
     );
     loop {
-        // The builder's error message would name the temporary file.
+        // Keep only the kind of the error: the builder's message would name the temporary file.
         let temporary = builder
             .tempfile_in(directory)
             .map_err(|error| io::Error::from(error.kind()))?;
-        // On a file system without locks no leftovers are removed, see below.
+        // Ignore a failure: on a file system without locks, `remove_leftovers` cannot lock a file
+        // either and removes nothing.
         let _ = temporary.as_file().lock();
-        // Another process may have taken it for a leftover before the lock.
+        // Try again if another process removed the file as a leftover before it was locked.
         if temporary.path().exists() {
             return Ok(temporary);
         }
     }
 }
 
-/// Removes temporary files from killed runs: those without a lock.
+/// Removes temporary files of killed runs, recognised by the missing lock.
 fn remove_leftovers(directory: &Path) {
     for entry in fs::read_dir(directory).into_iter().flatten().flatten() {
         let is_ours = entry
@@ -423,11 +426,11 @@ mod tests {
         Ok(set)
     }
 
-    /// Environment variable that names the file before which a test process ends as if it were
-    /// killed.
+    /// Environment variable with the name of a file: a test process ends just before it renames
+    /// that file, as if it were killed.
     const END: &str = "GDCM_TEST_END_BEFORE";
 
-    /// Ends the process where a test requests it.
+    /// Ends the process if a test requests it before `path` is renamed.
     pub(super) fn end_here(path: &Path) {
         if std::env::var_os(END).is_some_and(|name| path.file_name() == Some(&name)) {
             std::process::abort();
@@ -447,7 +450,7 @@ mod tests {
         set.persist()
     }
 
-    /// Returns the text of a set whose checksums match.
+    /// Returns the text in the first file of a set; `None` if the checksums do not match.
     fn whole_set(directory: &Path) -> Option<String> {
         let read = |name: &str| fs::read_to_string(directory.join(name)).unwrap();
         let lines = SET.map(|name| checksum(name, read(name).as_bytes()));
@@ -456,7 +459,7 @@ mod tests {
 
     #[test]
     fn checksums_reveal_a_set_whose_process_was_killed_and_the_next_set_is_whole() {
-        // The killed process runs this very test.
+        // In the process that is to be killed, which runs this same test.
         if let Some(directory) = std::env::var_os("GDCM_TEST_DIRECTORY") {
             write_set(Path::new(&directory), "after").unwrap();
         }

@@ -6,15 +6,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use gdcm_model::message_text::shortened_name;
 
-/// Reason why variables could not be read, and the variable (a path such as "sys.A" or
-/// "models{3}.B"; empty if none was begun).
+/// Reason why variables could not be read. Field `variable` is the path of the affected variable,
+/// such as "sys.A" or "models{3}.B"; it is empty if none was begun.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum VariableFault {
     /// The file has another format.
     #[error("expected {expected}, found {found}")]
     Format {
         expected: &'static str,
-        /// How the file begins.
+        /// Description of the bytes with which the file begins.
         found: String,
     },
     /// The file ends prematurely.
@@ -41,7 +41,7 @@ pub enum VariableFault {
         variable: String,
         /// Line number, from 1.
         line: usize,
-        /// The fault and its remedy.
+        /// Description of the fault and of its remedy.
         what: String,
     },
     /// The format permits the content, but this program does not read it.
@@ -53,9 +53,10 @@ pub enum VariableFault {
         /// with and without its extension.
         remedy: String,
     },
-    /// The file contains, or claims to contain, more than the limit.
+    /// The file contains, or claims to contain, more data than the memory limit permits.
     #[error(
-        "{}this would take more than {most_mib} MiB of memory, the limit for a file; split the file",
+        "{}reading would take more than {most_mib} MiB of memory, the limit for a file; split the \
+        file",
         at(variable)
     )]
     TooLarge {
@@ -65,7 +66,8 @@ pub enum VariableFault {
     },
     /// Reading the file would take more steps of work than the limit.
     #[error(
-        "{}this would take more than {most_millions} million steps of work, the limit for a file; split the file",
+        "{}reading would take more than {most_millions} million steps of work, the limit for a \
+        file; split the file",
         at(variable)
     )]
     TooMuchWork {
@@ -76,10 +78,10 @@ pub enum VariableFault {
     /// Values are nested more deeply than the limit, or in a cycle.
     #[error("{}values are nested too deeply, or contain themselves", at(variable))]
     TooDeep { variable: String },
-    /// Duplicate name.
+    /// A name that must be unique occurs more than once.
     #[error("duplicate name \"{name}\"; rename one")]
     Duplicate { name: String },
-    /// The reader was stopped.
+    /// The reader was cancelled.
     #[error("stopped")]
     Stopped,
 }
@@ -93,7 +95,7 @@ impl VariableFault {
         }
     }
 
-    /// Creates the error for a file with another format, from its bytes.
+    /// Creates the error for a file with another format, with a description of its first bytes.
     pub(crate) fn other_bytes(expected: &'static str, bytes: &[u8]) -> Self {
         let found = if bytes.is_empty() {
             "nothing"
@@ -149,7 +151,7 @@ impl VariableFault {
         }
     }
 
-    /// Adds the name of the affected value, unless the error names one already.
+    /// Adds the name of the affected variable, unless the error already has one.
     #[must_use]
     pub(crate) fn of(mut self, name: impl FnOnce() -> String) -> Self {
         match &mut self {
@@ -169,8 +171,8 @@ impl VariableFault {
         self
     }
 
-    /// Returns whether the budget ends the reading, so that no other attempt with the file should
-    /// follow.
+    /// Returns whether the error is an exceeded limit or a cancellation; trying another format is
+    /// then pointless.
     pub fn is_of_the_budget(&self) -> bool {
         matches!(
             self,
@@ -179,7 +181,7 @@ impl VariableFault {
     }
 }
 
-/// Returns the first words in a message about a variable.
+/// Returns the prefix of a message that names the variable; empty without a variable.
 fn at(variable: &str) -> String {
     if variable.is_empty() {
         String::new()
@@ -195,16 +197,16 @@ pub(crate) const MOST_MEMORY: u64 = 1 << 30;
 /// comparisons.
 pub(crate) const MOST_WORK: u64 = 4_000_000_000;
 
-/// Counts the memory and the work of a reader: anything beyond the limits is rejected before it is
-/// allocated, and a cancelled reader stops. Every reader asks in its inner loops, even for elements
-/// without content: a file with a few bytes may claim 10^18 such elements.
+/// Counts the memory and the work of a reader. Anything beyond the limits is rejected before it is
+/// allocated, and a cancelled reader stops. Every reader queries the budget in its inner loops,
+/// even for elements without content: a file of a few bytes may claim to hold 10^18 such elements.
 pub struct ReadingBudget<'p> {
     most_memory: u64,
     most_work: u64,
     memory: Cell<u64>,
     work: Cell<u64>,
     stop: Arc<AtomicBool>,
-    /// Receives the memory taken so far \[bytes\].
+    /// Callback that receives the memory taken so far \[bytes\].
     on_memory: &'p dyn Fn(u64),
 }
 
@@ -223,14 +225,14 @@ impl ReadingBudget<'static> {
 }
 
 impl Default for ReadingBudget<'static> {
-    /// Creates the budget for a single file, without cancellation.
+    /// Creates a budget with the default limits for a file, without cancellation.
     fn default() -> Self {
         Self::new(MOST_MEMORY)
     }
 }
 
 impl<'p> ReadingBudget<'p> {
-    /// Returns the budget with another work limit \[steps\].
+    /// Replaces the work limit \[steps\].
     pub fn with_work(self, most: u64) -> Self {
         Self {
             most_work: most,
@@ -238,13 +240,12 @@ impl<'p> ReadingBudget<'p> {
         }
     }
 
-    /// Returns the budget with a flag that stops the reader when set.
+    /// Sets the flag through which another thread stops the reader.
     pub fn stopped_by(self, stop: Arc<AtomicBool>) -> Self {
         Self { stop, ..self }
     }
 
-    /// Returns the budget with a callback that receives the memory taken so far \[bytes\] whenever
-    /// more is taken.
+    /// Sets a callback that receives the memory taken so far \[bytes\] whenever more is taken.
     pub fn with_memory_callback<'q>(self, on_memory: &'q dyn Fn(u64)) -> ReadingBudget<'q> {
         ReadingBudget {
             most_memory: self.most_memory,
@@ -256,13 +257,16 @@ impl<'p> ReadingBudget<'p> {
         }
     }
 
-    /// Returns the flag that stops the reader when set.
+    /// Returns the flag through which another thread stops the reader.
     pub fn stop(&self) -> &Arc<AtomicBool> {
         &self.stop
     }
 
-    /// Counts `count` elements that `variable` is about to take, each with `size` bytes and a work
-    /// step.
+    /// Counts `count` elements that are about to be read for `variable`, each with `size` bytes and
+    /// one work step.
+    ///
+    /// # Errors
+    /// A limit would be exceeded, or the reader was cancelled.
     pub fn take(&self, count: u64, size: u64, variable: &str) -> Result<(), VariableFault> {
         let memory = self.memory.get().saturating_add(count.saturating_mul(size));
         if memory > self.most_memory {
@@ -278,10 +282,10 @@ impl<'p> ReadingBudget<'p> {
         Ok(())
     }
 
-    /// Stops a cancelled reader among elements that are already counted; called for each element,
-    /// it checks now and then.
+    /// Checks for cancellation in a loop over elements that are already counted. To be called for
+    /// each `element`; only one call in some thousands queries the flag.
     pub fn go_on(&self, element: usize) -> Result<(), VariableFault> {
-        /// Number of elements between two checks; they take less than a hundredth of a second.
+        /// Number of elements between two queries; it takes less than 0.01 s to read them.
         const BETWEEN: usize = 1 << 14;
         if element.is_multiple_of(BETWEEN) && self.stop.load(Ordering::Relaxed) {
             return Err(VariableFault::Stopped);
@@ -289,12 +293,12 @@ impl<'p> ReadingBudget<'p> {
         Ok(())
     }
 
-    /// Counts work steps that `variable` is about to take.
+    /// Counts work steps that are about to be taken for `variable`.
     pub fn work(&self, steps: u64, variable: &str) -> Result<(), VariableFault> {
         if self.stop.load(Ordering::Relaxed) {
             return Err(VariableFault::Stopped);
         }
-        // At least one step: a caller that only checks for a stop passes 0.
+        // `max(1)`: callers that only check for cancellation pass 0, and must not loop for ever.
         let work = self.work.get().saturating_add(steps.max(1));
         if work > self.most_work {
             return Err(VariableFault::TooMuchWork {
@@ -316,11 +320,11 @@ mod tests {
         let budget = ReadingBudget::new(2 << 20).with_work(5_000_000);
         assert_eq!(budget.take(1 << 20, 2, "x"), Ok(()));
         let memory = budget.take(1, 1, "x").unwrap_err();
-        let words = "variable x: this would take more than 2 MiB of memory, the limit for a file; split the file";
+        let words = "variable x: reading would take more than 2 MiB of memory, the limit for a file; split the file";
         assert_eq!(memory.to_string(), words);
         assert_eq!(budget.work(3_000_000, ""), Ok(()));
         let work = budget.work(1_000_000, "").unwrap_err();
-        let words = "this would take more than 5 million steps of work, the limit for a file; split the file";
+        let words = "reading would take more than 5 million steps of work, the limit for a file; split the file";
         assert_eq!(work.to_string(), words);
         assert!(memory.is_of_the_budget() && work.is_of_the_budget());
     }

@@ -15,15 +15,15 @@ use gdcm_model::dataset::limits::LARGEST_TEXT;
 use crate::file_error::FileError;
 use crate::reading_budget::ReadingBudget;
 
-/// The two bytes that every gzip file starts with (RFC 1952).
+/// First two bytes of every gzip file (RFC 1952).
 pub(super) const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
-/// Written before UTF-8 text by some editors.
+/// UTF-8 byte order mark, which some editors write at the beginning of a text.
 const BYTE_ORDER_MARK: [u8; 3] = [0xef, 0xbb, 0xbf];
 
-/// Number of bytes read, decompressed or hashed between two queries to the budget.
+/// Number of bytes read, decompressed or hashed between two queries of the budget.
 const CHUNK: usize = 1 << 16;
 
-/// A file: its hash and its text.
+/// Text of a file and hash of its bytes.
 #[derive(Debug)]
 pub(super) struct Source<'b> {
     /// SHA-256 of the stored bytes, in lower-case hexadecimal.
@@ -48,7 +48,7 @@ impl Source<'static> {
 }
 
 impl<'b> Source<'b> {
-    /// Takes bytes in memory; errors name them by `path`.
+    /// Creates a source from bytes in memory; errors name it by `path`.
     pub(super) fn of(
         bytes: &'b [u8],
         path: &Path,
@@ -60,7 +60,7 @@ impl<'b> Source<'b> {
         })
     }
 
-    /// Returns the text, without a byte order mark.
+    /// Returns the text, decompressed and without a byte order mark.
     pub(super) fn text(&self) -> &[u8] {
         without_mark(&self.text)
     }
@@ -74,8 +74,8 @@ pub(super) fn without_mark(text: &[u8]) -> &[u8] {
 /// Opens a file for reading and returns its length \[bytes\].
 ///
 /// # Errors
-/// The path is missing or not a file: opening a pipe waits for a writer, and some
-/// systems permit opening a directory.
+/// The path is missing or leads to something else than a file, which is not opened: opening a pipe
+/// would wait for a writer, and some systems permit opening a directory.
 fn open_file(path: &Path) -> Result<(File, u64), FileError> {
     let failed = |error: std::io::Error| FileError::reading(path, &error);
     let metadata = fs::metadata(path).map_err(failed)?;
@@ -106,7 +106,10 @@ pub(super) fn text_reader(path: &Path) -> Result<Box<dyn Read>, FileError> {
     }
 }
 
-/// Reads a file with at most `most` bytes.
+/// Reads a file.
+///
+/// # Errors
+/// The file is longer than `most` bytes.
 pub(super) fn read_bytes(
     path: &Path,
     most: u64,
@@ -129,7 +132,7 @@ pub(super) fn read_bytes(
     Ok(bytes)
 }
 
-/// Describes a path that is neither a file nor a directory.
+/// Returns the kind of a path that is neither a file nor a directory; `None` for those.
 pub(super) fn kind_of(kind: FileType) -> Option<&'static str> {
     if kind.is_file() || kind.is_dir() || kind.is_symlink() {
         return None;
@@ -179,14 +182,15 @@ fn unpack(bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Vec<u
     Ok(text)
 }
 
-/// Appends decompressed bytes to a text and returns their number, 0 at the end of a member.
+/// Appends the next decompressed bytes to `text` and returns their number, which is 0 at the end of
+/// a member.
 fn unpack_chunk(
     member: &mut GzDecoder<&[u8]>,
     text: &mut Vec<u8>,
     path: &Path,
     budget: &ReadingBudget<'_>,
 ) -> Result<usize, FileError> {
-    // A growing text is copied into twice its memory.
+    // Two bytes for each: a vector that grows may have up to twice the necessary capacity.
     budget
         .take(CHUNK as u64, 2, "")
         .map_err(|fault| FileError::variables(path, fault))?;
@@ -229,7 +233,7 @@ pub(super) fn sha256(
     Ok(digest.iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
-/// Metadata that change when a file is written; cheap to query, also on a network drive.
+/// Metadata that change when a file is written. Querying them is cheap, even on a network drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FileStamp {
     modified: Option<SystemTime>,
@@ -237,7 +241,7 @@ pub struct FileStamp {
 }
 
 impl FileStamp {
-    /// Reads the stamp; `None` if there is no such file.
+    /// Reads the metadata; `None` if there is no file at `path`.
     pub fn of(path: &Path) -> Option<Self> {
         let metadata = fs::metadata(path).ok().filter(fs::Metadata::is_file)?;
         Some(Self {
@@ -255,15 +259,13 @@ pub fn file_sha256(path: &Path) -> Result<String, FileError> {
     Ok(Source::read(path, &ReadingBudget::default())?.sha256)
 }
 
-/// Returns whether the file exists.
+/// Returns whether there is a file at `path`; false for a directory.
 pub fn file_exists(path: &Path) -> bool {
     path.is_file()
 }
 
-// The home directory in a typed path.
-
-/// Expands `~` and `~/x` with the home directory, as a shell does; any other path, and any path
-/// without a known home directory, is unchanged.
+/// Replaces a leading `~` by the home directory, as a shell does. Other paths, and all paths if the
+/// home directory is unknown, are unchanged.
 pub fn at_home(path: &Path, home: Option<&Path>) -> PathBuf {
     let Some(home) = home else {
         return path.to_owned();
@@ -281,7 +283,7 @@ mod source_tests {
 
     #[test]
     fn the_hash_agrees_with_the_published_example() {
-        // FIPS 180-2, appendix B.1.
+        // Source of the example: FIPS 180-2, appendix B.1.
         let hash = sha256(b"abc", Path::new("x"), &ReadingBudget::new(0)).unwrap();
         assert_eq!(
             hash,

@@ -1,8 +1,8 @@
 //! The Gain-Delay Correction Method: a gain and a delay for each channel of a physics-based
 //! helicopter model, so that the model matches flight.
 //!
-//! Equation numbers are those of "Bridging the Gap: Data Driven Method for Linearized Model Fidelity
-//! Enhancement"; section numbers (M1, M2, ...) are those of `docs/method.md`.
+//! Equation numbers refer to "Bridging the Gap: Data Driven Method for Linearized Model Fidelity
+//! Enhancement", section numbers (M1, M2, ...) to `docs/method.md`.
 //!
 //! # The problem
 //!

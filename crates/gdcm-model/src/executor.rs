@@ -1,16 +1,16 @@
-//! Independent tasks and their execution. The numerical crates use no threads themselves; their
-//! callers may run the tasks on several.
+//! Independent tasks and their execution. The numerical crates create no threads themselves; their
+//! callers may distribute the tasks over several threads.
 
-/// A task that depends on no other.
+/// A task that does not depend on other tasks.
 pub type Task<'a> = Box<dyn FnOnce() + Send + 'a>;
 
 /// Runs independent tasks, in any order and on any number of threads; returns when all are done.
 pub trait Executor: Send + Sync {
-    /// Runs all `tasks`.
+    /// Runs all `tasks`, and returns when they are done.
     fn carry_out(&self, tasks: Vec<Task<'_>>);
 }
 
-/// Runs tasks on the caller's thread.
+/// Executor that runs all tasks on the caller's thread.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Sequential;
 
@@ -22,16 +22,17 @@ impl Executor for Sequential {
     }
 }
 
-/// An argument and its result.
+/// An argument, and the result that its task computes from it.
 struct Piece<S, T> {
-    /// `None` once its task has begun.
+    /// Taken by the task when it begins.
     argument: Option<S>,
-    /// `None` until its task is done.
+    /// `None` until the task is done.
     result: Option<T>,
 }
 
-/// Applies a function to each argument on `executor`, and returns the results in order; they do not
-/// depend on the executor. Tasks that the executor leaves undone run on the caller's thread.
+/// Applies a function to each argument on `executor`, and returns the results in the order of the
+/// arguments, whatever the executor does. Tasks that it does not run are completed on the caller's
+/// thread.
 pub fn each<S: Send, T: Send>(
     executor: &dyn Executor,
     arguments: impl IntoIterator<Item = S>,
@@ -63,7 +64,7 @@ pub fn each<S: Send, T: Send>(
 mod tests {
     use super::*;
 
-    /// Runs the tasks in reverse order.
+    /// Executor that runs the tasks in reverse order.
     struct Backwards;
 
     impl Executor for Backwards {
@@ -74,7 +75,7 @@ mod tests {
         }
     }
 
-    /// Runs every other task only.
+    /// Executor that runs only every other task.
     struct Careless;
 
     impl Executor for Careless {

@@ -1,9 +1,10 @@
-//! Sanitised text for messages.
+//! Text made safe for messages: escaped and shortened.
 
 use std::path::Path;
 
-/// Escapes control and invisible characters. A name with a line end, an escape sequence or a new
-/// writing direction could break a message or a terminal, or read as another name.
+/// Escapes control characters and invisible characters. A name with a line end, an escape sequence
+/// or a change of writing direction could garble a message or a terminal, or be mistaken for
+/// another name.
 pub fn sanitized(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for character in text.chars() {
@@ -16,7 +17,7 @@ pub fn sanitized(text: &str) -> String {
     escaped
 }
 
-/// Returns a path as sanitised text.
+/// Returns a path as text with unprintable characters escaped.
 pub fn sanitized_path(path: &Path) -> String {
     sanitized(&path.to_string_lossy())
 }
@@ -32,14 +33,15 @@ pub fn is_unprintable(character: char) -> bool {
     is_invisible || character.is_control()
 }
 
-/// Returns sanitised text in quotation marks, shortened to fit a message.
+/// Returns the beginning of a text in quotation marks, with unprintable characters escaped.
 pub fn quoted(text: &str) -> String {
     format!("\"{}\"", shortened(&sanitized(text)))
 }
 
 /// Shortens a message, and each of its words, by replacing the middle with an ellipsis.
 pub fn shortened_message(text: &str) -> String {
-    /// Maximum length in characters: above any message of the program with sixty column names.
+    /// Maximum length \[characters\]: longer than any message of the program with sixty column
+    /// names.
     const LONGEST: usize = 2000;
     const KEPT: usize = 900;
     let words: Vec<String> = text.split(' ').map(shortened_name).collect();
@@ -48,7 +50,7 @@ pub fn shortened_message(text: &str) -> String {
 
 /// Shortens a name in a message by replacing the middle with an ellipsis.
 pub fn shortened_name(text: &str) -> String {
-    /// Maximum length in characters: above that of most file paths.
+    /// Maximum length \[characters\]: longer than most file paths.
     const LONGEST: usize = 400;
     const KEPT: usize = 40;
     without_middle(text, LONGEST, KEPT)
@@ -66,7 +68,7 @@ fn without_middle(text: &str, longest: usize, kept: usize) -> String {
     start.chain(std::iter::once('…')).chain(end).collect()
 }
 
-/// Returns the start of a text, short enough for a message.
+/// Returns the first 80 characters of a text, followed by an ellipsis if it is longer.
 pub fn shortened(text: &str) -> String {
     const LONGEST: usize = 80;
     match text.char_indices().nth(LONGEST) {
@@ -91,7 +93,7 @@ mod tests {
                 format!("a{}b", invisible.escape_default())
             );
         }
-        // A letter and its accent as two characters, as stored in file names by some systems.
+        // A letter and its accent as two characters, as some systems write file names.
         assert_eq!(sanitized("e\u{301}"), "e\u{301}");
     }
 

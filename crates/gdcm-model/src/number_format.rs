@@ -1,16 +1,16 @@
-//! Numbers as text: the only place where digits, signs and exponents are chosen.
+//! Conversion of numbers to text: the only place where digits, signs and exponents are chosen.
 //!
-//! Text for messages and for tables in a terminal has a hyphen as minus sign ([`number`],
-//! [`telling`]); text in plots, windows and sentences has a true minus sign ([`decimals`],
+//! Text for messages and for tables in a terminal uses a hyphen as minus sign ([`number`],
+//! [`telling`]); text in plots, windows and sentences uses a true minus sign ([`decimals`],
 //! [`compact`], [`signed`], [`five_digits`]).
 
-/// The minus sign, as wide as a plus.
+/// The true minus sign, which is as wide as a plus sign.
 const MINUS: char = '\u{2212}';
 
-/// Formats a number for a message: the shortest text that parses to the same number, with an
-/// exponent where the digits before or after the point would hide it (1e300, 2.5e-12).
+/// Formats a number for a message: the shortest text that parses to the same number. A very large
+/// or small number has an exponent (1e300, 2.5e-12).
 pub fn number(value: f64) -> String {
-    /// Maximum length of a text without exponent, if the exponent form is shorter.
+    /// Maximum length of the plain form if the exponent form is shorter.
     const LONGEST: usize = 10;
     let plain = value.to_string();
     let exponent = format!("{value:e}");
@@ -36,10 +36,10 @@ pub fn without_sign_of_zero(text: &str) -> &str {
     if is_zero { digits } else { text }
 }
 
-/// Formats a value with the given decimals; a nonzero value below one unit of the last decimal gets
-/// two significant digits instead.
+/// Formats a value with the given number of decimals. A nonzero value that is smaller than one unit
+/// of the last decimal is given two significant digits instead.
 pub fn telling(value: f64, decimals: usize) -> String {
-    /// Maximum number of decimals; beyond it an exponent is shorter.
+    /// Maximum number of decimals; beyond it, the exponent form is shorter.
     const MOST: i32 = 6;
     if value == 0.0 || !value.is_finite() || value.abs() >= 10_f64.powi(-(decimals as i32)) {
         return format!("{value:.decimals$}");
@@ -52,17 +52,18 @@ pub fn telling(value: f64, decimals: usize) -> String {
     }
 }
 
-/// Formats two values with the given decimals, or with as many more as needed to distinguish them.
+/// Formats two values with the given number of decimals, or with as many more as needed to
+/// distinguish them; equal values keep the given number.
 pub fn told_apart(a: f64, b: f64, decimals: usize) -> (String, String) {
-    /// Maximum number of decimals: all that a value near 1 has.
+    /// Maximum number of decimals: all that an `f64` near 1 has.
     const MOST: usize = 15;
     let texts = |decimals: usize| (format!("{a:.decimals$}"), format!("{b:.decimals$}"));
     let enough = (decimals..=MOST).find(|&decimals| texts(decimals).0 != texts(decimals).1);
     texts(enough.unwrap_or(decimals))
 }
 
-/// Formats a change with its sign and the given decimals: "+12.3", "−0.4"; a change that rounds to
-/// zero has no sign.
+/// Formats a change with its sign and the given number of decimals: "+12.3", "−0.4". A change that
+/// rounds to zero has no sign.
 pub fn signed(change: f64, decimals: usize) -> String {
     let text = format!("{change:+.decimals$}");
     let is_nothing = text.chars().all(|c| matches!(c, '+' | '-' | '0' | '.'));
@@ -73,8 +74,7 @@ pub fn signed(change: f64, decimals: usize) -> String {
     }
 }
 
-/// Formats `value` with up to six significant digits, without trailing zeros, with a true minus
-/// sign.
+/// Formats a value with up to six significant digits and a true minus sign, without trailing zeros.
 pub fn compact(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return if value == 0.0 {
@@ -93,12 +93,12 @@ pub fn compact(value: f64) -> String {
     with_minus_sign(without_sign_of_zero(text))
 }
 
-/// Formats `value` with `count` decimals and a true minus sign.
+/// Formats a value with `count` decimals and a true minus sign; zero has no sign.
 pub fn decimals(value: f64, count: usize) -> String {
     with_minus_sign(without_sign_of_zero(&format!("{value:.count$}")))
 }
 
-/// Formats `value` with `count` decimals and a true minus sign; a missing value is a hyphen.
+/// Formats a value with `count` decimals and a true minus sign; a missing value becomes a hyphen.
 pub fn decimals_or_dash(value: Option<f64>, count: usize) -> String {
     match value {
         Some(value) => with_minus_sign(&format!("{value:.count$}")),
@@ -111,7 +111,7 @@ pub fn with_minus_sign(number: &str) -> String {
     number.replace('-', "\u{2212}")
 }
 
-/// Formats five significant digits with a true minus sign.
+/// Formats a value with five significant digits and a true minus sign.
 pub fn five_digits(value: f64) -> String {
     const SIGNIFICANT: i32 = 5;
     if value == 0.0 {
@@ -128,19 +128,19 @@ pub fn five_digits(value: f64) -> String {
     with_minus_sign(&text)
 }
 
-/// Rounds to three significant digits, without trailing zeros; `value` is positive.
+/// Formats a positive value with up to three significant digits, without trailing zeros.
 pub fn rounded_to_three_digits(value: f64) -> String {
     let scale = 10_f64.powf(2.0 - value.log10().floor());
     number((value * scale).round() / scale)
 }
 
-/// Formats `value` with three significant digits; below 1, with three decimals.
+/// Formats a value with three significant digits; below 1, with three decimals.
 pub fn three_digits(value: f64) -> String {
     let decimals = (2.0 - value.abs().log10().floor()).clamp(0.0, 3.0) as usize;
     format!("{value:.decimals$}")
 }
 
-/// Formats three significant digits, without an exponent from 0.001 to 9999.
+/// Formats a value with three significant digits; with an exponent below 0.001 and from 10 000.
 pub fn significant(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
@@ -153,8 +153,8 @@ pub fn significant(value: f64) -> String {
     }
 }
 
-/// Formats a gain with three decimals, two if the third is zero; a small gain with three
-/// significant digits.
+/// Formats a gain with three decimals, or with two if the third is zero. A gain below 0.1 is given
+/// three significant digits.
 pub fn gain_text(gain: f64) -> String {
     if gain < 0.1 {
         return significant(gain);
@@ -163,10 +163,10 @@ pub fn gain_text(gain: f64) -> String {
     text.strip_suffix('0').map(str::to_owned).unwrap_or(text)
 }
 
-/// Formats a value at full precision for a file; empty where it is missing or not finite.
+/// Formats a value at full precision for a file; empty if it is missing or not finite.
 pub fn full_precision(value: Option<f64>) -> String {
     match value {
-        // Debug writes an exponent, unlike Display, which would write hundreds of zeros.
+        // `{value:?}` writes an exponent, whereas `{value}` would write up to hundreds of zeros.
         Some(value) if value.is_finite() => format!("{value:?}"),
         _ => String::new(),
     }

@@ -4,23 +4,24 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::dataset::StateSpace;
 
-/// Receives progress reports, and can cancel the computation. Methods may be called from
+/// Receives the progress of a computation, and can cancel it. Its methods may be called from
 /// several threads.
 pub trait Progress: Sync {
     /// Returns whether the computation should stop now, without a result.
     fn cancelled(&self) -> bool;
 
-    /// Reports `done` out of `total` steps as complete.
+    /// Called when `done` of `total` steps are complete.
     fn advanced(&self, done: usize, total: usize);
 
-    /// Reports the start of a step.
+    /// Called at the start of a step.
     fn step(&self, _name: &str) {}
 
-    /// Reports a preliminary identified model, in record units; a better model follows.
+    /// Called with a preliminary identified model, in the units of the record; a better model
+    /// follows.
     fn first_model(&self, _model: &StateSpace) {}
 }
 
-/// Ignores progress and never cancels.
+/// Receiver that ignores progress and never cancels.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Unobserved;
 
@@ -32,17 +33,18 @@ impl Progress for Unobserved {
     fn advanced(&self, _done: usize, _total: usize) {}
 }
 
-/// Reports progress within a part as its share of the whole computation.
+/// Part of a computation, which converts its own progress to a share of the whole.
 pub struct Portion<'a> {
     shares: &'a Shares<'a>,
     share: f64,
     name: &'static str,
-    /// The share reported so far.
+    /// Share reported so far, 0 to `share`.
     reported: Mutex<f64>,
 }
 
 impl<'a> Portion<'a> {
-    /// Creates a part with `share` (0 to 1) of the whole, reported as the step `name`.
+    /// Creates a part that amounts to `share` (0 to 1) of the whole and is reported as the step
+    /// `name`.
     pub fn new(shares: &'a Shares<'a>, share: f64, name: &'static str) -> Self {
         Self {
             shares,
@@ -52,17 +54,18 @@ impl<'a> Portion<'a> {
         }
     }
 
-    /// Reports the part as complete.
+    /// Reports that the part is complete.
     ///
     /// # Errors
-    /// [`Cancelled`] where the computation was cancelled.
+    /// [`Cancelled`] if the computation was cancelled.
     pub fn finish(self) -> Result<(), Cancelled> {
         self.report(1.0)
     }
 
-    /// Reports that `done` (0 to 1) of the part is complete; the reported share never decreases.
+    /// Reports that `done` (0 to 1) of the part is complete; a smaller value than before is
+    /// ignored.
     fn report(&self, done: f64) -> Result<(), Cancelled> {
-        // A panic of another holder of the lock leaves a valid value.
+        // `into_inner`: a thread that panicked while it held the lock leaves a valid value.
         let mut reported = self.reported.lock().unwrap_or_else(PoisonError::into_inner);
         let rise = (done.min(1.0) * self.share - *reported).max(0.0);
         *reported += rise;
@@ -76,25 +79,25 @@ impl Progress for Portion<'_> {
     }
 
     fn advanced(&self, done: usize, total: usize) {
-        // The part itself checks for cancellation.
+        // `let _`: the part itself checks for cancellation.
         let _ = self.report(done as f64 / total.max(1) as f64);
     }
 }
 
-/// Error for a cancelled computation.
+/// Error of a computation that was cancelled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the analysis was stopped")]
 pub struct Cancelled;
 
-/// Reports progress of a computation split into shares that may end in any order; the reported
-/// total never decreases.
+/// Progress of a computation that is split into shares, which may be completed in any order; the
+/// reported total never decreases.
 pub struct Shares<'a> {
     progress: &'a dyn Progress,
     done: Mutex<f64>,
 }
 
 impl<'a> Shares<'a> {
-    /// Creates the shares, none of them complete.
+    /// Creates the progress of a computation that has just begun.
     pub fn new(progress: &'a dyn Progress) -> Self {
         Self {
             progress,
@@ -102,29 +105,36 @@ impl<'a> Shares<'a> {
         }
     }
 
-    /// Returns the receiver of the reports.
+    /// Returns the receiver of the progress.
     pub fn progress(&self) -> &'a dyn Progress {
         self.progress
     }
 
-    /// Starts the next step; `done` (0 to 1) is the share complete before it.
+    /// Reports the step `name`, before which `done` (0 to 1) of the computation is complete.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if the computation was cancelled.
     pub fn next(&self, done: f64, name: &str) -> Result<(), Cancelled> {
         self.report(|_| done, name)
     }
 
-    /// Reports a completed step with its share (0 to 1).
+    /// Reports that a further `share` (0 to 1) of the computation is complete, in the step `name`.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if the computation was cancelled.
     pub fn advance(&self, share: f64, name: &str) -> Result<(), Cancelled> {
         self.report(|done| done + share, name)
     }
 
-    /// Reports the step `name`; `done` computes the new total share (0 to 1) from the previous.
+    /// Reports the step `name`; `done` returns the new completed share (0 to 1), given the previous
+    /// one.
     fn report(&self, done: impl Fn(f64) -> f64, name: &str) -> Result<(), Cancelled> {
-        /// Resolution of the reported progress.
+        /// Number of steps in which progress is reported.
         const PARTS: f64 = 1000.0;
         if self.progress.cancelled() {
             return Err(Cancelled);
         }
-        // A panic of another holder of the lock leaves a valid value.
+        // `into_inner`: a thread that panicked while it held the lock leaves a valid value.
         let mut total = self.done.lock().unwrap_or_else(PoisonError::into_inner);
         *total = total.max(done(*total).min(1.0));
         self.progress.step(name);
@@ -138,7 +148,7 @@ impl<'a> Shares<'a> {
 mod tests {
     use super::*;
 
-    /// Records every reported number.
+    /// Receiver that records every reported count of completed steps.
     #[derive(Default)]
     struct Heard(Mutex<Vec<usize>>);
 

@@ -6,9 +6,9 @@ use std::marker::PhantomData;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, Unexpected, Visitor};
 
-/// Integer types that accept whole numbers.
+/// Integer types that can be deserialised from a whole number.
 pub trait WholeNumber: TryFrom<i64> {
-    /// Expected value, for error messages.
+    /// Description of the expected value, for error messages.
     const EXPECTED: &'static str;
 }
 
@@ -24,17 +24,17 @@ impl WholeNumber for usize {
     const EXPECTED: &'static str = "a whole number not below 0";
 }
 
-/// Deserialises a whole number, also when written with a zero fraction: for
+/// Deserialises an integer, also if written with a zero fraction (`7.0`); used as
 /// `#[serde(deserialize_with = "…")]`.
 pub fn whole<'de, T: WholeNumber, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
     deserializer.deserialize_any(Whole(PhantomData))
 }
 
-/// As [`whole`], or null: for an optional key with `#[serde(default)]`.
+/// Deserialises as [`whole`], or null as `None`; used for an optional key with `#[serde(default)]`.
 pub fn whole_or_none<'de, T: WholeNumber, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Option<T>, D::Error> {
-    /// A whole number inside an option.
+    /// Wraps a whole number, so that it can be deserialised inside an option.
     #[derive(Deserialize)]
     #[serde(bound = "T: WholeNumber", transparent)]
     struct Held<T>(#[serde(deserialize_with = "whole")] T);
@@ -62,7 +62,7 @@ impl<T: WholeNumber> Visitor<'_> for Whole<T> {
     }
 
     fn visit_f64<E: Error>(self, number: f64) -> Result<T, E> {
-        /// 2^53: up to this magnitude every whole number has an exact floating-point value.
+        /// 2^53: up to this magnitude every whole number is exact in `f64`.
         const LARGEST: f64 = 9_007_199_254_740_992.0;
         if number.fract() == 0.0 && number.abs() <= LARGEST {
             self.visit_i64(number as i64)

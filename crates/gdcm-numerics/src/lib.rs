@@ -22,7 +22,7 @@ use clarabel::solver::{DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus};
 use nalgebra::Complex;
 use realfft::{RealFftPlanner, RealToComplex};
 
-/// Plans transforms; equal lengths share their tables.
+/// Planner of Fourier transforms; transforms with equal lengths share their twiddle factors.
 #[derive(Default)]
 pub struct FourierPlanner(RealFftPlanner<f64>);
 
@@ -88,7 +88,8 @@ mod tests {
 
     #[test]
     fn a_program_ends_at_its_bound_or_is_an_error() {
-        // (x - 3)^2 / 2 over x <= 1; then over x <= 1 and x >= 2.
+        // Minimum of (x - 3)^2 / 2 subject to x <= 1; then subject to x <= 1 and x >= 2
+        // (infeasible).
         let settings = DefaultSettings {
             verbose: false,
             ..DefaultSettings::default()

@@ -12,8 +12,8 @@
 //! 1. **Described** ([`figure::figure`], [`figure::marks`]): plots with panels, axes and marks in
 //!    the units of the result. Every view has a function that describes its figure, such as
 //!    [`figure::bode::bode_figure`]; nothing in the description depends on paper or screen.
-//! 2. **Axes** ([`figure::axis`]): open ranges are fitted to the marks, ticks follow from the
-//!    room, values become fractions of a frame.
+//! 2. **Scaled** ([`figure::axis`]): ranges that are not set are fitted to the marks, ticks are
+//!    chosen to suit the length of the axis, and values become fractions of a frame.
 //! 3. **Thinned** ([`figure::thinning`]): points that would not be visible are omitted.
 //! 4. **Painted**: on paper as a [`figure::drawing::Drawing`], which [`paper`] writes to a file; on
 //!    the screen by the window, panel by panel ([`figure::Panel::shapes`]).

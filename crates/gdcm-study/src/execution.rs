@@ -31,12 +31,10 @@ impl<'a> Execution<'a> {
         Execution::new(&Sequential, &Unobserved, 0)
     }
 
-    /// Returns the progress observer.
     pub(crate) fn progress(&self) -> &'a dyn Progress {
         self.progress
     }
 
-    /// Returns the executor of the pieces of work.
     pub(crate) fn executor(&self) -> &'a dyn Executor {
         self.executor
     }
@@ -171,7 +169,7 @@ mod tests {
 
     use super::*;
 
-    /// Cancels after a number of pieces of work, and records the reports.
+    /// Observer that cancels after a number of pieces of work, and records the reported progress.
     struct Impatient {
         left: AtomicUsize,
         heard: Mutex<Vec<(usize, usize)>>,

@@ -1,4 +1,4 @@
-//! Why a flight condition cannot be identified.
+//! Reasons why a flight condition cannot be identified.
 
 use gdcm_model::progress::Cancelled;
 use gdcm_model::simulation::Signal;
@@ -13,7 +13,7 @@ pub const HIGHEST_ORDER: usize = 60;
 /// Maximum past window that may be requested.
 pub const LONGEST_PAST: usize = 60;
 
-/// Why a flight condition cannot be identified.
+/// Reason why a flight condition cannot be identified.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum IdentificationError {
     /// The records cannot be prepared.
@@ -27,8 +27,9 @@ pub enum IdentificationError {
     Measurement(#[from] LocalPolynomialError),
     /// The records are too short for the lower band end.
     #[error(
-        "the longest record lasts {longest_s:.0} s: {lowest:.2} rad/s needs {needed_s:.1} s, better {better_s:.0} s. From \
-         {enough:.2} rad/s on the records are long enough"
+        "the longest record lasts {longest_s:.0} s: a lower band end of {lowest:.2} rad/s needs \
+        at least {needed_s:.1} s, better {better_s:.0} s. The records are long enough for a \
+        lower band end of {enough:.2} rad/s"
     )]
     TooShort {
         longest_s: f64,
@@ -44,11 +45,12 @@ pub enum IdentificationError {
     },
     /// The lines hold fewer real values than a first-order model needs.
     #[error(
-        "the lines of the records in the band hold {figures} real values, and {needed} are needed, 5 for each of the {unknowns} \
-         unknowns in a first-order model: log longer or more records, widen the band, or leave out channels"
+        "the spectral lines in the band hold {figures} real values, but {needed} are needed: 5 \
+        for each of the {unknowns} unknowns in a first-order model. Log longer or more records, \
+        widen the band, or leave out channels"
     )]
     TooFewFigures {
-        /// Real values in the lines.
+        /// Number of real values in the lines.
         figures: usize,
         needed: usize,
         /// Number of unknowns of a first-order model.
@@ -56,13 +58,14 @@ pub enum IdentificationError {
     },
     /// The band ends are invalid or interchanged.
     #[error(
-        "a band from {lowest} to {highest} rad/s: its lower end must be greater than 0, and its upper end above it"
+        "the band from {lowest} to {highest} rad/s is invalid: its lower end must be greater than \
+        0, and its upper end greater than its lower end"
     )]
     Band { lowest: f64, highest: f64 },
     /// The records are sampled too slowly for the band.
     #[error(
-        "the band ends at {highest} rad/s, but a sample time of {sample_time_s:.4} s is too long for that: \
-         end the band below {limit:.1} rad/s, or log faster"
+        "the band ends at {highest} rad/s, but the sample time of {sample_time_s:.4} s is too \
+        long for it: end the band below {limit:.1} rad/s, or log faster"
     )]
     SampledTooSlowly {
         /// Upper band end \[rad/s\].
@@ -74,27 +77,29 @@ pub enum IdentificationError {
     },
     /// Orders, past windows or poles are missing or invalid.
     #[error(
-        "orders and past windows must be given, from 1 to {HIGHEST_ORDER} and from 1 to {LONGEST_PAST}, \
-         and Laguerre poles greater than 0"
+        "the lists of orders, past windows and Laguerre poles must not be empty; orders must be \
+        from 1 to {HIGHEST_ORDER}, past windows from 1 to {LONGEST_PAST}, and Laguerre poles \
+        greater than 0"
     )]
     Settings,
     #[error("every input is given as a reference: the model needs at least one input")]
     OnlyReferences,
-    #[error("record {} is to be held out, but there are only {records}", record + 1)]
+    #[error("record {} is to be held out, but there are only {records} records", record + 1)]
     HeldOutMissing {
-        /// Counted from 0.
+        /// Index of the record, counted from 0.
         record: usize,
         records: usize,
     },
     /// All records are held out or unusable.
-    #[error("no record remains to fit a model to: hold out fewer")]
+    #[error("no record remains for fitting a model: hold out fewer records")]
     NothingToFit,
-    /// Inputs that copy each other.
+    /// Some inputs depend linearly on each other.
     #[error("{} move together in every record: leave out all but one, or move them independently", names(.0))]
     InputsDepend(Vec<Signal>),
     /// The covariance of the noise of the outputs is singular.
     #[error(
-        "the outputs depend on each other so closely that their noise covariance is singular: leave out the copies"
+        "the outputs depend on each other so closely that their noise covariance is singular: \
+        leave out redundant outputs"
     )]
     OutputsDepend,
     #[error(

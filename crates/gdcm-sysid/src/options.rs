@@ -6,9 +6,9 @@ use gdcm_model::simulation::{FlightRecord, Signal};
 use crate::identification_error::{HIGHEST_ORDER, IdentificationError, LONGEST_PAST};
 use crate::spectra::preparation_settings::Preparation;
 
-/// Lowest line used, over the lower band end.
+/// Ratio of the lowest line used to the lower band end.
 const LOWEST_LINE: f64 = 0.5;
-/// Highest line used, over the upper band end.
+/// Ratio of the highest line used to the upper band end.
 const HIGHEST_LINE: f64 = 4.0 / 3.0;
 
 /// The band, the channels, the held-out records, and the orders, poles and windows to try.
@@ -26,17 +26,17 @@ pub struct Options {
     pub references: usize,
     /// Indices, from 0, of the records reserved for validation: no model is fitted to them.
     pub held_out: Vec<usize>,
-    /// Orders to try; `None` for those that the amount of data allows (M14.13).
+    /// Orders to try; `None` for all orders that the amount of data allows (M14.13).
     pub orders: Option<Vec<usize>>,
     /// Laguerre poles to try, relative to the upper band end.
     pub poles: Vec<f64>,
-    /// Past windows to try, in Laguerre projections; `None` for those that the amount of data
+    /// Past windows to try, in Laguerre projections; `None` for the windows that the amount of data
     /// allows (M14.13).
     pub pasts: Option<Vec<usize>>,
 }
 
 impl Options {
-    /// The defaults for a band \[rad/s\] and channels.
+    /// Creates the default options for a band \[rad/s\] and channels.
     #[must_use]
     pub fn new(band: [f64; 2], preparation: Preparation) -> Self {
         Self {
@@ -74,7 +74,7 @@ impl Options {
         }
     }
 
-    /// Counts the model's inputs.
+    /// Returns the number of model inputs; references are not counted.
     pub(crate) fn inputs(&self) -> usize {
         self.preparation
             .inputs
@@ -116,7 +116,7 @@ impl Options {
     }
 }
 
-/// Whether a list, if given, is not empty and holds integers from 1 to `most`.
+/// Returns whether a list, if given, is not empty and holds integers from 1 to `most`.
 fn is_within(list: &Option<Vec<usize>>, most: usize) -> bool {
     match list {
         None => true,

@@ -16,7 +16,7 @@ pub(crate) fn correction_source(correction: AssessedCorrection, airspeed_kt: f64
         AssessedCorrection::Own => "the condition's own optimum".to_owned(),
         AssessedCorrection::Scheduled => format!("the schedule {at}"),
         AssessedCorrection::ScheduledWithoutLeads => {
-            format!("the schedule {at}, its leads left out")
+            format!("the schedule {at}, without its leads")
         }
         AssessedCorrection::ScheduleOfOthers => {
             format!("the schedule of the other conditions {at}")
@@ -40,14 +40,15 @@ pub fn missing_cost_text(why: MissingCost) -> String {
         MissingCost::NetGainNotPositive => "the scheduled net gain is not positive".to_owned(),
         MissingCost::Undefined(why) => undefined_text(why),
         MissingCost::NominalUndefined => {
-            "the nominal model's response is zero, numerically nothing or not finite somewhere in \
-             the band"
+            "the nominal model's response is zero, numerically zero or not finite somewhere in \
+            the band"
                 .to_owned()
         }
     }
 }
 
-/// Writes the sentence: "better in 41 of 50, worst PED → NY in condition 5: +12.3".
+/// Returns the summary in words: "better in 41 of 50, worst PED → NY in condition 5: +12.3";
+/// "nothing to assess" without responses.
 pub fn summary_text(summary: &AssessmentSummary, dataset: &Dataset) -> String {
     let Some((condition, pair, change)) = summary.worst else {
         return "nothing to assess".to_owned();
@@ -61,9 +62,9 @@ pub fn summary_text(summary: &AssessmentSummary, dataset: &Dataset) -> String {
     )
 }
 
-/// Compares the assessment of the held-out conditions with that of the conditions in the fit: "held
-/// out (3, 8): better in 9 of 10 responses, mean ΔJ −12.3; the others: better in 40 of 45
-/// responses, mean ΔJ −15.0". `None` where no condition is held out.
+/// Compares the assessment of the held-out conditions with the assessment of the conditions in the
+/// fit: "held out (3, 8): better in 9 of 10 responses, mean ΔJ −12.3; the others: better in 40 of
+/// 45 responses, mean ΔJ −15.0". `None` where no condition is held out.
 pub fn held_out_verdict(analysis: &Analysis, choice: AssessmentChoice) -> Option<String> {
     let study = &analysis.study;
     let held_out: Vec<String> = study

@@ -6,11 +6,11 @@ use gdcm_study::results::analysis::ConditionFailure;
 use gdcm_study::results::caution::{Caution, NotFinite, USUAL_GAINS, Undefined};
 
 /// Range of computable gains in words.
-const GAIN_RANGE: &str = "gains are computed with from 1e-50 to 1e50";
+const GAIN_RANGE: &str = "the computable range is 1e-50 to 1e50";
 
-/// Meaning of "numerically nothing" (M6a).
+/// Meaning of "numerically zero" (M6a).
 const NOTHING: &str =
-    "over the band less than 1e-6 of the greatest response of its output and of its input";
+    "over the band, less than 1e-6 of the largest response of its output and of its input";
 
 /// Maximum number of models or responses that are listed by name.
 const LISTED: usize = 3;
@@ -53,13 +53,13 @@ pub fn caution_text(caution: &Caution, pair_name: impl Fn(Pair) -> String) -> St
                 None => "zero somewhere in the band".to_owned(),
                 Some(why) if zero.is_empty() => not_finite_text(why),
                 Some(why) => format!(
-                    "{} zero wherever it has values; of the others, {}",
+                    "{} zero at every frequency with a value; of the others, {}",
                     names(zero),
                     not_finite_text(why)
                 ),
             };
             let pin = if *pinned {
-                "; it is not used as representative, as was chosen"
+                "; although it was chosen as representative, it is not used"
             } else {
                 ""
             };
@@ -79,8 +79,8 @@ pub fn caution_text(caution: &Caution, pair_name: impl Fn(Pair) -> String) -> St
             not_finite_text(why)
         ),
         Caution::MissingResponses { model, responses } => format!(
-            "{model} has no {}: every value in its file is zero, as where a response was not \
-             measured or its channels have other names; give the response, or reject the model",
+            "{model} has no {}: every value in its file is zero; the response may not have been \
+            measured, or its channels have other names. Add the response, or reject the model",
             names(responses)
         ),
         Caution::GainsOutOfRange {
@@ -94,14 +94,14 @@ pub fn caution_text(caution: &Caution, pair_name: impl Fn(Pair) -> String) -> St
                 .collect();
             format!(
                 "the gain between physics model \"{physics}\" and identified model \
-                 \"{identified}\" is about {}, and {GAIN_RANGE}: these responses are not compared; \
-                 check the units and the matrices of both models",
+                \"{identified}\" is about {}, but {GAIN_RANGE}: these responses are not \
+                compared; check the units and the matrices of both models",
                 gains.join(", ")
             )
         }
         Caution::NumericallyNothing { model, responses } => format!(
-            "of {model}, {} are numerically nothing ({NOTHING}): they have no G and no D, as if \
-             they were zero",
+            "of {model}, {} are numerically zero ({NOTHING}) and are treated as zero: they have \
+            no G and no D",
             names(responses)
         ),
         Caution::NotCoherent {
@@ -110,24 +110,24 @@ pub fn caution_text(caution: &Caution, pair_name: impl Fn(Pair) -> String) -> St
             left_out,
             points,
         } => format!(
-            "coherence weighs J, G and D of {weighed} responses; of {points} frequencies, {} are \
-             left out: their coherence is under {}, or they lie outside the valid band",
+            "coherence weights J, G and D of {weighed} responses; of {points} frequencies, {} are \
+            left out: their coherence is below {}, or they lie outside the valid band",
             left_out_words(left_out, &pair_name),
             number(*threshold)
         ),
         Caution::CoherenceNotUsed => {
-            "the identified representative is measured with coherence, which is switched off: \
-             every frequency counts alike"
+            "the identified representative is measured with coherence, but weighting by coherence \
+            is switched off: every frequency counts alike"
                 .to_owned()
         }
         Caution::ChannelsByPosition { bundle, models } => format!(
-            "the channels of {bundle} models were taken by their position, as their files have no \
-             names for them: check that their order is that of the dataset ({})",
+            "the channels of {bundle} models were assigned by position, because their files do \
+            not name them: check that their order is the same as in the dataset ({})",
             first_names(models)
         ),
         Caution::UnusualGain { pair, gain } => format!(
-            "{} has a G of {}, outside {} to {}, and is fitted like the others: ignore it in the \
-             objective if it means nothing (in a study file: \"ignored\")",
+            "{}: delta gain G = {} is outside the usual range {} to {}; if it is not physically \
+            meaningful, exclude this response from the objective (\"ignored\" in a study file)",
             pair_name(*pair),
             gain_words(*gain),
             USUAL_GAINS.start(),
@@ -152,18 +152,19 @@ pub fn undefined_text(why: Undefined) -> String {
         }
         Undefined::GainOutOfRange(power_of_ten) => format!(
             "its response has a gain of about 1e{power_of_ten} between the physics and the \
-             identified model, and {GAIN_RANGE}: check the units and the matrices of both"
+            identified model, but {GAIN_RANGE}: check the units and the matrices of both"
         ),
         Undefined::NotCoherent => {
-            "its response was not measured: no frequency of the band is coherent enough, or lies \
-             in the valid band"
+            "its response was not measured reliably: no frequency of the band is coherent enough, \
+            or all lie outside the valid band"
                 .to_owned()
         }
         Undefined::NotMeasured => {
-            "its response was not measured: the identified model has no numbers of it".to_owned()
+            "its response was not measured: the identified model contains no values of it"
+                .to_owned()
         }
         Undefined::NumericallyNothing(bundle) => {
-            format!("its response is numerically nothing in the {bundle} model: {NOTHING}")
+            format!("its response is numerically zero in the {bundle} model: {NOTHING}")
         }
     }
 }
@@ -181,13 +182,13 @@ fn not_finite_text(why: &NotFinite) -> String {
             sample_time_s,
             nyquist_rad_s,
         } => format!(
-            "it is of discrete time, T = {} s, and has no response from π/T = {nyquist_rad_s:.4} \
-             rad/s on: narrow the band, or reject the model",
+            "it is a discrete-time model with T = {} s, and has no response from π/T = \
+            {nyquist_rad_s:.4} rad/s upwards: narrow the band, or reject the model",
             number(*sample_time_s)
         ),
         NotFinite::Pole => {
-            "a pole lies on a frequency of the grid, or its numbers overflow: change the band or \
-             the number of frequencies, or reject the model"
+            "a pole lies on a frequency of the grid, or the response overflows: change the band \
+            or the number of frequencies, or reject the model"
                 .to_owned()
         }
     }
@@ -207,7 +208,7 @@ fn first_names(names: &[String]) -> String {
     }
 }
 
-/// Lists numbers of omitted frequencies: "31 of PED → P, 12 of COL → Q, and some of 5 more".
+/// Lists the numbers of omitted frequencies: "31 of PED → P, 12 of COL → Q, and some of 5 more".
 fn left_out_words(left_out: &[(Pair, usize)], pair_name: &impl Fn(Pair) -> String) -> String {
     let mut parts: Vec<String> = left_out
         .iter()
@@ -221,7 +222,7 @@ fn left_out_words(left_out: &[(Pair, usize)], pair_name: &impl Fn(Pair) -> Strin
     parts.join(", ")
 }
 
-/// Formats a gain: three decimals, or an exponent below 1e-3 and from 1e4.
+/// Formats a gain: three decimals, or an exponent below 1e-3 and at 1e4 or above.
 fn gain_words(gain: f64) -> String {
     if (1e-3..1e4).contains(&gain) {
         format!("{gain:.3}")

@@ -3,15 +3,15 @@
 use gdcm_model::units::{s_to_ms, telling};
 use gdcm_study::results::channel_time_skew::ChannelTimeSkew;
 
-/// Returns the finding in words; `channel` is the name of the channel, `physics` that of the
+/// Returns the finding in words; `channel` and `physics` are the names of the channel and of the
 /// physics model.
 pub fn time_skew_text(skew: &ChannelTimeSkew, channel: &str, physics: &str) -> String {
     let delay_ms = telling(s_to_ms(skew.delay_s.abs()), 0);
     let direction = if skew.delay_s < 0.0 { "early" } else { "late" };
     format!(
-        "{channel} seems to be logged {delay_ms} ms {direction} in all records: against the \
-         physics model \"{physics}\" its responses differ as by a delay, and the others do not. \
-         That delay can be taken out. Leave it where the sensor or servo is as slow as that: the \
-         correction has a delay for it"
+        "{channel} seems to be logged {delay_ms} ms {direction} in all records: compared with the \
+        physics model \"{physics}\", its responses differ by a delay, and the other responses do \
+        not. This delay can be removed. Keep it if the sensor or servo really has this lag: the \
+        correction then contains a delay for it"
     )
 }

@@ -38,7 +38,7 @@ pub fn remarks(
     if !study.choice(result.condition.id()).scheduled {
         remarks.push(Remark::caution(
             "left-out-of-schedule",
-            "This condition is left out of the schedule: its gains do not count in it.",
+            "This condition is left out of the schedule: its gains do not enter the fit.",
         ));
     }
     for caution in &result.cautions {
@@ -54,7 +54,7 @@ pub fn remarks(
     remarks
 }
 
-/// Repeats the schedule's cautions that concern the condition.
+/// Returns the cautions of the schedule that concern the condition, as remarks.
 fn schedule_remarks(study: &Study, result: &ConditionAnalysis, schedule: &Schedule) -> Vec<Remark> {
     let (inputs, outputs) = study.dataset.names_of_channels();
     let mut remarks = Vec::new();
@@ -67,8 +67,8 @@ fn schedule_remarks(study: &Study, result: &ConditionAnalysis, schedule: &Schedu
     remarks
 }
 
-/// Reports suspected sign and unit differences first, because they can be mistaken for other
-/// effects; then the reversed channels.
+/// Returns remarks on suspected sign and unit differences, and then on the reversed channels. The
+/// suspicions come first because the differences can be mistaken for other effects.
 fn sign_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let mut remarks = Vec::new();
     for doubt in &result.doubts {
@@ -83,7 +83,7 @@ fn sign_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     for (channel, role) in &study.signs {
         let name = channel.name_in(&study.dataset);
         let models = role.models();
-        let text = format!("{name} of {models} is turned: its sign is not that of the file.");
+        let text = format!("The sign of {name} is reversed in {models}, relative to the file.");
         remarks.push(Remark {
             turn: Some((*channel, None)),
             ..Remark::good("channel-turned", text)
@@ -125,7 +125,7 @@ fn matched_gains_remark(study: &Study, result: &ConditionAnalysis) -> Remark {
     Remark::good("gains-matched", text)
 }
 
-/// Reports the loops that agree within the tolerance.
+/// Returns a remark on the loops that agree within the tolerance.
 fn agreement_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let (inputs, outputs) = study.dataset.names_of_channels();
     let loops = result.gains.agreeing.iter().chain(&result.delays.agreeing);
@@ -139,8 +139,8 @@ fn agreement_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
         .collect()
 }
 
-/// Reports that coherence weights are used and exclude no frequency. Excluded frequencies are
-/// reported by a caution instead (M4a).
+/// Returns a remark if coherence weights are used and exclude no frequency. A caution reports
+/// excluded frequencies instead (M4a).
 fn coherence_remark(result: &ConditionAnalysis) -> Option<Remark> {
     let has_exclusions = result
         .cautions
@@ -165,11 +165,11 @@ fn coherence_remark(result: &ConditionAnalysis) -> Option<Remark> {
     }
     Some(Remark::good(
         "coherence-used",
-        format!("Coherence weighs J, G and D of {weighted} responses."),
+        format!("J, G and D of {weighted} responses are weighted by coherence."),
     ))
 }
 
-/// Reports the constrained responses that the correction moves away from flight.
+/// Returns a remark on the constrained responses that the correction moves away from flight.
 fn worse_remark(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     let negligible = match study.settings.phase {
         PhaseCorrection::Lead => 0.0,
@@ -195,13 +195,14 @@ fn worse_remark(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
         return None;
     }
     let text = format!(
-        "Held, yet farther from flight than without a correction: {}.",
+        "Held, but farther from flight than without a correction: {}.",
         texts.join(", ")
     );
     Some(Remark::caution("held-farther", text).repeated(Repeated::Farther(pairs)))
 }
 
-/// Reports how many unconstrained responses the leads move away from flight (M15.6).
+/// Returns a remark on the number of unconstrained responses that the leads move away from flight
+/// (M15.6).
 fn others_worse_remark(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     if study.settings.phase != PhaseCorrection::Lead {
         return None;
@@ -225,7 +226,7 @@ fn others_worse_remark(study: &Study, result: &ConditionAnalysis) -> Option<Rema
         "free-farther",
         format!(
             "{worse} of the {compared} responses that are not held are farther from flight than \
-             without."
+            without a correction."
         ),
     ))
 }
@@ -239,7 +240,7 @@ fn delay_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
         let accuracy = if result.delays.agreeing.is_empty() {
             "exactly"
         } else {
-            "as far as can be told"
+            "to the displayed precision"
         };
         let text = format!("All {held} held delays are matched {accuracy}.");
         return vec![Remark::good("delays-matched", text)];
@@ -258,7 +259,7 @@ fn delay_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     remarks
 }
 
-/// Reports the constrained responses with a negative D, which no delay can match.
+/// Returns a remark on the constrained responses with a negative D, which no delay can match.
 fn needed_lead_remark(study: &Study, result: &ConditionAnalysis, held: usize) -> Option<Remark> {
     let needed: Vec<(Pair, String)> = result
         .delays
@@ -279,14 +280,14 @@ fn needed_lead_remark(study: &Study, result: &ConditionAnalysis, held: usize) ->
         .map(|(pair, lead_ms)| format!("{} {lead_ms} ms", study.dataset.pair_name(*pair)))
         .collect();
     let text = format!(
-        "{subject} lead, because the physics model lags: {}. A delay cannot give it.",
+        "{subject} lead, because the physics model lags: {}. A delay cannot provide it.",
         leads.join(", ")
     );
     Some(Remark::caution("needs-lead", text).repeated(Repeated::NeedsLead(needed)))
 }
 
-/// Lists the details of the solution: other minima, the error at the upper end of the band due to
-/// each missed delay, and the sensitivity to constraints and active bounds.
+/// Lists the details of the solution: other minima, the phase error at the upper end of the band
+/// due to each missed delay, and the sensitivity to constraints and active bounds.
 pub fn details(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
     /// Maximum relative sensitivity of the objective that is not listed.
     const NOTABLE: f64 = 1e-3;
@@ -303,8 +304,8 @@ pub fn details(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
     if study.settings.phase == PhaseCorrection::Lead {
         let residual_s = kkt_residual(&result.delay_problem, &result.delays);
         details.push(format!(
-            "The program of delays and leads is convex: KKT residual {residual_s:.0e} s, which \
-             proves its optimum."
+            "The optimisation of delays and leads is convex: the KKT residual of {residual_s:.0e} \
+            s proves that the solution is optimal."
         ));
     }
     let band_top = study.settings.band.max();

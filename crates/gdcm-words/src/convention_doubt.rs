@@ -40,14 +40,14 @@ pub fn doubt_text(doubt: &ConventionDoubt, dataset: &Dataset) -> String {
             let differ = if is_single { "differs" } else { "differ" };
             format!(
                 "{names} {differ} by half a turn at all frequencies{alike} {place}: {channel} of \
-                 the identified models has the other sign. Turn it?"
+                the identified models has the opposite sign. Reverse it?"
             )
         }
         Convention::Factor(factor) => {
             let are = if is_single { "is" } else { "are" };
             format!(
-                "{names} of the identified models {are} {} times that of the physics model{alike} \
-                 {place}{}. Check the unit of {channel}",
+                "{names} of the identified models {are} {} times as large as in the physics \
+                model{alike} {place}{}. Check the unit of {channel}",
                 rounded_to_three_digits(factor),
                 known_units_text(factor)
             )

@@ -1,5 +1,5 @@
-//! Sentences and tables about couplings: diagnosis, benefit and cost (M16.4), and the values as
-//! tables (M16.5).
+//! Sentences about couplings (diagnosis, benefit and cost, M16.4), and tables of their values
+//! (M16.5).
 
 use std::collections::BTreeMap;
 
@@ -20,13 +20,13 @@ use gdcm_study::{Analysis, CouplingCorrection};
 use crate::remark::{Remark, RemarkKind};
 use crate::table::Table;
 
-/// Maximum number of entries that are reported from each matrix, largest first.
+/// Maximum number of entries reported per matrix; the largest come first.
 const MOST_REPORTED: usize = 3;
-/// Minimum share that is reported.
+/// Smaller shares \[-\] are not reported.
 const NOTHING: f64 = 0.005;
 
-/// Returns the remarks on the couplings of an analysis: why there are none; or their meaning,
-/// benefit and cost, if they were assessed.
+/// Returns the remarks on the couplings of an analysis: the reason why requested couplings are
+/// unavailable, or the remarks of [`coupling_remarks`]; empty if none were requested.
 pub fn analysis_coupling_remarks(analysis: &Analysis) -> Vec<Remark> {
     match (analysis.asked_couplings(), &analysis.coupling_assessment) {
         (Err(why), _) => vec![no_couplings(&why)],
@@ -35,16 +35,16 @@ pub fn analysis_coupling_remarks(analysis: &Analysis) -> Vec<Remark> {
     }
 }
 
-/// Returns the remark that requested couplings are unavailable, so that all results are without
-/// couplings.
+/// Returns the remark that the requested couplings are unavailable, with the reason `why`; all
+/// results are then computed without couplings.
 pub fn no_couplings(why: &str) -> Remark {
     Remark::trouble(
         "no-couplings",
-        format!("No couplings: {why}. Everything here is without them."),
+        format!("Couplings are unavailable: {why}. All results are computed without couplings."),
     )
 }
 
-/// Returns all remarks: diagnosis, benefit, cost, and cautions.
+/// Interprets the largest entries, then adds the remarks of [`coupling_consequences`].
 pub fn coupling_remarks(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Remark> {
     let mut remarks: Vec<Remark> = diagnosis(assessment, dataset)
         .into_iter()
@@ -54,7 +54,7 @@ pub fn coupling_remarks(assessment: &CouplingsAssessment, dataset: &Dataset) -> 
     remarks
 }
 
-/// Returns the benefit, the cost, and the cautions.
+/// Returns remarks on the benefit and the cost of the couplings, and cautions about them.
 pub fn coupling_consequences(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Remark> {
     let mut remarks = verdict(assessment);
     remarks.extend(price(assessment, dataset));
@@ -62,9 +62,9 @@ pub fn coupling_consequences(assessment: &CouplingsAssessment, dataset: &Dataset
     remarks
 }
 
-/// Interprets the largest significant entries: "LAT takes 4.7 % of LON: as a swashplate phase of
-/// 2.7°"; "PED follows NY by 1.2 % per m/s²: directional stiffness that the physics model does not
-/// have".
+/// Interprets the largest significant entries: "LAT receives 4.7 % of LON, equivalent to a swashplate
+/// phase of 2.7°"; "PED follows NY by 1.2 % per m/s²: directional stiffness that the physics model
+/// does not represent correctly".
 fn diagnosis(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<String> {
     let airspeed_kt = assessment.mean_airspeed_kt();
     let matrices = assessment.fitted.matrices();
@@ -90,17 +90,18 @@ fn diagnosis(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<String>
     words
 }
 
-/// Names the origin of the J by which the benefit is judged.
+/// Names the source of the J by which the benefit is judged: conditions left out of the fit, or the
+/// schedule.
 fn cost_source(assessment: &CouplingsAssessment) -> &'static str {
     if assessment.costs.left_out.is_some() {
-        "conditions left out"
+        "conditions left out of the fit"
     } else {
         "the schedule"
     }
 }
 
-/// Judges whether couplings are worthwhile: from J of conditions left out, or under the schedule
-/// where none was left out.
+/// Compares J without and with couplings, for conditions left out of the fit or, if none was left
+/// out, under the schedule. Adds a caution if the couplings are not worthwhile.
 fn verdict(assessment: &CouplingsAssessment) -> Vec<Remark> {
     let cost = assessment.deciding_cost();
     let (Some(with), Some(without)) = (cost.with.others, cost.without.others) else {
@@ -109,13 +110,13 @@ fn verdict(assessment: &CouplingsAssessment) -> Vec<Remark> {
     let source = cost_source(assessment);
     let couplings = assessment.couplings.name();
     let mut text = format!(
-        "Off the axis, J of {source} is {} without couplings and {} with {couplings}",
+        "Off-axis J of {source} is {} without couplings and {} with {couplings}",
         telling(without, 1),
         telling(with, 1)
     );
     if let (Some(with), Some(without)) = (cost.with.on_axis, cost.without.on_axis) {
         text.push_str(&format!(
-            "; on the axis {} and {}",
+            "; on-axis J is {} and {}",
             telling(without, 1),
             telling(with, 1)
         ));
@@ -126,30 +127,30 @@ fn verdict(assessment: &CouplingsAssessment) -> Vec<Remark> {
         remarks.push(Remark::caution(
             "couplings-not-worthwhile",
             format!(
-                "Off the axis, J of {source} is not at least a tenth less with {couplings}: switch \
-                 the couplings off."
+                "Off-axis J of {source} decreases by less than a tenth with {couplings}: switch \
+                the couplings off."
             ),
         ));
     }
     remarks
 }
 
-/// Returns the hint that recommends these couplings to a study that does not use them; `None` where
-/// they are not worthwhile, or no condition was left out of the fit.
+/// Returns the hint that recommends these couplings to a study that does not use them; `None` if
+/// they are not worthwhile, or if no condition was left out of the fit.
 pub fn coupling_offer(assessment: &CouplingsAssessment) -> Option<String> {
     let cost = assessment
         .costs
         .left_out
         .filter(CouplingCost::is_worth_it)?;
     Some(format!(
-        "With {} off-axis J of conditions left out would be {} in place of {}.",
+        "With {}, off-axis J of conditions left out of the fit would be {} instead of {}.",
         assessment.couplings.name(),
         telling(cost.with.others?, 1),
         telling(cost.without.others?, 1)
     ))
 }
 
-/// Describes the effect of the couplings above the band, the pole shifts in the band, and the
+/// Describes the change in response above the band, the pole shifts within the band, and the
 /// meaning of the error bars.
 fn price(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Remark> {
     let mut remarks = Vec::new();
@@ -161,13 +162,13 @@ fn price(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Remark> {
     }
     remarks.push(Remark::good(
         "bars-under-couplings",
-        "Error bars of gains, delays and leads are those under these couplings: a swap of models \
-         does not fit them again.",
+        "Error bars of gains, delays and leads are computed with these couplings: the couplings \
+        are not fitted again when models are exchanged.",
     ));
     remarks
 }
 
-/// Describes the largest on-axis change above the band.
+/// Describes the largest change of an on-axis response above the band.
 fn above_band_words(assessment: &CouplingsAssessment, dataset: &Dataset) -> Option<String> {
     let changes = assessment.conditions.iter().filter_map(|(id, condition)| {
         let (pair, change_db) = condition.most_changed_above_band(dataset.on_axis())?;
@@ -179,8 +180,8 @@ fn above_band_words(assessment: &CouplingsAssessment, dataset: &Dataset) -> Opti
     }
     let top = assessment.omega.last().copied().unwrap_or_default();
     Some(format!(
-        "Above the band, at {} rad/s, the couplings change {} most of the on-axis responses: by {} \
-         dB of it (condition {id}).",
+        "Above the band, at {} rad/s, the couplings change {} more than any other on-axis \
+         response: the relative change is {} dB (condition {id}).",
         number(top),
         dataset.pair_name(pair),
         signed(change_db, 0)
@@ -217,7 +218,8 @@ fn farthest_pole_words(assessment: &CouplingsAssessment) -> Option<String> {
     }
 }
 
-/// Returns the cautions that are important before couplings are used.
+/// Returns the cautions to consider before couplings are used, such as newly unstable poles, a loop
+/// that is close to ringing, and entries that the data do not determine.
 pub fn coupling_cautions(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Remark> {
     let mut remarks = unstable_pole_remarks(assessment);
     if let Some(text) = ringing_words(assessment) {
@@ -225,20 +227,23 @@ pub fn coupling_cautions(assessment: &CouplingsAssessment, dataset: &Dataset) ->
     }
     let has_feedback = assessment.couplings == CouplingCorrection::MixingAndFeedback;
     if assessment.want_leads > 0 && has_feedback {
-        remarks.push(Remark::caution("feedback-as-lead", format!(
-            "In {} all held responses want lead, which no channel gives: the feedback takes its \
-             place, with large entries and poles far from where they were. Correct the phase by \
-             leads first.",
-            counted(assessment.want_leads)
-        )));
+        remarks.push(Remark::caution(
+            "feedback-as-lead",
+            format!(
+                "In {}, all held responses need lead, which no channel provides. The feedback \
+            compensates for it, with large entries and large pole shifts. Correct the phase by \
+            leads first.",
+                counted(assessment.want_leads)
+            ),
+        ));
     }
     let conditions = assessment.fitted.problem.conditions.len();
     if conditions < LEAST_CONDITIONS {
         remarks.push(Remark::caution(
             "few-conditions",
             format!(
-                "Couplings of {}: three are needed for error bars and for J of conditions left \
-                 out.",
+                "The couplings are fitted to {}; error bars, and J of conditions left out, \
+                require three.",
                 counted(conditions)
             ),
         ));
@@ -257,7 +262,8 @@ pub fn coupling_cautions(assessment: &CouplingsAssessment, dataset: &Dataset) ->
     remarks
 }
 
-/// Lists the outputs that cannot be fed back.
+/// Lists the outputs that cannot be fed back, because their response to some input is missing in
+/// every condition; `None` if there are none.
 fn not_fed_back_words(dataset: &Dataset, outputs: &[usize]) -> Option<String> {
     if outputs.is_empty() {
         return None;
@@ -267,25 +273,25 @@ fn not_fed_back_words(dataset: &Dataset, outputs: &[usize]) -> Option<String> {
         .map(|&output| dataset.outputs()[output].name.as_str())
         .collect();
     Some(format!(
-        "{} cannot be fed back: some input has no response of it in any condition.",
+        "{} cannot be fed back: the response to at least one input is missing in every condition.",
         names.join(", ")
     ))
 }
 
-/// Lists the conditions whose poles are unknown, then the models to which the couplings cannot be
-/// applied.
+/// Returns a caution for each condition whose poles could not be computed, then a caution for each
+/// model to which the couplings cannot be applied.
 fn unknown_pole_remarks(assessment: &CouplingsAssessment) -> Vec<Remark> {
     let mut remarks = Vec::new();
     for (id, condition) in &assessment.conditions {
         if let Err(why) = &condition.poles {
-            let text = format!("Condition {id}: poles are not known: {why}.");
+            let text = format!("Condition {id}: the poles cannot be computed: {why}.");
             remarks.push(Remark::caution("poles-unknown", text));
         }
     }
     for (id, condition) in &assessment.conditions {
         for (model, why) in &condition.refused {
             let text = format!(
-                "Condition {id}, {model}: what the couplings do to it is not known: {why}."
+                "Condition {id}, {model}: the effect of the couplings cannot be computed: {why}."
             );
             remarks.push(Remark::caution("model-refused", text));
         }
@@ -293,7 +299,8 @@ fn unknown_pole_remarks(assessment: &CouplingsAssessment) -> Vec<Remark> {
     remarks
 }
 
-/// Lists the newly unstable poles of the representatives, then those of the other kept models.
+/// Returns a remark on newly unstable poles of the physics representatives, then a remark on newly
+/// unstable poles of the other kept physics models.
 fn unstable_pole_remarks(assessment: &CouplingsAssessment) -> Vec<Remark> {
     let mut remarks = Vec::new();
     for is_representative in [true, false] {
@@ -312,10 +319,10 @@ fn unstable_pole_remarks(assessment: &CouplingsAssessment) -> Vec<Remark> {
         };
         let places = unstable_places(&poles);
         let text = if poles.len() == 1 {
-            format!("A pole of the {models} is newly unstable with the couplings: {places}.")
+            format!("A pole of the {models} becomes unstable with the couplings: {places}.")
         } else {
             format!(
-                "{} poles of {models} are newly unstable with the couplings: {places}.",
+                "{} poles of {models} become unstable with the couplings: {places}.",
                 poles.len()
             )
         };
@@ -329,7 +336,7 @@ fn unstable_pole_remarks(assessment: &CouplingsAssessment) -> Vec<Remark> {
     remarks
 }
 
-/// Reports how many conditions can be left out, unless all can.
+/// Reports how many conditions can be left out of the fit; `None` if all can.
 fn partly_left_out_words(assessment: &CouplingsAssessment) -> Option<String> {
     let all = assessment.fitted.problem.conditions.len();
     let known = assessment.left_out_fits.len();
@@ -337,12 +344,14 @@ fn partly_left_out_words(assessment: &CouplingsAssessment) -> Option<String> {
         return None;
     }
     Some(format!(
-        "J of conditions left out and the bars of the couplings rest on {known} of {all} \
-         conditions: without each of the others no couplings or no schedule are found."
+        "J of conditions left out, and the error bars of the couplings, are based on {known} of \
+        {all} conditions: if one of the others is left out, the couplings or the schedule cannot \
+        be fitted."
     ))
 }
 
-/// Reports the minimum stability margin of the loop, where it is close to ringing.
+/// Reports the minimum singular value of the loop over all conditions; `None` unless it is close to
+/// ringing.
 fn ringing_words(assessment: &CouplingsAssessment) -> Option<String> {
     let margins = assessment
         .conditions
@@ -354,8 +363,8 @@ fn ringing_words(assessment: &CouplingsAssessment) -> Option<String> {
         return None;
     }
     Some(format!(
-        "The loop is close to ringing at {} rad/s: the least singular value of I − K H is {} \
-         (condition {id}).",
+        "The loop is close to ringing at {} rad/s: the minimum singular value of I − K H is {} \
+        (condition {id}).",
         telling(margin.omega_rad_s, 1),
         telling(margin.least, 2)
     ))
@@ -367,12 +376,12 @@ fn counted(conditions: usize) -> String {
     format!("{conditions} condition{plural}")
 }
 
-/// Returns whether a channel is an angular rate, by its unit.
+/// Returns whether the unit of a channel belongs to an angular rate.
 fn is_rate(channel: &Channel) -> bool {
     ["deg/s", "rad/s", "°/s"].contains(&channel.unit.trim())
 }
 
-/// Returns whether a channel is an acceleration, by its unit.
+/// Returns whether the unit of a channel belongs to an acceleration.
 fn is_acceleration(channel: &Channel) -> bool {
     matches!(
         channel.unit.trim(),
@@ -380,13 +389,13 @@ fn is_acceleration(channel: &Channel) -> bool {
     )
 }
 
-/// Describes a mixing entry: "LAT takes 4.7 % of LON: as a swashplate phase of 2.7°".
+/// Describes a mixing entry: "LAT receives 4.7 % of LON, equivalent to a swashplate phase of 2.7°".
 fn mixing_words(dataset: &Dataset, mixing: &MixingShare) -> String {
     let to = &dataset.inputs()[mixing.to];
     let from = &dataset.inputs()[mixing.from];
     if to.unit != from.unit {
         return format!(
-            "{} takes {} {} per {} of {}.",
+            "{} receives {} {} per {} of {}.",
             to.name,
             with_minus_sign(&telling(mixing.share, 3)),
             to.unit,
@@ -396,13 +405,13 @@ fn mixing_words(dataset: &Dataset, mixing: &MixingShare) -> String {
     }
     let phase = match mixing.swashplate_phase_deg {
         Some(phase_deg) => format!(
-            ": as a swashplate phase of {}°",
+            ", equivalent to a swashplate phase of {}°",
             with_minus_sign(&telling(phase_deg, 1))
         ),
         None => String::new(),
     };
     format!(
-        "{} takes {} % of {}{phase}.",
+        "{} receives {} % of {}{phase}.",
         to.name,
         percent(mixing.share),
         from.name
@@ -410,12 +419,12 @@ fn mixing_words(dataset: &Dataset, mixing: &MixingShare) -> String {
 }
 
 /// Describes a feedback entry: "PED follows NY by 1.2 % per m/s²: directional stiffness that the
-/// physics model does not have".
+/// physics model does not represent correctly".
 fn feedback_words(dataset: &Dataset, feedback: &FeedbackShare) -> String {
     let input = &dataset.inputs()[feedback.input];
     let output = &dataset.outputs()[feedback.output];
     let meaning = feedback_meaning(dataset, feedback);
-    // A share is dimensionless only between channels with the same unit.
+    // A percentage is meaningful only between channels with the same unit.
     let moved = &dataset.inputs()[feedback.moved];
     let share = if moved.unit == input.unit {
         format!("{} % of {}", percent(feedback.share), moved.name)
@@ -430,7 +439,7 @@ fn feedback_words(dataset: &Dataset, feedback: &FeedbackShare) -> String {
     };
     format!(
         "{} follows {} by {} {} per {}, up to {share} at {} rad/s: {meaning} that the physics \
-         model does not have right.",
+        model does not represent correctly.",
         input.name,
         output.name,
         with_minus_sign(&telling(feedback.entry, 3)),
@@ -440,7 +449,7 @@ fn feedback_words(dataset: &Dataset, feedback: &FeedbackShare) -> String {
     )
 }
 
-/// Names the physical meaning of a feedback entry, from the unit of its output.
+/// Names the physical meaning of a feedback entry, derived from the unit of its output.
 fn feedback_meaning(dataset: &Dataset, feedback: &FeedbackShare) -> &'static str {
     let is_on_axis = |output: usize| dataset.on_axis()[Pair::new(output, feedback.input)];
     if !is_on_axis(feedback.output) {
@@ -466,8 +475,8 @@ fn percent(share: f64) -> String {
     with_minus_sign(&telling(100.0 * share, 1))
 }
 
-/// Locates unstable poles, grouped by condition: "in the band condition 4, slow at 2 rad/s;
-/// condition 1, 8 models at 0.143 to 0.149 rad/s".
+/// Locates unstable poles, grouped by condition: "within the band, condition 4, slow at 2
+/// rad/s; condition 1, 8 models at 0.143 to 0.149 rad/s".
 fn unstable_places(poles: &[&UnstablePole]) -> String {
     let mut in_band: BTreeMap<ConditionId, Vec<&UnstablePole>> = BTreeMap::new();
     let mut beyond: BTreeMap<ConditionId, Vec<&UnstablePole>> = BTreeMap::new();
@@ -481,7 +490,10 @@ fn unstable_places(poles: &[&UnstablePole]) -> String {
     }
     let mut places = Vec::new();
     for (condition, poles) in &in_band {
-        places.push(format!("in the band {}", unstable_place(*condition, poles)));
+        places.push(format!(
+            "within the band, {}",
+            unstable_place(*condition, poles)
+        ));
     }
     for (condition, poles) in &beyond {
         places.push(unstable_place(*condition, poles));
@@ -518,7 +530,7 @@ fn pole_words(pole: Complex<f64>) -> String {
     format!("{}{imaginary} rad/s", signed(pole.re, 3))
 }
 
-/// Lists the entries that the data do not determine.
+/// Lists the entries that the data do not determine; `None` if there are none.
 fn undetermined_words(dataset: &Dataset, unknowns: &[Unknown]) -> Option<String> {
     if unknowns.is_empty() {
         return None;
@@ -534,16 +546,16 @@ fn undetermined_words(dataset: &Dataset, unknowns: &[Unknown]) -> Option<String>
         })
         .collect();
     Some(format!(
-        "No response says anything of these entries, which stay as without couplings: {}.",
+        "No response determines these entries, which are left as without couplings: {}.",
         names.join(", ")
     ))
 }
 
 /// Returns the heading: "mixing and feedback fitted to 11 conditions; the normal equations of the
-/// last solve hold to 3e-16".
+/// last solution are satisfied to 3e-16".
 pub fn couplings_heading(assessment: &CouplingsAssessment) -> String {
     format!(
-        "{} fitted to {}; the normal equations of the last solve hold to {:.0e}",
+        "{} fitted to {}; the normal equations of the last solution are satisfied to {:.0e}",
         assessment.couplings.name(),
         counted(assessment.fitted.problem.conditions.len()),
         assessment.fitted.fit.residual
@@ -588,9 +600,9 @@ fn cost_cells(name: &str, cost: CouplingCost) -> [String; 5] {
     ]
 }
 
-/// Tabulates the mixing at the mean airspeed, and the feedback if there is any: one row for each
-/// input, with its shares from inputs and outputs. An entry that does not exceed its error bar is
-/// in brackets.
+/// Tabulates the mixing at the mean airspeed and, unless it is zero, the feedback: a row for each
+/// receiving input, a column for each input or output that acts on it. An entry that does not
+/// exceed its error bar is in brackets.
 pub fn coupling_matrix_tables(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Table> {
     let airspeed_kt = assessment.mean_airspeed_kt();
     let (inputs, outputs) = dataset.names_of_channels();
@@ -598,12 +610,12 @@ pub fn coupling_matrix_tables(assessment: &CouplingsAssessment, dataset: &Datase
         String::new()
     } else {
         format!(
-            ", ± bar of {} %, in brackets within it",
+            ", ± {} % error bar; entries in brackets do not exceed it",
             number(100.0 * assessment.level)
         )
     };
     let title = format!(
-        "Mixing at {} kt: share of each input that an input takes{bars}",
+        "Mixing at {} kt: share of each input (column) that an input (row) receives{bars}",
         telling(airspeed_kt, 0)
     );
     let mixing = assessment.mixing(airspeed_kt);
@@ -612,13 +624,16 @@ pub fn coupling_matrix_tables(assessment: &CouplingsAssessment, dataset: &Datase
     if feedback.iter().any(|entry| entry.value != 0.0) {
         let to = with_units(&inputs, dataset.inputs());
         let from = with_units(&outputs, dataset.outputs());
-        let title = format!("Feedback: units of an input for each unit of an output{bars}");
+        let title = format!(
+            "Feedback: units of an input (row) per unit of an output \
+            (column){bars}"
+        );
         tables.push(matrix_table(title, &to, &from, &feedback));
     }
     tables
 }
 
-/// Adds units to names: "LON [%]".
+/// Appends the unit of each channel to its name: "LON [%]".
 fn with_units(names: &[String], channels: &[Channel]) -> Vec<String> {
     names
         .iter()
@@ -659,7 +674,8 @@ fn entry_words(entry: &CouplingEntry) -> String {
     }
 }
 
-/// Tabulates the poles of each physics representative before and after, largest shift first.
+/// Tabulates the poles of each physics representative without and with couplings, largest shift
+/// first.
 pub fn pole_table(assessment: &CouplingsAssessment) -> Table {
     let columns = [
         "condition",
@@ -668,7 +684,7 @@ pub fn pole_table(assessment: &CouplingsAssessment) -> Table {
         "moved by [rad/s]",
     ];
     let mut table = Table::new(
-        "Poles of the physics representatives, without couplings and with them",
+        "Poles of the physics representatives, without and with couplings",
         columns,
     );
     for (id, condition) in &assessment.conditions {

@@ -1,4 +1,4 @@
-//! Sentences about the couplings of the example.
+//! Tests of the sentences about the couplings in the example.
 
 use std::sync::{Arc, LazyLock};
 
@@ -10,7 +10,7 @@ use crate::couplings::{coupling_cautions, coupling_offer, coupling_remarks};
 use crate::example_tests::EXAMPLE;
 use crate::remark::RemarkKind;
 
-/// The assessment of mixing and feedback of the reference dataset.
+/// Assessment of mixing and feedback for the reference dataset.
 static ASSESSED: LazyLock<Arc<CouplingsAssessment>> = LazyLock::new(|| {
     Engine::default()
         .assess_couplings(
@@ -27,11 +27,11 @@ static ASSESSED: LazyLock<Arc<CouplingsAssessment>> = LazyLock::new(|| {
 fn the_diagnosis_comes_first() {
     let said = coupling_remarks(&ASSESSED, &EXAMPLE.study.dataset);
     let swashplate = said.iter().position(|of| {
-        of.text.starts_with("LAT takes ") && of.text.contains("swashplate phase of ")
+        of.text.starts_with("LAT receives ") && of.text.contains("swashplate phase of ")
     });
     let verdict = said.iter().position(|of| {
         of.text
-            .starts_with("Off the axis, J of conditions left out is ")
+            .starts_with("Off-axis J of conditions left out of the fit is ")
     });
     assert!(swashplate.unwrap() < verdict.unwrap(), "{said:#?}");
     assert!(
@@ -39,11 +39,9 @@ fn the_diagnosis_comes_first() {
             .all(|of| !of.text.contains("switch the couplings off")),
         "{said:#?}"
     );
-    assert!(
-        coupling_offer(&ASSESSED)
-            .unwrap()
-            .starts_with("With mixing and feedback off-axis J of conditions left out would be ")
-    );
+    assert!(coupling_offer(&ASSESSED).unwrap().starts_with(
+        "With mixing and feedback, off-axis J of conditions left out of the fit would be "
+    ));
 }
 
 #[test]
@@ -61,15 +59,15 @@ fn an_unstable_pole_in_the_band_is_told_before_faster_ones_beyond_it() {
     let said = coupling_cautions(&assessed, &EXAMPLE.study.dataset);
     let poles = said
         .iter()
-        .find(|of| of.text.contains("newly unstable"))
+        .find(|of| of.text.contains("become unstable"))
         .unwrap();
     assert_eq!(poles.kind, RemarkKind::Trouble);
-    let words = "2 poles of other kept physics models are newly unstable with the couplings: in \
-                 the band condition 4, slow at 2.000 rad/s; condition 4, fast at 90.000 rad/s.";
+    let words = "2 poles of other kept physics models become unstable with the couplings: within \
+                 the band, condition 4, slow at 2.000 rad/s; condition 4, fast at 90.000 rad/s.";
     assert_eq!(poles.text, words);
     assert!(
         said.iter()
-            .any(|of| of.text.contains("rest on 10 of 11 conditions")),
+            .any(|of| of.text.contains("are based on 10 of 11 conditions")),
         "{said:#?}"
     );
 }

@@ -1,5 +1,4 @@
-//! Decisions in words: differences between two sets of decisions, and between two states of a
-//! dataset.
+//! Differences between two sets of decisions, and between two states of a dataset, in words.
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -11,14 +10,13 @@ use gdcm_study::decisions::choices::BundleChoice;
 use gdcm_study::decisions::differences::Difference;
 use gdcm_study::decisions::setting::SETTINGS;
 
-/// One changed decision.
+/// A decision that differs between two studies.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DecisionDifference {
     /// Subject of the decision: "α of the gains", "LON → Q", "nominal (condition 10)".
     pub what: String,
-    /// The decision before: "1", "held", "rejected".
+    /// Previous value: "1", "held", "rejected".
     pub before: String,
-    /// The decision after.
     pub after: String,
 }
 
@@ -51,7 +49,7 @@ impl YesNo {
 }
 
 /// Lists the decisions in which `after` differs from `before`: settings, responses, then condition
-/// by condition. Both studies have the same dataset. Variants are not compared.
+/// by condition. Both studies must have the same dataset. Variants are not compared.
 pub fn decision_differences(before: &Study, after: &Study) -> Vec<DecisionDifference> {
     let mut differences = setting_differences(before, after);
     let held = YesNo {
@@ -206,12 +204,13 @@ fn representative_words(choice: &BundleChoice) -> String {
     }
 }
 
-/// Describes a difference between a dataset and the dataset with which a study was made.
+/// Describes a difference between a dataset and an earlier state of it, with which a study was
+/// made.
 pub fn dataset_difference_text(difference: &Difference) -> String {
     match difference {
         Difference::AnotherFile { expected, found } => format!(
-            "the dataset has changed since the study was saved, and the study does not say what it \
-             held: expected SHA-256 {expected}, found {found}"
+            "the dataset has changed since the study was saved, and the study does not record the \
+            earlier contents: expected SHA-256 {expected}, found {found}"
         ),
         Difference::ConditionAdded(id) => format!("condition {id} was added"),
         Difference::ConditionRemoved(id) => format!("condition {id} was removed"),
@@ -219,7 +218,7 @@ pub fn dataset_difference_text(difference: &Difference) -> String {
             condition,
             before_kt,
             now_kt,
-        } => format!("condition {condition} is flown at {now_kt} kt, was {before_kt} kt"),
+        } => format!("condition {condition} is at {now_kt} kt; it was at {before_kt} kt"),
         Difference::ModelAdded(id) => format!("{id} was added"),
         Difference::ModelRemoved(id) => format!("{id} was removed"),
         Difference::ModelChanged(id) => format!("{id} has changed"),

@@ -1,4 +1,4 @@
-//! The analysis of the reference dataset with leads, and sentences and tables about it.
+//! Tests of sentences and tables about the reference dataset, analysed with leads.
 
 use std::sync::{Arc, LazyLock};
 
@@ -7,7 +7,7 @@ use gdcm_study::{Analysis, Engine, PhaseCorrection, Study, Unobserved};
 
 use crate::reference_tests::reference_dataset;
 
-/// The analysis of the reference dataset with leads.
+/// Analysis of the reference dataset with leads.
 pub(crate) static EXAMPLE: LazyLock<Analysis> = LazyLock::new(|| {
     let mut study = Study::new(Arc::new(reference_dataset()));
     study

@@ -1,5 +1,5 @@
-//! Sentences about lead filters: the lead that each response needs, the filters, and the checks
-//! before they are used (M15).
+//! Sentences about lead filters: the lead that each response needs, the filters, and the checks to
+//! make before they are used (M15).
 
 use gdcm_method::correction::{Channel, LeadPrice};
 use gdcm_method::uncertainty::Scalar;
@@ -13,17 +13,18 @@ use gdcm_study::{ConditionAnalysis, PhaseCorrection, Study};
 use crate::missed_targets::missed_target_texts;
 use crate::remark::{Remark, RemarkKind, Repeated};
 
-/// Maximum difference \[s\] between the two values of D at which they describe a delay.
+/// Maximum difference \[s\] between the two values of D, by eq. (9) and over the band, at which the
+/// missing phase can be due to a delay.
 const APART_S: f64 = 0.02;
 /// Minimum absolute signed delay \[s\] that needs a correction.
 const NOTHING_S: f64 = 2e-3;
 /// Minimum gain increase \[dB\] that is reported.
 const NOTHING_DB: f64 = 0.05;
 
-/// Describes the lead of responses and channels: "P from LAT wants 65 ms of lead over the band: 24
+/// Describes the lead of responses and channels: "P from LAT needs 65 ms of lead over the band: 24
 /// on P, 41 on LAT"; "LAT: as if a servo of 17 rad/s were replaced by one of 36 rad/s; +12.4 dB
-/// above the band". If `uncertainty` is given, the lead of a response has its error bar: "65 ± 4
-/// ms" (M13).
+/// above the band". With `uncertainty`, the lead of a response has its error bar: "65 ± 4 ms"
+/// (M13).
 pub fn lead_words(
     study: &Study,
     result: &ConditionAnalysis,
@@ -60,7 +61,7 @@ pub fn lead_words(
     words
 }
 
-/// Describes the lead or delay that a response needs, and the parts of its two channels.
+/// Describes the lead or delay that a response needs, and the contributions of its two channels.
 fn wanted_lead_words(
     study: &Study,
     result: &ConditionAnalysis,
@@ -82,7 +83,7 @@ fn wanted_lead_words(
         )
     };
     let mut text = format!(
-        "{} from {} wants {}{} ms of {} over the band: {}, {}",
+        "{} from {} needs {}{} ms of {} over the band: {}, {}",
         output.name_in(&study.dataset),
         input.name_in(&study.dataset),
         whole_ms(wanted_s),
@@ -97,7 +98,7 @@ fn wanted_lead_words(
     Some(text)
 }
 
-/// Formats the absolute value of a delay in milliseconds.
+/// Formats the absolute value of a delay in whole milliseconds.
 fn whole_ms(tau_s: f64) -> String {
     telling(s_to_ms(tau_s.abs()), 0)
 }
@@ -116,7 +117,7 @@ fn half_width_words(
 }
 
 /// Describes the number of states that the leads add, and the frequency up to which the corrected
-/// model is valid.
+/// model is valid; `None` without leads.
 pub fn lead_limit_words(result: &ConditionAnalysis) -> Option<String> {
     let leads = &result.compensated.as_ref()?.leads;
     let limit = number(LeadPrice::of(leads)?.limit_rad_s);
@@ -141,7 +142,7 @@ pub fn servo_words(filter: LeadFilter) -> String {
     )
 }
 
-/// Returns the cautions about leads in words; empty where leads are not requested (M15.6).
+/// Returns the cautions about leads as sentences; empty if leads are not requested (M15.6).
 pub fn lead_cautions(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
     if result.compensated.is_none() {
         return Vec::new();
@@ -153,8 +154,8 @@ pub fn lead_cautions(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
         .collect()
 }
 
-/// Returns the remarks on leads and on the checks before they are used. For a study without leads,
-/// they only report whether leads would help.
+/// Returns the remarks on leads, including the checks to make before they are used. For a study
+/// without leads, they only report whether leads would help.
 pub(crate) fn lead_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let mut remarks: Vec<Remark> = common_lead(result).into_iter().collect();
     if study.settings.phase == PhaseCorrection::Lead {
@@ -166,14 +167,15 @@ pub(crate) fn lead_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Rem
     remarks
 }
 
-/// Reports J over the constrained responses without and with leads, where leads are recommended.
+/// Reports the mean J over the constrained responses without and with leads; `None` unless leads
+/// are recommended.
 fn offered_leads(result: &ConditionAnalysis) -> Option<Remark> {
     let offer = result.offer?;
     let without = telling(offer.without, 0);
     let with = telling(offer.with, 0);
     let text = format!(
-        "All held responses want lead: with a delay or lead in each channel their J would be about \
-         {with} in the mean, in place of {without}."
+        "All held responses need lead: with a delay or lead in each channel, their mean J would \
+        be about {with} instead of {without}."
     );
     let remark =
         Remark::caution("leads-offered", text).repeated(Repeated::LeadsOffered([without, with]));
@@ -183,7 +185,8 @@ fn offered_leads(result: &ConditionAnalysis) -> Option<Remark> {
     })
 }
 
-/// Reports that all constrained responses need about the same lead, and what to check first.
+/// Reports that all constrained responses need about the same lead, and which causes to check
+/// first.
 fn common_lead(result: &ConditionAnalysis) -> Option<Remark> {
     let mut wanted_s: Vec<f64> = result
         .held()
@@ -202,15 +205,15 @@ fn common_lead(result: &ConditionAnalysis) -> Option<Remark> {
     }
     let lead_ms = telling(-s_to_ms(middle), 0);
     let text = format!(
-        "All held responses want about {lead_ms} ms of lead: check first the time alignment of the \
-         records, the simulation's integration and sampling delay, then servo and sensor models; a \
-         common lag is better taken out where it arises than corrected."
+        "All held responses need about {lead_ms} ms of lead. First check the time alignment of \
+        the records, and the integration and sampling delay of the simulation, then the servo \
+        and sensor models: a common lag is better removed at its source than corrected."
     );
     Some(Remark::caution("common-lead", text).repeated(Repeated::CommonLead(lead_ms)))
 }
 
-/// Reports whether every constrained response gets the lead that it needs; if not, which does not
-/// and why.
+/// Reports whether every constrained response gets the lead that it needs; otherwise names the
+/// responses that do not, with the reason.
 fn achieved(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let delays = &result.delays;
     let is_negligible = delays
@@ -221,14 +224,14 @@ fn achieved(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     if is_negligible {
         return vec![Remark::good(
             "leads-negligible",
-            "Nothing to do for the phase: every delay or lead is less than 2 ms.",
+            "No phase correction is needed: every delay or lead is below 2 ms.",
         )];
     }
     if delays.unmatched.is_empty() {
         let text = match result.held().marked().count() {
             0 => "No delay or lead is held.".to_owned(),
-            1 => "The held response gets the delay or lead that it wants.".to_owned(),
-            count => format!("All {count} held responses get the delay or lead that they want."),
+            1 => "The held response gets the delay or lead that it needs.".to_owned(),
+            count => format!("All {count} held responses get the delay or lead that they need."),
         };
         return vec![Remark::good("leads-matched", text)];
     }
@@ -238,7 +241,8 @@ fn achieved(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
         .collect()
 }
 
-/// Reports the gain increase of the lead filters within the band; the channel gains compensate it.
+/// Reports the gain increase within the band due to the lead filters, for which the channel gains
+/// compensate.
 fn raised_gain(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     let compensated = result.compensated.as_ref()?;
     let rises = result.held().marked().filter_map(|pair| {
@@ -252,14 +256,15 @@ fn raised_gain(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     let most_db = telling(rise_db.abs(), 1);
     let name = study.dataset.pair_name(pair);
     let text = format!(
-        "The lead filters raise the gain within the band, which the gains take back: by up to \
-         {most_db} dB ({name})."
+        "The lead filters raise the gain within the band by up to {most_db} dB ({name}); the \
+        channel gains compensate for this."
     );
     Some(Remark::caution("gain-raised", text).repeated(Repeated::RaisedGain(most_db, pair)))
 }
 
 /// Reports the constrained responses whose two values of D are far apart, which indicates a zero or
-/// a mode. Responses with a suspected sign difference are excepted: half a turn has another cause.
+/// a mode in the band. Responses with a suspected sign difference are excepted, because their half
+/// turn of phase has another cause.
 fn not_of_a_delay(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     let delta = &result.comparison.delta;
     let mut apart = Vec::new();
@@ -284,13 +289,12 @@ fn not_of_a_delay(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
         return None;
     }
     let remedy = if study.settings.phase == PhaseCorrection::Lead {
-        ": no lead filter mends it"
+        ", which a lead filter cannot correct"
     } else {
         ""
     };
     let text = format!(
-        "The missing phase is not that of a delay, but of a zero or a mode in the band{remedy}: \
-         {}.",
+        "The missing phase is not due to a delay, but to a zero or a mode in the band{remedy}: {}.",
         apart.join("; ")
     );
     Some(Remark::caution("not-a-delay", text))

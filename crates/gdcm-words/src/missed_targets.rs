@@ -3,8 +3,8 @@
 use gdcm_method::correction::Solution;
 use gdcm_study::Study;
 
-/// Describes the constrained responses that miss their targets, in a single text; then each
-/// conflict among constraints that causes it.
+/// Returns a text on all constrained responses that miss their targets, then a text on each
+/// conflict among the constraints that causes this.
 pub fn missed_target_texts(study: &Study, solution: &Solution) -> Vec<String> {
     let (inputs, outputs) = study.dataset.names_of_channels();
     let band_top = study.settings.band.max();

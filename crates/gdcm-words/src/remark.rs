@@ -5,7 +5,7 @@ use gdcm_model::dataset::Pair;
 use gdcm_study::PhaseCorrection;
 use gdcm_study::decisions::signs::SignRole;
 
-/// A remark's kind.
+/// Kind of a remark: whether a request was fulfilled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RemarkKind {
     /// The request was fulfilled.
@@ -16,10 +16,10 @@ pub enum RemarkKind {
     Trouble,
 }
 
-/// A remark on a result.
+/// A remark on a result, with the decision that it suggests, if any.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Remark {
-    /// The remark's stable code, for programs and tests.
+    /// Stable code, for programs and tests.
     pub code: &'static str,
     pub kind: RemarkKind,
     /// One or two sentences.
@@ -28,24 +28,25 @@ pub struct Remark {
     pub ignore: Option<Pair>,
     /// The phase correction that the user may choose instead, if suggested.
     pub phase: Option<PhaseCorrection>,
-    /// The channel whose sign the user may reverse, or restore if the role is `None`.
+    /// The channel whose sign the user may reverse or, if the role is `None`, restore.
     pub turn: Option<(Channel, Option<SignRole>)>,
-    /// Content for a common table, if many conditions have the remark.
+    /// Content for a common table, used if many conditions have this remark.
     pub repeated: Option<Repeated>,
 }
 
 /// Content of a remark that many conditions have; such remarks are collected in a table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Repeated {
-    /// Constrained responses need lead, with each response's lead \[ms\].
+    /// Constrained responses need lead: each response with its lead \[ms\].
     NeedsLead(Vec<(Pair, String)>),
-    /// All constrained responses need about the same lead \[ms\].
+    /// All constrained responses need about this lead \[ms\].
     CommonLead(String),
-    /// Constrained responses are farther from flight than without a correction.
+    /// Constrained responses that are farther from flight with the correction than without it.
     Farther(Vec<Pair>),
-    /// Maximum gain increase within the band by the lead filters \[dB\], and its response.
+    /// Maximum gain increase \[dB\] within the band due to the lead filters, and the response in
+    /// which it occurs.
     RaisedGain(String, Pair),
-    /// Mean J over the constrained responses without leads, and with them.
+    /// Mean J over the constrained responses, without and with leads.
     LeadsOffered([String; 2]),
 }
 
@@ -68,7 +69,7 @@ impl Remark {
         Self::new(code, RemarkKind::Good, text.into())
     }
 
-    /// Creates a caution.
+    /// Creates the remark that a request was fulfilled, with a caution.
     pub fn caution(code: &'static str, text: impl Into<String>) -> Self {
         Self::new(code, RemarkKind::Caution, text.into())
     }
@@ -78,7 +79,7 @@ impl Remark {
         Self::new(code, RemarkKind::Trouble, text.into())
     }
 
-    /// Marks the remark as one that many conditions share.
+    /// Returns the remark with content for the common table of many conditions.
     pub(crate) fn repeated(self, repeated: Repeated) -> Self {
         Self {
             repeated: Some(repeated),

@@ -22,7 +22,7 @@ use gdcm_study::results::time_histories::TimeHistories;
 use crate::table::Table;
 use crate::time_histories::{cost_cells, cost_heads, output_weights_text, percent_rounded_down};
 
-/// Heading of the modulus.
+/// Heading of the columns with the modulus of a pole.
 const MODULUS: &str = "|\u{3bb}| [rad/s]";
 
 /// Tabulates every on-axis bandwidth and phase delay, with cautions.
@@ -57,7 +57,7 @@ pub fn bandwidth_table(requirements: &Requirements, dataset: &Dataset) -> Table 
     table
 }
 
-/// Returns the cautions about a bandwidth, or why it has no value.
+/// Returns the cautions about a bandwidth, or the reason why it has no value.
 fn bandwidth_remark(finding: &BandwidthFinding) -> String {
     let mut words = Vec::new();
     let absent = finding
@@ -71,19 +71,19 @@ fn bandwidth_remark(finding: &BandwidthFinding) -> String {
         && (finding.gain_limited || words.is_empty())
     {
         words.push(match rule {
-            BandwidthRule::Gain => "gain-limited: the standard warns of it",
-            BandwidthRule::Phase => "of the phase margin",
-            BandwidthRule::PhaseGainUnknown => "of the phase margin; the gain margin is not known",
+            BandwidthRule::Gain => "gain-limited, which the standard warns against",
+            BandwidthRule::Phase => "from the phase margin",
+            BandwidthRule::PhaseGainUnknown => "from the phase margin; the gain margin is unknown",
         });
     }
     if !finding.rests_above_band.is_empty() {
-        words.push("rests on the model above the band");
+        words.push("depends on the model above the band");
     }
     if !finding.rests_below_band.is_empty() {
-        words.push("rests on the model below the band");
+        words.push("depends on the model below the band");
     }
     if finding.phase_delay_of_line {
-        words.push("τ_p of the least-squares line");
+        words.push("τ_p from the least-squares line");
     }
     words.join("; ")
 }
@@ -99,10 +99,10 @@ pub fn mode_table(requirements: &Requirements, condition: ConditionId) -> Table 
     let is_coupled = modes.iter().any(|mode| mode.corrected_verdict.is_some());
     let has_deviations = modes.iter().any(|mode| mode.identified_deviation.is_some());
     let deviations = if has_deviations {
-        "standard deviations of flown modes known"
+        "standard deviations of the identified modes are available"
     } else {
-        "standard deviations of flown modes not known (they are of a model identified in this \
-         session): not determined is what lies below the band"
+        "standard deviations of the identified modes are unavailable (only models identified in \
+        this session have them); modes below the band count as not determined"
     };
     let title = format!("Modes of condition {condition}; {deviations}");
     let mut table = Table::new(title, mode_columns(is_coupled));
@@ -229,8 +229,8 @@ fn summary_cells(finding: &SummaryFinding) -> Vec<String> {
     ]
 }
 
-/// Adds the identified models. They are the reference of the other models: only their time
-/// histories have results.
+/// Adds rows for the identified models. These are the reference of the other models, so that only
+/// their time histories have results.
 fn add_identified_rows(table: &mut Table, histories: &TimeHistories) {
     let role = RequirementRole::Identified;
     for finding in &histories.records {
@@ -265,13 +265,13 @@ pub fn summary_of_row<'a>(
         .find(|finding| finding.condition.to_string() == *condition && finding.role.name() == role)
 }
 
-/// Comparison of every condition's corrected model with the identified model.
+/// Table that compares every condition's corrected model with the identified model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RequirementsOverview {
-    /// One row for each requirement, with its limit; one column for each condition; a dash where
-    /// there is no value.
+    /// A row for each requirement, with its limit, and a column for each condition; a dash marks a
+    /// missing value.
     pub table: Table,
-    /// Whether a cell is beyond its limit, row by row.
+    /// Whether each cell is beyond its limit, row by row.
     outside: Vec<Vec<bool>>,
 }
 
@@ -285,7 +285,7 @@ struct OverviewRow {
     limit: String,
 }
 
-/// Value of a cell, and whether it is outside its limit.
+/// Value of a cell, and whether it is beyond its limit.
 struct Judged {
     text: String,
     is_outside: bool,
@@ -311,8 +311,8 @@ impl RequirementsOverview {
             .collect();
         let mut columns = HEADS.map(str::to_owned).to_vec();
         columns.extend(ids.iter().map(ToString::to_string));
-        let title = "Corrected against identified models, condition by condition; the limits are \
-                     the program's, of no standard";
+        let title = "Corrected models compared with identified models, condition by condition; \
+            the limits are set in this program, not by a standard";
         let mut overview = Self {
             table: Table::new(title, columns),
             outside: Vec::new(),
@@ -329,7 +329,7 @@ impl RequirementsOverview {
         overview.add(
             OverviewRow {
                 requirement: "modes beyond tolerance".to_owned(),
-                unit: "of those with a tolerance",
+                unit: "of modes with a tolerance",
                 limit: "0".to_owned(),
             },
             &ids,
@@ -384,7 +384,7 @@ impl RequirementsOverview {
         });
     }
 
-    /// Adds the share of time inside each tolerance, except those of integrated outputs.
+    /// Adds the share of time inside each tolerance, except tolerances of integrated outputs.
     fn add_histories(
         &mut self,
         histories: &TimeHistories,
@@ -450,7 +450,7 @@ fn has_bandwidth(requirements: &Requirements, pair: Pair) -> bool {
     })
 }
 
-/// Counts the modes of the corrected model beyond their tolerance; `None` where no mode with a
+/// Counts the modes of the corrected model beyond their tolerance; `None` if no mode with a
 /// tolerance is determined.
 fn modes_outside(requirements: &Requirements, id: ConditionId) -> Option<Judged> {
     let mut within = 0;
@@ -459,8 +459,8 @@ fn modes_outside(requirements: &Requirements, id: ConditionId) -> Option<Judged>
         if mode.condition != id {
             continue;
         }
-        // Gains and delays move no pole: without couplings, the corrected model has the poles of
-        // the physics model.
+        // Gains and delays do not move poles: without couplings, the corrected model has the poles
+        // of the physics model.
         match mode.corrected_verdict.unwrap_or(mode.verdict) {
             ModeVerdict::Within => within += 1,
             ModeVerdict::Outside => outside += 1,

@@ -1,11 +1,12 @@
-//! Sentences about the schedule, compared with the conditions' own corrections.
+//! Sentences that compare the schedule with the conditions' own corrections.
 
 use gdcm_method::correction::Channel;
 use gdcm_model::dataset::Dataset;
 use gdcm_model::units::s_to_ms;
 use gdcm_study::results::schedule_losses::DelayedChannel;
 
-/// Describes the delays of a channel: "delay of output NX: 5.3 ms in condition 4".
+/// Describes the longest delay of a channel, and the number of other conditions with a delay:
+/// "delay of output NX: 5.3 ms in condition 4".
 pub fn delayed_channel_text(delayed: &DelayedChannel, dataset: &Dataset) -> String {
     let side = match delayed.channel {
         Channel::Input(_) => "input",

@@ -2,11 +2,10 @@
 
 use gdcm_model::units::without_sign_of_zero;
 
-/// Rows with texts under headings. Headings name quantity and unit (`airspeed [kt]`), so that a
+/// A table of strings under headings. Headings name quantity and unit (`airspeed [kt]`), so that a
 /// table is self-contained.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Table {
-    /// Title of the table.
     pub title: String,
     /// Headings of the columns, with units.
     pub columns: Vec<String>,
@@ -27,8 +26,8 @@ impl Table {
         }
     }
 
-    /// Adds a row. Cells beyond the last column are dropped, missing cells are empty, and the sign
-    /// of zeros is removed.
+    /// Adds a row. Cells beyond the last column are dropped, missing cells are empty, and a zero
+    /// loses its minus sign.
     pub fn row(&mut self, cells: impl IntoIterator<Item = impl Into<String>>) {
         let mut cells: Vec<String> = cells
             .into_iter()
@@ -73,7 +72,7 @@ impl Table {
             .unwrap_or(0)
     }
 
-    /// Returns whether a column has nonempty cells, all of which are numbers.
+    /// Returns whether a column has nonempty cells and all of them are numbers.
     pub fn has_numbers(&self, column: usize) -> bool {
         let cells: Vec<&str> = self
             .rows
@@ -96,7 +95,7 @@ struct TextColumn {
 impl TextColumn {
     /// Pads a cell to the width of the column.
     fn aligned(&self, cell: &str) -> String {
-        // A width in a format string is limited to 65535.
+        // Padded by hand, because a width in a format string is limited to 65535.
         let padding = " ".repeat(self.width - cell.chars().count());
         if self.is_numeric {
             format!("{padding}{cell}")
@@ -106,7 +105,7 @@ impl TextColumn {
     }
 }
 
-/// Returns the cell; if it is a zero, without its sign.
+/// Returns the cell, without its sign if it is a zero.
 fn unsigned_zero(cell: String) -> String {
     let unsigned = without_sign_of_zero(&cell);
     if unsigned.len() == cell.len() {
@@ -116,8 +115,8 @@ fn unsigned_zero(cell: String) -> String {
     }
 }
 
-/// Returns whether a text is a number, with optional minus sign and unit, or the dash for a missing
-/// value.
+/// Returns whether a string is a number with optional minus sign and unit, or the dash for a
+/// missing value.
 fn is_number(cell: &str) -> bool {
     let mut words = cell.split(' ');
     let number = words

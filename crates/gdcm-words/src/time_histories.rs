@@ -130,8 +130,9 @@ pub fn record_table(histories: &TimeHistories, condition: ConditionId) -> Table 
         }
     }
     table.title = format!(
-        "Records of condition {condition}: share of time inside, largest excess beyond the \
-         corridor and when; {} of {all} rows, of which every model is always inside, are left out",
+        "Records of condition {condition}: share of time inside, and largest excess beyond the \
+        corridor with its time; {} of {all} rows are omitted, because every model is always \
+        inside",
         all - table.rows.len()
     );
     table
@@ -165,11 +166,11 @@ pub fn output_weights_text(histories: &TimeHistories) -> String {
     } else {
         format!("; without {}", Vec::from_iter(excluded).join(", "))
     };
-    format!("deg, deg/s, ft/s and ft/s\u{b2} weighing the same{without}")
+    format!("equal weights for deg, deg/s, ft/s and ft/s\u{b2}{without}")
 }
 
-/// Formats a result: share of time inside, largest excess, and an incorrect trend: "85.2; 0.84
-/// deg/s at 12.3 s; opposite trend".
+/// Formats a result: share of time inside \[%\], largest excess, and the trend if it is incorrect:
+/// "85.2; 0.84 deg/s at 12.3 s; opposite trend".
 fn excess_words(finding: &ToleranceFinding) -> String {
     let mut words = vec![percent_rounded_down(Some(finding.share_inside))];
     if finding.largest_excess > 0.0 {
@@ -238,7 +239,7 @@ pub fn record_history_table(history: &RecordHistory) -> Table {
     table
 }
 
-/// Formats a share in percent, rounded down: 100 is reached only by the whole.
+/// Formats a share in percent, rounded down: only the whole is displayed as 100.
 pub(crate) fn percent_rounded_down(share: Option<f64>) -> String {
     decimals_or_dash(share.map(|share| (1e3 * share).floor() / 10.0), 1)
 }

@@ -1,4 +1,4 @@
-//! Tables of time histories of the example.
+//! Tests of the tables of time histories for the example.
 
 use std::sync::Arc;
 
@@ -21,7 +21,8 @@ use crate::time_histories::{history_cost_table, record_table, share_table};
 const CONDITION: ConditionId = ConditionId(3);
 const SAMPLE_TIME_S: f64 = 0.02;
 
-/// Builds a sweep of the first input alone, `samples` long, with the outputs of a role's model.
+/// Builds a record of `samples` samples: a sweep of the first input, and the outputs that the model
+/// in `role` simulates.
 fn flown(analysis: &Analysis, role: RequirementRole, samples: usize) -> FlightRecord {
     let model = analysis
         .role_model(analysis.condition(CONDITION).unwrap(), role)
@@ -80,7 +81,7 @@ fn tables_show_the_shares_costs_and_excesses_of_the_records() {
         shown.rows[2][..3],
         ["3", "2", "pitch rate"].map(str::to_owned)
     );
-    // Rounded down: a share below 1 is never displayed as 100.
+    // The share is rounded down: below 1, it is never displayed as 100.
     assert_eq!(
         shown.rows[2][3].parse::<f64>().unwrap(),
         (1e3 * share).floor() / 10.0

@@ -31,7 +31,10 @@ pub fn difference_text(difference: &AirspeedDifference, level: f64) -> String {
     let differ =
         format!("conditions {first} and {second} ({airspeed_kt:.0} kt) differ by {percent:.0} %");
     let Some(ratio) = difference.difference.ratio() else {
-        return format!("{differ}; their bundles have no spread to compare that with");
+        return format!(
+            "{differ}; their bundles have no spread with which to compare the \
+            difference"
+        );
     };
     format!(
         "{differ}, {ratio:.1} × expected from trim and identification uncertainty; {}",
@@ -64,7 +67,8 @@ pub fn differences_summary(uncertainty: &Uncertainty) -> String {
 }
 
 /// Describes the test for a second variable: "from the lowest to the highest altitude −7 %: not
-/// needed; an effect smaller than ± 6 % could not have been seen".
+/// needed; an effect smaller than ± 6 % could not have been detected"; or the reason why it could
+/// not be tested.
 pub fn second_variable_text(test: &SecondVariableTest) -> String {
     let variable = test.variable.name();
     let effect = match &test.effect {
@@ -76,7 +80,7 @@ pub fn second_variable_text(test: &SecondVariableTest) -> String {
     let sign = if percent < 0.0 { "−" } else { "+" };
     format!(
         "from the lowest to the highest {variable} {sign}{:.1} %: {}; an effect smaller than ± \
-         {visible:.1} % could not have been seen",
+        {visible:.1} % could not have been detected",
         percent.abs(),
         need(test)
     )
@@ -87,7 +91,7 @@ fn need(test: &SecondVariableTest) -> &'static str {
     if test.needed { "needed" } else { "not needed" }
 }
 
-/// Formats a value with this number of decimals, or the placeholder.
+/// Formats a value with this number of decimals; the placeholder if it is missing.
 fn cell(figure: Option<f64>, decimals: usize) -> String {
     match figure {
         Some(figure) => format!("{figure:.decimals$}"),
@@ -109,7 +113,7 @@ fn probability(p: Option<f64>) -> String {
 }
 
 /// Tabulates the differences in net gain at equal airspeed, in descending order of their ratio to
-/// the expected difference; returns the difference of each row too.
+/// the expected difference; also returns the differences in row order.
 pub fn difference_table(
     dataset: &Dataset,
     uncertainty: &Uncertainty,
@@ -148,10 +152,10 @@ pub fn second_variable_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Ta
         "response",
         "variable",
         "effect [%]",
-        "not seen below ± [%]",
+        "detectable from ± [%]",
         "Holm p",
         "unseen [%]",
-        "with it [%]",
+        "unseen with it [%]",
         "verdict",
     ];
     let mut table = Table::new("Does the schedule need a second variable?", columns);
@@ -191,7 +195,7 @@ pub fn scatter_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Table {
         "interval [%]",
         "× expected",
     ];
-    let mut table = Table::new("What the scatter of the net gains is made of", columns);
+    let mut table = Table::new("Contributions to the scatter of the net gains", columns);
     let deviation = |variance: f64| percent(Some(variance.sqrt()));
     for scatter in &uncertainty.scatter {
         for (about, decomposition) in [

@@ -1,4 +1,4 @@
-//! Job of the live analysis, which follows every change to the study.
+//! Job of the live analysis, which is repeated after every change to the study.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -14,22 +14,23 @@ use gdcm_study::{Analysis, ConditionAnalysis, Engine, Study};
 use super::threads::ReplySender;
 use crate::gui::state::results::FirstResult;
 
-/// A problem and its gains, which another job has proven optimal.
+/// A problem, and its solution proven optimal by another job.
 pub(super) type Proof = (Arc<Problem>, Arc<Solution>);
 
-/// Request for the live analysis of the current study. All parts are shared, so a copy is cheap.
+/// Request for the live analysis of a study. All parts are shared, so a copy is cheap.
 #[derive(Clone)]
 pub(super) struct AnalysisJob {
-    /// Job number. A proof that arrives later creates another job for the same request.
+    /// Job number. A later proof causes another job, with a new number, for the same request.
     pub(super) number: u64,
-    /// Request number; newer requests have higher numbers.
+    /// Request number; it increases with each request.
     pub(super) generation: u64,
     pub(super) study: Study,
     /// The displayed condition, whose result and curves are computed first.
     pub(super) condition: ConditionId,
-    /// Problems proven since the last analysis.
+    /// Optimality proofs found since the last analysis.
     pub(super) proofs: Vec<Proof>,
-    /// Receives the result of the displayed condition before those of the other conditions.
+    /// Channel to the window, which receives the result of the displayed condition before the
+    /// results of the other conditions.
     pub(super) replies: ReplySender,
 }
 
@@ -41,7 +42,7 @@ impl AnalysisJob {
             .any(|(proven, _)| Arc::ptr_eq(problem, proven))
     }
 
-    /// Shows the result of the displayed condition before the whole analysis is complete.
+    /// Sends the result of the displayed condition before the whole analysis is complete.
     fn send_first(&self, outcome: &Result<ConditionAnalysis, ConditionFailure>) {
         let first = FirstResult {
             generation: self.generation,
@@ -97,7 +98,8 @@ impl Job for AnalysisJob {
         if self.generation == newer.generation {
             return true;
         }
-        // The last step in each condition is its optimum, which depends on other settings too.
+        // The models are compared once only the last step of each condition remains: its optimum,
+        // which depends on other settings too.
         let is_compared = total > 0 && done + self.study.dataset.conditions().len() >= total;
         !is_compared && self.compares_the_same(newer)
     }

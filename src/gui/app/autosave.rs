@@ -1,4 +1,4 @@
-//! Keeps unsaved decisions in a recovery file, in a thread.
+//! Thread that keeps unsaved decisions in a recovery file.
 
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -15,7 +15,7 @@ use super::threads::ReplySender;
 const FOLDER: &str = "recovery";
 /// Delay before a retry after a failure, such as a full disk.
 const AGAIN_AFTER: Duration = Duration::from_secs(10);
-/// Waiting time if nothing is due.
+/// Waiting time if no work is pending.
 const NEVER: Duration = Duration::from_secs(3600);
 
 /// Decisions to keep. All parts are shared, so a copy is cheap.
@@ -26,11 +26,11 @@ pub(super) struct Unsaved {
     pub(super) saved_as: Option<PathBuf>,
 }
 
-/// Decisions kept in a recovery file.
+/// Unsaved decisions stored in a recovery file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Kept {
     pub path: PathBuf,
-    /// Time at which the decisions in the file were taken.
+    /// Time of the latest decision in the file.
     pub at: SystemTime,
 }
 
@@ -41,9 +41,10 @@ pub enum Remains {
     Saved,
     /// All unsaved decisions are in the recovery file.
     Kept(Kept),
-    /// Some decisions are in the recovery file; later decisions could not be kept, with the reason.
+    /// Some decisions are in the recovery file; for later ones, writing failed for the given
+    /// reason.
     KeptInPart(Kept, String),
-    /// No decisions could be kept, with the reason.
+    /// Unsaved decisions are lost, because writing failed for the given reason.
     Lost(String),
 }
 
@@ -60,33 +61,33 @@ impl Remains {
 
 /// Task for the recovery thread.
 pub(super) enum Task {
-    /// Keep these decisions, taken at this time.
+    /// Keep these decisions, made at this time.
     Keep(Box<Unsaved>, SystemTime),
-    /// Every decision is saved or discarded: nothing to recover.
+    /// Delete the recovery file: every decision is saved or discarded.
     Clear,
-    /// The lost decisions are open again: delete their recovery file once they are kept anew or
-    /// saved.
+    /// The lost decisions are open again: delete their old recovery file once they are kept in a
+    /// new one or saved.
     Restored(LostStudy),
-    /// Discard the lost decisions.
+    /// Delete the recovery file of these lost decisions.
     Discard(LostStudy),
-    /// Finish pending work now and report what remains.
+    /// Finish pending work now and reply with the resulting state.
     Flush(Sender<Remains>),
-    /// Leave the kept decisions for the next start.
+    /// End the thread; the recovery file remains for the next start.
     Close,
 }
 
-/// Keeps unsaved decisions; without a directory, keeps none.
+/// Handle to the recovery thread. Without a directory, no decisions are kept.
 #[derive(Clone)]
 pub struct Autosave {
     tasks: Sender<Task>,
-    /// Decisions last kept; `None` once they are saved.
+    /// Decisions most recently kept; `None` once they are saved.
     kept: Arc<Mutex<Option<Kept>>>,
     /// State of the unsaved decisions when the window and this thread ended.
     at_end: Arc<OnceLock<Remains>>,
 }
 
 impl Autosave {
-    /// Starts the thread, which first offers the decisions lost by earlier windows.
+    /// Starts the thread, which first offers the unsaved decisions of windows that crashed.
     pub(super) fn start(
         directory: Option<&Path>,
         keep_after: Duration,
@@ -123,7 +124,7 @@ impl Autosave {
     }
 
     pub(super) fn send(&self, task: Task) {
-        // The thread ends with the window.
+        // Ignore a failure: the thread ends with the window.
         let _ = self.tasks.send(task);
     }
 
@@ -132,13 +133,13 @@ impl Autosave {
         self.send(Task::Keep(Box::new(unsaved), SystemTime::now()));
     }
 
-    /// Clears the kept decisions: every decision is saved or discarded.
+    /// Deletes the recovery file: every decision is saved or discarded.
     pub(super) fn clear(&self) {
         self.send(Task::Clear);
     }
 
-    /// Finishes pending work and reports what remains; waits at most `limit`. After the window has
-    /// ended, returns the state at its end.
+    /// Finishes pending work and returns the state of the unsaved decisions; waits at most `limit`.
+    /// After the window has ended, returns the state at its end.
     pub(super) fn flush(&self, limit: Duration) -> Remains {
         if let Some(remains) = self.at_end.get() {
             return remains.clone();
@@ -149,7 +150,7 @@ impl Autosave {
             Ok(remains) => remains,
             Err(_) => Remains::new(
                 locked(&self.kept).clone(),
-                Some("the disk did not answer".to_owned()),
+                Some("the disk did not respond".to_owned()),
             ),
         }
     }
@@ -166,7 +167,7 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Decisions that are not in the recovery file yet.
+/// Decisions that are not yet in the recovery file.
 struct Pending {
     unsaved: Box<Unsaved>,
     /// Time of the latest of these decisions.
@@ -174,7 +175,7 @@ struct Pending {
     due: Instant,
 }
 
-/// Recovery thread.
+/// State of the recovery thread.
 struct Keeper {
     folder: Option<PathBuf>,
     keep_after: Duration,
@@ -199,7 +200,7 @@ impl Keeper {
                 Ok(Task::Discard(lost)) => self.report(lost.remove()),
                 Ok(Task::Flush(answer)) => {
                     let remains = self.flush();
-                    // After a timeout nobody listens.
+                    // Ignore a failure: after a timeout, no one receives the reply.
                     let _ = answer.send(remains);
                 }
                 Err(RecvTimeoutError::Timeout) => {
@@ -219,7 +220,8 @@ impl Keeper {
         }
     }
 
-    /// Replaces the pending decisions by newer ones; they stay due at the same time.
+    /// Replaces the pending decisions by newer ones; the time at which they are due does not
+    /// change.
     fn postpone(&mut self, unsaved: Box<Unsaved>, decided: SystemTime) {
         let due = match &self.pending {
             Some(pending) => pending.due,
@@ -233,7 +235,7 @@ impl Keeper {
         });
     }
 
-    /// Clears the kept decisions and removes the recovery files of restored decisions.
+    /// Deletes the recovery file, and those of restored decisions.
     fn clear(&mut self) -> Result<(), FileError> {
         self.pending = None;
         *locked(&self.kept) = None;
@@ -248,13 +250,13 @@ impl Keeper {
         let kept = self.keep();
         let trouble = match (&self.pending, &self.folder) {
             (None, _) => None,
-            (Some(_), None) => Some("there is no directory for them".to_owned()),
+            (Some(_), None) => Some("there is no directory in which to keep them".to_owned()),
             (Some(_), Some(_)) => kept.err().map(|error| error.to_string()),
         };
         Remains::new(locked(&self.kept).clone(), trouble)
     }
 
-    /// Keeps the pending decisions; those that cannot be kept stay pending for a retry.
+    /// Keeps the pending decisions; on an error, they remain pending for a retry.
     fn keep(&mut self) -> Result<(), FileError> {
         let Some(folder) = &self.folder else {
             return Ok(());
@@ -276,8 +278,8 @@ impl Keeper {
         }
     }
 
-    /// Removes the recovery files of restored decisions, which are kept anew or saved by now; stops
-    /// at the first fault.
+    /// Removes the recovery files of restored decisions, which have been kept anew or saved; stops
+    /// at the first error.
     fn remove_restored(&mut self) -> Result<(), FileError> {
         for lost in self.restored.drain(..) {
             lost.remove()?;
@@ -287,13 +289,13 @@ impl Keeper {
 
     fn report(&self, done: Result<(), FileError>) {
         if let Err(error) = done {
-            let message = format!("decisions that are not saved cannot be kept safe: {error}");
+            let message = format!("unsaved decisions cannot be stored for recovery: {error}");
             self.replies.send(|app| app.notify_error(message));
         }
     }
 }
 
-/// Writes the recovery file, whose name is reserved at the first call; returns its path.
+/// Writes the recovery file and returns its path. The first call reserves the file name.
 fn write_recovery(
     unsaved: &Unsaved,
     file: &mut Option<RecoveryFile>,
@@ -329,7 +331,7 @@ mod tests {
         .unwrap()
     }
 
-    /// Far longer than the slowest disk needs.
+    /// Timeout in tests, far longer than the slowest disk needs.
     const LONG: Duration = Duration::from_secs(600);
 
     #[test]
@@ -366,7 +368,7 @@ mod tests {
         let Remains::Kept(first) = autosave.flush(LONG) else {
             panic!("the disk takes it")
         };
-        // A folder at the file's path: no file can be written there.
+        // A folder at the path of the recovery file, so that no file can be written there.
         std::fs::remove_file(&first.path).unwrap();
         std::fs::create_dir(&first.path).unwrap();
         std::fs::write(first.path.join("in the way"), "").unwrap();

@@ -42,10 +42,11 @@ use crate::gui::state::window_state::State;
 use crate::gui::views::need::Need;
 use crate::gui::views::{are_couplings_judged, couplings_job, overlay_job, view_content};
 
-/// Creates an engine, at the start and after a panic, which may leave its caches inconsistent.
+/// Creates an engine: at the start, and after a panic, which may leave the caches of the old engine
+/// inconsistent.
 pub type EngineMaker = Arc<dyn Fn() -> Engine + Send + Sync>;
 
-/// Returns the jobs, by kind, needed by the visible views.
+/// Returns the jobs of a kind that the visible views need.
 macro_rules! needed_jobs {
     ($app:expr, $kind:ident) => {
         $app.work
@@ -62,12 +63,12 @@ macro_rules! needed_jobs {
     };
 }
 
-/// All kinds of jobs and their pool. Dropping them cancels the running jobs and ends the threads
-/// without waiting.
+/// All kinds of jobs and their thread pool. Dropping them cancels the running jobs and ends the
+/// threads without waiting.
 pub(super) struct BackgroundJobs {
-    /// The most urgent kind first.
+    /// In order of urgency, the most urgent first.
     kinds: Rc<Vec<Box<dyn AnyJobKind>>>,
-    /// Keeps the threads running.
+    /// Not used, but dropping it would end the threads.
     _pool: JobPool,
 }
 
@@ -97,7 +98,7 @@ impl BackgroundJobs {
         }
     }
 
-    /// Returns the running work.
+    /// Returns the progress of the running jobs.
     pub(super) fn running_work(&self) -> Background {
         let mut background = Background::default();
         for kind in self.kinds.iter() {
@@ -114,22 +115,23 @@ struct Engines {
 }
 
 impl Engines {
-    /// Returns a maker for kinds that work on the current study, which share the responses of each
-    /// model.
+    /// Returns an engine maker for kinds of jobs that work on the current study; their engines
+    /// share the responses of each model.
     fn sharing(&self) -> impl Fn() -> Engine + Send + Sync + 'static + use<> {
         let make = Arc::clone(&self.make);
         let known = self.known.clone();
         move || make().sharing(&known)
     }
 
-    /// Returns a maker for variants, whose band may differ.
+    /// Returns an engine maker for variants: their engines share no responses, since the band may
+    /// differ.
     fn separate(&self) -> impl Fn() -> Engine + Send + Sync + 'static + use<> {
         let make = Arc::clone(&self.make);
         move || make()
     }
 }
 
-/// Returns the processor's cores as a tool for jobs.
+/// Returns the executor with which a job uses all cores.
 fn cores() -> Box<dyn Executor> {
     Box::new(Pool)
 }
@@ -294,7 +296,7 @@ fn needs(state: &State) -> Vec<Need> {
     needs
 }
 
-/// Drops the outputs whose job is not in `jobs`.
+/// Drops the outputs of jobs that are not in `jobs`.
 fn keep_wanted<J: Job>(kept: &mut Vec<(J, J::Output)>, jobs: &[J]) {
     kept.retain(|(known, _)| jobs.contains(known));
 }
@@ -314,7 +316,7 @@ fn toggles_job(state: &State) -> Option<TogglesJob> {
     Some(TogglesJob { condition })
 }
 
-/// Returns the unproven problems, the displayed condition first.
+/// Returns the jobs that prove the unproven problems, the displayed condition first.
 fn proof_jobs(state: &State) -> Vec<ProofJob> {
     let Some(analysis) = state.analysis() else {
         return Vec::new();
@@ -335,8 +337,8 @@ fn proof_jobs(state: &State) -> Vec<ProofJob> {
     jobs
 }
 
-/// Returns the job that computes the error bars; `None` while the results are recomputed or not yet
-/// drawn, so that the live analysis has all cores.
+/// Returns the job that computes the error bars; `None` while the results are being recomputed or
+/// are not yet drawn, so that the live analysis can use all cores.
 fn uncertainty_job(state: &State) -> Option<UncertaintyJob> {
     let results = &state.results;
     state.analysis()?;

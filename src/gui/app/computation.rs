@@ -19,18 +19,18 @@ use super::threads::{Fault, Reply, ReplySender};
 use crate::gui::state::notices::Bar;
 use crate::gui::views::need::Need;
 
-/// Requested and received results.
+/// Requested and received results of the computation.
 pub(super) struct Computation {
-    /// Last request for the live analysis.
+    /// Last job of the live analysis.
     pub(super) asked: Option<AnalysisJob>,
     pub(super) jobs: BackgroundJobs,
-    /// Proofs that the results do not contain yet.
+    /// Proofs that are not yet part of the results.
     pub(super) proven: Vec<Proof>,
     /// Jobs needed by the visible views in addition to the live analysis.
     pub(super) needs: Vec<Need>,
     /// Study and condition in the newest request.
     pub(super) requested: Option<(Study, ConditionId)>,
-    /// Report being written.
+    /// Report that is being written.
     pub(super) reporting: Option<ReportJob>,
     pub(super) replies: ReplySender,
     /// Replies from threads.
@@ -43,7 +43,8 @@ impl GdcmApp {
         self.ctx.input(|input| input.time)
     }
 
-    /// Requests the results for the current study and condition, unless already requested.
+    /// Requests the results for the current study and condition, unless they have been requested
+    /// already.
     pub(super) fn request(&mut self) {
         let now = self.now();
         let study = &self.state.study;
@@ -62,7 +63,7 @@ impl GdcmApp {
         self.ask();
     }
 
-    /// Sends the newest request with all available proofs.
+    /// Starts the live analysis for the latest request, with all available proofs.
     pub(super) fn ask(&mut self) {
         let Some((study, condition)) = self.work.requested.clone() else {
             return;
@@ -81,8 +82,8 @@ impl GdcmApp {
         });
     }
 
-    /// Records that the live analysis was stopped, by hand or by a fault; the displayed results
-    /// stay.
+    /// Records that the live analysis was stopped, by the user or by a fault; the displayed results
+    /// remain.
     pub(super) fn answer_stopped(&mut self) {
         self.work.proven.clear();
         let results = &mut self.state.results;
@@ -90,7 +91,7 @@ impl GdcmApp {
         results.waiting_since = None;
     }
 
-    /// Requests the stopped computation again.
+    /// Requests a stopped computation again.
     pub(super) fn compute_again(&mut self) {
         self.work.requested = None;
         self.state
@@ -161,7 +162,8 @@ impl GdcmApp {
         }
     }
 
-    /// Reports a panic: the interrupted work, the decisions kept, and the details to send.
+    /// Reports a panic: the interrupted work, that the decisions are kept, and the details to be
+    /// sent to the authors.
     pub(super) fn report_fault(&mut self, work: &str, fault: &Fault) {
         let sentence = format!(
             "A fault in the program ended {work}; your decisions are kept and can be saved: please send this message, the \

@@ -1,4 +1,4 @@
-//! Carries out stopping and resuming the computation.
+//! Commands that stop and resume the computation.
 
 use super::GdcmApp;
 use crate::gui::commands::computing::ComputingCommand;

@@ -1,11 +1,12 @@
-//! Carries out changes to how curves over frequency are shown.
+//! Commands that change how curves over frequency are shown.
 
 use super::GdcmApp;
 use crate::gui::plot::Pane;
 use crate::gui::plot::curve_command::CurveCommand;
 
 impl GdcmApp {
-    /// Applies a command about curves. A change in units refits the value axis.
+    /// Applies a command about curves. If the command changes the units, the value axis is fitted
+    /// again.
     pub(super) fn carry_out_curve(&mut self, command: CurveCommand) {
         let display = &mut self.state.display;
         match command {

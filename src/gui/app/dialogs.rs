@@ -1,4 +1,4 @@
-//! Questions that wait for an answer.
+//! Dialogs and questions that wait for the engineer's answer.
 
 use gdcm_io::{Existing, Opened};
 
@@ -27,17 +27,17 @@ pub(super) enum PendingAction {
     Quit,
 }
 
-/// Open desktop dialog, and actions that wait for the engineer's answer.
+/// Open desktop dialog, and actions postponed until the engineer answers a question.
 pub(super) struct Dialogs {
     pub(super) dialog_open: bool,
-    /// Action waiting for the answer whether unsaved decisions may be lost.
+    /// Action postponed until the engineer confirms that unsaved decisions may be lost.
     pub(super) postponed: Option<PendingAction>,
-    /// Whether the postponed action is carried out after saving.
+    /// Whether the postponed action is carried out once the study is saved.
     pub(super) goes_on_once_saved: bool,
-    /// Command waiting for the answer whether to overwrite files.
+    /// Command postponed until the engineer confirms that files may be overwritten.
     pub(super) overwriting: Option<Command>,
-    /// Treatment of existing files: they are replaced only during the command that the engineer
-    /// confirmed.
+    /// Treatment of existing files: replaced only during a command for which the engineer has
+    /// confirmed it.
     pub(super) existing: Existing,
     pub(super) closing: bool,
 }

@@ -8,7 +8,7 @@ use gdcm_io::source::{FileStamp, file_sha256};
 
 use super::threads::ReplySender;
 
-/// New file content.
+/// Changed content of the watched file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Seen {
     pub(super) path: PathBuf,
@@ -35,11 +35,11 @@ impl DiskWatch {
         })
     }
 
-    /// Watches this file from now on, or none.
+    /// Watches the file at `path` from now on; `None` ends the watching.
     pub(super) fn watch(&mut self, path: Option<&Path>) {
         if self.watched.as_deref() != path {
             self.watched = path.map(Path::to_owned);
-            // Without the thread nothing is watched.
+            // Ignore a failure: if the thread has ended, no file is watched.
             let _ = self.paths.send(self.watched.clone());
         }
     }
@@ -57,8 +57,8 @@ struct Known {
 }
 
 impl Known {
-    /// Checks the file once; returns its content if it is new. A file that is being written is read
-    /// once its time and length stay the same between two checks.
+    /// Checks the file once; returns its content if it has changed. A file that is being written is
+    /// read once time and length are equal in two checks.
     fn look(&mut self, path: &Path) -> Option<Seen> {
         if self.path != path {
             *self = Known {
@@ -66,7 +66,7 @@ impl Known {
                 ..Known::default()
             };
         }
-        // A missing file may be in the course of being replaced; the open dataset stays until it
+        // A missing file may be about to be replaced; the open dataset remains until the file
         // reappears.
         let stamp = FileStamp::of(path)?;
         let is_unchanged = self.stamp == Some(stamp);
@@ -123,7 +123,7 @@ mod tests {
         std::fs::write(&path, "one, and more").unwrap();
         assert_eq!(known.look(&path), None);
         assert_ne!(known.look(&path).expect("it rests").sha256, first.sha256);
-        // Rewritten with the same bytes: another modification time, the same hash.
+        // The file is rewritten with the same bytes: another modification time, but the same hash.
         std::fs::remove_file(&path).unwrap();
         std::thread::sleep(Duration::from_millis(20));
         std::fs::write(&path, "one, and more").unwrap();

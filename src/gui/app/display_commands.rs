@@ -1,4 +1,4 @@
-//! Carries out changes to view contents.
+//! Commands that change the content of views.
 
 use super::GdcmApp;
 use crate::gui::commands::display::DisplayCommand;
@@ -29,7 +29,7 @@ impl GdcmApp {
             DisplayCommand::ShowRequirements(page) => {
                 display.judging.requirements_page = page;
                 display.judging.requirements_sorting = Default::default();
-                // Another page has other plots.
+                // Discard the zoom: another page has other plots.
                 display.figures.remove(&View::Requirements);
             }
             DisplayCommand::SetFrequencyUnit(unit) => display.curves.unit = unit,

@@ -1,4 +1,4 @@
-//! Files behind the open study and dataset.
+//! Files of the open study and dataset.
 
 use std::path::{Path, PathBuf};
 
@@ -15,26 +15,27 @@ use super::disk_watch::DiskWatch;
 pub(super) struct SavedStudy {
     /// File path; `None` for a new study.
     pub(super) path: Option<PathBuf>,
-    /// The saved study, or a new study's initial state; `None` for restored decisions.
+    /// The study as saved, or as created if it is new; `None` if it contains restored decisions.
     pub(super) study: Option<Study>,
 }
 
 /// Purpose for which a file is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ReadFor {
-    /// Shown instead of the open study.
+    /// The file is to be shown instead of the open study.
     Opening,
-    /// Replaces the open dataset, which was read from the same file earlier.
+    /// The file replaces the open dataset, which was read from it earlier.
     Reloading,
-    /// Continues unsaved decisions; holds the offer's number.
+    /// The file continues unsaved decisions; holds the number of the offer.
     Restoring(usize),
 }
 
-/// Files behind the open study and dataset.
+/// Files of the open study and dataset, and directories.
 pub(super) struct DocumentFiles {
     pub(super) loaded: LoadedDataset,
     pub(super) saved: SavedStudy,
-    /// Datasets open before a reload, or after a reload that was undone.
+    /// Datasets that were open before a reload, or after a reload that was undone: undo and redo
+    /// switch between them.
     pub(super) earlier: Vec<LoadedDataset>,
     /// Dataset most recently made from records.
     pub(super) made_of_records: Option<DatasetOfRecords>,
@@ -59,7 +60,7 @@ impl DocumentFiles {
         format!("{}.{STUDY_EXTENSION}", self.stem())
     }
 
-    /// Returns the common stem of file names about the dataset.
+    /// Returns the stem from which names of files with results are formed.
     pub(super) fn stem(&self) -> String {
         match self.loaded.path().and_then(Path::file_stem) {
             Some(stem) => stem.to_string_lossy().trim_end_matches(".json").to_owned(),
@@ -67,7 +68,7 @@ impl DocumentFiles {
         }
     }
 
-    /// Returns the input files, which results never overwrite.
+    /// Returns the input files, which are never overwritten by results.
     pub(super) fn inputs(&self) -> Vec<PathBuf> {
         self.saved
             .path
@@ -83,6 +84,6 @@ pub(super) struct DatasetOfRecords {
     pub(super) path: PathBuf,
     /// Channel locations in the records, and units.
     pub(super) channels: RecordChannels,
-    /// Omitted records, with reasons.
+    /// Records left out, with reasons.
     pub(super) left_out: Vec<String>,
 }

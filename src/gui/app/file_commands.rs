@@ -1,4 +1,4 @@
-//! Carries out opening, saving and closing files.
+//! Commands that open, save and close files.
 
 use std::path::PathBuf;
 
@@ -49,7 +49,7 @@ impl GdcmApp {
         self.save_as(path, Existing::Keep);
     }
 
-    /// Closes the window; nothing is left to recover.
+    /// Closes the window and deletes the recovery file.
     pub(super) fn quit(&mut self) {
         self.dialogs.closing = true;
         // The decisions are saved, or the engineer has agreed to lose them.

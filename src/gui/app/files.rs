@@ -26,7 +26,7 @@ use crate::gui::state::preferences::Preferences;
 use crate::gui::state::window_state::{RecentFile, State};
 
 impl GdcmApp {
-    /// Returns the initial window state, the dataset and the saved study for `opened`.
+    /// Returns the initial window state, the dataset and the saved study for an opened file.
     pub(super) fn parts_of(opened: Opened) -> (State, LoadedDataset, SavedStudy) {
         let path = match &opened {
             Opened::Dataset(_) => None,
@@ -38,7 +38,8 @@ impl GdcmApp {
             study_name(path.as_deref()),
             loaded.cautions.clone(),
         );
-        // Saving now would drop the decisions that do not apply.
+        // Decisions that do not apply to the dataset would be lost by saving, so the study counts
+        // as unsaved.
         state.unsaved = differences
             .iter()
             .any(|difference| matches!(difference, Difference::NotApplied { .. }));
@@ -59,7 +60,7 @@ impl GdcmApp {
         let name = loaded.origin.to_string();
         state.recent = std::mem::take(&mut self.state.recent);
         Preferences::from_display(&self.state.display).apply(&mut state.display);
-        // Offers to restore lost decisions stay; the other bars concern the previous study.
+        // Keep the offers to restore lost decisions; the other bars concern the previous study.
         state.bars = std::mem::take(&mut self.state.bars);
         state.bars.retain(|bar| matches!(bar, Bar::Recovery { .. }));
         self.state = state;
@@ -81,8 +82,8 @@ impl GdcmApp {
         self.read_recent(newest.map(Path::to_owned));
     }
 
-    /// Reads the recent-files list and checks which files exist; puts `newest` first. Runs in
-    /// its own thread, because a network drive may be slow.
+    /// Reads the recent-files list and checks which files exist; puts `newest` first. Runs in a
+    /// separate thread, because a network drive may be slow.
     pub(super) fn read_recent(&self, newest: Option<PathBuf>) {
         let Some(directory) = self.files.directory.clone() else {
             return;
@@ -95,15 +96,16 @@ impl GdcmApp {
         });
     }
 
-    /// Opens a dataset or a study; the open study stays until the file is read. `moved` is the new
-    /// path of the dataset of a study.
+    /// Opens a dataset or a study; the open study remains until the file is read. `moved` is the
+    /// new path of a study's dataset.
     pub(super) fn open(&mut self, path: PathBuf, moved: Option<PathBuf>) {
         let path = self.files.at_home(path);
         let moved = moved.map(|dataset| self.files.at_home(dataset));
         if path.extension().is_some() && holds_models(&path) {
             let path = sanitized_path(&path);
             return self.notify_error(format!(
-                "{path}: neither a dataset nor a study; Import models, in the menu File, makes a dataset from model files"
+                "{path}: neither a dataset nor a study; to make a dataset from model files, use \
+                Import models in the menu File"
             ));
         }
         let purpose = match self.recovery.offer_of(&path) {
@@ -118,8 +120,8 @@ impl GdcmApp {
         });
     }
 
-    /// Reads a file in its own thread, within the size limit of a file; replaces a reading under
-    /// way.
+    /// Reads a file in a separate thread, within the size limit of a file. Replaces a reading in
+    /// progress.
     pub(super) fn read(
         &mut self,
         purpose: ReadFor,
@@ -146,7 +148,7 @@ impl GdcmApp {
         self.answer_opened(ReadFor::Opening, embedded_example().map(Opened::Dataset));
     }
 
-    /// Replaces the open study with the example, behind the start page.
+    /// Closes the study: shows the start page, with the example behind it.
     pub(super) fn close_study(&mut self) {
         let Some(example) = self.unless_error(embedded_example()) else {
             return;
@@ -203,7 +205,8 @@ impl GdcmApp {
         }
     }
 
-    /// Reports why nothing was opened, or asks for a study's dataset; the open study stays.
+    /// Reports why a file was not opened, or asks for the dataset of a study; the open study
+    /// remains.
     fn open_failed(&mut self, error: FileError) {
         self.read_recent(None);
         match error {
@@ -221,7 +224,8 @@ impl GdcmApp {
             return;
         }
         self.dialogs.dialog_open = true;
-        // A desktop without dialogs counts as a dialog closed without a choice.
+        // Without desktop dialogs, the call fails or panics; this counts as a dialog closed without
+        // a choice.
         let ask = move || caught(|| dialog(purpose, &file_name)).ok().flatten();
         self.in_thread("the dialog", ask, move |app, chosen| {
             app.dialogs.dialog_open = false;
@@ -236,8 +240,8 @@ impl GdcmApp {
         match purpose {
             DialogPurpose::Open => self.open(path, None),
             DialogPurpose::SaveStudy => {
-                // The dialog has asked only about the chosen name, without the extension added
-                // here.
+                // The dialog has asked only about the chosen name, not about the name with the
+                // extension that is added here.
                 let existing = if with_study_extension(path.clone()) == path {
                     Existing::Replace
                 } else {
@@ -272,7 +276,7 @@ impl GdcmApp {
         }
     }
 
-    /// Saves the study to its own file, or asks for a path.
+    /// Saves the study to the file from which it was opened, or asks for a path.
     pub(super) fn save(&mut self) {
         match self.files.saved.path.clone() {
             Some(path) => self.save_as(path, Existing::Replace),
@@ -280,8 +284,8 @@ impl GdcmApp {
         }
     }
 
-    /// Saves the study to a file. Asks before overwriting a file other than that of the study,
-    /// unless the engineer has already agreed.
+    /// Saves the study to a file. Asks before overwriting any file other than the study's, unless
+    /// the engineer has already agreed.
     pub(super) fn save_as(&mut self, path: PathBuf, existing: Existing) {
         let path = with_study_extension(self.files.at_home(path));
         let is_own = self.files.saved.path.as_ref() == Some(&path);
@@ -309,7 +313,7 @@ impl GdcmApp {
         save_study(&self.state.study, &self.files.loaded, path)
     }
 
-    /// Records that the study is saved; carries out the action that waits for it.
+    /// Records that the study is saved; carries out the action postponed until then.
     fn study_saved(&mut self, path: PathBuf) {
         self.state.forms.shown = None;
         self.state.study_name = study_name(Some(&path));
@@ -327,7 +331,7 @@ impl GdcmApp {
     }
 }
 
-/// Puts `newest` first in the recent-files list, and reads the list.
+/// Reads the recent-files list and puts `newest` first.
 fn read_recent_files(
     directory: &Path,
     newest: Option<&Path>,
@@ -341,7 +345,7 @@ fn read_recent_files(
         .collect())
 }
 
-/// Returns a study's file name, or a substitute.
+/// Returns a study's file name, or a substitute without a path.
 pub(super) fn study_name(path: Option<&Path>) -> String {
     match path.and_then(Path::file_name) {
         Some(name) => sanitized(&name.to_string_lossy()),
@@ -390,12 +394,16 @@ fn dialog(purpose: DialogPurpose, file_name: &str) -> Option<PathBuf> {
             .add_filter("studies", &["json"])
             .set_file_name(file_name)
             .save_file(),
-        DialogPurpose::ModelFolder => dialog.set_title("A folder of model files").pick_folder(),
-        DialogPurpose::RecordFolder => dialog.set_title("A folder of flight records").pick_folder(),
+        DialogPurpose::ModelFolder => dialog
+            .set_title("Choose a folder with model files")
+            .pick_folder(),
+        DialogPurpose::RecordFolder => dialog
+            .set_title("Choose a folder with flight records")
+            .pick_folder(),
         DialogPurpose::RequirementTable(table) => {
             let title = match table {
-                RequirementTable::Levels => "Levels of bandwidth and phase delay",
-                RequirementTable::Tolerances => "Tolerances of time histories",
+                RequirementTable::Levels => "Open levels of bandwidth and phase delay",
+                RequirementTable::Tolerances => "Open tolerances of time histories",
             };
             dialog
                 .set_title(title)

@@ -1,4 +1,4 @@
-//! Carries out the commands of forms and messages.
+//! Commands of forms and messages.
 
 use gdcm_io::Existing;
 
@@ -43,7 +43,8 @@ impl GdcmApp {
             Some(FormKind::ExportAs) => self.propose_export_name(),
             _ => {}
         }
-        // A form that asks for a save path continues with the postponed action.
+        // Keep the postponed action if it is to continue after this form, which asks for a path to
+        // save to.
         if !(self.dialogs.goes_on_once_saved && form == Some(FormKind::Save)) {
             self.dialogs.postponed = None;
             self.dialogs.goes_on_once_saved = false;
@@ -53,7 +54,7 @@ impl GdcmApp {
         self.state.forms.shown = form;
     }
 
-    /// Repeats the command after its overwriting was confirmed.
+    /// Repeats the command for which overwriting was confirmed.
     fn overwrite(&mut self) {
         self.state.forms.existing.clear();
         if let Some(command) = self.dialogs.overwriting.take() {

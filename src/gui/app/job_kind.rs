@@ -8,23 +8,23 @@ use super::job_queue::{Ending, JobQueue};
 use super::threads::ReplySender;
 use crate::gui::state::results::Background;
 
-/// A kind of job.
+/// A kind of job, described by functions.
 pub(super) struct JobKind<J: Job> {
-    /// Returns the jobs needed by the current display, the most urgent first; jobs no longer needed
-    /// are cancelled.
+    /// Returns the jobs that the current display needs, the most urgent first. Other jobs of this
+    /// kind are cancelled.
     pub(super) wanted: fn(&mut GdcmApp) -> Vec<J>,
     /// Stores a job's output.
     pub(super) store: fn(&mut GdcmApp, J, J::Output),
     /// Adds the running work to the displayed progress.
     pub(super) report: fn(&JobQueue<J>, &mut Background),
-    /// Withdraws a request that has its own trigger, after a stop or a fault; that trigger, not
-    /// "Compute", starts it again.
+    /// Withdraws the request after a stop or a fault, if the kind has its own trigger; then only
+    /// that trigger, not "Compute", starts it again.
     pub(super) withdraw: Option<fn(&mut GdcmApp)>,
 }
 
 impl<J: Job> JobKind<J> {
-    /// Creates a kind that "Compute" restarts after a stop, and whose jobs count among those that
-    /// views wait for.
+    /// Creates a kind that "Compute" restarts after a stop, and whose jobs count as work for which
+    /// views wait.
     pub(super) fn new(
         wanted: fn(&mut GdcmApp) -> Vec<J>,
         store: fn(&mut GdcmApp, J, J::Output),
@@ -43,7 +43,7 @@ impl<J: Job> JobKind<J> {
         self
     }
 
-    /// Gives the jobs their own trigger, which `withdraw` resets.
+    /// Gives the kind its own trigger, which `withdraw` resets.
     pub(super) fn with_withdrawal(mut self, withdraw: fn(&mut GdcmApp)) -> Self {
         self.withdraw = Some(withdraw);
         self
@@ -90,7 +90,7 @@ impl<J: Job> AnyJobKind for QueuedKind<J> {
     }
 }
 
-/// The kinds of jobs in a pool, the most urgent first.
+/// The kinds of jobs in a pool, added in order of urgency.
 pub(super) struct JobKinds<'a> {
     pool: &'a JobPool,
     replies: &'a ReplySender,
@@ -106,8 +106,8 @@ impl<'a> JobKinds<'a> {
         }
     }
 
-    /// Adds a kind that is less urgent than all before. `make_tools` creates the tools for its
-    /// jobs.
+    /// Adds a kind that is less urgent than all kinds before it. `make_tools` creates the tools for
+    /// its jobs.
     pub(super) fn add<J: Job>(
         &mut self,
         class: LaneClass,

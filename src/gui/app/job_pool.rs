@@ -1,5 +1,5 @@
-//! Thread pool for the window's background work. Each kind of job waits in its own lane, and a free
-//! thread runs the next job of the most urgent waiting lane that it may serve.
+//! Thread pool for the window's background work. Each kind of job has its own queue (lane); a free
+//! thread runs the next job of the most urgent lane that has one and that the thread may serve.
 
 use std::num::NonZero;
 use std::sync::Arc;
@@ -7,7 +7,7 @@ use std::{io, thread};
 
 use super::threads::Mailbox;
 
-/// Queue whose jobs run in sequence.
+/// Queue whose jobs run one after the other.
 pub(super) trait Lane: Send + Sync {
     /// Starts the next job; returns `false` if no job waits, or if a job from this lane is running.
     fn begin(&self) -> bool;
@@ -27,7 +27,7 @@ pub(super) enum LaneClass {
     Long,
 }
 
-/// Pool threads by the lanes that they serve.
+/// Kinds of pool threads, by the lanes that they serve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Server {
     /// Reserved for the live analysis.
@@ -79,8 +79,8 @@ pub(super) struct Waker {
 }
 
 impl Waker {
-    /// Lets the free threads look for waiting jobs. The caller holds no lane's lock, because a
-    /// thread locks the schedule first and a lane second.
+    /// Lets the free threads look for waiting jobs. The caller must not hold the lock of a lane: a
+    /// thread locks the schedule first and then a lane, so there would be a deadlock.
     pub(super) fn wake(&self) {
         self.schedule.change(|_| ());
     }
@@ -124,8 +124,8 @@ impl JobPool {
         Ok(())
     }
 
-    /// Adds a lane that is less urgent than all before; returns the waker to call when a job
-    /// waits in it.
+    /// Adds a lane that is less urgent than all lanes before it. Returns the waker, to be called
+    /// when a job waits in the lane.
     pub(super) fn add_lane(&self, class: LaneClass, lane: Arc<dyn Lane>) -> Waker {
         let pooled = PooledLane { class, lane };
         self.schedule.change(|schedule| schedule.lanes.push(pooled));
@@ -148,7 +148,7 @@ impl Drop for JobPool {
 fn serve(schedule: &Mailbox<Schedule>, server: Server) {
     while let Some(lane) = next_lane(schedule, server) {
         lane.run();
-        // The lane may have another job, for which another thread waits.
+        // Wake the other threads: the lane may have another job.
         schedule.change(|_| ());
     }
 }
@@ -172,7 +172,7 @@ mod tests {
 
     use super::*;
 
-    /// Far longer than the slowest machine needs: only a hang reaches it.
+    /// Timeout in tests, far longer than the slowest machine needs: only a hang exceeds it.
     const LIMIT: Duration = Duration::from_secs(60);
 
     /// Lane whose jobs report their start and end when the test releases them.
@@ -342,7 +342,7 @@ mod tests {
         let second = pool.add_lane("second", LaneClass::Long);
         first.add_jobs(2);
         assert_eq!(pool.next_start(), "first");
-        // The other thread passes over the busy lane.
+        // The other thread skips the lane in which a job is running.
         second.add_jobs(1);
         assert_eq!(pool.next_start(), "second");
         assert_eq!(*first.lane.waiting.lock().unwrap(), 1);

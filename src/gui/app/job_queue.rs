@@ -18,7 +18,7 @@ pub(super) type Ending<J> = Result<<J as Job>::Output, Fault>;
 /// Time that an unwanted job may continue: during a drag, every output is worth showing.
 const CANCEL_GRACE: Duration = Duration::from_millis(60);
 
-/// Progress, and whether the job is still wanted.
+/// Progress of a running job, and whether it is still wanted.
 #[derive(Debug)]
 struct Run {
     started: Instant,
@@ -72,7 +72,7 @@ struct Orders<J> {
     /// Requested jobs, the most urgent first.
     wanted: Vec<J>,
     running: Option<Running<J>>,
-    /// Whether a thread runs a job or delivers its ending.
+    /// Whether a thread is running a job or delivering its ending.
     is_served: bool,
     /// Requested jobs that are complete.
     done: Vec<J>,
@@ -99,7 +99,7 @@ impl<J: Job> Orders<J> {
             .filter(|job| !self.done.contains(job) && !self.stopped.contains(job))
     }
 
-    /// Returns the job to start next, once the last job's ending is delivered.
+    /// Returns the job to start next; `None` until the ending of the previous job is delivered.
     fn next_job(&self) -> Option<&J> {
         if self.closed || self.is_served {
             return None;
@@ -114,10 +114,10 @@ impl<J: Job> Orders<J> {
     }
 }
 
-/// Requests, tools and delivery of a kind of job.
+/// Requests, tools and delivery function of a kind of job.
 struct JobLane<J: Job> {
     orders: Mutex<Orders<J>>,
-    /// Tools kept between jobs; `None` before the first job and during a job.
+    /// Tools kept between jobs; `None` before the first job and while a job runs.
     tools: Mutex<Option<J::Tools>>,
     make_tools: Box<dyn Fn() -> J::Tools + Send + Sync>,
     deliver: Box<dyn Fn(J, Ending<J>) + Send + Sync>,
@@ -125,17 +125,17 @@ struct JobLane<J: Job> {
 
 impl<J: Job> JobLane<J> {
     fn orders(&self) -> MutexGuard<'_, Orders<J>> {
-        // The orders are consistent even after a panic under the lock.
+        // Ignore a poisoned lock: the orders are consistent even after a panic.
         self.orders.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn kept_tools(&self) -> MutexGuard<'_, Option<J::Tools>> {
-        // Tools are taken out and put back whole.
+        // Ignore a poisoned lock: the tools are only taken out and put back as a whole.
         self.tools.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Runs a started job with the kept tools, or with new ones. A fault may leave the tools
-    /// inconsistent, so they are dropped.
+    /// Runs a started job with the kept tools, or with new ones. After a fault, which may leave
+    /// them inconsistent, the tools are dropped.
     fn run_job(&self, running: &Running<J>) -> Result<Result<J::Output, Cancelled>, Fault> {
         let mut tools = self.kept_tools().take();
         let outcome = caught(|| {
@@ -200,8 +200,8 @@ pub(super) struct JobQueue<J: Job> {
 }
 
 impl<J: Job> JobQueue<J> {
-    /// Adds a lane to the pool, less urgent than the lanes before it; each job's ending goes to
-    /// `deliver`. The tools are made anew after a fault.
+    /// Adds a lane to the pool, less urgent than the lanes before it. The ending of each job is
+    /// passed to `deliver`. `make_tools` is called again after a fault.
     pub(super) fn open(
         pool: &JobPool,
         class: LaneClass,
@@ -222,7 +222,7 @@ impl<J: Job> JobQueue<J> {
         Self { lane, waker }
     }
 
-    /// Changes the orders; wakes the pool if a job waits then.
+    /// Changes the orders, and wakes the pool if a job is waiting afterwards.
     fn change_orders(&self, change: impl FnOnce(&mut Orders<J>)) {
         let mut orders = self.lane.orders();
         change(&mut orders);
@@ -234,7 +234,7 @@ impl<J: Job> JobQueue<J> {
     }
 
     /// Requests exactly these jobs, the most urgent first. A running job continues if it is among
-    /// them; a job that is complete or stopped does not start again while it stays requested.
+    /// them. A completed or stopped job does not start again as long as it remains requested.
     pub(super) fn want(&self, jobs: Vec<J>) {
         self.change_orders(|orders| {
             orders.done.retain(|job| jobs.contains(job));
@@ -301,7 +301,7 @@ mod tests {
 
     use super::*;
 
-    /// Far longer than the slowest machine needs: only a hang reaches it.
+    /// Timeout in tests, far longer than the slowest machine needs: only a hang exceeds it.
     const LIMIT: Duration = Duration::from_secs(60);
 
     #[derive(Clone, Copy, PartialEq, Eq)]
@@ -330,7 +330,7 @@ mod tests {
 
     impl TestJob {
         fn report(&self, event: &str) {
-            // A job may outlive its test.
+            // Ignore a failure: a job may outlive its test.
             let _ = self.events.send(format!("{event} {}", self.name));
         }
 
@@ -365,7 +365,7 @@ mod tests {
         }
     }
 
-    /// Queue with its events.
+    /// Queue in a test, with the events of its jobs.
     struct TestQueue {
         queue: JobQueue<TestJob>,
         events: Receiver<String>,
@@ -430,8 +430,8 @@ mod tests {
         }
     }
 
-    /// Starts a pool with a single thread for long jobs, so that a fault that ends this thread
-    /// fails the test.
+    /// Starts a pool with a single thread for long jobs: a fault that ends this thread makes the
+    /// test fail.
     fn pool() -> JobPool {
         JobPool::with_shared_threads(1).unwrap()
     }

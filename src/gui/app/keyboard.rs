@@ -1,5 +1,5 @@
-//! Keys: the shortcuts in the command table, and typed text, which reaches the intended field
-//! however slow the frames are.
+//! Keys: the shortcuts in the command table, and typed text, which reaches the intended field even
+//! if frames are slow.
 
 use std::cmp::Reverse;
 
@@ -101,7 +101,7 @@ enum Kind {
 }
 
 impl Kind {
-    /// Returns the kind of an event; `None` for events that may come in any frame.
+    /// Returns the kind of an event; `None` for events that may be handled in any frame.
     fn from_event(event: &Event) -> Option<Self> {
         match event {
             Event::Key {
@@ -115,8 +115,8 @@ impl Kind {
         }
     }
 
-    /// Returns whether `next` may share the frame. Clicks may, because a double click is recognised
-    /// by the times of its events.
+    /// Returns whether `next` may be in the same frame. Clicks may, because a double click is
+    /// recognised by the times of its events.
     fn goes_with(self, next: Self) -> bool {
         self == next && self != Self::Moving
     }
@@ -139,7 +139,7 @@ fn is_tab(event: &Event) -> bool {
     )
 }
 
-/// Returns the number of leading events that belong to the same frame.
+/// Returns the number of leading events that belong in the same frame.
 fn count_of_frame(events: &[Event]) -> usize {
     let mut before: Option<Kind> = None;
     for (count, event) in events.iter().enumerate() {
@@ -202,7 +202,7 @@ mod tests {
         }
     }
 
-    /// Returns the number of events in each frame.
+    /// Splits events into frames and returns the number of events in each.
     fn frames(mut events: Vec<Event>) -> Vec<usize> {
         let mut counts = Vec::new();
         while !events.is_empty() {

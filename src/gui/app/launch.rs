@@ -31,26 +31,26 @@ use crate::gui::commands::file::FileCommand;
 use crate::gui::state::opens_with::OpensWith;
 use crate::gui::state::preferences::Preferences;
 
-/// Application id on the desktop, and data directory.
+/// Application id on the desktop, and name of the data directory.
 pub(super) const APP_ID: &str = "gdcm";
 /// Exit status if the window could not be opened or panicked.
 const NO_WINDOW: u8 = 1;
-/// Exit status for a wrong file.
+/// Exit status if the requested file could not be read.
 const WRONG_FILE: u8 = 2;
 
-/// Window setup; tests use other values than the program does.
+/// Setup of the window; tests use other values than the program.
 #[derive(Clone)]
 pub struct Setup {
     pub engine: EngineMaker,
-    /// Directory for recovery files and the recent-files list; `None` keeps neither.
+    /// Directory for recovery files and the recent-files list; with `None`, neither is kept.
     pub directory: Option<PathBuf>,
     /// Directory that replaces `~` in typed paths; `None` leaves `~` as it is.
     pub home: Option<PathBuf>,
     /// Whether the first start offers the guided tour.
     pub offers_tour: bool,
-    /// Maximum delay between a change and its copy in the recovery file.
+    /// Maximum time between a decision and its storage in the recovery file.
     pub keep_after: Duration,
-    /// Interval between checks of the dataset's file.
+    /// Interval between checks of the dataset file for changes.
     pub look_every: Duration,
     pub preferences: Preferences,
     /// Problem found before the window was opened; shown first.
@@ -86,13 +86,11 @@ impl Setup {
     }
 }
 
-/// Opens the window on a dataset or a study, or on the embedded example, and returns once it is
-/// closed.
+/// Opens the window on a dataset or a study, or on the embedded example, and returns once the
+/// window is closed. A folder, or a file from another program, opens the import of models.
 ///
-/// Without a display, or if the window cannot be created, one line on standard error reports it and
-/// names the headless command.
-///
-/// A folder, or a file from another program, is opened to import its models.
+/// Without a display, or if the window cannot be created, prints one line on standard error, which
+/// names the command that works without a window.
 pub fn open(path: Option<PathBuf>) -> ExitCode {
     let request = Request::new(path);
     let command = request.headless_command();
@@ -124,17 +122,17 @@ pub fn open(path: Option<PathBuf>) -> ExitCode {
     }
 }
 
-/// Reports that there is no window; returns the exit status.
+/// Prints an error that prevents a window; returns the exit status.
 fn fail(message: &str) -> ExitCode {
     eprintln!("error: {message}");
     ExitCode::from(NO_WINDOW)
 }
 
-/// Path from the command line, as a dataset or as models to import.
+/// Path from the command line: a dataset or study, or models to import.
 struct Request {
-    /// A dataset or a study; `None` opens the example.
+    /// Dataset or study; `None` opens the example.
     dataset: Option<PathBuf>,
-    /// A folder, or a file from another program, to import its models.
+    /// Folder, or file from another program, from which to import models.
     models: Option<PathBuf>,
 }
 
@@ -152,7 +150,7 @@ impl Request {
         }
     }
 
-    /// Returns the headless command that replaces the window; without a file it uses the embedded
+    /// Returns the command that can replace the window; without a file it uses the embedded
     /// example.
     fn headless_command(&self) -> String {
         if let Some(models) = &self.models {
@@ -176,8 +174,8 @@ fn start_reading(dataset: Option<PathBuf>) -> Result<JoinHandle<Loaded>, String>
     reading.map_err(|error| error.to_string())
 }
 
-/// Returns the reason why the window ended, unless it was closed. `kept` is the autosave, available
-/// once a frame is drawn; `command` is the headless alternative.
+/// Returns the reason why the window ended; `Ok` if it was closed. `kept` is the autosave,
+/// available once a frame is drawn; `command` is the command that can replace the window.
 fn ending(
     run: Result<eframe::Result, Fault>,
     kept: Option<&Autosave>,
@@ -185,8 +183,7 @@ fn ending(
 ) -> Result<(), String> {
     match (run, kept) {
         (Ok(Ok(())), _) => Ok(()),
-        // A missing system library causes a panic during the window library's start-up, not an
-        // error.
+        // A missing system library causes a panic in the window library, not an error.
         (Ok(Err(error)), None) => Err(no_window(&error.to_string(), command)),
         (Err(fault), None) => Err(no_window(&fault.message, command)),
         (Ok(Err(error)), Some(autosave)) => {
@@ -196,11 +193,11 @@ fn ending(
     }
 }
 
-/// Result of reading the requested file, or else the example.
+/// Result of reading the requested file; the example if there is none.
 struct Loaded {
-    /// The study to open, or the fault in the example.
+    /// The study to open, or the fault in the embedded example.
     opened: Result<Opened, String>,
-    /// Fault in the requested file, in which case the window opens the example.
+    /// Fault in the requested file; the window then opens the example.
     trouble: Option<String>,
 }
 
@@ -234,7 +231,7 @@ fn short_message(error: &FileError) -> String {
     shortened_message(&sanitized(&error.to_string()))
 }
 
-/// Loads a file and reports its fault on the terminal too, where it is the only report if no window
+/// Loads a file. A fault is also printed on the terminal, where it remains visible if no window
 /// opens.
 fn load_and_report(path: Option<PathBuf>) -> Loaded {
     let loaded = load(path);
@@ -255,8 +252,8 @@ fn run(
         .with_app_id(APP_ID)
         .with_inner_size([1440.0, 900.0])
         .with_min_inner_size([900.0, 560.0]);
-    // There are no colour gradients to smooth, and without a graphics processor dithering would
-    // cost time for every pixel.
+    // Dithering is off: there are no colour gradients to smooth, and without a graphics processor
+    // it would cost time for every pixel.
     let options = NativeOptions {
         viewport,
         dithering: false,
@@ -277,7 +274,8 @@ fn run(
     )
 }
 
-/// Creates the window on the loaded file; afterwards opens the last file, or imports the models.
+/// Creates the window with the loaded file; then opens the last file, or imports the models, if so
+/// requested.
 fn create_window(
     creation: &eframe::CreationContext<'_>,
     loaded: Loaded,
@@ -309,7 +307,8 @@ fn create_window(
     Ok(app)
 }
 
-/// Returns the file that was open last, if the engineer prefers to start with it and it exists.
+/// Returns the file that was open last; `None` if the preferences do not ask for it or it no longer
+/// exists.
 fn last_opened(setup: &Setup) -> Option<PathBuf> {
     if setup.preferences.opens_with != OpensWith::LastStudy {
         return None;
@@ -343,13 +342,13 @@ fn repair_zoom(preferences: &Path) -> Option<String> {
     );
     let repaired = format!("{}1.0{}", &text[..start], &text[end..]);
     Some(match std::fs::write(preferences, repaired) {
-        Ok(()) => format!("{problem}; it is 1 now"),
+        Ok(()) => format!("{problem}; it was reset to 1"),
         Err(error) => format!("{problem}; it cannot be repaired: {error}"),
     })
 }
 
-/// Returns why no window can be opened, if this can be seen beforehand: on Linux, neither Wayland
-/// nor X11 is available.
+/// Returns why no window can be opened, as far as can be detected in advance: on Linux, if neither
+/// Wayland nor X11 is available.
 fn missing_display() -> Option<String> {
     if !cfg!(target_os = "linux") {
         return None;
@@ -362,14 +361,15 @@ fn missing_display() -> Option<String> {
     Some("there is no display (neither WAYLAND_DISPLAY nor DISPLAY is set)".to_owned())
 }
 
-/// Returns the message for a window that cannot be opened, with the headless alternative.
+/// Returns the error message if a window cannot be opened; it names the command that can replace
+/// the window.
 fn no_window(reason: &str, command: &str) -> String {
     let reason = reason
         .lines()
         .next()
         .unwrap_or(reason)
         .trim_end_matches('.');
-    // winit begins with the location in its own source: "os error at src/linux.rs:788: no
+    // winit's message begins with the location in its source: "os error at src/linux.rs:788: no
     // connection".
     let located = reason.split_once("os error at ");
     let reason = match located.and_then(|(_, located)| located.split_once(": ")) {
@@ -423,7 +423,7 @@ mod tests {
         .unwrap();
         let words = ending(Err(fault()), Some(&autosave), "").unwrap_err();
         assert!(
-            words.starts_with("stopped by a fault in its window: no libxkbcommon"),
+            words.starts_with("the window was ended by a fault: no libxkbcommon"),
             "{words}"
         );
         assert!(words.ends_with("every decision was saved"), "{words}");

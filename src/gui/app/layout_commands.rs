@@ -1,4 +1,4 @@
-//! Carries out changes to the layout and the focus.
+//! Commands that change the layout and the focus.
 
 use super::GdcmApp;
 use crate::gui::commands::layout::LayoutCommand;
@@ -6,7 +6,7 @@ use crate::gui::state::arrangement::Arrangement;
 use crate::gui::widgets::controls::focus_field;
 use crate::gui::widgets::focus::leave_region;
 
-/// Focus target.
+/// Target of a requested change of focus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NextFocus {
     /// The field with this name.
@@ -39,7 +39,7 @@ impl GdcmApp {
             LayoutCommand::ShowIdentified(is_open) => display.layout.identified_open = is_open,
             LayoutCommand::SetTheme(theme) => self.ctx.set_theme(theme),
             LayoutCommand::FocusField(name) => {
-                // A collapsed field must be open before it can receive the focus.
+                // Open the collapsed sections: a hidden field cannot receive the focus.
                 display.layout.settings_open = true;
                 display.layout.advanced_open = true;
                 self.focus_next(NextFocus::Field(name));
@@ -54,14 +54,14 @@ impl GdcmApp {
         }
     }
 
-    /// Moves the focus before the next frame is drawn, so that the widget knows it is newly
+    /// Moves the focus before the next frame is drawn, so that the widget can react to being newly
     /// focused.
     fn focus_next(&mut self, next: NextFocus) {
         self.next_focus = Some(next);
         self.ctx.request_repaint();
     }
 
-    /// Gives the focus to the requested target once no form is open in front of it.
+    /// Moves the focus to the requested target, unless a form is open in front of it.
     pub(super) fn move_focus(&mut self) {
         if self.state.forms.shown.is_some()
             || self.ctx.memory(|memory| memory.top_modal_layer().is_some())

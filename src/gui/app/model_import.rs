@@ -1,4 +1,4 @@
-//! Importing models from files: reads them in a thread and carries out the commands of the import
+//! Import of models from files: reads them in a thread and carries out the commands of the import
 //! view.
 
 use std::cell::Cell;
@@ -22,7 +22,7 @@ use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::state::assembling::{AssemblyState, Reading};
 use crate::gui::state::forms::FormKind;
 
-/// Bytes read between two progress reports.
+/// Number of bytes read between two progress reports.
 const REPORT_EVERY: u64 = 16 << 20;
 
 /// Files to read: additional files, or all files again with other column headings.
@@ -39,7 +39,7 @@ impl Sources {
     }
 }
 
-/// Reports to the window which file is being read.
+/// Informs the window which file is being read.
 struct ReadingReport {
     number: u64,
     replies: ReplySender,
@@ -168,7 +168,7 @@ impl GdcmApp {
         });
     }
 
-    /// Adds the models read to the import.
+    /// Adds the models that were read to the import.
     fn take_models(&mut self, sources: Sources, found: FoundModels) {
         let Some(bench) = &mut self.state.assembling else {
             return;
@@ -176,7 +176,7 @@ impl GdcmApp {
         let paths = match sources {
             Sources::More(paths) => paths,
             Sources::Again(_) if self.readers.models.is_stopped() => {
-                return self.done("stopped: the models are those that were read before".to_owned());
+                return self.done("stopped: the models read before are kept".to_owned());
             }
             Sources::Again(paths) => {
                 bench.forget_models();
@@ -218,7 +218,7 @@ impl GdcmApp {
         if let Some(bench) = &mut self.state.assembling {
             bench.change(rules);
         }
-        let mut message = format!("took the rules of {}", sanitized_path(&path));
+        let mut message = format!("applied the rules in {}", sanitized_path(&path));
         for caution in cautions {
             message.push_str(&format!("; {caution}"));
         }
@@ -230,7 +230,7 @@ impl GdcmApp {
         Some(bench.assembly().rules().clone())
     }
 
-    /// Writes the rules; asks before overwriting a file.
+    /// Writes the rules to a file; asks before overwriting.
     fn save_rules(&mut self, path: PathBuf) {
         let Some(rules) = self.import_rules() else {
             return;
@@ -245,7 +245,7 @@ impl GdcmApp {
         );
     }
 
-    /// Writes the dataset and its rules, and opens the dataset; asks before overwriting a file.
+    /// Writes the dataset and its rules, and opens the dataset; asks before overwriting.
     fn make_dataset(&mut self, path: PathBuf) {
         let Some(bench) = &self.state.assembling else {
             return;

@@ -1,4 +1,4 @@
-//! Carries out copying and writing results.
+//! Commands that copy and write results.
 
 use super::GdcmApp;
 use super::dialogs::DialogPurpose;

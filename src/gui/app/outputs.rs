@@ -62,7 +62,7 @@ impl GdcmApp {
         }
     }
 
-    /// Writes all corrections in a format for other tools; asks before overwriting a file.
+    /// Writes all corrections in a format for other tools; asks before overwriting.
     pub(super) fn export_as(&mut self, format: ExportFormat, path: PathBuf) {
         let Some(analysis) = self.complete_results() else {
             return;
@@ -96,8 +96,8 @@ impl GdcmApp {
         );
     }
 
-    /// Returns the proven analysis of the current study, with the error bars computed so far;
-    /// reports an error if it is incomplete.
+    /// Returns the complete analysis of the current study, with optimality proofs and the error
+    /// bars computed so far. Reports an error if it is incomplete.
     fn complete_results(&mut self) -> Option<Arc<Analysis>> {
         let analysis = self.unless_error(self.analysis_to_write("export"))?;
         match self.state.analysis_with_bars() {
@@ -106,10 +106,10 @@ impl GdcmApp {
         }
     }
 
-    /// Returns a suffix that explains missing error bars; empty if they are present.
+    /// Returns the end of a message, which explains missing error bars; empty if they are present.
     fn absent_bars(&self, are_present: bool) -> &'static str {
         let background = &self.state.results.background;
-        // Other work may have been stopped while the error bars are still computed.
+        // If the error bars are still being computed, only other work was stopped.
         let were_stopped = background.stopped && background.bars.is_none();
         if are_present {
             ""
@@ -120,8 +120,8 @@ impl GdcmApp {
         }
     }
 
-    /// Returns the suffix of [`Self::absent_bars`] for a view, whose figure shows error bars once
-    /// they are computed.
+    /// Returns the end of a message about a view's figure, as [`Self::absent_bars`] does; empty if
+    /// the view shows no error bars.
     fn absent_bars_of(&self, view: View) -> &'static str {
         let shows_bars = view.figure().is_some_and(FigureKind::takes_bars)
             && !self.state.display.gains.hide_bars;
@@ -134,13 +134,14 @@ impl GdcmApp {
         let results = &self.state.results;
         if results.stopped {
             return Err(format!(
-                "{}: the computation was stopped; compute first",
+                "{}: the computation was stopped; choose Compute first",
                 self.state.after_stop()
             ));
         }
         if !results.background.proofs.is_empty() {
             return Err(format!(
-                "the gains are still being proven; {action} again in a moment, or stop the proof"
+                "the gains are still being proven optimal; {action} again in a moment, or stop \
+                the proof"
             ));
         }
         match &results.analysis {
@@ -168,7 +169,7 @@ impl GdcmApp {
         ));
     }
 
-    /// Asks where to save a view; proposes the folder of the last figure.
+    /// Asks where to save a view; proposes the folder in which the previous figure was saved.
     pub(super) fn ask_save_figure(&mut self, view: View, format: FigureFormat) {
         // Tables are saved as CSV, whatever the figure format.
         let format = if tables_in_place(&self.state, view).is_some() {
@@ -186,7 +187,7 @@ impl GdcmApp {
         self.state.forms.shown = Some(FormKind::SaveFigure);
     }
 
-    /// Saves a view; asks before overwriting a file.
+    /// Saves a view; asks before overwriting.
     pub(super) fn save_figure(&mut self, view: View, width: ColumnWidth, path: PathBuf) {
         let path = self.files.at_home(path);
         let written = match tables_in_place(&self.state, view) {
@@ -216,7 +217,7 @@ impl GdcmApp {
         self.written(written.map(|()| message), FormKind::SaveFigure, again);
     }
 
-    /// Returns the figure of a view; reports an error if there is none yet.
+    /// Returns the figure of a view; reports an error if the view has none yet.
     fn figure_of(&mut self, view: View) -> Option<Figure> {
         let figure = figure_of(&self.state, view);
         if figure.is_none() {
@@ -240,7 +241,7 @@ impl GdcmApp {
         self.state.forms.shown = Some(FormKind::SaveTable);
     }
 
-    /// Saves a table as CSV; asks before overwriting a file.
+    /// Saves a table as CSV; asks before overwriting.
     pub(super) fn save_table(&mut self, table: Arc<Table>, path: PathBuf) {
         let path = self.files.at_home(path);
         let written = save_tables(std::slice::from_ref(&*table), &path, self.outputs());
@@ -252,14 +253,14 @@ impl GdcmApp {
         );
     }
 
-    /// Creates an output set that never overwrites input files, and other files only after
-    /// confirmation.
+    /// Creates an output set that never overwrites input files, and overwrites other files only
+    /// after confirmation.
     pub(super) fn outputs(&self) -> OutputSet {
         OutputSet::new(self.dialogs.existing, self.files.inputs())
     }
 
-    /// Writes all files added by `add`, or none, after checking that none of `paths` would be
-    /// overwritten without consent.
+    /// Writes all files that `add` adds to the set, or none. First checks that none of `paths`
+    /// would be overwritten without consent.
     pub(super) fn write_all(
         &self,
         paths: &[&Path],
@@ -271,8 +272,8 @@ impl GdcmApp {
         outputs.persist()
     }
 
-    /// Reports the written files, asks whether the command `again` may overwrite files, or reports
-    /// why nothing was written.
+    /// Reports the written files, or why none was written. If files exist, asks whether the command
+    /// `again` may overwrite them.
     pub(super) fn written(
         &mut self,
         written: Result<String, FileError>,
@@ -289,8 +290,8 @@ impl GdcmApp {
         }
     }
 
-    /// Reports a single saved file, asks whether the command `again` may overwrite it, or reports
-    /// the fault.
+    /// Reports a single saved file, or the error. If the file exists, asks whether the command
+    /// `again` may overwrite it.
     pub(super) fn saved_to(
         &mut self,
         saved: Result<(), FileError>,
@@ -305,7 +306,7 @@ impl GdcmApp {
         );
     }
 
-    /// Asks in a form whether `command` may overwrite files.
+    /// Asks in a form whether `command` may overwrite the files at `paths`.
     pub(super) fn ask_to_overwrite(&mut self, paths: &[PathBuf], form: FormKind, command: Command) {
         self.state.forms.existing = paths.iter().map(|path| sanitized_path(path)).collect();
         self.state.forms.shown = Some(form);
@@ -324,6 +325,6 @@ fn remarks_suffix(remarks: &[String]) -> String {
     match remarks {
         [] => String::new(),
         [remark] => format!(" ({remark})"),
-        several => format!(" ({} remarks, in the file)", several.len()),
+        several => format!(" ({} remarks; see the file)", several.len()),
     }
 }

@@ -5,31 +5,31 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use gdcm_io::FolderProgress;
 
-/// The newest reading for a purpose, possibly by several threads in parallel.
+/// The newest reading for a purpose; several threads may take part in it.
 #[derive(Default)]
 pub(super) struct Reader {
     newest: u64,
     stop: Arc<AtomicBool>,
 }
 
-/// A reading under way.
+/// A reading in progress.
 pub(super) struct Reading {
     /// Number of the reading; its result is used only while no newer reading has begun.
     pub(super) number: u64,
-    /// Set once the reading should stop.
+    /// Set when the reading should stop.
     pub(super) stop: Arc<AtomicBool>,
 }
 
 impl Reader {
-    /// Starts a reading that replaces the current one.
+    /// Starts a reading that replaces the reading in progress.
     pub(super) fn begin(&mut self) -> Reading {
         self.give_up();
         self.stop = Arc::default();
         self.current()
     }
 
-    /// Starts a reading in addition to the current one; both have the same number and stop
-    /// together.
+    /// Starts a reading in parallel to the reading in progress; both have the same number and are
+    /// stopped together.
     pub(super) fn join(&mut self) -> Reading {
         if self.is_stopped() {
             return self.begin();
@@ -49,7 +49,7 @@ impl Reader {
         self.newest == number
     }
 
-    /// Stops the reading; the content read so far is used.
+    /// Stops the reading in progress; the content read so far is used.
     pub(super) fn stop(&self) {
         self.stop.store(true, Ordering::Release);
     }
@@ -59,7 +59,7 @@ impl Reader {
         self.stop.load(Ordering::Acquire)
     }
 
-    /// Stops the reading and discards its result, however long a drive blocks the thread.
+    /// Stops the reading in progress and discards its result, even if a drive blocks the thread.
     pub(super) fn give_up(&mut self) {
         self.stop();
         self.newest += 1;
@@ -72,7 +72,7 @@ impl Drop for Reader {
     }
 }
 
-/// Progress of a reading that can be stopped but reports nothing.
+/// Progress of a reading that can be stopped but shows no progress.
 pub(super) struct SilentProgress(pub(super) Arc<AtomicBool>);
 
 impl FolderProgress for SilentProgress {
@@ -86,10 +86,7 @@ impl FolderProgress for SilentProgress {
 /// The window's readers, by kind of file.
 #[derive(Default)]
 pub(super) struct Readers {
-    /// Reads imported models.
     pub(super) models: Reader,
-    /// Reads opened files.
     pub(super) opener: Reader,
-    /// Reads flight records.
     pub(super) record_reader: Reader,
 }

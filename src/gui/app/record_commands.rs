@@ -1,4 +1,4 @@
-//! Carries out the commands of the Records view. Edits can be undone.
+//! Commands of the Records view. Edits can be undone.
 
 use std::sync::Arc;
 
@@ -63,7 +63,7 @@ impl GdcmApp {
         }
     }
 
-    /// Applies an edit to the records of a condition as an undoable step.
+    /// Applies an edit to the records of a condition; it can be undone.
     fn edit_records(&mut self, condition: ConditionId, command: RecordsCommand) {
         let channels = self.record_channels(condition);
         let before = self.state.records.before([condition]);
@@ -82,14 +82,14 @@ impl GdcmApp {
         }
     }
 
-    /// Adds an edit to the history.
+    /// Adds an edit of records to the undo history.
     pub(super) fn record_edited(&mut self, label: String, before: RecordsBefore) {
         let study = self.state.study.clone();
         self.state.history.record_beside(study, label, before);
         self.state.notice = None;
     }
 
-    /// Applies a layout to a record, and to every record whose columns have the same names.
+    /// Sets the layout of a record, and changes similar records in the same way.
     fn set_layout(&mut self, condition: ConditionId, index: usize, layout: RecordLayout) {
         let Some(records) = self.state.records.conditions.get(&condition) else {
             return;
@@ -110,14 +110,14 @@ impl GdcmApp {
         self.edit_layouts(label, |id, row| change.layout_for(id, row));
     }
 
-    /// Assumes the unit of the dataset's channel wherever a file states none.
+    /// Assumes the units of the dataset's channels for columns whose file states none.
     fn take_dataset_units(&mut self) {
         let label = "units of the dataset's channels".to_owned();
         self.edit_layouts(label, |_, row| Some(row.layout.in_units_of_channels()));
     }
 
-    /// Changes record layouts in all conditions as an undoable step; `layout_for` returns
-    /// `None` for a record that keeps its layout.
+    /// Changes record layouts in all conditions; this can be undone. `layout_for` returns `None`
+    /// for a record that keeps its layout.
     fn edit_layouts(
         &mut self,
         label: String,
@@ -156,8 +156,8 @@ impl GdcmApp {
         self.dispatch(SelectionCommand::SelectCondition(id));
     }
 
-    /// Resamples the topics of a condition to the clock that its band requires, if that clock has
-    /// changed.
+    /// Resamples the topics of a condition if its identification band has changed and requires
+    /// another sample rate.
     pub(super) fn follow_band(&mut self, condition: ConditionId) {
         let [_, end] = self.identified_band(condition);
         let Some(records) = self.state.records.conditions.get(&condition) else {
@@ -172,9 +172,9 @@ impl GdcmApp {
         }
     }
 
-    /// Returns the channels expected in the records of a condition: those of the dataset, located
-    /// as specified when the dataset was made from records. Topics are resampled for the
-    /// identification band.
+    /// Returns the channels expected in the records of a condition: the channels of the dataset, at
+    /// the locations that were given if the dataset was made from records. Topics are resampled as
+    /// the identification band requires.
     pub(super) fn record_channels(&self, condition: ConditionId) -> RecordChannels {
         let mut channels = RecordChannels::of_dataset(&self.state.study.dataset);
         let [_, end] = self.identified_band(condition);
@@ -194,7 +194,7 @@ impl GdcmApp {
     }
 }
 
-/// New layout of a record, which similar records are to follow.
+/// New layout of a record, also for similar records.
 struct LayoutChange {
     /// Condition with the edited record.
     condition: ConditionId,
@@ -202,14 +202,15 @@ struct LayoutChange {
     table: Arc<RecordTable>,
     former: RecordLayout,
     layout: RecordLayout,
-    /// Whether the dataset names the record.
+    /// Whether the dataset lists the record.
     is_named: bool,
     dataset: Arc<Dataset>,
 }
 
 impl LayoutChange {
-    /// Returns the new layout of a record. Records named in the dataset follow its layout, so a
-    /// change spreads only among the named records of a condition, or only among unnamed records.
+    /// Returns the new layout of a record; `None` if it keeps its layout. The layout of records
+    /// that the dataset lists is stored there, so a change applies only to listed records of the
+    /// same condition, or only to unlisted records.
     fn layout_for(&self, id: ConditionId, row: &LaidOutRecord) -> Option<RecordLayout> {
         if Arc::ptr_eq(&row.table, &self.table) && row.layout == self.former {
             return Some(self.layout.clone());
@@ -225,7 +226,7 @@ impl LayoutChange {
 }
 
 /// Changes the layouts of `rows`; returns whether a layout has changed. Records that become
-/// readable may be copies of others, which are then left out.
+/// readable may turn out to be copies of others, which are then left out.
 fn change_layouts(
     rows: &mut [LaidOutRecord],
     channels: &RecordChannels,
@@ -251,7 +252,7 @@ fn change_layouts(
     is_changed
 }
 
-/// Returns the undo label of an edit.
+/// Returns the label of an edit in the undo history.
 fn edit_label(records: &ConditionRecords, command: &RecordsCommand) -> String {
     match command {
         RecordsCommand::SetKind(index, kind) => {
@@ -267,11 +268,11 @@ fn edit_label(records: &ConditionRecords, command: &RecordsCommand) -> String {
         RecordsCommand::SetHeldOut(index, false) => format!("fit {}", record_name(records, *index)),
         RecordsCommand::SetDelay(signal, _) => format!("time skew of {}", signal.name),
         RecordsCommand::SetRemedies(index, _) => {
-            format!("put {} right", record_name(records, *index))
+            format!("correct {}", record_name(records, *index))
         }
         RecordsCommand::SetHold(signal, _) => format!("hold of {}", signal.name),
-        RecordsCommand::SetBand(_) => "band of the identification".to_owned(),
-        RecordsCommand::SetSearch(_) => "search of the identification".to_owned(),
+        RecordsCommand::SetBand(_) => "identification band".to_owned(),
+        RecordsCommand::SetSearch(_) => "identification search settings".to_owned(),
         RecordsCommand::SetReferences(_) => "references".to_owned(),
         RecordsCommand::AddPart(index, _) => format!("part of {}", record_name(records, *index)),
         RecordsCommand::RemovePart(index) => format!("remove {}", record_name(records, *index)),
@@ -286,7 +287,7 @@ fn record_name(records: &ConditionRecords, index: usize) -> &str {
     }
 }
 
-/// Applies an edit to a condition's records; returns whether the command is such an edit.
+/// Applies an edit to the records of a condition; returns false if the command is no such edit.
 ///
 /// # Errors
 /// A message, if the edit is impossible.
@@ -332,7 +333,7 @@ fn apply_edit(
     Ok(true)
 }
 
-/// Sets channel remedies in a single record.
+/// Sets the delays and factors of channels in a single record.
 fn set_remedies(
     row: &mut LaidOutRecord,
     remedies: &[(Signal, ChannelRemedy)],

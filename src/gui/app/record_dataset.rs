@@ -15,19 +15,19 @@ use crate::gui::commands::records::RecordsCommand;
 use crate::gui::state::forms::FormKind;
 use crate::gui::state::wanted_dataset::WantedDataset;
 
-/// Maximum number of reported problems.
+/// Maximum number of problems reported individually.
 const MOST_PROBLEMS: usize = 6;
 
-/// Sources and settings for a dataset to be made from records.
+/// Sources and settings of a dataset that is to be made from records.
 struct DatasetRequest {
     sources: Vec<PathBuf>,
     channels: RecordChannels,
     band: Band,
-    /// Path to the dataset's file.
+    /// Path of the dataset file to be written.
     path: PathBuf,
 }
 
-/// A dataset with its origin.
+/// A dataset made from records, with its origin.
 struct MadeDataset {
     dataset: Dataset,
     origin: DatasetOfRecords,
@@ -42,7 +42,8 @@ impl GdcmApp {
             .filter(|made| self.files.loaded.path() == Some(&made.path))
     }
 
-    /// Asks for the channels of a new dataset, with a proposal based on the displayed record.
+    /// Opens the form for the channels of a new dataset, with a proposal based on the displayed
+    /// record.
     pub(super) fn ask_record_dataset(&mut self) {
         let condition = self.state.condition().id();
         let Some(records) = self.state.records.conditions.get(&condition) else {
@@ -77,7 +78,7 @@ impl GdcmApp {
         let number = reading.number;
         self.state.records.reading = Some("records".to_owned());
         let make = move || request.make(&SilentProgress(reading.stop));
-        self.in_thread("a dataset of records", make, move |app, made| {
+        self.in_thread("the making of a dataset", make, move |app, made| {
             if !app.readers.record_reader.is_newest(number) {
                 return;
             }
@@ -159,7 +160,7 @@ impl DatasetRequest {
     }
 }
 
-/// Returns the file name up to its first dot.
+/// Returns the file name up to the first dot.
 fn dataset_name(path: &Path) -> String {
     let Some(name) = path.file_name() else {
         return String::new();

@@ -1,5 +1,5 @@
-//! Model identification from flight records: starts and stops the jobs, and takes the models
-//! into the study.
+//! Identification of models from flight records: starts and stops the jobs, and adds the models to
+//! the study.
 
 use std::sync::Arc;
 
@@ -13,7 +13,8 @@ use super::GdcmApp;
 use crate::gui::state::records_page::RecordsPage;
 
 impl GdcmApp {
-    /// Returns the identification band of a condition \[rad/s\]: its own, or that of the study.
+    /// Returns the identification band \[rad/s\] of a condition: its own band if one is set,
+    /// otherwise the study's.
     pub(super) fn identified_band(&self, condition: ConditionId) -> [f64; 2] {
         let records = self.state.records.conditions.get(&condition);
         if let Some(own) = records.and_then(|records| records.band) {
@@ -23,8 +24,7 @@ impl GdcmApp {
         [band.min(), band.max()]
     }
 
-    /// Requests identification in these conditions; a waiting job for the same condition is
-    /// replaced.
+    /// Requests identification in these conditions; replaces a waiting job for the same condition.
     pub(super) fn identify_conditions(&mut self, conditions: &[ConditionId]) {
         if self.state.records.running.is_empty() {
             self.state.records.asked = 0;
@@ -86,11 +86,11 @@ impl GdcmApp {
         }
     }
 
-    /// Takes the identified models of these conditions into the study.
+    /// Adds the identified models of these conditions to the study.
     pub(super) fn take_identified(&mut self, conditions: &[ConditionId], offered: OfferedModels) {
         let adopted = self.adopted_models(conditions, offered);
         if adopted.is_empty() {
-            return self.notify_error("nothing was identified yet".to_owned());
+            return self.notify_error("nothing has been identified yet".to_owned());
         }
         let models: usize = adopted
             .iter()
@@ -106,11 +106,11 @@ impl GdcmApp {
                 "conditions"
             };
             let names = names.join(", ");
-            self.done(format!("took {models} models into {conditions} {names}"));
+            self.done(format!("adopted {models} models in {conditions} {names}"));
         }
     }
 
-    /// Returns the identified models by condition, without conditions that have none.
+    /// Returns the identified models by condition; conditions without any are omitted.
     fn adopted_models(
         &self,
         conditions: &[ConditionId],

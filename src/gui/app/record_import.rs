@@ -16,17 +16,17 @@ use crate::gui::state::condition_records::{AddedRecord, ConditionRecords};
 use crate::gui::state::requirements_page::RequirementsPage;
 use crate::gui::state::view::View;
 
-/// Window state when a reading began.
+/// State of the window when a reading began.
 struct ReadingStart {
-    /// Upper band limit \[rad/s\] that sets the clock for resampled topics.
+    /// Upper limit of the identification band \[rad/s\], from which the sample rate of topics is
+    /// chosen.
     clock_band_end: Option<f64>,
-    /// Files and folders added earlier.
+    /// Files and folders that were added earlier.
     sources: Vec<PathBuf>,
 }
 
 impl GdcmApp {
-    /// Reads the records that belong to the displayed condition, once a view that needs them is
-    /// shown.
+    /// Reads the records of the displayed condition once a view that needs them is shown.
     pub(super) fn look_for_records(&mut self) {
         let id = self.state.condition().id();
         self.follow_band(id);
@@ -60,7 +60,7 @@ impl GdcmApp {
             || arrangement.is_shown(View::Requirements) && is_compared
     }
 
-    /// Returns the source of the records that belong to conditions.
+    /// Returns the source of the conditions' own records.
     fn own_records(&self) -> OwnRecords {
         OwnRecords {
             dataset: Arc::clone(&self.state.study.dataset),
@@ -91,7 +91,7 @@ impl GdcmApp {
         });
     }
 
-    /// Reads records in a thread; `sources` are the files and folders added earlier.
+    /// Reads records in a thread; `sources` are the files and folders that were added earlier.
     fn read_records_in_thread(
         &mut self,
         name: String,
@@ -120,7 +120,7 @@ impl GdcmApp {
             if let Some(found) = found.and_then(|found| app.unless_error(found)) {
                 app.take_records(found, start);
             }
-            // An entry, even without records, prevents a repeated search.
+            // Create an entry, even without records, to prevent a repeated search.
             app.records_of(app.state.condition().id());
         });
     }
@@ -134,7 +134,7 @@ impl GdcmApp {
             .or_insert_with(|| ConditionRecords::new(Vec::new(), &self.state.study.dataset))
     }
 
-    /// Stores the records read, and reports faults and counts.
+    /// Stores the records that were read, and reports faults and counts.
     fn take_records(&mut self, found: ReadRecords, start: ReadingStart) {
         let ReadRecords {
             own,
@@ -156,7 +156,7 @@ impl GdcmApp {
         }
     }
 
-    /// Stores the records that belong to conditions without loaded records.
+    /// Stores the conditions' own records, except where records have been loaded in the meantime.
     fn store_own_records(
         &mut self,
         own: BTreeMap<ConditionId, Vec<LaidOutRecord>>,
@@ -174,7 +174,7 @@ impl GdcmApp {
         }
     }
 
-    /// Adds records to their conditions as an undoable step.
+    /// Adds records to their conditions; this can be undone.
     fn store_added_records(
         &mut self,
         added: BTreeMap<ConditionId, Vec<LaidOutRecord>>,
@@ -234,7 +234,7 @@ impl AddedCounts {
         }
     }
 
-    /// "81 records of 9 conditions added; 18 were there already".
+    /// Describes the counts: "81 records of 9 conditions added; 18 already loaded".
     fn words(&self) -> String {
         let conditions = if self.conditions > 1 {
             format!(" of {} conditions", self.conditions)
@@ -250,9 +250,9 @@ impl AddedCounts {
         }
         if self.known > 0 && parts.is_empty() {
             let known = counted_records(self.known);
-            parts.push(format!("nothing added: {known} there already"));
+            parts.push(format!("nothing added: {known} already loaded"));
         } else if self.known > 0 {
-            parts.push(format!("{} there already", self.known));
+            parts.push(format!("{} already loaded", self.known));
         }
         parts.join("; ")
     }

@@ -1,4 +1,4 @@
-//! Reads flight records from files; runs in a reading thread.
+//! Reading of flight records from files, in a reading thread.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -16,33 +16,34 @@ use gdcm_sysid::records::{
 
 use super::readers::SilentProgress;
 
-/// Records read, by condition, and the faults found.
+/// Records that were read, by condition, and the faults found.
 #[derive(Default)]
 pub(super) struct ReadRecords {
-    /// Records that belong to conditions without loaded records.
+    /// The conditions' own records: listed by the dataset, or embedded in the example.
     pub(super) own: BTreeMap<ConditionId, Vec<LaidOutRecord>>,
-    /// Records from the added files.
+    /// Records from the files that the engineer added.
     pub(super) added: BTreeMap<ConditionId, Vec<LaidOutRecord>>,
     pub(super) faults: Vec<String>,
     /// File paths, by SHA-256.
     pub(super) read_from: BTreeMap<String, PathBuf>,
 }
 
-/// Source of the records that belong to conditions.
+/// Source of the conditions' own records: the files that the dataset lists, or the embedded
+/// example.
 #[derive(Clone)]
 pub(super) struct OwnRecords {
     pub(super) dataset: Arc<Dataset>,
     pub(super) origin: DatasetOrigin,
 }
 
-/// A record named by the dataset, and its condition.
+/// A record that the dataset lists, and its condition.
 struct NamedRecord<'a> {
     condition: ConditionId,
     entry: &'a ConditionRecord,
 }
 
 impl OwnRecords {
-    /// Returns whether a condition may have records of its own.
+    /// Returns whether a condition may have its own records.
     pub(super) fn has_some(&self, id: ConditionId) -> bool {
         match &self.origin {
             DatasetOrigin::EmbeddedExample => true,
@@ -57,8 +58,8 @@ impl OwnRecords {
         }
     }
 
-    /// Reads the conditions' records: those named by the dataset, or the records embedded in the
-    /// example. Every condition gets an entry, even an empty one.
+    /// Reads the own records of the conditions `ids`. Every condition gets an entry, even an empty
+    /// one.
     ///
     /// # Errors
     /// The fault in an embedded record; faults in files are collected in `found`.
@@ -87,7 +88,7 @@ impl OwnRecords {
         Ok(())
     }
 
-    /// Groups named records by file, so that a file with several records is read once.
+    /// Groups listed records by file, so that a file with several records is read once.
     fn records_by_file(&self, ids: &[ConditionId]) -> BTreeMap<&str, Vec<NamedRecord<'_>>> {
         let mut by_file: BTreeMap<&str, Vec<NamedRecord<'_>>> = BTreeMap::new();
         for id in ids {
@@ -103,7 +104,7 @@ impl OwnRecords {
     }
 }
 
-/// Reads the named records in a single file into `found`.
+/// Reads the listed records in a file into `found`.
 fn read_named_records(
     path: &Path,
     records: &[NamedRecord<'_>],
@@ -143,19 +144,20 @@ fn read_named_records(
     }
 }
 
-/// Files added by the engineer, with the conditions that their records may belong to.
+/// Files that the engineer added, and the conditions to which their records may belong.
 pub(super) struct AddedFiles {
     pub(super) paths: Vec<PathBuf>,
     pub(super) own: OwnRecords,
     /// The displayed condition, for records whose names match no condition.
     pub(super) shown: ConditionId,
-    /// Conditions whose records are loaded.
+    /// Conditions whose own records are already loaded.
     pub(super) loaded: BTreeSet<ConditionId>,
 }
 
 impl AddedFiles {
     /// Reads the records in the files and assigns each to the condition in its name, or else to the
-    /// displayed condition. Also reads these conditions' own records if they are not loaded yet.
+    /// displayed condition. Also reads the own records of these conditions if they are not yet
+    /// loaded.
     ///
     /// # Errors
     /// The fault in a path; faults in single files are collected.
@@ -189,7 +191,8 @@ impl AddedFiles {
     }
 }
 
-/// Lays out a record as the dataset describes it, or with a proposed layout without a dataset.
+/// Assigns the columns of a record to channels: as the dataset states, or by a proposal without a
+/// dataset.
 fn laid_out(
     table: RecordTable,
     channels: &RecordChannels,

@@ -1,5 +1,5 @@
-//! Recovers unsaved decisions: the next start offers the decisions from a window that ended
-//! without saving.
+//! Recovery of unsaved decisions: at the next start, the window offers the decisions of a window
+//! that ended without saving them.
 
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
@@ -21,13 +21,13 @@ use crate::gui::state::notices::Bar;
 /// Maximum time that a closing window waits for the disk to store the latest decisions.
 pub(super) const LAST_WAIT: Duration = Duration::from_secs(2);
 
-/// Protection of unsaved decisions.
+/// State of the recovery of unsaved decisions.
 pub(super) struct Recovery {
     pub(super) autosave: Autosave,
     /// Set once the window has drawn a frame; gives the code that opened the window access to the
     /// autosave.
     pub(super) drawn: Arc<OnceLock<Autosave>>,
-    /// Lost studies by offer number, until restored or discarded.
+    /// Lost studies, indexed by offer number; `None` once restored or discarded.
     pub(super) offers: Vec<Option<LostStudy>>,
 }
 
@@ -42,7 +42,7 @@ impl Recovery {
 }
 
 impl GdcmApp {
-    /// Offers to restore lost decisions.
+    /// Shows a bar for each lost study, with the offer to restore it.
     pub(super) fn offer(&mut self, lost: Vec<LostStudy>) {
         for lost in lost {
             let sentence = offer_words(&lost, &TimeZone::system());
@@ -54,7 +54,7 @@ impl GdcmApp {
         }
     }
 
-    /// Keeps unsaved decisions; clears the recovery file once they are saved.
+    /// Keeps unsaved decisions in the recovery file; deletes the file once they are saved.
     pub(super) fn keep_unsaved(&self) {
         if self.state.unsaved {
             let study = self.state.study.clone();
@@ -69,7 +69,7 @@ impl GdcmApp {
         }
     }
 
-    /// Opens lost decisions; the bar disappears once they are open.
+    /// Reads lost decisions to open them; the bar disappears once they are open.
     pub(super) fn restore(&mut self, offer: usize) {
         if let Some(Some(lost)) = self.recovery.offers.get(offer) {
             let path = lost.path().to_owned();
@@ -102,7 +102,7 @@ impl GdcmApp {
         self.done(message);
     }
 
-    /// Discards lost decisions.
+    /// Discards lost decisions and their recovery file.
     pub(super) fn discard(&mut self, offer: usize) {
         if let Some(lost) = self.recovery.offers.get_mut(offer).and_then(Option::take) {
             self.recovery.autosave.send(Task::Discard(lost));
@@ -117,8 +117,8 @@ impl GdcmApp {
     }
 }
 
-/// "Decisions of 14:32 on 21 Nov 2026 for data.json.gz (study mine.gdcm-study.json) were not
-/// saved."
+/// Describes lost decisions: "Decisions of 14:32 on 21 Nov 2026 for data.json.gz (study
+/// mine.gdcm-study.json) were not saved."
 fn offer_words(lost: &LostStudy, zone: &TimeZone) -> String {
     let study = match lost.saved_as.as_ref().and_then(|path| path.file_name()) {
         Some(name) => format!(" (study {})", sanitized(&name.to_string_lossy())),
@@ -131,7 +131,7 @@ fn offer_words(lost: &LostStudy, zone: &TimeZone) -> String {
     )
 }
 
-/// "14:32 on 21 Nov 2026", in the given zone.
+/// Formats a time in the given zone: "14:32 on 21 Nov 2026".
 fn when(at: SystemTime, zone: &TimeZone) -> String {
     let at = Timestamp::try_from(at).unwrap_or(Timestamp::UNIX_EPOCH);
     at.to_zoned(zone.clone())
@@ -139,9 +139,9 @@ fn when(at: SystemTime, zone: &TimeZone) -> String {
         .to_string()
 }
 
-/// Returns the message for standard error after a fault that ended the window.
+/// Returns the message on standard error after a fault has ended the window.
 pub(super) fn end_words(fault: &str, remains: &Remains) -> String {
-    let fault = format!("stopped by a fault in its window: {fault}");
+    let fault = format!("the window was ended by a fault: {fault}");
     match remains {
         Remains::Kept(kept) => format!("{fault}; {}", kept_words(kept)),
         Remains::Saved => format!("{fault}; every decision was saved"),
@@ -152,7 +152,8 @@ pub(super) fn end_words(fault: &str, remains: &Remains) -> String {
     }
 }
 
-/// "your decisions up to 14:32 on 21 Nov 2026 are in /data/recovery/7-1.gdcm-study.json".
+/// Describes kept decisions: "your decisions up to 14:32 on 21 Nov 2026 are in
+/// /data/recovery/7-1.gdcm-study.json".
 fn kept_words(kept: &Kept) -> String {
     let time = when(kept.at, &TimeZone::system());
     let path = sanitized_path(&kept.path);
@@ -183,7 +184,7 @@ mod tests {
         let words = end_words(fault, &Remains::Kept(kept));
         assert!(
             words.starts_with(
-                "stopped by a fault in its window: out of range at src/view/centre.rs:7;"
+                "the window was ended by a fault: out of range at src/view/centre.rs:7;"
             ),
             "{words}"
         );

@@ -1,4 +1,4 @@
-//! Reloads a dataset whose file changes on the disk while open.
+//! Reloads the open dataset after its file has changed on disk.
 
 use std::sync::Arc;
 
@@ -29,14 +29,14 @@ impl GdcmApp {
         }
     }
 
-    /// Keeps the open dataset until the file changes again.
+    /// Closes the offer to reload; the open dataset remains until its file changes again.
     pub(super) fn keep_open(&mut self) {
         self.state
             .bars
             .retain(|bar| !matches!(bar, Bar::Changed { .. }));
     }
 
-    /// Reads the dataset's file again; the open dataset stays until it is read.
+    /// Reads the dataset's file again; the open dataset is replaced once the file has been read.
     pub(super) fn reload(&mut self) {
         if let Some(path) = self.files.loaded.path() {
             let path = path.to_owned();
@@ -50,7 +50,7 @@ impl GdcmApp {
     /// Shows the reloaded dataset with every decision that still applies, as an undoable step.
     pub(super) fn show_reloaded(&mut self, loaded: LoadedDataset) {
         if loaded.path() != self.files.loaded.path() {
-            // Another file was opened in the meantime.
+            // Ignore the result: another file has been opened in the meantime.
             return;
         }
         self.keep_open();

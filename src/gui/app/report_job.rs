@@ -1,4 +1,4 @@
-//! The report: asks for its path, and writes it in a job.
+//! Writes the report in a background job, after asking for its path.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -20,7 +20,7 @@ use crate::gui::commands::output::OutputCommand;
 use crate::gui::state::forms::FormKind;
 
 impl GdcmApp {
-    /// Asks where to write the report, unless there are no results yet.
+    /// Asks where to write the report; shows an error if the newest results are not available.
     pub(super) fn ask_report(&mut self) {
         let analysis = self.analysis_to_write("write the report");
         if self.unless_error(analysis).is_none() {
@@ -47,7 +47,7 @@ impl GdcmApp {
         }
         self.state.forms.shown = None;
         self.work.reporting = Some(ReportJob {
-            // The live analysis does not depend on the requirements and may contain older ones.
+            // `asked_with`: the live analysis ignores the requirements and may contain older ones.
             analysis: Arc::new(analysis.asked_with(&self.state.study.requirements)),
             records: self.state.records.history_records(),
             known: self.state.records.known_poles(),
@@ -58,7 +58,7 @@ impl GdcmApp {
         });
     }
 
-    /// Reports that a report is written, or its fault.
+    /// Shows a notice with the path of the written report, or handles the error.
     pub(super) fn report_written(&mut self, job: ReportJob, outcome: Result<(), FileError>) {
         self.work.reporting = None;
         match outcome {
@@ -67,17 +67,17 @@ impl GdcmApp {
         }
     }
 
-    /// Asks whether the report may overwrite an existing file, or reports the fault.
+    /// Asks whether to overwrite the file if it exists; shows any other error.
     fn report_failed(&mut self, error: FileError, path: PathBuf) {
         let again = Command::Output(OutputCommand::WriteReport(path));
         self.written(Err(error), FormKind::Report, again);
     }
 
-    /// Reports that a running report was stopped, by hand or by a fault.
+    /// Shows an error if a running report was stopped, by the engineer or by a panic.
     pub(super) fn give_up_report(&mut self) {
         if let Some(job) = self.work.reporting.take() {
             let path = sanitized_path(&job.path);
-            self.notify_error(format!("{path} was not written: it was stopped"));
+            self.notify_error(format!("{path} was not written: the report was stopped"));
         }
     }
 }
@@ -124,7 +124,7 @@ impl Job for ReportJob {
             known: &self.known,
         };
         let report = report(subject, &self.source, engine, progress)?;
-        // After a stop the file is no longer wanted.
+        // A stopped job must not write the file.
         if progress.cancelled() {
             return Err(Cancelled);
         }
@@ -133,7 +133,7 @@ impl Job for ReportJob {
     }
 }
 
-/// Returns a report name for a study or a dataset: `flight-7-report.html`.
+/// Returns a file name for the report of a study or a dataset: `flight-7-report.html`.
 fn report_name(file: Option<&Path>) -> String {
     let name = match file {
         Some(file) => study_name(Some(file)),

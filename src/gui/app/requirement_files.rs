@@ -31,7 +31,7 @@ impl GdcmApp {
         self.decide(&Edit::SetRequirements(name, Arc::new(settings)));
         if !cautions.is_empty() {
             self.notify_error(format!(
-                "taken, but {}: {}",
+                "tolerances read with cautions from {}: {}",
                 sanitized_path(&path),
                 cautions.join("; ")
             ));
@@ -61,7 +61,8 @@ impl GdcmApp {
     }
 }
 
-/// Reads a table into the settings; returns cautions.
+/// Reads levels or tolerances from a file into the settings; returns the cautions about the
+/// tolerances.
 fn read_table_into(
     settings: &mut RequirementSettings,
     table: RequirementTable,

@@ -1,4 +1,4 @@
-//! Carries out selections and highlights.
+//! Carries out commands that select or highlight conditions, responses and models.
 
 use gdcm_model::dataset::ConditionId;
 

@@ -1,4 +1,4 @@
-//! Carries out decisions about the study.
+//! Carries out commands about decisions and their history.
 
 use gdcm_study::decisions::history::History;
 use gdcm_study::{Edit, Study};
@@ -36,8 +36,8 @@ impl GdcmApp {
         }
     }
 
-    /// Restores another state of the study and of the records from the history, if there is such a
-    /// state.
+    /// Replaces the study by the state that `find` takes from the history; does nothing if there is
+    /// none.
     fn take_study(
         &mut self,
         find: impl FnOnce(&mut History<RecordsBefore>, &Study, &mut RecordsState) -> Option<Study>,
@@ -54,7 +54,8 @@ impl GdcmApp {
         }
     }
 
-    /// Updates the mark for unsaved decisions.
+    /// Updates everything that depends on the study: the notice, the mark for unsaved decisions,
+    /// the selected dataset file and the recovery file.
     pub(super) fn study_changed(&mut self) {
         self.state.notice = None;
         self.state

@@ -1,5 +1,5 @@
-//! Tools shared by the window and its threads: mailboxes, replies, threads for a single task, and
-//! panics, which are caught and reported as sentences instead of raw traces.
+//! Communication between the window and its threads: mailboxes, replies, threads for a single task,
+//! and caught panics, which are reported in a sentence instead of a raw trace.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
@@ -10,7 +10,7 @@ use egui::Context;
 
 use super::GdcmApp;
 
-/// A value that threads wait for; every change wakes them.
+/// Value that threads can wait for; every change wakes them.
 #[derive(Default)]
 pub(super) struct Mailbox<T> {
     content: Mutex<T>,
@@ -20,7 +20,7 @@ pub(super) struct Mailbox<T> {
 impl<T> Mailbox<T> {
     /// Locks the content for reading.
     pub(super) fn lock(&self) -> MutexGuard<'_, T> {
-        // The content is consistent even after a panic under the lock.
+        // Ignore poisoning: the content is consistent even after a panic under the lock.
         self.content.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -31,7 +31,7 @@ impl<T> Mailbox<T> {
         changed
     }
 
-    /// Waits until `take` returns a value for the content.
+    /// Waits until `take` returns `Some`, and returns that value.
     pub(super) fn wait<R>(&self, mut take: impl FnMut(&mut T) -> Option<R>) -> R {
         let mut content = self.lock();
         loop {
@@ -46,7 +46,7 @@ impl<T> Mailbox<T> {
     }
 }
 
-/// A thread's reply, applied to the window.
+/// Reply of a thread: a change that the window applies to itself.
 pub(super) type Reply = Box<dyn FnOnce(&mut GdcmApp) + Send>;
 
 /// Sender for replies from threads; each reply wakes the window.
@@ -76,8 +76,8 @@ impl ReplySender {
 }
 
 impl GdcmApp {
-    /// Runs `work` in a thread called `name` and passes its result to `take`: `None` after a fault,
-    /// or if no thread could be started. Both are reported first.
+    /// Runs `work` in a thread called `name` and passes its result to `take`. After a panic, or if
+    /// the thread could not be started, reports the error and passes `None`.
     pub(super) fn in_thread<T: Send + 'static, Work, Take>(
         &self,
         name: &'static str,
@@ -87,7 +87,8 @@ impl GdcmApp {
         Work: FnOnce() -> T + Send + 'static,
         Take: FnOnce(&mut Self, Option<T>) + Send + 'static,
     {
-        // The work is sent once the thread exists.
+        // `work` and `take` are sent once the thread exists, because `take` is also called if it
+        // could not be started.
         let (order, ordered) = channel::<(Work, Take)>();
         let replies = self.work.replies.clone();
         let thread = move || {
@@ -115,7 +116,7 @@ impl GdcmApp {
         }
     }
 
-    /// Stops the work shown next to the Stop button: a reading, or else the computation.
+    /// Stops the work shown next to the Stop button: the file being read, or else the computation.
     pub(super) fn stop_work(&mut self) {
         let opening = self.state.opening.take();
         let records = self.state.records.reading.take();
@@ -125,17 +126,19 @@ impl GdcmApp {
         self.readers.opener.give_up();
         self.readers.record_reader.give_up();
         if records.is_some() {
-            // An existing entry prevents another automatic search.
+            // This entry, even if it is empty, prevents another automatic search for records.
             self.records_of(self.state.condition().id());
         }
-        self.done(format!("stopped reading {name}; the open study stays"));
+        self.done(format!(
+            "stopped reading {name}; the open study is unchanged"
+        ));
     }
 }
 
-/// A panic: its message and its source location.
+/// Message and source location of a panic.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// The message, on a single line.
+    /// Message on a single line.
     pub message: String,
     /// "src/study/engine.rs:49"; `None` if the location was not recorded.
     pub place: Option<String>,
@@ -151,10 +154,10 @@ impl Fault {
     }
 }
 
-/// Recorded faults that are not reported yet. Only the panic hook knows the location of a panic,
-/// and another thread may catch the panic.
+/// Recorded panics that have not been caught yet. Only the panic hook knows the location of a
+/// panic. Another thread may catch it, so the list is not thread-local.
 static NOTED: Mutex<Vec<Fault>> = Mutex::new(Vec::new());
-/// Maximum number of recorded faults; uncaught panics are rare.
+/// Maximum number of recorded panics; the oldest is dropped.
 const MOST_NOTED: usize = 50;
 
 /// Records a panic's message and location; called by the process's panic hook.
@@ -172,9 +175,9 @@ pub fn note(panic: &PanicHookInfo<'_>) {
     });
 }
 
-/// Returns the result of `work`, or the fault that ended it.
+/// Returns the result of `work`, or the panic that ended it.
 pub(super) fn caught<T>(work: impl FnOnce() -> T) -> Result<T, Fault> {
-    // The caller discards values that a panic left inconsistent.
+    // `AssertUnwindSafe`: callers discard values that a panic left inconsistent.
     catch_unwind(AssertUnwindSafe(work)).map_err(|payload| {
         let message = message_of(payload.as_ref());
         let mut noted = NOTED.lock().unwrap_or_else(PoisonError::into_inner);
@@ -195,7 +198,7 @@ fn message_of(payload: &(dyn Any + Send)) -> String {
     } else if let Some(text) = payload.downcast_ref::<&str>() {
         text
     } else {
-        "a fault without a message"
+        "a panic without a message"
     };
     let words: Vec<&str> = text.split_whitespace().collect();
     words.join(" ")

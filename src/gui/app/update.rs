@@ -37,8 +37,7 @@ impl GdcmApp {
         }
     }
 
-    /// Clears the elements under the pointer, which commands set again in every frame; returns the
-    /// former ones.
+    /// Takes the elements under the pointer; the commands of each frame set them again.
     fn take_pointed(&mut self) -> Pointed {
         let display = &mut self.state.display;
         Pointed {
@@ -49,7 +48,7 @@ impl GdcmApp {
         }
     }
 
-    /// Returns whether the same elements are under the pointer.
+    /// Returns whether the elements under the pointer are the same as `before`.
     fn is_pointed(&self, before: &Pointed) -> bool {
         let selection = &self.state.display.selection;
         selection.hovered == before.model
@@ -75,7 +74,7 @@ impl GdcmApp {
         }
     }
 
-    /// Reports a completed action.
+    /// Shows a notice about a completed action.
     pub(super) fn done(&mut self, text: String) {
         self.state.notice = Some(Notice {
             kind: NoticeKind::Done,
@@ -83,7 +82,7 @@ impl GdcmApp {
         });
     }
 
-    /// Returns the value, or reports the error.
+    /// Returns the value; shows an error as a notice and returns `None`.
     pub(super) fn unless_error<T, E: Display>(&mut self, made: Result<T, E>) -> Option<T> {
         match made {
             Ok(value) => Some(value),
@@ -94,7 +93,7 @@ impl GdcmApp {
         }
     }
 
-    /// Reports a failed action.
+    /// Shows a notice about a failed action.
     pub(super) fn notify_error(&mut self, text: String) {
         self.state.notice = Some(Notice {
             kind: NoticeKind::Trouble,

@@ -62,13 +62,13 @@ pub struct GdcmApp {
 }
 
 impl GdcmApp {
-    /// Creates the window on a dataset or a study. Nothing is written to disk unless the engineer
+    /// Creates the window with a dataset or a study. Nothing is written to disk unless the engineer
     /// asks for it.
     pub fn new(ctx: &Context, opened: Opened) -> std::io::Result<Self> {
         Self::with(ctx, opened, Setup::default())
     }
 
-    /// Creates the window on a dataset or a study; starts the compute threads and the thread that
+    /// Creates the window with a dataset or a study; starts the compute threads and the thread that
     /// watches the disk.
     pub fn with(ctx: &Context, opened: Opened, setup: Setup) -> std::io::Result<Self> {
         palette::apply(ctx);
@@ -160,7 +160,7 @@ impl GdcmApp {
         }
     }
 
-    /// Asks before a closing window loses unsaved decisions.
+    /// Asks for confirmation before closing the window loses unsaved decisions.
     fn guard_closing(&mut self) {
         if self.ctx.input(|input| input.viewport().close_requested())
             && self.state.unsaved
@@ -223,7 +223,7 @@ impl GdcmApp {
 /// Minimum window width \[pt\] for full names and the full left panel.
 const WIDE: f32 = 1400.0;
 
-/// Draws conditions and models, in full or as a rail.
+/// Draws the left panel with conditions and models, in full or as a narrow rail.
 fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let side = Frame::new().fill(palette.panel);
     let layout = &state.display.layout;
@@ -278,7 +278,8 @@ fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
 
 /// Draws the right panel: verdict, result, matrix, and export.
 fn right_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
-    // A dragged width applies to windows in the same width class, hence two names.
+    // Panel widths are stored by name: with two names, wide and narrow windows keep separate
+    // widths.
     let (name, width) = if state.display.layout.is_wide {
         ("answer", 352.0)
     } else {
@@ -306,7 +307,7 @@ fn steady_ui(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
     ui.advance_cursor_after_rect(room);
 }
 
-/// Draws the sheets over the views.
+/// Draws the open sheet, if any, over the views.
 fn sheets_ui(ui: &Ui, centre: Rect, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let sheet = if state.display.selection.asked.is_some() {
         Sheet::Derivation
@@ -325,7 +326,7 @@ fn sheets_ui(ui: &Ui, centre: Rect, state: &State, palette: &Palette, commands: 
             models_panel::bundle_sheet_ui(ui, state, BundleKind::Identified, palette, commands)
         }
     });
-    // A click outside may ask about another value, which is then shown.
+    // A click outside closes the sheet, unless it asks for the derivation of another value.
     let asks = commands
         .iter()
         .any(|command| matches!(command, Command::Selection(SelectionCommand::Explain(_))));
@@ -340,13 +341,12 @@ fn sheets_ui(ui: &Ui, centre: Rect, state: &State, palette: &Palette, commands: 
 }
 
 impl Drop for GdcmApp {
-    /// Keeps the latest decisions, even if the window panics.
+    /// Saves the latest decisions to the recovery file, even if the window panics.
     fn drop(&mut self) {
         self.recovery.autosave.close(LAST_WAIT);
     }
 }
 
-/// Storage key for the preferences.
 pub(super) const PREFERENCES: &str = "preferences";
 
 impl eframe::App for GdcmApp {
@@ -386,15 +386,14 @@ impl eframe::App for GdcmApp {
         self.name_window();
         self.request();
         self.want_jobs();
-        // Jobs that wait for the first picture start in the next frame, once this frame is on the
-        // screen.
+        // Jobs that wait until the first results are on the screen start in the next frame.
         if !self.state.results.is_painted && self.state.results.analysis.is_some() {
             self.state.results.is_painted = true;
             ctx.request_repaint();
         }
         if self.state.results.is_waiting() || self.state.results.background_since.is_some() {
-            // The marks of stale results and of work in progress appear after a delay, not after an
-            // event.
+            // Repaint later without an event: the marks of stale results and of running work appear
+            // after a delay.
             ctx.request_repaint_after(std::time::Duration::from_millis(160));
         }
     }

@@ -4,22 +4,19 @@ use std::path::PathBuf;
 
 use gdcm_model::assembly::Rules;
 
-/// A command in the import view.
+/// Command of the import view.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AssemblingCommand {
-    /// Start, or continue.
+    /// Start the import, or return to it.
     Open,
     /// Choose a folder with the desktop's dialog.
     AskFolder,
     /// Read files, and folders with all their files.
     Add(Vec<PathBuf>),
-    /// Stop reading.
     StopReading,
-    /// Change the rules.
+    /// Change the import rules.
     Change(Box<Rules>),
-    /// Undo the last change.
     Undo,
-    /// Redo the last undone change.
     Redo,
     Select(usize),
     /// Sort the table by the column with this index; the same column again reverses the order.

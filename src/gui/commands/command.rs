@@ -17,8 +17,8 @@ use crate::gui::state::forms::FormKind;
 use crate::gui::widgets::controls::RefusedEntry;
 use crate::gui::widgets::tables::TableRequest;
 
-/// A click, a key or a menu entry, grouped by responsibility. Views push commands; the window
-/// carries them out.
+/// Request caused by a click, a key or a menu entry. Views push commands; the window carries them
+/// out.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
     Study(StudyCommand),

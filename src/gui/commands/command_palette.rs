@@ -16,10 +16,11 @@ use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 
 /// Height of the list \[pt\].
 const HEIGHT: f32 = 340.0;
-/// Maximum number of drawn rows; further letters narrow a longer list.
+/// Maximum number of drawn rows; typing further letters shortens a longer list.
 const MOST_ROWS: usize = 60;
 
-/// Draws the field and the matching commands. Up and Down select, Enter carries out.
+/// Draws the search field and the matching commands. Up and Down select a command, Enter carries it
+/// out.
 pub fn command_palette_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -86,7 +87,7 @@ fn count_presses(ui: &Ui, key: Key) -> usize {
 /// Draws the search field; returns whether its text has changed.
 fn field_ui(ui: &mut Ui, query: &mut String, opens: bool) -> bool {
     let shown = TextEdit::singleline(query)
-        .hint_text("what to do")
+        .hint_text("name of a command")
         .desired_width(f32::INFINITY)
         .show(ui);
     let response = shown.response.response;
@@ -127,15 +128,15 @@ fn entry_ui(ui: &mut Ui, entry: &Entry, chosen: bool, palette: &Palette) -> egui
     response.on_hover_text(entry.meaning)
 }
 
-/// How well a name matches a query; a better match compares greater.
+/// Score of the match between a name and a query; a better match compares greater.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct AnswerScore {
-    /// Whether the name is not "undo" or "redo", or the query asks for these. Their names contain
-    /// the last decision, whose words would match otherwise.
+    /// False for an undo or redo command, unless the query asks for it: its name contains the last
+    /// decision, whose words would match otherwise.
     is_asked: bool,
     /// Sum of the word scores.
     words: usize,
-    /// Sum of the word scores of the command without its arguments.
+    /// Sum of the word scores in the name before the first `(` or `:`, that is, without arguments.
     words_of_command: usize,
     /// Number of letters; the shorter name is better.
     length: Reverse<usize>,
@@ -163,7 +164,8 @@ pub fn answer_score(name: &str, query: &str) -> Option<AnswerScore> {
     })
 }
 
-/// Returns whether a name is not "undo" or "redo", or the query asks for these.
+/// Returns false for a name that begins with "undo" or "redo", unless a word of the query is a
+/// prefix of that word.
 fn is_asked(name: &str, query: &str) -> bool {
     match words_of(name).next() {
         Some(first @ ("undo" | "redo")) => {

@@ -47,7 +47,7 @@ fn table_entries(kind: TableKind) -> [Entry; 2] {
     [
         Entry::new(
             format!("Copy table: {}", kind.name()),
-            "As text, one line a row",
+            "As text, one line for each row",
             OutputCommand::CopyTable(kind),
         ),
         Entry::new(
@@ -61,19 +61,19 @@ fn table_entries(kind: TableKind) -> [Entry; 2] {
 fn figure_entries(view: View) -> [Entry; 2] {
     [
         Entry::new(
-            format!("Copy numbers of {}", view.name()),
+            format!("Copy values of {}", view.name()),
             "As CSV, to the clipboard",
             OutputCommand::CopyFigure(view),
         ),
         Entry::new(
             format!("Save figure: {}…", view.name()),
-            "As SVG, PNG or PDF, or its numbers as CSV",
+            "As SVG, PNG or PDF, or its values as CSV",
             OutputCommand::AskSaveFigure(view, FigureFormat::Svg),
         ),
     ]
 }
 
-/// Returns the actions on the displayed condition's flight records.
+/// Returns the entries for the flight records of the displayed condition.
 fn record_entries(state: &State) -> [Entry; 4] {
     let condition = state.condition().id();
     let in_use = state.records.conditions_in_use();
@@ -140,11 +140,11 @@ fn setting_entries(state: &State) -> Vec<Entry> {
     entries
 }
 
-/// Returns the entry that focuses a number field.
+/// Returns the entry that focuses a numeric field of the settings.
 fn field_entry(name: &str, option: &str, label: &'static str) -> Entry {
     Entry::new(
         format!("Set the {name} ({option})…"),
-        "Goes to its field",
+        "Moves the focus to its field",
         LayoutCommand::FocusField(label),
     )
 }

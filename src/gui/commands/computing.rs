@@ -1,10 +1,10 @@
-//! Commands about the computation.
+//! Commands that stop and resume the computation.
 
 /// Stops or resumes the computation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ComputingCommand {
     /// Stops reading a file; if none is being read, stops the computation.
     StopComputing,
-    /// Starts a stopped computation again.
+    /// Resumes a stopped computation.
     Compute,
 }

@@ -19,7 +19,7 @@ pub fn curve_entries(state: &State) -> Vec<Entry> {
     entries
 }
 
-/// Returns an entry for each option with two values, which switches to the other value.
+/// Returns an entry for each display option with two values; the entry switches to the other value.
 fn unit_entries(state: &State) -> Vec<Entry> {
     let curves = &state.display.curves;
     let entries = [
@@ -28,7 +28,7 @@ fn unit_entries(state: &State) -> Vec<Entry> {
         phase_error_entry(curves.phase_error),
         Entry::new(
             if curves.lists_values {
-                "List no values at the cursor"
+                "Hide the values at the cursor"
             } else {
                 "List values at the cursor"
             },
@@ -41,17 +41,18 @@ fn unit_entries(state: &State) -> Vec<Entry> {
             } else {
                 "Show the bands of identified models"
             },
-            "Confidence band of each identified response, at 95 %",
+            "95 % confidence band of each identified response",
             CurveCommand::ShowBands(!curves.shows_bands),
         ),
         Entry::new(
             if curves.shows_muad {
-                "Hide what a pilot does not notice"
+                "Hide MUAD envelopes"
             } else {
-                "Show what a pilot does not notice"
+                "Show MUAD envelopes"
             },
-            "Envelopes of maximum unnoticeable added dynamics about the identified response in Bode \
-             and in the plot of errors, with the frequencies at which the mismatch leaves them",
+            "Envelopes of maximum unnoticeable added dynamics (MUAD) around the identified \
+            response, in Bode and in the error plot, and the frequencies at which the mismatch \
+            leaves them",
             CurveCommand::ShowMuad(!curves.shows_muad),
         ),
     ];
@@ -62,7 +63,7 @@ fn magnitude_entry(unit: MagnitudeUnit) -> Entry {
     match unit {
         MagnitudeUnit::Decibel => Entry::new(
             "Magnitudes as ratios",
-            "Output by input, in the units of the channels, on a logarithmic axis",
+            "Output divided by input, in the units of the channels, on a logarithmic axis",
             CurveCommand::ReadMagnitudes(MagnitudeUnit::Ratio),
         ),
         MagnitudeUnit::Ratio => Entry::new(
@@ -92,18 +93,18 @@ fn phase_error_entry(unit: PhaseErrorUnit) -> Entry {
     match unit {
         PhaseErrorUnit::Degree => Entry::new(
             "Phase errors as delays",
-            "Δφ/ω [ms] in the plot of errors",
+            "Δφ/ω [ms] in the error plot",
             CurveCommand::DrawPhaseErrors(PhaseErrorUnit::Millisecond),
         ),
         PhaseErrorUnit::Millisecond => Entry::new(
             "Phase errors in degrees",
-            "Δφ in the plot of errors",
+            "Δφ [deg] in the error plot",
             CurveCommand::DrawPhaseErrors(PhaseErrorUnit::Degree),
         ),
     }
 }
 
-/// Returns the entries for the other curve colours and for every line width.
+/// Returns the entries for the curve colours that are not in use, and for every line width.
 fn look_entries(looks: PlotStyle) -> Vec<Entry> {
     let mut entries = Vec::new();
     for curve_colors in CurveColors::ALL {
@@ -148,12 +149,12 @@ fn visibility_entries(state: &State) -> Vec<Entry> {
             .is_subset(&CurveDisplay::hidden_at_first()));
     let isolation = Entry::new(
         "End isolation and selection",
-        "Show every model, select none",
+        "Show every model and clear the selection",
         SelectionCommand::EndIsolation,
     );
     vec![
-        // Fields and menus lose the key of an entry whether or not the entry is enabled, so the
-        // entry has the key only if there is something to end.
+        // An entry takes its key from fields and menus even while it is disabled, so Escape is
+        // bound only while a model is isolated.
         if is_isolated {
             isolation.free_key(Key::Escape)
         } else {
@@ -176,7 +177,7 @@ fn visibility_entries(state: &State) -> Vec<Entry> {
         .within(Menu::Curves, 3)
         .enabled(display.curves.cursor.is_some()),
         Entry::new(
-            "Remove marks of frequencies",
+            "Remove frequency marks",
             "In every plot over frequency",
             CurveCommand::UnpinCursors,
         )

@@ -32,15 +32,13 @@ pub enum DisplayCommand {
     ShowEvidence(bool),
     /// Selects the model that is drawn for every condition.
     ShowAcross(AcrossRole),
-    /// Changes the assessed quantity or its form.
+    /// Changes the assessed quantity or its representation.
     Assess(AssessedFigures),
-    /// Shows another requirements page.
+    /// Shows a page of the Requirements view.
     ShowRequirements(RequirementsPage),
-    /// Selects responses over time to a test input (`true`) or to the records.
+    /// Selects time responses to a test input (`true`) or to the inputs of the records.
     ShowTest(bool),
-    /// Changes the frequency unit.
     SetFrequencyUnit(FrequencyUnit),
-    /// Changes the curve style.
     SetLooks(PlotStyle),
     /// Fits the plots to their curves.
     FitPlots,

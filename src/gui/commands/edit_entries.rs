@@ -11,7 +11,7 @@ use super::form::FormCommand;
 use super::study::StudyCommand;
 use crate::gui::state::window_state::State;
 
-/// Returns the Edit menu.
+/// Returns the entries of the Edit menu.
 pub(super) fn edit_entries(state: &State) -> Vec<Entry> {
     let condition = state.condition().id();
     let scheduled = state.study.choice(condition).scheduled;
@@ -31,7 +31,7 @@ pub(super) fn edit_entries(state: &State) -> Vec<Entry> {
     let held = [
         hold_entry(state, state.display.selection.pair).free_key(Key::Space),
         Entry::new(
-            "Hold exactly the on-axis responses",
+            "Hold only the on-axis responses",
             "The on-axis responses of the dataset, and no others",
             Edit::ConstrainOnAxis,
         ),
@@ -98,14 +98,15 @@ fn rejection_entries(state: &State) -> [Entry; 2] {
         .enabled(!suggested.is_empty()),
         Entry::new(
             "Restore all models of this condition",
-            "Put every rejected model of this condition back",
+            "Return every rejected model of this condition to its bundle",
             Edit::RestoreAll { condition },
         )
         .enabled(is_any_rejected),
     ]
 }
 
-/// Returns "Hold LON → Q exactly" or "Release LON → Q"; a response without G cannot be constrained.
+/// Returns the entry "Hold LON → Q exactly" or "Release LON → Q"; the first is disabled for a
+/// response without G, which cannot be constrained.
 pub(super) fn hold_entry(state: &State, pair: Pair) -> Entry {
     let held = state.study.settings.constrained[pair];
     let name = state.dataset().pair_name(pair);
@@ -120,13 +121,13 @@ pub(super) fn hold_entry(state: &State, pair: Pair) -> Entry {
     };
     Entry::new(
         text,
-        "Hold its net gain exactly, and its delay where possible, or leave both to the fit",
+        "Held: net gain exact, delay as far as possible; released: both fitted",
         Edit::Hold(pair, !held),
     )
     .enabled(held || !is_undefined)
 }
 
-/// Returns the actions on each model in the displayed condition.
+/// Returns the entries for each model in the displayed condition.
 pub(super) fn model_entries(state: &State) -> Vec<Entry> {
     let condition = state.condition();
     let mut entries = Vec::new();
@@ -146,14 +147,22 @@ pub(super) fn model_entries(state: &State) -> Vec<Entry> {
 }
 
 /// Tooltip for entries that ask for a reason.
-const REASON: &str = "In words, kept in the study";
+const REASON: &str = "The reason is saved in the study";
 
 fn rejected_model_entries(id: ModelId) -> [Entry; 2] {
     let name = format!("{} model {}", id.bundle, id.name);
     let ask = Command::Form(FormCommand::AskReason(id.clone()));
     [
-        Entry::new(format!("Restore {name}"), "Put it back", Edit::Restore(id)),
-        Entry::new(format!("Say why {name} is rejected…"), REASON, ask),
+        Entry::new(
+            format!("Restore {name}"),
+            "Return the model to its bundle",
+            Edit::Restore(id),
+        ),
+        Entry::new(
+            format!("Give the reason for rejecting {name}…"),
+            REASON,
+            ask,
+        ),
     ]
 }
 
@@ -167,7 +176,7 @@ fn kept_model_entries(id: ModelId, is_pinned: bool) -> [Entry; 3] {
             bundle: id.bundle,
         };
         (
-            format!("Use the medoid as representative, not {name}"),
+            format!("Use the medoid as representative instead of {name}"),
             edit,
         )
     } else {
@@ -176,7 +185,7 @@ fn kept_model_entries(id: ModelId, is_pinned: bool) -> [Entry; 3] {
     [
         Entry::new(
             format!("Reject {name}"),
-            "Take it out of its bundle",
+            "Remove the model from its bundle",
             reject,
         ),
         Entry::new(format!("Reject {name} with a reason…"), REASON, ask),

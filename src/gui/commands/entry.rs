@@ -39,7 +39,7 @@ pub(super) const CTRL_SHIFT: Modifiers = Modifiers {
 pub struct Entry {
     /// Name in menus and in the palette.
     pub name: String,
-    /// Explanation, if the name is not sufficient.
+    /// Explanation, shown as a tooltip.
     pub meaning: &'static str,
     /// Shortcuts; the first is displayed.
     pub shortcuts: Vec<KeyboardShortcut>,
@@ -68,7 +68,7 @@ impl Entry {
         }
     }
 
-    /// Adds a shortcut.
+    /// Adds a shortcut; the first one is displayed.
     pub fn keys(mut self, modifiers: Modifiers, key: Key) -> Self {
         self.shortcuts.push(KeyboardShortcut::new(modifiers, key));
         self

@@ -9,7 +9,7 @@ use crate::gui::state::forms::RequirementTable;
 pub enum FileCommand {
     /// Opens the desktop's dialog for levels or tolerances.
     AskRequirementTable(RequirementTable),
-    /// Asks for the path to the tolerances.
+    /// Asks where to write the tolerances.
     AskWriteTolerances,
     /// Reads levels or tolerances from a file.
     ReadRequirementTable(RequirementTable, PathBuf),
@@ -30,13 +30,13 @@ pub enum FileCommand {
     AskSaveStudy,
     /// Saves the study to another file.
     SaveStudyAs(PathBuf),
-    /// Reads the dataset's changed file again.
+    /// Reads the changed file of the dataset again.
     Reload,
     /// Keeps the open dataset although its file has changed.
     KeepOpen,
-    /// Opens decisions from a recovery file; the argument is the offer's number.
+    /// Opens decisions from a recovery file; the argument is the index of the offer.
     RestoreRecovery(usize),
-    /// Removes a recovery file; the argument is the offer's number.
+    /// Removes a recovery file; the argument is the index of the offer.
     DiscardRecovery(usize),
     /// Checks which recent files exist.
     LookForRecent,

@@ -13,18 +13,18 @@ use crate::gui::state::forms::FormKind;
 use crate::gui::state::opens_with::OpensWith;
 use crate::gui::state::window_state::State;
 
-/// Returns the File menu.
+/// Returns the entries of the File menu.
 pub(super) fn file_entries(state: &State) -> Vec<Entry> {
     let open = [
         Entry::new(
             "Open…",
-            "A dataset or a study, with the desktop's dialog",
+            "Choose a dataset or a study in the desktop's dialog",
             FileCommand::AskOpen,
         )
         .keys(CTRL, Key::O),
         Entry::new(
             "Open by path…",
-            "A dataset or a study, by its path; ~ is the home directory",
+            "Type the path of a dataset or a study; ~ is the home directory",
             Command::show_form(FormKind::Open),
         )
         .keys(CTRL_SHIFT, Key::O),
@@ -40,15 +40,20 @@ pub(super) fn file_entries(state: &State) -> Vec<Entry> {
         ),
         Entry::new(
             "Add flight records…",
-            "To the condition in their names, or to the displayed condition",
+            "To the condition in their names, otherwise to the displayed condition",
             RecordsCommand::AskFiles,
         ),
     ];
     let save = [
-        Entry::new("Save study", "To its file", FileCommand::SaveStudy).keys(CTRL, Key::S),
+        Entry::new(
+            "Save study",
+            "Write the study to its file",
+            FileCommand::SaveStudy,
+        )
+        .keys(CTRL, Key::S),
         Entry::new(
             "Save study as…",
-            "With the desktop's dialog",
+            "Choose the file in the desktop's dialog",
             FileCommand::AskSaveStudy,
         )
         .keys(CTRL_SHIFT, Key::S),

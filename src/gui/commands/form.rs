@@ -17,14 +17,13 @@ pub enum FormCommand {
     SaveAndGoOn,
     /// Continues with the action that loses unsaved decisions.
     DiscardAndGoOn,
-    /// Closes a bar.
+    /// Closes a message bar.
     CloseBar(Bar),
     /// Takes the decision requested by a form, and closes the form.
     DecideInForm(Edit),
-    /// Asks for the reason, in words, why a model is or will be rejected.
+    /// Asks for the reason for which a model is rejected.
     AskReason(ModelId),
-    /// Reports why an entry is refused.
+    /// Shows why a typed or dragged value is refused.
     Refuse(String),
-    /// Closes the message.
     DismissNotice,
 }

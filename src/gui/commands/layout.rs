@@ -6,21 +6,21 @@ use crate::gui::state::opens_with::OpensWith;
 use crate::gui::state::sheet::Sheet;
 use crate::gui::state::view::{View, ViewGroup};
 
-/// Shows, hides or moves a part, or moves the focus.
+/// Shows, hides or moves a part of the window, or moves the focus.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LayoutCommand {
     /// Brings a view to the front.
     ShowView(View),
-    /// Brings a group to the front, with the view it showed last.
+    /// Brings a group of views to the front and shows the view that was last open in it.
     ShowGroup(ViewGroup),
-    /// Shows a view beside the view in front; with `None` the view in front alone.
+    /// Shows a second view beside the view in front; `None` shows the view in front alone.
     ShowBeside(Option<View>),
     ShowInDock(View),
     /// Unfolds (`true`) or folds the dock.
     OpenDock(bool),
     /// Restores the default layout of panels and views.
     ResetLayout,
-    /// Shows the left panel in full (`true`) or as a rail.
+    /// Shows the left panel in full (`true`) or as a narrow rail.
     ShowLeft(bool),
     /// Shows a sheet over the views, or closes it.
     ShowSheet(Option<Sheet>),
@@ -34,7 +34,7 @@ pub enum LayoutCommand {
     SetTheme(ThemePreference),
     /// Shows the start page, or the study behind it.
     ShowStart(bool),
-    /// Selects what the program opens with at the next start.
+    /// Sets what the program opens at the next start.
     BeginWith(OpensWith),
     /// Focuses the field with this accessible name.
     FocusField(&'static str),

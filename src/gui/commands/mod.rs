@@ -1,4 +1,4 @@
-//! Commands: a single table for menu, keys and palette.
+//! Commands, and the table from which menus, keys and palette are made.
 
 pub mod assembling;
 pub mod command;

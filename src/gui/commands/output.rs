@@ -1,4 +1,4 @@
-//! Commands about corrections, tables, figures and the report as output.
+//! Commands that copy or write corrections, tables, figures and the report.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -23,21 +23,20 @@ pub enum OutputCommand {
     CopyText(String),
     /// Copies a table to the clipboard as text.
     CopyTable(TableKind),
-    /// Asks for a table's path.
+    /// Asks where to save a table.
     AskSaveTable(TableKind),
-    /// Asks for the path of a table that a view shows.
+    /// Asks where to save a table shown by a view.
     AskSaveShownTable(Arc<Table>),
     /// Saves a table as CSV.
     SaveTable(Arc<Table>, PathBuf),
     /// Copies the values shown by a view to the clipboard as CSV.
     CopyFigure(View),
-    /// Asks for the path of a view's figure.
+    /// Asks where to save the figure of a view.
     AskSaveFigure(View, FigureFormat),
     /// Saves a view's figure in the format given by the file extension, with the given printed
     /// width.
     SaveFigure(View, ColumnWidth, PathBuf),
-    /// Asks for the report's path.
+    /// Asks where to write the report.
     AskReport,
-    /// Writes the report to a file.
     WriteReport(PathBuf),
 }

@@ -28,7 +28,7 @@ pub enum RecordsCommand {
     SetHeldOut(usize, bool),
     /// Set a record's manoeuvre.
     SetKind(usize, RecordKind),
-    /// Assign columns to channels, for this record and all with the same column names.
+    /// Assign columns to channels, for this record and for all records with the same column names.
     SetLayout(usize, RecordLayout),
     /// Set the delay in a channel's log \[s\].
     SetDelay(Signal, f64),
@@ -45,18 +45,18 @@ pub enum RecordsCommand {
     SetSearch(SearchSpace),
     /// Expand the search settings and focus the field with this name.
     ShowAdvanced(&'static str),
-    /// Draw a model's response to the same inputs, or hide it.
+    /// Draw a model's response to the recorded inputs, or hide it.
     ShowTimeModel(TimeModel, bool),
     /// Assume the unit of the dataset's channel wherever a file states none, in the records of all
     /// conditions.
     TakeDatasetUnits,
     /// Show a record with unclear units, from any condition, on the Columns page.
     ShowUnclear,
-    /// Make the part between two times \[s\] a record of its own, used instead of the whole.
+    /// Add the part between two times \[s\] as a separate record, used instead of the whole.
     AddPart(usize, [f64; 2]),
-    /// Remove a part of a record.
+    /// Remove the part of a record in this row.
     RemovePart(usize),
-    /// Set whether dragging in the time charts selects parts.
+    /// Set whether dragging in the time charts selects parts of a record.
     ChooseParts(bool),
     /// Show an input's spectrogram beside the records over time, or hide it.
     ShowSpectrogram(Option<usize>),
@@ -69,7 +69,7 @@ pub enum RecordsCommand {
     Stop,
     /// Put the identified models into the displayed condition.
     Take(OfferedModels),
-    /// Put the identified models into every condition that has some.
+    /// Put the identified models into every condition for which models were identified.
     TakeAll(OfferedModels),
     /// Restore the models from the dataset's file in the displayed condition.
     Return,

@@ -9,7 +9,7 @@ pub enum SelectionCommand {
     SelectCondition(ConditionId),
     /// Shows a response in the large plot.
     FocusPair(Pair),
-    /// Highlights a model in every view; repeated in each frame.
+    /// Highlights a model in every view; sent again in each frame.
     Hover(ModelId),
     /// Highlights a condition for this frame.
     HoverCondition(ConditionId),

@@ -9,10 +9,8 @@ pub enum StudyCommand {
     Edit(Edit),
     /// Completes the current decision, for example when a slider is released.
     EndEdit,
-    /// Undoes the last decision.
     Undo,
     /// Removes a decision from the history if it is the last.
     Forget(Edit),
-    /// Redoes the last undone decision.
     Redo,
 }

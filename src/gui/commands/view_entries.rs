@@ -15,7 +15,7 @@ use crate::gui::state::sheet::Sheet;
 use crate::gui::state::view::{View, ViewGroup};
 use crate::gui::state::window_state::State;
 
-/// Returns the View menu.
+/// Returns the entries of the View menu.
 pub(super) fn view_entries(state: &State) -> Vec<Entry> {
     let (unit_name, unit) = match state.display.curves.unit {
         FrequencyUnit::RadPerSecond => ("Frequencies in Hz", FrequencyUnit::Hertz),
@@ -50,9 +50,9 @@ pub(super) fn view_entries(state: &State) -> Vec<Entry> {
         .collect()
 }
 
-/// Tooltip of the steps from region to region.
-const PARTS: &str =
-    "Plots, dock, verdict, result, matrix, settings, conditions, models; each remembers its focus";
+/// Tooltip of the entries that move the focus between regions of the window.
+const PARTS: &str = "Moves between plots, dock, verdict, result, matrix, settings, conditions and models; each \
+    remembers the focused control";
 
 fn region_entries() -> [Entry; 2] {
     [
@@ -91,7 +91,8 @@ fn theme_entries() -> [Entry; 3] {
     ]
 }
 
-/// Returns the entries for view groups, neighbours, panels and folds.
+/// Returns the entries that show a view group or the neighbouring view, or fold a part of the
+/// window.
 fn layout_entries(state: &State) -> impl Iterator<Item = Entry> {
     view_group_entries()
         .into_iter()
@@ -106,7 +107,7 @@ fn view_group_entries() -> Vec<Entry> {
     for (group, key) in ViewGroup::ALL.into_iter().zip(keys) {
         let entry = Entry::new(
             format!("Views: {}", group.name()),
-            "The group, with its last view",
+            "Shows this group, with the view that was last open in it",
             LayoutCommand::ShowGroup(group),
         );
         entries.push(entry.keys(Modifiers::ALT, key));
@@ -116,7 +117,7 @@ fn view_group_entries() -> Vec<Entry> {
 
 fn neighbour_entries(state: &State) -> [Entry; 2] {
     let arrangement = &state.display.layout.arrangement;
-    let meaning = "Of the group in front";
+    let meaning = "In the group in front";
     [
         Entry::new(
             "Next view",
@@ -141,11 +142,11 @@ fn fold_entries(state: &State) -> [Entry; 5] {
     [
         Entry::new(
             if is_left_open {
-                "Conditions as a rail"
+                "Reduce the left panel to a rail"
             } else {
-                "Conditions and models in full"
+                "Show the left panel in full"
             },
-            "The left side of the window",
+            "Conditions and models; the rail shows numbers, airspeeds and costs",
             LayoutCommand::ShowLeft(!is_left_open),
         )
         .keys(CTRL, Key::B),
@@ -155,7 +156,7 @@ fn fold_entries(state: &State) -> [Entry; 5] {
             } else {
                 "Unfold the settings"
             },
-            "Instead of matrix and card",
+            "Shown in place of the constraint matrix and the response card",
             LayoutCommand::ShowSettings(!display.layout.settings_open),
         )
         .keys(CTRL, Key::Comma),
@@ -169,19 +170,19 @@ fn fold_entries(state: &State) -> [Entry; 5] {
             LayoutCommand::OpenDock(!is_dock_open),
         ),
         Entry::new(
-            "Why the result is so",
-            "Cautions, possible causes of a lag, the proof",
+            "Show the reasons for the result",
+            "Cautions, possible causes of a lag, and the proof of optimality",
             LayoutCommand::ShowSheet(Some(Sheet::Reasons)),
         ),
         Entry::new(
             "Reset the layout",
-            "Every panel and plot goes back to its place",
+            "Return every panel and plot to its default place",
             LayoutCommand::ResetLayout,
         ),
     ]
 }
 
-/// Returns the steps from the displayed condition and response to their neighbours.
+/// Returns the entries that step to the previous or next condition or response.
 fn steps(state: &State) -> [Entry; 4] {
     let conditions = state.dataset().conditions();
     let shown = state.condition().id();
@@ -208,7 +209,7 @@ fn steps(state: &State) -> [Entry; 4] {
     ]
 }
 
-/// Returns a step to another condition; disabled at the end of the list.
+/// Returns the entry that steps to another condition; disabled at the end of the list.
 fn condition_step(name: &str, other: Option<&Arc<Condition>>, shown: ConditionId) -> Entry {
     let target = match other {
         Some(condition) => condition.id(),
@@ -218,10 +219,11 @@ fn condition_step(name: &str, other: Option<&Arc<Condition>>, shown: ConditionId
     Entry::new(name, "In the order of the list", command).enabled(other.is_some())
 }
 
-/// Returns a step to another response, numbered row by row; disabled at the end of the matrix.
+/// Returns the entry that steps to another response, numbered row by row; disabled at the end of
+/// the matrix.
 fn response_step(name: &str, other: Option<usize>, shown: usize, inputs: usize) -> Entry {
     let place = other.unwrap_or(shown);
     let pair = Pair::new(place / inputs, place % inputs);
     let command = SelectionCommand::FocusPair(pair);
-    Entry::new(name, "Row by row of the matrix", command).enabled(other.is_some())
+    Entry::new(name, "Row by row through the matrix", command).enabled(other.is_some())
 }

@@ -1,4 +1,4 @@
-//! Advice on the next step, until the verdict is met.
+//! Recommended next steps, shown with the verdict.
 
 use gdcm_method::correction::Channel;
 use gdcm_method::correction::remedy::Remedy;
@@ -20,7 +20,7 @@ use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::views::{offered_couplings, used_couplings};
 
-/// Possible action, with its button.
+/// Recommended or alternative action, drawn as a button.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
     /// Button text.
@@ -45,7 +45,7 @@ impl Step {
     }
 }
 
-/// Possible steps, the recommended step first, and the note beside them.
+/// Next steps, the recommended step first, and the note beside them.
 pub(super) struct Advice {
     pub(super) steps: Vec<Step>,
     pub(super) note: String,
@@ -115,14 +115,14 @@ impl Advice {
                 format!("Reject {} suggested", open.len()),
                 Edit::reject_physics(condition.id(), open),
             )],
-            note: format!("of {models} models, first"),
+            note: format!("of {models} models, as a first step"),
         }
     }
 
-    /// Recommends worthwhile couplings, or to remove couplings that are not worthwhile.
+    /// Recommends using worthwhile couplings, or removing couplings that are not worthwhile.
     fn on_couplings(state: &State) -> Option<Self> {
         let look = Step::new(
-            "Look first",
+            "View couplings",
             Command::Layout(LayoutCommand::ShowView(View::Couplings)),
         );
         if let Some((assessment, cost)) = offered_couplings(state) {
@@ -158,7 +158,7 @@ fn off_axis_note(cost: CouplingCost) -> String {
     }
 }
 
-/// Returns a name that does not break at a line end.
+/// Replaces the spaces in a name by no-break spaces, so that it is not split at a line end.
 pub(super) fn joined(name: &str) -> String {
     name.replace(' ', "\u{a0}")
 }
@@ -175,8 +175,8 @@ fn release_step(state: &State, pair: Pair) -> Step {
     )
 }
 
-/// Returns the step that widens a gain bound sufficiently, if any, then the step that releases a
-/// response.
+/// Returns the steps that resolve a gain conflict: widen a bound, release a response, or show the
+/// reasons.
 fn gain_steps(state: &State, shown: &ConditionAnalysis) -> Vec<Step> {
     let mut steps = Vec::new();
     if let Some(remedy) = &shown.gains.remedy {
@@ -191,7 +191,8 @@ fn gain_steps(state: &State, shown: &ConditionAnalysis) -> Vec<Step> {
     steps
 }
 
-/// Returns the gain bounds, with the bound moved that the remedy names.
+/// Returns the gain bounds with the upper or the lower bound replaced by the remedy; `None` if the
+/// remedy changes neither.
 fn widened(remedy: &Remedy, shown: &ConditionAnalysis) -> Option<Value> {
     let bounds = shown.gain_bounds();
     if let Some(upper) = remedy.upper {

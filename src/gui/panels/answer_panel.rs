@@ -138,7 +138,7 @@ fn verdict_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette, commands: &mut 
     );
 }
 
-/// Left edges of counts and words \[pt from the row's left edge\].
+/// Left edges of count and words in a verdict row \[pt from the row's left edge\].
 const COLUMNS: [f32; 2] = [46.0, 106.0];
 
 fn heads_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette) {
@@ -186,7 +186,7 @@ fn row_ui(ui: &mut Ui, row: &VerdictRow, is_all_met: bool, palette: &Palette) {
 }
 
 fn steps_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette, commands: &mut Vec<Command>) {
-    // The primary button at the foot exports already.
+    // Skip the export step: the primary button at the foot of the panel already exports.
     let primary = verdict
         .steps
         .first()
@@ -298,7 +298,7 @@ impl StepsLine<'_> {
         });
     }
 
-    /// Draws "of 19 models, first", or only "of 19 models" in a narrow panel.
+    /// Draws "of 19 models, as a first step", or only "of 19 models" in a narrow panel.
     fn note_ui(&self, ui: &mut Ui, palette: &Palette) {
         let fits = text_width(ui, self.note, small()) <= ui.available_width();
         let shown = if fits {

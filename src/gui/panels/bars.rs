@@ -124,7 +124,7 @@ fn recent_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         let response = ui
             .add_enabled(!file.missing, button)
             .on_hover_text(&file.folder)
-            .on_disabled_hover_text(format!("No longer in {}", file.folder));
+            .on_disabled_hover_text(format!("File not found in {}", file.folder));
         if response.clicked() {
             commands.push(FileCommand::Open(file.path.clone()).into());
             ui.close();
@@ -152,7 +152,7 @@ fn history_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
 /// Button that undoes or redoes a decision.
 struct HistoryButton<'a> {
     verb: &'a str,
-    /// Decision; `None` disables the button.
+    /// Decision to undo or redo; `None` disables the button.
     label: Option<&'a str>,
     hint: &'a str,
     command: StudyCommand,
@@ -219,7 +219,7 @@ fn title_ui(ui: &mut Ui, bar: Rect, room: Rect, state: &State, palette: &Palette
     response.on_hover_text(format!("{}\n{is_saved}", state.dataset().description()));
 }
 
-/// Draws every bar, oldest first.
+/// Draws every message bar, oldest first.
 pub fn bars_ui(ui: &mut Ui, bars: &[Bar], palette: &Palette, commands: &mut Vec<Command>) {
     for bar in bars {
         let frame = Frame::new()
@@ -261,7 +261,7 @@ fn bar_buttons(bar: &Bar) -> Vec<(&'static str, Command)> {
                 "Copy this message",
                 Command::Output(OutputCommand::CopyText(sentence.clone())),
             ),
-            ("Put away", close),
+            ("Close message", close),
         ],
         Bar::Recovery { offer, .. } => vec![
             (
@@ -276,9 +276,12 @@ fn bar_buttons(bar: &Bar) -> Vec<(&'static str, Command)> {
         ],
         Bar::Changed { .. } => vec![
             ("Reload", Command::File(FileCommand::Reload)),
-            ("Keep what is open", Command::File(FileCommand::KeepOpen)),
+            (
+                "Keep the open dataset",
+                Command::File(FileCommand::KeepOpen),
+            ),
         ],
-        Bar::Differences { .. } => vec![("Put the list away", close)],
+        Bar::Differences { .. } => vec![("Close list", close)],
     }
 }
 

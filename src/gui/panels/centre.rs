@@ -90,7 +90,7 @@ fn view_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
         true,
         |ui| {
             figure_button_ui(ui, state, state.display.layout.arrangement.view(), commands);
-            let hint = "All curves into view (F, or double click)";
+            let hint = "Bring all curves into view (F, or double click)";
             button_ui(
                 ui,
                 Button::new("Fit").frame(false),
@@ -103,7 +103,7 @@ fn view_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
     );
 }
 
-/// Draws a joined button for each group.
+/// Draws the view groups as a row of joined buttons.
 fn groups_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let font = medium(BODY_SIZE);
     let widths = ViewGroup::ALL.map(|group| text_width(ui, group.name(), font.clone()) + 24.0);
@@ -231,7 +231,7 @@ fn beside_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
             .filter(|view| *view != arrangement.view())
             .map(|view| {
                 (
-                    format!("{} beside it", view.name()),
+                    format!("Show {} beside", view.name()),
                     Command::Layout(LayoutCommand::ShowBeside(Some(view))),
                 )
             });
@@ -239,7 +239,7 @@ fn beside_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
         if arrangement.beside().is_some() {
             ui.separator();
             let alone = Command::Layout(LayoutCommand::ShowBeside(None));
-            entries_ui(ui, [("One view alone", alone)], commands);
+            entries_ui(ui, [("Show one view only", alone)], commands);
         }
     });
     let symbol = Rect::from_center_size(button.rect.center(), vec2(14.0, 12.0));
@@ -253,7 +253,7 @@ fn beside_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
     ui.painter()
         .vline(symbol.center().x, symbol.y_range(), Stroke::new(1.3, color));
     named(button, Role::Button, "Show another view beside")
-        .on_hover_text("Another view beside this one");
+        .on_hover_text("Shows a second view next to this view");
 }
 
 /// Draws a view with its title and tools into an area.
@@ -340,7 +340,7 @@ fn tools_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    // The figure button of the front view is in the view bar.
+    // Skip the front view: its figure button is in the view bar.
     if view != state.display.layout.arrangement.view() {
         figure_button_ui(ui, state, view, commands);
     }
@@ -352,7 +352,8 @@ fn tools_ui(
     }
 }
 
-/// Draws "LON → Q  condition 10: 60 kt, low altitude, high weight", or a part of it.
+/// Draws a title such as "LON → Q  condition 10: 60 kt, low altitude, high weight"; some views omit
+/// the response or the condition.
 fn title_ui(ui: &mut Ui, state: &State, title: ViewTitle, palette: &Palette) {
     let condition = state.condition();
     let id = condition.id();
@@ -425,7 +426,7 @@ fn dock_ui(
     });
 }
 
-/// View in the dock.
+/// View in the dock, and whether the dock is unfolded.
 #[derive(Clone, Copy)]
 struct Dock {
     view: View,

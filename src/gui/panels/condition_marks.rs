@@ -71,8 +71,8 @@ impl Marks {
         }
     }
 
-    /// Paints ⚠ for an open decision, a stroke through an excluded condition, an accent on a
-    /// held-out condition.
+    /// Paints ⚠ for open tasks or a missing result, a stroke through a condition left out of the
+    /// schedule, and an accent bar beside a held-out condition.
     pub(super) fn paint(&self, ui: &Ui, row: Rect, palette: &Palette) {
         if self.failure.is_some()
             || self.suggested + self.unmatched_gains + self.unmatched_delays > 0
@@ -98,9 +98,9 @@ impl Marks {
     pub(super) fn menu_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let condition = self.condition;
         let hold_out = if self.held_out {
-            "No longer hold out"
+            "Stop holding out"
         } else {
-            "Hold out, to judge the schedule"
+            "Hold out to validate the schedule"
         };
         let schedule = if self.left_out {
             "Include in the schedule"
@@ -148,7 +148,10 @@ impl Marks {
             ui.label(tasks.join("; "));
         }
         if self.held_out {
-            ui.label("Held out: analysed, and used to judge the schedule; right-click to end");
+            ui.label(
+                "Held out: analysed, but used only to validate the schedule; right-click to \
+                end",
+            );
         } else if self.left_out {
             ui.label("Left out of the schedule; right-click to include");
         }

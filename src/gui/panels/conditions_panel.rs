@@ -28,8 +28,8 @@ use crate::gui::widgets::palette::{
     BODY_SIZE, HEAT_COSTS, Palette, SMALL_SIZE, body, medium, small,
 };
 
-/// Right edge of the number, centre of the mark, right edge of the airspeed \[pt from the row's
-/// left edge\].
+/// Right edge of the condition number, centre of the mark, right edge of the airspeed \[pt from the
+/// row's left edge\].
 const PLACES: [f32; 3] = [20.0, 33.0, 70.0];
 /// Left edge of the map, and its maximum column spacing \[pt\].
 const MAP: [f32; 2] = [88.0, 26.0];
@@ -122,7 +122,7 @@ fn pin_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
     );
     let response = named(response, Role::Button, "Show the left panel");
     response
-        .on_hover_text("Conditions with their map and models beside the plots (Ctrl+B)")
+        .on_hover_text("Shows conditions, cost map and models beside the plots (Ctrl+B)")
         .asks(LayoutCommand::ShowLeft(true), commands);
 }
 
@@ -175,7 +175,7 @@ fn flight_state_words(state: &FlightState) -> String {
     words
 }
 
-/// Columns and their positions, valid for a single frame.
+/// Columns of the cost map and their positions in the current frame.
 struct Map<'a> {
     state: &'a State,
     classes: Classes,
@@ -187,7 +187,7 @@ struct Map<'a> {
 }
 
 impl<'a> Map<'a> {
-    /// Lays out the columns in a row from `left` on, within `room` \[pt\].
+    /// Lays out the columns within a width of `room` \[pt\], beginning at `left`.
     fn new(state: &'a State, left: f32, room: f32) -> Self {
         let columns = columns(state);
         let pitch = (room / columns.len().max(1) as f32).min(MAP[1]);
@@ -222,7 +222,8 @@ impl<'a> Map<'a> {
         row.left() + self.left + self.pitch * place as f32 + HALF_CELL[0]
     }
 
-    /// Paints the dot of a condition, with the shape and fill used in the Net gain view.
+    /// Paints the mark of a condition as in the Net gain view: the shape shows the altitude class,
+    /// the fill the weight class.
     fn paint_mark(&self, ui: &Ui, at: Pos2, flight_state: &FlightState, palette: &Palette) {
         let is_filled = self.classes.is_first_weight(flight_state);
         let (fill, stroke) = if is_filled {
@@ -493,7 +494,8 @@ pub fn cost_picture_ui(ui: &Ui, area: Rect, state: &State, palette: &Palette) {
     }
 }
 
-/// Paints the magnitude part in the left half and the phase part in the right half.
+/// Paints a cell: the magnitude part of the cost in the left half, the phase part in the right
+/// half.
 fn paint_cost(ui: &Ui, cell: Rect, cost: Cost, palette: &Palette) {
     let middle = cell.center().x;
     let halves = [
@@ -519,7 +521,7 @@ fn cost_words(
         let responses = column.pairs.len();
         return format!(
             "{responses} responses not held, condition {condition}: mean J of magnitude \
-             {magnitude}, of phase {phase}; most: {name}"
+            {magnitude}, of phase {phase}; largest: {name}"
         );
     }
     format!("{name} of condition {condition}: J of magnitude {magnitude}, of phase {phase}")

@@ -9,7 +9,7 @@ use gdcm_study::CouplingCorrection;
 use crate::gui::state::mapped_cost::MappedCost;
 use crate::gui::state::window_state::State;
 
-/// Maximum number of constrained responses with a column each; a larger number is merged into a
+/// Maximum number of constrained responses with a column each; more responses are merged into a
 /// column for each input.
 const MOST_COLUMNS: usize = 8;
 
@@ -19,12 +19,12 @@ const MOST_COLUMNS: usize = 8;
 pub struct CostColumn {
     pub head: String,
     pub pairs: Vec<Pair>,
-    /// Whether the column shows the mean over its responses, otherwise the maximum.
+    /// Whether the column shows the mean over its responses instead of the maximum.
     pub is_mean: bool,
 }
 
-/// Returns the columns of the constrained responses, in output order, and with couplings a column
-/// of the responses that the couplings improve.
+/// Returns the columns of the constrained responses, and with couplings a column of the responses
+/// that the couplings improve.
 pub fn columns(state: &State) -> Vec<CostColumn> {
     let mut columns = held_columns(state);
     if state.study.settings.couplings != CouplingCorrection::None {

@@ -23,7 +23,7 @@ use crate::gui::widgets::controls::{Asks, QUESTION, entries_ui, named};
 use crate::gui::widgets::focus::take_escape;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, TITLE_SIZE, medium};
 
-/// Draws a sheet over `centre`; returns whether it is to be closed.
+/// Draws a sheet over `centre`; returns whether the engineer has closed it.
 pub fn sheet_ui(
     ui: &Ui,
     centre: Rect,
@@ -65,7 +65,8 @@ pub fn sheet_ui(
                         .show(ui, |ui| add(ui));
                 });
         });
-    // In its first frame the sheet still receives the click that opened it.
+    // `is_new`: in its first frame the sheet still receives the click that opened it, which must
+    // not close it.
     let is_new = ui
         .ctx()
         .data_mut(|data| !std::mem::replace(data.get_temp_mut_or_default::<bool>(id), true));
@@ -128,7 +129,7 @@ fn derivation_ui(ui: &mut Ui, found: &Derivation, palette: &Palette, commands: &
             }
         });
     ui.add_space(4.0);
-    ui.label(palette.small("It rests on"));
+    ui.label(palette.small("Based on"));
     for part in &found.rests_on {
         ui.label(RichText::new(part).size(SMALL_SIZE));
     }
@@ -140,7 +141,7 @@ fn derivation_ui(ui: &mut Ui, found: &Derivation, palette: &Palette, commands: &
     });
 }
 
-/// Draws the cost of constraining or releasing the response of the derived value.
+/// Draws the cost of constraining or releasing the response whose derivation is shown.
 fn toggle_costs_ui(ui: &mut Ui, state: &State, asked: &ExplainTarget, palette: &Palette) {
     let (ExplainTarget::DeltaGain(condition, pair) | ExplainTarget::DeltaDelay(condition, pair)) =
         asked
@@ -154,7 +155,7 @@ fn toggle_costs_ui(ui: &mut Ui, state: &State, asked: &ExplainTarget, palette: &
     };
     if !costs.is_empty() {
         ui.add_space(4.0);
-        ui.label(palette.small("Cost of holding or releasing it"));
+        ui.label(palette.small("Cost of holding or releasing this response"));
     }
     for cost in costs {
         ui.label(RichText::new(cost).size(SMALL_SIZE));
@@ -206,15 +207,15 @@ pub fn turn_entry(state: &State, channel: Channel, role: Option<SignRole>) -> (S
     let (inputs, outputs) = state.dataset().names_of_channels();
     let name = channel.name(&inputs, &outputs);
     let label = if role.is_some() {
-        format!("Turn {name}")
+        format!("Reverse sign of {name}")
     } else {
-        format!("Turn {name} back")
+        format!("Undo sign reversal of {name}")
     };
     (label, Edit::SetSign { channel, of: role }.into())
 }
 
-/// Returns the responses and channels whose gain constraints conflict, including channels whose
-/// sign or unit differs.
+/// Returns the responses and channels of conflicting gain constraints, and the channels whose sign
+/// or unit is doubtful.
 pub fn gain_conflict_marks(shown: &ConditionAnalysis) -> (BTreeSet<Pair>, BTreeSet<Channel>) {
     let mut pairs = BTreeSet::new();
     let mut channels = BTreeSet::new();

@@ -56,7 +56,7 @@ impl Form<'_, '_> {
     pub(super) fn cancel_ui(&mut self, waits: bool) {
         self.button_ui("Cancel", false, FormCommand::ShowForm(None));
         if waits {
-            self.explain("waits for the newest results");
+            self.explain("waiting for the newest results");
         }
     }
 

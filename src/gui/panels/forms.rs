@@ -149,7 +149,7 @@ fn overwrite_ui(form: &mut Form<'_, '_>, kind: FormKind, existing: &[String]) {
     form.ui.add_space(4.0);
     form.line(|form| {
         form.button_ui("Overwrite", false, FormCommand::Overwrite);
-        // Enter must not overwrite anything.
+        // `true` focuses Cancel, so that Enter does not overwrite anything.
         form.button_ui("Cancel", true, FormCommand::ShowForm(Some(kind)));
     });
 }
@@ -168,7 +168,7 @@ fn unsaved_ui(form: &mut Form<'_, '_>) {
 }
 
 fn differences_ui(form: &mut Form<'_, '_>, state: &State) {
-    form.title("The dataset differs from that of the study");
+    form.title("The dataset differs from the study's dataset");
     form.explain("Every decision that still applies was kept. Differences:");
     let palette = form.palette;
     ScrollArea::vertical()
@@ -194,7 +194,7 @@ fn differences_ui(form: &mut Form<'_, '_>, state: &State) {
         .map(dataset_difference_text)
         .collect();
     form.line(|form| {
-        form.button_ui("Go on", true, FormCommand::ShowForm(None));
+        form.button_ui("Continue", true, FormCommand::ShowForm(None));
         form.button_ui(
             "Copy the list",
             false,
@@ -221,7 +221,7 @@ fn reason_ui(form: &mut Form<'_, '_>, state: &mut State) {
     form.explain(&words);
     let reason = state.forms.typed_in(FormKind::Reason);
     let entered = form.text_ui(
-        "Reason of the rejection",
+        "Rejection reason",
         reason,
         "saved in the study and in the results",
     );
@@ -236,7 +236,7 @@ fn reason_ui(form: &mut Form<'_, '_>, state: &mut State) {
         };
         form.submit_ui(
             if is_rejected {
-                "Keep the reason"
+                "Save the reason"
             } else {
                 "Reject"
             },
@@ -253,10 +253,10 @@ const MOST_COLUMNS: usize = 60;
 
 /// Draws the form for a new dataset from the open records: channels, band, path.
 fn record_dataset_ui(form: &mut Form<'_, '_>, wanted: &mut WantedDataset) {
-    form.title("A dataset of these records");
+    form.title("Dataset from these records");
     form.explain(
-        "For identification before there is a physics model. Separate channels by commas; add unit \
-         and column if the file does not name them: q [rad/s]=gyro_y, or =#3 for the third column.",
+        "For identification without a physics model. Separate channels by commas. If the file \
+        does not name unit and column, add them: q [rad/s]=gyro_y, or =#3 for the third column.",
     );
     form.ui.add_space(4.0);
     let mut entered = false;

@@ -17,7 +17,7 @@ use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 /// Width of a note \[pt\].
 const WIDTH: f32 = 300.0;
 
-/// Tour step.
+/// Step in the guided tour.
 struct Step {
     region: Region,
     title: &'static str,
@@ -28,16 +28,16 @@ const STEPS: [Step; 5] = [
     Step {
         region: Region::Conditions,
         title: "Flight conditions",
-        words: "A click, or Up and Down, shows a condition. The map beside them shows the remaining \
-                J of each held response: left magnitude, right phase, pale is matched. ⚠: models \
-                are suggested as outliers.",
+        words: "Click a condition, or press Up or Down, to show it. The map beside the list shows \
+            the remaining J of each held response: magnitude on the left, phase on the right; \
+            pale means matched. ⚠: models are suggested as outliers.",
     },
     Step {
         region: Region::Models,
         title: "The bundle of models",
-        words: "Each physics model is one perturbed trim; its bar is the distance from the other \
-                models beyond the effect of the perturbation. The box rejects or restores it, the \
-                star makes it the representative.",
+        words: "Each physics model belongs to a perturbed trim. Its bar shows the distance from \
+            the other models, relative to the distance that the perturbation explains. The box \
+            rejects or restores the model, the star makes it the representative.",
     },
     Step {
         region: Region::Plots,
@@ -48,16 +48,16 @@ const STEPS: [Step; 5] = [
     Step {
         region: Region::Matrix,
         title: "Held responses",
-        words: "Each cell is a response: the gain and the delay that would match it, over its J of \
-                magnitude and of phase. In filled cells the gain is held exactly; the box, or the \
-                space bar, holds or releases the response.",
+        words: "Each cell is a response: the gain and the delay that would match it, underlined \
+            by the magnitude and phase parts of J. In filled cells the gain is held exactly; the \
+            box, or the space bar, holds or releases the response.",
     },
     Step {
         region: Region::Verdict,
         title: "The verdict",
-        words: "Whether gain and phase of the held responses are met, here and in all conditions, \
-                and the next step. Green: both are met. Ctrl+Z undoes any decision; Ctrl+K finds \
-                every command.",
+        words: "Whether gain and phase of the held responses are matched, here and in all \
+            conditions, and the next step. Green: both are matched. Ctrl+Z undoes any decision; \
+            Ctrl+K finds every command.",
     },
 ];
 
@@ -137,15 +137,15 @@ fn note_ui(
     });
 }
 
-/// Places the note right of the region, left of it, or over it if the region takes the whole width;
-/// returns which corner of the note is placed, and where.
+/// Returns the corner of the note to be aligned, and its position: right of the region, left of it,
+/// or over it if the region takes the whole width.
 fn beside(place: Rect, window: Rect) -> (Align2, egui::Pos2) {
     const GAP: Vec2 = vec2(12.0, 0.0);
     let room = WIDTH + 40.0;
     if window.right() - place.right() > room {
         (Align2::LEFT_TOP, place.right_top() + GAP)
     } else if place.left() - window.left() > room {
-        // A region at the foot of the window has no space below it, so the note grows upwards.
+        // A region near the foot of the window has no space below it, so the note grows upwards.
         let is_low = place.top() > window.center().y;
         if is_low {
             (Align2::RIGHT_BOTTOM, place.left_bottom() - GAP)
@@ -163,7 +163,7 @@ const GESTURES: &[(&str, &str)] = &[
     ("Alt+click on a curve", "show it alone; again: show all"),
     (
         "drag, wheel",
-        "move, zoom a plot; on an axis: that axis alone",
+        "pan or zoom a plot; on an axis: only that axis",
     ),
     ("right-drag", "zoom to a box"),
     (
@@ -176,7 +176,7 @@ const GESTURES: &[(&str, &str)] = &[
     ),
     (
         "pointing in a plot",
-        "describe the pointed item in the status line",
+        "describe the item under the pointer in the status bar",
     ),
     (
         "right-click in a plot",
@@ -188,18 +188,18 @@ const GESTURES: &[(&str, &str)] = &[
     ),
     (
         "1 to 9",
-        "in a plot that has the focus: the same as a click on a chip",
+        "in a focused plot: like a click on the chip with that number",
     ),
     (
         "Arrows, + −, Home",
-        "in a plot that has the focus: move, zoom (Shift: frequencies only), fit",
+        "in a focused plot: pan, zoom (Shift: frequencies only), fit",
     ),
-    ("Escape", "end the isolation of a model, and a selection"),
-    ("drag an end of the band", "move the band of comparison"),
+    ("Escape", "show all models again and clear the selection"),
+    ("drag an end of the band", "move the comparison band"),
     (
         "click on a cell",
-        "show its response; on its box, or twice: hold its net gain exactly and its delay as far as \
-         possible, or release both",
+        "show its response; on its box, or a double click: hold its net gain exactly and its \
+        delay as far as possible, or release both",
     ),
     (
         "click on a star",
@@ -224,7 +224,7 @@ const MARKS: &[(&str, &str)] = &[
     ),
     (
         "cells",
-        "J of each held response: left magnitude, right phase, pale is matched",
+        "J of each held response: magnitude on the left, phase on the right; pale: matched",
     ),
     (
         "number struck out",
@@ -232,7 +232,7 @@ const MARKS: &[(&str, &str)] = &[
     ),
     (
         "bar at the left",
-        "the condition is held out, and used to judge the schedule",
+        "the condition is held out and used to validate the schedule",
     ),
 ];
 
@@ -248,13 +248,15 @@ pub fn keys_page_ui(ui: &mut Ui, state: &State, palette: &Palette) {
             keys.push(KeyRow::new("Tab, Shift+Tab", "next, previous control"));
             keys.push(KeyRow::new(
                 "Escape",
-                "close a form, leave a field as it was",
+                "close a form, or restore the value of a field",
             ));
             let keys = keys
                 .iter()
                 .map(|row| (row.keys.as_str(), row.meaning.as_str()));
             rows_ui(ui, "keys", keys, palette);
-            ui.label(RichText::new("* while nothing has the focus").color(palette.dim_text));
+            ui.label(
+                RichText::new("* only while no control has the focus").color(palette.dim_text),
+            );
             ui.separator();
             rows_ui(ui, "gestures", GESTURES.iter().copied(), palette);
             ui.separator();

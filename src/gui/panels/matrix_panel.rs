@@ -72,7 +72,7 @@ pub fn matrix_ui(
     });
 }
 
-/// Explains the underlines, from right to left.
+/// Draws the key of the underlines, laid out from right to left.
 fn key_ui(ui: &Ui, row: Rect, palette: &Palette) {
     let mut right = row.right();
     for (words, color) in [
@@ -98,7 +98,7 @@ fn key_ui(ui: &Ui, row: Rect, palette: &Palette) {
     }
 }
 
-/// Cells, with the channel names above and beside them \[pt\].
+/// Layout of the cells and of the channel names above and beside them \[pt\].
 struct CellGrid {
     /// Visible height.
     room: f32,
@@ -118,8 +118,8 @@ impl CellGrid {
         );
         let (in_conflict, blamed) = state.shown().map(gain_conflict_marks).unwrap_or_default();
         let focus = state.display.selection.pair;
-        // A matrix larger than the available space scrolls on its own: verdict and export keep
-        // their places.
+        // A matrix larger than the available space scrolls separately, so that verdict and export
+        // keep their places.
         ScrollArea::both()
             .id_salt("constraint matrix")
             .max_height(self.room)
@@ -200,7 +200,7 @@ struct Cell<'a> {
     focused: bool,
     constrained: bool,
     fitted: bool,
-    /// Whether the response is not matched, or prevents others from being matched.
+    /// Whether the gain constraint of the response conflicts with others.
     in_conflict: bool,
     shown: Option<&'a ConditionAnalysis>,
     state: &'a State,
@@ -388,7 +388,7 @@ impl<'a> Cell<'a> {
             commands.push(Edit::Hold(self.pair, is_on).into());
             ui.close();
         }
-        let fit = format!("Fit {} in the objective", self.name);
+        let fit = format!("Include {} in the objective", self.name);
         if let Some(is_on) = check_ui(ui, self.fitted, fit, "") {
             commands.push(Edit::Fit(self.pair, is_on).into());
             ui.close();
@@ -396,7 +396,7 @@ impl<'a> Cell<'a> {
         entries_ui(
             ui,
             [(
-                "Hold exactly the on-axis responses",
+                "Hold only the on-axis responses",
                 Edit::ConstrainOnAxis.into(),
             )],
             commands,
@@ -435,8 +435,8 @@ impl<'a> Cell<'a> {
         turn_entry(self.state, channel, role)
     }
 
-    /// Draws four aligned rows; the menu explains every value through
-    /// [`QUESTION`](crate::gui::widgets::controls::QUESTION).
+    /// Draws four aligned rows. The derivation of every value is in the submenu
+    /// [`QUESTION`](crate::gui::widgets::controls::QUESTION) of the cell's menu.
     fn tooltip_ui(&self, ui: &mut Ui, palette: &Palette) {
         let held = if self.constrained { "held" } else { "free" };
         let ignored = if self.fitted {
@@ -495,7 +495,8 @@ impl CellValue {
     }
 }
 
-/// Paints a part of J before the correction (pale) and after it (orange unless it decreased).
+/// Paints the part of J before the correction (pale) and after it (orange if a part above 1 has not
+/// decreased by at least 0.1).
 fn underline(ui: &Ui, half: Rect, parts: CostParts, palette: &Palette) {
     paint_cost_bar(ui, half, parts.before, palette.quiet_mark);
     let after_color = if is_not_reduced(parts.before, parts.after) {

@@ -26,15 +26,15 @@ use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium}
 /// Right edges of the trim columns \[pt from the row's left edge\].
 pub(super) const TRIM_ENDS: [f32; 3] = [70.0, 114.0, 154.0];
 
-/// Trim coordinates as columns.
+/// Trim coordinates that have a column each.
 pub(super) struct TrimColumns {
     keys: Vec<String>,
     pub(super) heads: Vec<String>,
 }
 
 impl TrimColumns {
-    /// Creates the columns; `None` if a model has no trim, or if there are more coordinates than
-    /// columns.
+    /// Creates the columns; `None` if a model has no trim, if there are no coordinates, or if there
+    /// are more coordinates than columns.
     pub(super) fn new(models: &[Model]) -> Option<Self> {
         let mut keys: Vec<String> = Vec::new();
         for model in models {
@@ -114,7 +114,6 @@ impl<'a> Neighbours<'a> {
     }
 }
 
-/// Row that displays a model.
 pub(super) struct ModelRow<'a> {
     id: ModelId,
     model: &'a Model,
@@ -188,7 +187,8 @@ impl<'a> ModelRow<'a> {
         commands: &mut Vec<Command>,
     ) {
         let width = ui.available_width();
-        // Not reachable by Tab: its actions are on the box, on the star, and in the palette.
+        // `Sense::CLICK` is not reachable by Tab: the actions are on the box, on the star, and in
+        // the palette.
         let (rect, response) = ui.allocate_exact_size(vec2(width, ROW_HEIGHT), Sense::CLICK);
         let response = named(
             response,
@@ -230,7 +230,7 @@ impl<'a> ModelRow<'a> {
             (decide, edit.into()),
             (ask, Command::Form(FormCommand::AskReason(id.clone()))),
             (
-                "Copy its name",
+                "Copy the name",
                 Command::Output(OutputCommand::CopyText(self.model.name.clone())),
             ),
         ];
@@ -331,8 +331,8 @@ impl<'a> ModelRow<'a> {
         response.on_hover_text(hint);
     }
 
-    /// Paints "set aside", the ratio with its bar, or the order; returns the occupied width on the
-    /// right \[pt\].
+    /// Paints "set aside", the discontinuity ratio with its bar, or the order ("measured" without
+    /// an order); returns the occupied width on the right \[pt\].
     fn paint_value(&self, ui: &Ui, rect: Rect, palette: &Palette) -> f32 {
         if self.set_aside.is_some() {
             row_text(ui, rect, -5.0, "set aside", SMALL_SIZE, palette.warning);
@@ -427,8 +427,8 @@ impl<'a> ModelRow<'a> {
         );
     }
 
-    /// Draws the name above at most five aligned rows; the menu explains every value through
-    /// [`QUESTION`](crate::gui::widgets::controls::QUESTION).
+    /// Draws the name above at most five aligned rows. The derivation of every value is in the
+    /// submenu [`QUESTION`](crate::gui::widgets::controls::QUESTION) of the row's menu.
     fn tooltip_ui(&self, ui: &mut Ui, palette: &Palette) {
         ui.label(RichText::new(&self.model.name).font(medium(BODY_SIZE)));
         Grid::new("model")
@@ -460,7 +460,7 @@ impl<'a> ModelRow<'a> {
             rows.push(("discontinuity ratio", format!("{ratio:.3}{verdict}")));
         }
         if let Some(score) = self.score {
-            let words = format!("{score:.3} to the others that are kept");
+            let words = format!("{score:.3} to the other kept models");
             rows.push(("mean distance", words));
         }
         if let Some(why) = &self.set_aside {
@@ -495,7 +495,7 @@ fn signed_compact(value: f64) -> String {
     format!("{sign}{}", compact(value))
 }
 
-/// Returns an identified model's method.
+/// Returns the identification method; `None` for other models.
 pub(super) fn method(model: &Model) -> Option<&str> {
     match &model.origin {
         Origin::Identified { method, .. } => method.as_deref(),

@@ -63,7 +63,7 @@ pub fn bundle_sheet_ui(
     commands: &mut Vec<Command>,
 ) {
     ui.spacing_mut().item_spacing.y = 0.0;
-    // The sheet has its own heading.
+    // No heading is drawn here: the sheet has its own.
     region_ui(ui, Region::Models, |ui| {
         if kind == BundleKind::Physics {
             at_once_ui(ui, state, palette, commands);
@@ -196,7 +196,7 @@ fn rows_ui(
     if models.is_empty() {
         ui.add(
             egui::Label::new(
-                palette.small("No identified models yet: identify them from flight records"),
+                palette.small("No identified models yet; identify them from flight records"),
             )
             .wrap(),
         );
@@ -233,7 +233,7 @@ fn heads_ui(ui: &mut Ui, trims: Option<&TrimColumns>, palette: &Palette) {
     painted_text(ui, row, -1.0, "discontinuity", small(), palette.dim_text);
 }
 
-/// Returns the names without the method with which all of them begin: "CT-PBSID" and
+/// Removes the shortest method name from the names if all of them begin with it: "CT-PBSID" and
 /// "CT-PBSID, refined" become "CT-PBSID" and "refined".
 fn short_names(models: &[Model]) -> Vec<&str> {
     let repeated = models

@@ -65,8 +65,8 @@ const PATHS: [PathWords; 10] = [
         title: "Save the figure",
         field: "Path of the figure",
         hint: "path of a .svg, .png, .pdf or .csv file",
-        explanation: "On white paper in both themes. The file extension sets the format; CSV holds \
-                      the numbers.",
+        explanation: "On white paper in both themes. The file extension sets the format; CSV \
+            contains the values.",
         submit: "Save figure",
     },
     PathWords {
@@ -84,7 +84,7 @@ const PATHS: [PathWords; 10] = [
         hint: "path of a .json file",
         explanation: "[{\"name\": \"Level 1\", \"axis\": \"P\", \"points\": [[rad/s, s], …]}]. None are \
                       built in: boundaries depend on task and category (docs/requirements.md).",
-        submit: "Take levels",
+        submit: "Read levels",
     },
     PathWords {
         kind: FormKind::ReadRequirementTable(RequirementTable::Tolerances),
@@ -92,7 +92,7 @@ const PATHS: [PathWords; 10] = [
         field: "Path of the tolerances",
         hint: "path of a .json file",
         explanation: "As written by Save tolerances… (docs/requirements.md)",
-        submit: "Take tolerances",
+        submit: "Read tolerances",
     },
     PathWords {
         kind: FormKind::WriteTolerances,

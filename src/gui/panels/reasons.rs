@@ -60,13 +60,13 @@ struct Cause {
 const CAUSES: [Cause; 4] = [
     Cause {
         title: "Record clock",
-        symptom: "Outputs stamped late lag by the same time in every response.",
+        symptom: "Outputs with late time stamps lag by the same time in every response.",
         look: "Look at the records",
         view: View::Records,
     },
     Cause {
         title: "Integration and sampling",
-        symptom: "Outputs passed on a step late lag by that step in every response.",
+        symptom: "Outputs that are passed on one step late lag by that step in every response.",
         look: "Look at the differences",
         view: View::Error,
     },
@@ -86,7 +86,7 @@ const CAUSES: [Cause; 4] = [
     },
 ];
 
-/// Draws the sheet for the displayed condition.
+/// Draws the sheet with the reasons for the displayed result.
 pub fn reasons_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let Some(Ok(shown)) = state.outcome() else {
         let words = match state.outcome() {
@@ -126,20 +126,20 @@ fn causes_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
     }
 }
 
-/// Draws whether the gains are proven optimal, and how far they may be from the optimum.
+/// Draws whether the gains are proven optimal, and the optimality gap.
 fn proof_ui(ui: &mut Ui, shown: &ConditionAnalysis, is_proving: bool, palette: &Palette) {
     let outcome = shown.gains.proof.outcome;
     let words = match outcome {
         Outcome::NotProven { .. } if is_proving => {
-            "The search for better gains is running beside the live answer."
+            "A search for better gains is running; the displayed gains may still improve."
         }
-        Outcome::NotProven { .. } => "Not proven.",
-        Outcome::Proven { .. } => "Global optimum: a lower bound proves it.",
+        Outcome::NotProven { .. } => "Optimality is not proven.",
+        Outcome::Proven { .. } => "Global optimum, proven by a lower bound.",
     };
     ui.label(palette.dim(format!("{words} Gap {:.0e}.", outcome.gap())));
 }
 
-/// Draws sentences, each with its possible actions.
+/// Draws remarks as sentences, each with the buttons of its possible actions.
 fn remarks_ui(
     ui: &mut Ui,
     state: &State,
@@ -151,7 +151,7 @@ fn remarks_ui(
         remark_ui(ui, palette, remark);
         if let Some(pair) = remark.ignore {
             let name = state.dataset().pair_name(pair);
-            let button = ui.small_button("Ignore it");
+            let button = ui.small_button("Ignore response");
             named(button, Role::Button, format!("Ignore {name}"))
                 .on_hover_text("No weight in the objective, in every condition")
                 .asks(Edit::Fit(pair, false), commands);
@@ -221,7 +221,7 @@ fn lead_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &Pale
     if shown.compensated.is_none() {
         return;
     }
-    let header = palette.small("Leads in words");
+    let header = palette.small("Description of the leads");
     CollapsingHeader::new(header)
         .id_salt("leads")
         .default_open(true)

@@ -17,13 +17,14 @@ pub const CARD_HEIGHT: f32 = 104.0;
 /// Row height \[pt\].
 const ROW: f32 = 18.0;
 
-/// Card row.
+/// Row of the card: a quantity, its required or initial value, the remaining value, and the error
+/// bar.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CardRow {
     pub name: &'static str,
-    /// Required correction, with its unit.
+    /// Required gain or delay with its unit, or J before the correction.
     pub wants: String,
-    /// Remaining error after the correction.
+    /// Gain error, delay error or J that remains after the correction.
     pub left: String,
     /// Half-width of the error bar, with its unit.
     pub half: String,

@@ -97,7 +97,7 @@ fn proof_ui(
     let outcome = shown.gains.proof.outcome;
     let (words, color) = match outcome {
         Outcome::Proven { .. } => ("global optimum ✓", palette.dim_text),
-        Outcome::NotProven { .. } if is_proving => ("proof runs", palette.dim_text),
+        Outcome::NotProven { .. } if is_proving => ("proof running", palette.dim_text),
         Outcome::NotProven { .. } => ("not proven", palette.warning),
     };
     let place = painted_text(ui, row, -0.01, words, small(), color);
@@ -298,7 +298,8 @@ impl Side<'_> {
     }
 }
 
-/// Paints text that ends at a share of its row's width.
+/// Paints right-aligned text that ends at the share `end` of the row's width; returns its
+/// rectangle.
 fn painted_upto(ui: &Ui, row: Rect, end: f32, words: &str, font: FontId, color: Color32) -> Rect {
     painted_text(
         ui,

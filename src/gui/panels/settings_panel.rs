@@ -42,7 +42,7 @@ pub fn settings_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut
     });
 }
 
-/// Settings in a line: the first one, and those beside it.
+/// Settings drawn on the same line.
 type Line = Vec<&'static Setting>;
 
 fn is_frequent(line: &Line) -> bool {

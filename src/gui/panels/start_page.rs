@@ -1,5 +1,5 @@
 //! Start page, shown without panels: three ways to begin, each named after the engineer's data, and
-//! the study behind the page.
+//! the open study, if any.
 
 use egui::{
     Align, Align2, Button, Color32, Frame, Layout, Margin, Rect, RichText, Role, ScrollArea, Sense,
@@ -22,14 +22,14 @@ use crate::gui::widgets::palette::{
     BODY_SIZE, DISPLAY_SIZE, Palette, SMALL_SIZE, TITLE_SIZE, body, medium, small,
 };
 
-/// Widths of the ways to begin, of the open study, and of the gap between them \[pt\].
+/// Widths of the cards, of the open study, and of the gap between them \[pt\].
 const WIDTHS: [f32; 3] = [600.0, 460.0, 64.0];
 /// Line height in multi-line text \[pt\].
 const LINE: f32 = 20.0;
-/// Card height of a way to begin \[pt\].
+/// Height of a card on the start page \[pt\].
 const WAY: f32 = 72.0;
 
-/// A way to begin.
+/// Way to begin, drawn as a card.
 struct Way {
     title: &'static str,
     words: &'static str,
@@ -71,7 +71,7 @@ pub fn example_line_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Comman
         ui.spacing_mut().item_spacing.x = 6.0;
         ui.spacing_mut().button_padding = egui::Vec2::ZERO;
         ui.spacing_mut().interact_size.y = 16.0;
-        ui.label(palette.small("The example, simulated. Your own:"));
+        ui.label(palette.small("Simulated example. Your own data:"));
         for (place, way) in ways().into_iter().enumerate() {
             if place > 0 {
                 ui.label(palette.small("·"));
@@ -90,7 +90,8 @@ pub fn example_line_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Comman
     });
 }
 
-/// Draws the whole page.
+/// Draws the start page: on the left the ways to begin, with the recent files or the steps of work;
+/// on the right the open study, if there is room.
 pub fn start_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let area = ui.available_rect_before_wrap().shrink(24.0);
     let [left, right, gap] = WIDTHS;
@@ -211,7 +212,7 @@ fn way_ui(ui: &mut Ui, way: Way, is_primary: bool, palette: &Palette, commands: 
     ui.advance_cursor_after_rect(rect);
 }
 
-/// Draws the three steps of work, in place of the recent files while there are none.
+/// Draws the three steps of work, shown while there are no recent files.
 fn steps_ui(ui: &mut Ui, palette: &Palette) {
     let steps = [
         (
@@ -280,7 +281,7 @@ fn recent_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
     }
 }
 
-/// Draws a picture of the study behind the page, and the way back to it.
+/// Draws a picture of the open study, and the button that returns to it.
 fn open_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let frame = Frame::new()
         .fill(palette.panel)
@@ -297,7 +298,7 @@ fn open_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec
         ui.add_space(8.0);
         ui.label(palette.small(
             "Left: remaining J of the held responses in each condition, magnitude and phase; pale \
-             is matched. Right: flight and the corrected model.",
+            means matched. Right: phases of the identified and the corrected model.",
         ));
         ui.add_space(12.0);
         ui.horizontal(|ui| {
@@ -315,7 +316,7 @@ fn open_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec
     });
 }
 
-/// Texts about the study behind the page.
+/// Texts about the open study.
 struct StudyWords {
     title: String,
     content: String,

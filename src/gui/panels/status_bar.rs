@@ -60,7 +60,7 @@ fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut 
     let label = ui.label(text);
     if state.analysis().is_some() {
         let elapsed_ms = state.results.elapsed_ms;
-        label.on_hover_text(format!("The newest analysis took {elapsed_ms:.1} ms"));
+        label.on_hover_text(format!("The latest analysis took {elapsed_ms:.1} ms"));
     }
     let beside = words_beside(state, now);
     if let Some(words) = &beside {
@@ -85,7 +85,7 @@ fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut 
     }
 }
 
-/// Whether the live analysis is up to date, and its colours.
+/// Text and colours that show whether the live analysis is up to date.
 struct Status {
     text: String,
     color: Color32,
@@ -102,7 +102,7 @@ impl Status {
             return Self::colored(text, palette.warning);
         }
         if !state.results.is_stale(now) {
-            // Green text would suggest that gains and phases are matched.
+            // The text is not green: green would suggest that gains and phases are matched.
             return Self {
                 text: "up to date".to_owned(),
                 color: palette.dim_text,
@@ -127,8 +127,8 @@ impl Status {
     }
 }
 
-/// Describes the work in addition to the live analysis; `None` if there is none, or if it has not
-/// lasted long enough.
+/// Describes the background work other than the live analysis; `None` if there is none, or if it
+/// began only recently.
 fn words_beside(state: &State, now: f64) -> Option<String> {
     let background = &state.results.background;
     if let Some(reading) = &state.records.reading {
@@ -154,8 +154,8 @@ fn count_models(state: &State) -> usize {
     count
 }
 
-/// Describes the work in addition to the live analysis; of several jobs, the first in the order
-/// below.
+/// Describes the background work other than the live analysis; of several jobs, the first in the
+/// order below.
 fn background_words(background: &Background, records: &RecordsState) -> String {
     if let Some((done, total)) = background.report {
         return format!("writing the report, {} % …", percent(done, total));
@@ -180,25 +180,25 @@ fn background_words(background: &Background, records: &RecordsState) -> String {
     }
     if let Some((done, total)) = background.couplings {
         return format!(
-            "couplings without each condition, {} % …",
+            "couplings with each condition left out, {} % …",
             percent(done, total)
         );
     }
     if background.views > 0 {
-        "contents of the views …".to_owned()
+        "preparing the views …".to_owned()
     } else {
         "costs of holding and releasing …".to_owned()
     }
 }
 
-/// "identifying condition 10, 40 %, 2 more after it …".
+/// "identifying condition 10, 40 %, then 2 more …".
 fn identification_words(records: &RecordsState, percent: usize) -> String {
     let jobs = records.running.len();
     match records.under_way() {
         Some(job) if jobs >= 2 => {
             let condition = job.condition;
             let more = jobs - 1;
-            format!("identifying condition {condition}, {percent} %, {more} more after it …")
+            format!("identifying condition {condition}, {percent} %, then {more} more …")
         }
         _ => format!("identifying, {percent} % …"),
     }

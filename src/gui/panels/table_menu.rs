@@ -36,7 +36,7 @@ pub fn table_menu_ui(
     kind: TableKind,
     commands: &mut Vec<Command>,
 ) {
-    // Not reachable by Tab: a heading has no primary action.
+    // `Sense::CLICK` is not reachable by Tab: a heading has no primary action.
     let response = ui.interact(heading.rect, heading.id.with("table"), Sense::CLICK);
     let response = named(response, Role::Label, format!("Heading of {}", kind.name()));
     response.context_menu(|ui| {

@@ -28,7 +28,7 @@ use crate::gui::views::used_couplings;
 pub struct Verdict {
     /// Displayed condition.
     pub condition: ConditionId,
-    /// Gains, phases.
+    /// Rows for the gains and the phases.
     pub rows: [VerdictRow; 2],
     /// Recommended step, followed by the alternatives.
     pub steps: Vec<Step>,
@@ -43,7 +43,7 @@ pub struct Verdict {
     pub reasons: usize,
 }
 
-/// How many constrained responses are matched, in gain or in phase.
+/// Number of constrained responses, and how many of them are matched, in gain or in phase.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MatchCount {
     pub matched: usize,
@@ -106,7 +106,7 @@ impl VerdictRow {
         }
     }
 
-    /// "5 of 5", "–" without a result.
+    /// Returns "5 of 5", or "–" without a result.
     pub fn count_text(count: Option<MatchCount>) -> String {
         match count {
             Some(count) => format!("{} of {}", count.matched, count.constrained),
@@ -119,7 +119,7 @@ impl VerdictRow {
         let here = Self::count_text(self.here);
         let everywhere = Self::count_text(self.everywhere);
         format!(
-            "{}: {here} {}, of all conditions {everywhere}",
+            "{}: {here} {}, in all conditions {everywhere}",
             self.name, self.words
         )
     }
@@ -135,7 +135,7 @@ impl Verdict {
         }
     }
 
-    /// Returns a verdict with the message `words`, where there is no result.
+    /// Returns the verdict on a condition without a result, with the message `words`.
     fn without_result(state: &State, words: &str) -> Self {
         Self {
             condition: state.condition().id(),
@@ -183,7 +183,7 @@ impl Verdict {
         }
     }
 
-    /// Returns whether gains and phases are matched and no pole within the band became unstable.
+    /// Returns whether gains and phases are matched and no pole within the band is made unstable.
     pub fn is_met(&self) -> bool {
         self.rows.iter().all(|row| row.is_met) && self.unstable_in_band == 0
     }
@@ -266,7 +266,7 @@ fn gain_words(state: &State, shown: &ConditionAnalysis) -> String {
     }
 }
 
-/// Returns "2 share PED" for conflicting responses with a common input or output.
+/// Returns "2 share PED" for conflicting responses with a common input or output; otherwise `None`.
 fn shared_words(state: &State, pairs: &[Pair]) -> Option<String> {
     let [first, rest @ ..] = pairs else {
         return None;
@@ -316,7 +316,6 @@ fn unstable_in_band(state: &State) -> usize {
     }
 }
 
-/// Caution about the couplings.
 struct CouplingCaution {
     kind: RemarkKind,
     words: String,
@@ -337,8 +336,8 @@ fn caution(state: &State, shown: &ConditionAnalysis) -> Option<String> {
         .or_else(|| schedule_caution(state, shown))
 }
 
-/// Returns a caution if the schedule leaves more than twice the J that the condition's own
-/// correction leaves (M12).
+/// Returns a caution if the schedule costs more than twice the J of the condition's own correction
+/// (M12).
 fn schedule_caution(state: &State, shown: &ConditionAnalysis) -> Option<String> {
     let schedule = state.analysis()?.schedule.as_ref().ok()?;
     for caution in &schedule.cautions {
@@ -459,7 +458,7 @@ mod tests {
     fn suggested_models_are_to_be_rejected_before_anything_else() {
         let verdict = Verdict::new(&state_of(&[]));
         assert_eq!(labels(&verdict), ["Reject 3 suggested"]);
-        assert_eq!(verdict.note, "of 19 models, first");
+        assert_eq!(verdict.note, "of 19 models, as a first step");
     }
 
     #[test]
@@ -471,7 +470,8 @@ mod tests {
             (count(5, 5), count(55, 55), "matched")
         );
         assert_eq!((phase.here, phase.everywhere), (count(0, 5), count(0, 55)));
-        // Medians of D of the example's constrained responses in condition 10: 56 to 72 ms of lead.
+        // The constrained responses of the example need leads of 56 to 72 ms in condition 10
+        // (medians of D).
         assert_eq!(phase.words, "lags by ≈ 66 ms");
         assert!(!verdict.is_met() && verdict.caution.is_none());
         assert_eq!(labels(&verdict), ["Use leads", "Find the cause first"]);

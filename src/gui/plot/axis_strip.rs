@@ -49,7 +49,7 @@ impl AxisStrip<'_> {
     fn ui(&self, ui: &Ui, view: &mut BodeView) {
         let PaneScene { pane, scene, .. } = self.pane;
         let name = self.axis.name(scene, pane);
-        // Not focusable by Tab: the plot itself has the same actions on the keyboard.
+        // The sense is not focusable by Tab: the plot itself has the same actions on the keyboard.
         let sense = Sense::CLICK | Sense::DRAG;
         let response = ui.interact(self.place, ui.scope_id().with(&name), sense);
         response.widget_info(|| WidgetInfo::labeled(Role::ScrollBar, true, &name));

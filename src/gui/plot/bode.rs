@@ -1,5 +1,5 @@
-//! Bode plot: magnitude above phase of every model of a condition, for one response, or the
-//! corresponding errors used by the fit.
+//! Bode plot: magnitude above phase of every model of a condition for one response, or the ratio
+//! and phase difference between the identified and the other models.
 
 use egui::{CursorIcon, Pos2, Response, Ui, UiBuilder, Vec2, vec2};
 use egui_plot::PlotTransform;
@@ -27,7 +27,7 @@ use crate::gui::widgets::palette::Palette;
 
 /// Minimum size with room for two plots \[pt\].
 const LEAST_SIZE: Vec2 = vec2(140.0, 130.0);
-/// Within this distance from a reference line, the pointer is on the line, whatever lies below
+/// Distance from a reference line within which the pointer counts as on the line, even over a curve
 /// \[pt\].
 const ON_LINE: f32 = 1.0;
 
@@ -130,14 +130,14 @@ fn has_data(curves: &[BodeCurve]) -> bool {
         .any(|curve| curve.points(Pane::Magnitude).any(|point| is_finite(&point)))
 }
 
-/// Panes as drawn.
+/// Events in the panes, and their focus.
 struct PanesResponse {
     events: Vec<BodeEvent>,
     /// Whether either pane has the focus.
     has_focus: bool,
 }
 
-/// Both panes.
+/// Panes to be drawn.
 struct Panes<'a> {
     layout: &'a BodeLayout,
     scene: &'a BodeScene<'a>,
@@ -278,8 +278,8 @@ fn set_hovered(view: &mut BodeView, hovered: Option<CurveId>, events: &mut Vec<B
 }
 
 /// Returns the event of a click on the nearest curve; a click on the reference has no effect. The
-/// second click of a double click undoes the first if that was on a curve; on empty ground, it fits
-/// the plot.
+/// second click of a double click undoes the first if the first was on a curve; on empty ground, it
+/// fits the plot.
 fn handle_click(
     pane: Pane,
     scene: &BodeScene<'_>,

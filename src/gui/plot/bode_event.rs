@@ -18,7 +18,7 @@ pub enum BodeEvent {
         min: f64,
         max: f64,
     },
-    /// The band was released after dragging.
+    /// The dragged band end was released.
     BandReleased,
     /// A change to the curve display or to the marked frequencies was requested.
     Display(CurveCommand),

@@ -153,8 +153,8 @@ impl BodeHeadings<'_> {
     }
 }
 
-/// Returns the magnitude added by the leads as text for the heading, if there is no margin for it
-/// beside the bracket.
+/// Returns the magnitude added by the leads as text for the heading; `None` if the margin has room
+/// for it.
 fn price_in_heading(scene: &BodeScene<'_>, pane: Pane) -> Option<String> {
     if pane != Pane::Magnitude || scene.names_curves {
         return None;

@@ -40,7 +40,7 @@ pub(super) struct BodeLayout {
 }
 
 impl BodeLayout {
-    /// Divides an area on the screen.
+    /// Divides `area` into headings, panes and strips.
     pub(super) fn new(area: Rect, scene: &BodeScene<'_>) -> Self {
         let mut inner = area.with_max_x(area.right() - right_margin(scene));
         let mut coherence = None;

@@ -22,7 +22,7 @@ use super::reference_lines::PaneLines;
 use super::ticks::Ticks;
 use crate::gui::widgets::palette::Palette;
 
-/// Maximum distance between a drawn line and its curve \[pt\].
+/// Maximum deviation of a drawn line from its curve \[pt\].
 const TOLERANCE: f64 = 0.1;
 /// Height of the strip along the lower edge \[pt\].
 const STRIP_HEIGHT: f32 = 5.0;
@@ -158,7 +158,7 @@ impl<'a> PaneScene<'a> {
         add_shade(plot, min.log10()..=max.log10(), fill);
     }
 
-    /// Dims the frequencies outside the band: they are drawn but do not count.
+    /// Dims the frequencies outside the band, which do not count in the comparison.
     fn veil_outside(self, plot: &mut PlotUi<'_>) {
         let veil = self.palette.background.gamma_multiply(0.4);
         let (min, max) = self.scene.band;

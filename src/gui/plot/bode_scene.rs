@@ -1,5 +1,5 @@
-//! Content of a Bode plot: magnitude and phase of every model of a condition, for one response, or
-//! the corresponding errors used by the fit.
+//! Content of a Bode plot: magnitude and phase of every model of a condition for one response, or
+//! the ratio and phase difference between the identified and the other models.
 
 use std::collections::BTreeSet;
 
@@ -17,7 +17,7 @@ use super::readout::Readout;
 /// Content of a Bode plot.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BodeScene<'a> {
-    /// Responses, or the errors used by the fit.
+    /// Responses, or ratio and phase difference.
     pub quantity: BodeQuantity<'a>,
     /// "LON → Q".
     pub pair_title: &'a str,
@@ -49,7 +49,8 @@ pub struct BodeScene<'a> {
     /// Remaining phase error: the area between the corrected and the identified curve, within the
     /// band.
     pub missing: Option<&'a BodeBand>,
-    /// Frequencies above the band, where curves only show the cost of leads; `None` without leads.
+    /// Frequencies above the band, where the corrected curves are not valid and only show the
+    /// magnitude added by the leads; `None` without leads.
     pub invalid: Option<&'a InvalidRegion>,
     /// Whether uncertainty bands are drawn; `None` if there are none.
     pub shows_bands: Option<bool>,
@@ -81,8 +82,8 @@ pub struct PaneNote {
     pub warns: bool,
 }
 
-/// Frequencies above the band, where the corrected model is invalid and shows the cost of its
-/// leads.
+/// Frequencies above the band, where the corrected model is not valid and only shows the magnitude
+/// added by the leads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InvalidRegion {
     /// Upper end, where the curves end too \[rad/s\].
@@ -100,7 +101,8 @@ impl<'a> BodeScene<'a> {
         Some(format!("{} dB", signed(with - without, 1)))
     }
 
-    /// Creates a scene of a pair's responses in decibels, degrees and rad/s, without anything else.
+    /// Creates a scene of a pair's responses in decibels, degrees and rad/s, without optional
+    /// elements.
     pub fn new(pair_title: &'a str, curves: &'a [BodeCurve], band: (f64, f64)) -> Self {
         Self {
             pair_title,

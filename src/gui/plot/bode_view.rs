@@ -56,7 +56,7 @@ pub struct BodeView {
     pub(super) drawn: [DrawnPane; 2],
 }
 
-/// Menu subject: a curve or the ground, and the frequency there \[rad/s\].
+/// Curve or empty ground for which a menu is open, and the frequency there \[rad/s\].
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct MenuSubject {
     pub(super) curve: Option<CurveId>,
@@ -169,13 +169,13 @@ impl BodeView {
         self.must_fit_frequencies = other.must_fit_frequencies;
     }
 
-    /// Returns the visible frequencies \[rad/s\].
+    /// Returns the visible frequency range \[rad/s\].
     pub fn omega_range(&self) -> (f64, f64) {
         let Range { min, max } = self.log_omega.range();
         (10f64.powf(min), 10f64.powf(max))
     }
 
-    /// Returns the visible frequencies \[rad/s\] if the engineer chose them.
+    /// Returns the visible frequency range \[rad/s\] if the engineer chose it.
     pub fn chosen_omega(&self) -> Option<Range> {
         if !self.log_omega.is_chosen() {
             return None;

@@ -12,7 +12,7 @@ use super::curve_style::CurveStyle;
 /// Minimum number of curves for which an image is worth its memory: filling their lines takes
 /// longer than all other work in a frame.
 pub(super) const MANY: usize = 200;
-/// Maximum distance between a drawn and a true circle \[pt\].
+/// Maximum deviation of a drawn circle from a true circle \[pt\].
 const TOLERANCE: f64 = 0.05;
 
 /// Content of an image; the image is valid as long as its content is unchanged.
@@ -92,7 +92,8 @@ struct PixelArea {
     pixels: [u16; 2],
 }
 
-/// Returns the whole pixels around `frame`; `None` if an image cannot be that large.
+/// Returns the smallest area of whole pixels that contains `frame`; `None` if an image cannot be
+/// that large.
 fn whole_pixels(frame: Rect, pixels_per_point: f32) -> Option<PixelArea> {
     let min = (frame.min * pixels_per_point).floor();
     let max = (frame.max * pixels_per_point).ceil();
@@ -140,7 +141,7 @@ fn filled(shapes: &[Shape], area: &PixelArea) -> ColorImage {
     )
 }
 
-/// Fills strokes, and the discs of dots.
+/// Strokes lines, and fills the discs of dots.
 fn fill(context: &mut RenderContext, shape: &Shape) {
     match shape {
         Shape::Vec(shapes) => {
@@ -282,7 +283,7 @@ mod tests {
             pixels: [100, 60],
         };
         let image = filled(&shapes, &area);
-        // Rounding of a premultiplied colour in either direction.
+        // Premultiplied colours may differ by 1 because of rounding.
         let near = |[x, y]: [usize; 2], color: Color32| {
             image[(x, y)]
                 .to_array()

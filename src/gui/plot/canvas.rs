@@ -25,7 +25,7 @@ pub(super) struct Canvas<'a> {
     pub(super) palette: &'a Palette,
 }
 
-/// Converts a screen rectangle to paper, with the origin at its corner.
+/// Returns the size of a screen rectangle on paper, as an area at the origin.
 pub(super) fn area(rect: Rect) -> Area {
     Area::new(
         0.0,
@@ -175,7 +175,7 @@ impl Canvas<'_> {
     }
 }
 
-/// Sample size \[pt\].
+/// Size of a sample in the legend \[pt\].
 const SAMPLE_SIZE: Vec2 = vec2(18.0, 14.0);
 
 /// Draws a sample and a name for each key of the figure's marks, as in the printed legend.

@@ -26,7 +26,7 @@ impl ChartAxis {
     }
 }
 
-/// Chart line.
+/// Line of a chart.
 #[derive(Clone, Debug)]
 pub struct ChartLine {
     /// Points in ascending order along the horizontal axis; details finer than a pixel and points

@@ -10,7 +10,7 @@ use super::layers::{add_area, add_dotted_vertical, add_shade};
 use super::thinning::{pixel_of, thinned_between};
 use crate::gui::widgets::palette::Palette;
 
-/// Maximum distance between a drawn line and its data \[pt\].
+/// Maximum deviation of a drawn line from its data \[pt\].
 const TOLERANCE: f64 = 0.1;
 /// Maximum width of a screen \[pixels\].
 const MOST_PIXELS: f64 = 10_000.0;

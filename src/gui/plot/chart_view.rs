@@ -17,7 +17,7 @@ use super::viewed_range::{ZoomLimit, ranges_of, zoomed_within};
 use crate::gui::widgets::palette::Palette;
 
 const TITLE_HEIGHT: f32 = 18.0;
-/// Width with room for the longest number, so that stacked frames align \[pt\].
+/// Width of the value axis, sufficient for the longest number, so that stacked frames align \[pt\].
 const VALUE_AXIS_WIDTH: f32 = 54.0;
 const RIGHT_MARGIN: f32 = 8.0;
 /// Gap between two notes \[pt\].
@@ -66,7 +66,7 @@ pub fn chart_ui(ui: &mut Ui, rect: Rect, chart: &Chart<'_>, palette: &Palette) -
     let drawn = shown.inner;
     let is_whole = drawn[0] == f64::NEG_INFINITY;
     if !is_whole && drawn != [across.min, across.max] {
-        // The lines were drawn for the visible range of the previous frame.
+        // Repaint: the lines were thinned for the visible range of the previous frame.
         ui.request_repaint();
     }
     let line = rect.with_max_y(rect.top() + TITLE_HEIGHT);
@@ -130,7 +130,7 @@ fn zoom_by_scrolling(plot: &mut PlotUi<'_>, chart: &Chart<'_>) {
     let fits_values = chart.fits_values;
     let Some(gesture) = ZoomGesture::find(plot.ctx(), plot.response()) else {
         if fits_values && !plot.auto_bounds().y {
-            // Dragging has turned off the automatic fit.
+            // Turn the automatic fit on again: dragging has turned it off.
             plot.set_auto_bounds(Vec2b::new(plot.auto_bounds().x, true));
         }
         return;
@@ -155,8 +155,9 @@ fn zoom_by_scrolling(plot: &mut PlotUi<'_>, chart: &Chart<'_>) {
         .input_mut(|input| input.smooth_scroll_delta = Vec2::ZERO);
 }
 
-/// Returns the maximum ranges when zooming out: the data range along a time axis, a decade beyond
-/// or ten times the range of other data, no limit without data.
+/// Returns the limits of zooming out: the data range with a small margin along a time axis, a
+/// decade beyond the data range along a frequency axis, ten times the data range otherwise, and no
+/// limit without data.
 fn zoom_limits(chart: &Chart<'_>) -> [Range; 2] {
     let mut across = Vec::new();
     let mut values = Vec::new();

@@ -57,7 +57,8 @@ impl CoherenceStrip<'_> {
         );
         let response = ui.interact(strip, Id::unique(&name), Sense::hover());
         named(response, egui::Role::Label, name).on_hover_text(
-            "γ²; below the dashed line a frequency does not count, or counts as a guess",
+            "Coherence γ²; frequencies below the dashed line are not used, or are unreliable if \
+            no minimum coherence is set",
         );
     }
 }

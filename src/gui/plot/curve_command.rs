@@ -24,7 +24,6 @@ pub enum CurveCommand {
     RaiseRole(Role),
     /// Shows or hides the uncertainty bands of the identified models.
     ShowBands(bool),
-    /// Hides a model.
     HideModel(ModelId),
     /// Shows every model, and the roles visible by default.
     ShowHidden,
@@ -41,7 +40,8 @@ pub enum CurveCommand {
     UnpinCursors,
     /// Shows or hides the list of values at the cursor.
     ListValues(bool),
-    /// Shows or hides the envelopes of maximum unnoticeable added dynamics in the plot of errors.
+    /// Shows or hides the envelopes of maximum unnoticeable added dynamics in the Bode and error
+    /// plots.
     ShowMuad(bool),
     /// Selects these models instead of the current selection.
     Select(BTreeSet<ModelId>),

@@ -89,11 +89,9 @@ fn reason_ui(ui: &mut Ui, curve: &BodeCurve, reason: &mut String) -> bool {
             .hint_text("reason")
             .desired_width(150.0),
     );
-    field.widget_info(|| {
-        WidgetInfo::labeled(WidgetRole::TextInput, true, "Reason of the rejection")
-    });
+    field.widget_info(|| WidgetInfo::labeled(WidgetRole::TextInput, true, "Rejection reason"));
     let is_entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
-    field.on_hover_text("Kept in the study; Enter rejects the model");
+    field.on_hover_text("Saved in the study; Enter rejects the model");
     let has_reason = !reason.trim().is_empty();
     let is_clicked = ui
         .add_enabled(has_reason, Button::new("Reject with reason"))
@@ -128,14 +126,14 @@ fn curve_wishes_ui(
         if entry_ui(
             ui,
             "Phase +360°",
-            "Changes the drawing only, by a whole turn",
+            "Shifts the drawn curve by a whole turn; no result changes",
         ) {
             wished = Some(CurveWish::Turn(1));
         }
         if entry_ui(
             ui,
             "Phase −360°",
-            "Changes the drawing only, by a whole turn",
+            "Shifts the drawn curve by a whole turn; no result changes",
         ) {
             wished = Some(CurveWish::Turn(-1));
         }
@@ -175,7 +173,7 @@ pub(super) fn model_wishes_ui(ui: &mut Ui, curve: &BodeCurve) -> Option<CurveWis
     if entry_ui(
         ui,
         "Isolate model",
-        "Draws only this model and the representatives, or all again",
+        "Draws only this model and the representatives; again: all models",
     ) {
         wished = Some(CurveWish::Isolate);
     }

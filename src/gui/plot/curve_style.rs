@@ -93,7 +93,8 @@ impl CurveStyle {
 }
 
 impl Palette {
-    /// Returns the colour in this theme for a colour given by its meaning.
+    /// Returns the colour that this theme uses for a figure's colour, which is given by its
+    /// meaning.
     pub fn color(&self, color: Color) -> Color32 {
         let of_hue = match color.hue {
             Hue::Background => self.background,
@@ -138,7 +139,7 @@ impl Palette {
         }
     }
 
-    /// Returns a role's style.
+    /// Returns the curve style of kept or rejected models in a role.
     pub fn role_style(&self, role: Role, rejected: bool) -> CurveStyle {
         self.curve_style(role.line(rejected))
     }
@@ -165,8 +166,8 @@ mod tests {
     #[test]
     fn every_pattern_looks_different_along_a_line() {
         assert_eq!(shapes(Dash::Solid, 0.0), 1);
-        // 100 points of dashes of 8 with gaps of 4.9; of dashes of 8, dots of 1.8 and two gaps of
-        // 3.0; of dots every 5 except at the end.
+        // A line of 100 points is drawn with dashes of 8 and gaps of 4.9; dashes of 8, dots of 1.8
+        // and gaps of 3.0; dots at a distance of 5.
         assert_eq!(shapes(Dash::Long, 8.0), 8);
         assert_eq!(shapes(Dash::DashDot, 8.0), 13);
         assert_eq!(shapes(Dash::Dotted, 5.0), 20);

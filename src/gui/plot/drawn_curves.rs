@@ -128,8 +128,8 @@ impl DrawnCurves {
     }
 }
 
-/// Returns the index of the matching curve in `kept`. The index `likely` is tried first, because
-/// curves usually keep their order.
+/// Returns the index of the curve in `kept` for which `matches` returns true. The index `likely` is
+/// tried first, because curves usually keep their order.
 fn kept_place(
     kept: &[Option<DrawnCurve>],
     likely: usize,
@@ -150,7 +150,8 @@ fn thin(run: &[[f64; 2]], pixel: Pixel) -> Vec<PlotPoint> {
 }
 
 impl DrawnCurve {
-    /// Returns whether the values and the margin of `curve` are unchanged.
+    /// Returns whether the points were computed from the present values of `curve` with this
+    /// margin.
     fn is_drawn_from(&self, curve: &BodeCurve, pane: Pane, margin: f64) -> bool {
         self.margin == margin
             && are_same(&self.values, curve.shared_values(pane))
@@ -158,8 +159,8 @@ impl DrawnCurve {
     }
 }
 
-/// Returns whether two slices contain the same values, bit by bit because gaps are NaN; usually
-/// they have the same address.
+/// Returns whether two slices are equal bit by bit (gaps are NaN); usually they have the same
+/// address, which is compared first.
 fn are_same(one: &Arc<[f64]>, other: &Arc<[f64]>) -> bool {
     Arc::ptr_eq(one, other)
         || one
@@ -232,8 +233,7 @@ mod tests {
             [3, 1],
             "a recomputed curve has a new number"
         );
-        // Of the curve that rises to 9 and returns to 5, the segments up to 6 and further are
-        // invisible.
+        // The remaining curve, with the values 1, 9 and 5, lies above the view, which ends at 0.5.
         update(&mut drawn, &curves[1..], 0.5);
         assert!(drawn.runs(0).is_empty());
     }

@@ -65,7 +65,7 @@ impl DrawnMarks {
 pub(super) struct MarkScene<'a> {
     pub(super) panel: &'a Panel,
     pub(super) transform: PlotTransform,
-    /// Marks of the columns, if columns are interactive instead of dots.
+    /// Marks represented by the columns, if columns are interactive instead of dots.
     pub(super) columns: &'a [MarkId],
     /// Mark in focus.
     pub(super) selected: Option<&'a MarkId>,
@@ -123,7 +123,7 @@ impl MarkScene<'_> {
         }
     }
 
-    /// Enlarges the highlighted dots, and draws a ring around those in focus.
+    /// Enlarges the highlighted dots, and draws a ring around the dots in focus.
     fn paint_emphasis(&self, canvas: &Canvas<'_>, dots: &Dots) {
         for dot in dots.dots.iter().filter(|dot| dot.id.is_some()) {
             if dot.id.as_ref() == self.emphasized {
@@ -150,8 +150,8 @@ impl MarkScene<'_> {
     }
 }
 
-/// Returns the values of a range of coordinates along the horizontal axis; on the screen, the
-/// coordinates of a logarithmic axis are logarithms.
+/// Converts a range of axis coordinates to values: on the screen, the coordinates of a logarithmic
+/// horizontal axis are logarithms.
 fn values_at(panel: &Panel, places: Range) -> Range {
     match panel.x.scale {
         Scale::Logarithmic => Range::new(10f64.powf(places.min), 10f64.powf(places.max)),

@@ -29,9 +29,9 @@ const PANEL_GAP: f32 = 4.0;
 const TICK_GAP: f64 = 26.0;
 /// Minimum distance between ticks in a compact figure, which has as many tick labels as fit \[pt\].
 const COMPACT_TICK_GAP: f64 = 17.0;
-/// Maximum visible width, relative to the whole panel.
+/// Maximum visible range, relative to the full range of the panel.
 const FARTHEST: f64 = 10.0;
-/// Minimum visible width.
+/// Minimum visible range, in axis coordinates.
 const LEAST_WIDTH: f64 = 1e-4;
 
 /// State of a panel between frames.
@@ -81,7 +81,7 @@ pub(super) struct PlacedResponse {
 }
 
 impl PlacedPanel<'_> {
-    /// Draws the panel.
+    /// Draws the panel, and zooms and pans it.
     pub(super) fn ui(&self, ui: &mut Ui, view: &mut PanelView) -> PlacedResponse {
         let panel = self.panel();
         let has_values = self.has_values(ui);
@@ -274,7 +274,7 @@ impl PlacedPanel<'_> {
     }
 }
 
-/// Returns the distance between the tick labels or names of a horizontal axis.
+/// Returns the spacing of the tick labels or names along a horizontal axis.
 fn spacing_across(ui: &Ui, panel: &Panel, palette: &Palette) -> TickSpacing {
     let named = panel.x.names.as_deref().unwrap_or_default();
     if named.is_empty() {
@@ -312,7 +312,7 @@ fn tick_width(ui: &Ui, text: &str, palette: &Palette) -> f32 {
     galley.size().x
 }
 
-/// Adopts the ranges after a gesture: the wheel zooms about the pointer, dragging pans.
+/// Updates the visible ranges after a gesture: the wheel zooms about the pointer, dragging pans.
 fn navigate(panel: &Panel, response: &Response, transform: &PlotTransform, view: &mut PanelView) {
     let whole = whole(panel);
     let limits = zoom_limits(panel);
@@ -322,7 +322,7 @@ fn navigate(panel: &Panel, response: &Response, transform: &PlotTransform, view:
         let fixed = transform.value_from_position(gesture.pointer);
         for (axis, fixed) in [fixed.x, fixed.y].into_iter().enumerate() {
             let limit = limits[axis].range(whole[axis]);
-            // An axis whose whole range was dragged beyond the limit keeps its range.
+            // The axis was dragged beyond the limit if there is no range: it is not zoomed then.
             if let Some(zoomed) = zoomed_within(shown[axis], factor, fixed, limit) {
                 shown[axis] = zoomed;
             }
@@ -337,8 +337,8 @@ fn navigate(panel: &Panel, response: &Response, transform: &PlotTransform, view:
     }
 }
 
-/// Returns the zoom limits: the data range along a time axis, a decade beyond or ten times the
-/// range of other data.
+/// Returns the limits of zooming out: the data range along a time axis, a decade beyond the data
+/// range along a logarithmic axis, ten times the data range otherwise.
 fn zoom_limits(panel: &Panel) -> [ZoomLimit; 2] {
     let widths = ZoomLimit::TenWidths { least: LEAST_WIDTH };
     let across = match panel.x.scale {
@@ -349,8 +349,8 @@ fn zoom_limits(panel: &Panel) -> [ZoomLimit; 2] {
     [across, widths]
 }
 
-/// Returns the full ranges of a panel; on the screen, the coordinates of a logarithmic horizontal
-/// axis are logarithms.
+/// Returns the full ranges of a panel in axis coordinates, which are logarithms on a logarithmic
+/// horizontal axis.
 fn whole(panel: &Panel) -> [Range; 2] {
     let x = panel.shown(Along::X);
     let y = panel.shown(Along::Y);

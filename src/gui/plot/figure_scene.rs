@@ -23,7 +23,7 @@ pub trait FigureWords {
         None
     }
 
-    /// Returns the values at a mark whose derivation can be displayed.
+    /// Returns the values at a mark for which a derivation can be displayed.
     fn questions(&self, _plot: usize, _id: &MarkId) -> Vec<NamedFigure> {
         Vec::new()
     }
@@ -45,8 +45,7 @@ pub struct FigureScene<'a> {
     pub selected: Option<MarkId>,
     /// Mark highlighted by another view.
     pub highlighted: Option<MarkId>,
-    /// Marks of the names along the horizontal axes, if the columns are interactive instead of the
-    /// dots.
+    /// Marks represented by the named columns, if columns are interactive instead of dots.
     pub columns: &'a [MarkId],
     /// Whether the plots can be zoomed and panned.
     pub zooms: bool,
@@ -54,8 +53,8 @@ pub struct FigureScene<'a> {
     pub least: Vec2,
     /// Message shown if there is nothing to draw.
     pub message: &'a str,
-    /// Whether the vertical label is shown only at the left of each row, and only the unit of the
-    /// horizontal axis, at its end.
+    /// Whether the axis texts are reduced: the vertical label only at the left of each row, and
+    /// only the unit of the horizontal axis, at its end.
     pub is_compact: bool,
     /// Plot in focus, which has a bar in the accent colour.
     pub accented: Option<usize>,
@@ -65,7 +64,7 @@ pub struct FigureScene<'a> {
 }
 
 impl<'a> FigureScene<'a> {
-    /// Creates a figure without zoom and without a mark in focus.
+    /// Creates the scene of a figure without zoom and without a mark in focus.
     pub fn new(
         name: &'static str,
         figure: &'a Figure,

@@ -25,7 +25,7 @@ pub struct FigureView {
     hovered: Option<MarkId>,
     /// Axis coordinates of the dot under the pointer.
     pointed_at: Option<[f64; 2]>,
-    /// Subject of the figure; empty before the first.
+    /// Subject of the figure; a change of subject fits all plots.
     subject: String,
     plots: Vec<PlotView>,
     questions: Questions,
@@ -46,7 +46,7 @@ impl FigureView {
         }
     }
 
-    /// Sets the subject; a change fits all plots.
+    /// Sets the subject; fits all plots if the subject has changed.
     pub fn set_subject(&mut self, subject: &str) {
         if self.subject != subject {
             subject.clone_into(&mut self.subject);
@@ -82,7 +82,7 @@ impl FigureView {
         self.position(plot, [dot.x, dot.y])
     }
 
-    /// Reports the events on the mark under the pointer in a plot.
+    /// Adds the events of the mark under the pointer in a plot to `events`.
     fn report(
         &mut self,
         scene: &FigureScene<'_>,

@@ -48,8 +48,8 @@ fn vertical(place: f64, stroke: Stroke) -> VLine {
 
 type Drawing<'a> = Box<dyn Fn(&PlotTransform, &mut Vec<Shape>) + 'a>;
 
-/// Layer of shapes in screen coordinates, ignored when egui_plot fits ranges and finds hovered
-/// items.
+/// Layer of shapes in screen coordinates, which egui_plot ignores when it fits ranges and finds the
+/// item under the pointer.
 pub(super) struct DrawnItem<'a> {
     base: PlotItemBase,
     draw: Drawing<'a>,

@@ -46,8 +46,7 @@ pub(super) struct RoleChip {
 }
 
 impl RoleChip {
-    /// Replaces a text that contains the name of a single model or variant, and shortens the
-    /// longest texts.
+    /// Shortens the longest texts, and omits the names of single models and variants.
     fn shorten(&mut self) {
         match self.role {
             Role::Representative => "repr.".clone_into(&mut self.text),
@@ -87,8 +86,8 @@ pub(super) fn role_chips(
     chips
 }
 
-/// Returns the name of the role, extended or replaced by the name of its only curve where that is
-/// more specific.
+/// Returns the role name, followed by the name of a single representative, or replaced by the name
+/// of a single variant or by "others" for identified models.
 fn chip_text(role: Role, members: &[&BodeCurve]) -> String {
     let name = role.name();
     match (role, members) {
@@ -114,7 +113,7 @@ fn shortened(label: &str) -> String {
 pub struct Chip {
     /// Text: "Only V+10kt ×".
     pub text: String,
-    /// Effect of a click.
+    /// Tooltip: the effect of a click.
     pub hint: String,
 }
 
@@ -129,7 +128,7 @@ pub(super) struct Chips<'a> {
     pub(super) is_tight: bool,
 }
 
-/// Chips as drawn.
+/// Height and event of the drawn chips.
 pub(super) struct ChipsResponse {
     /// Height of all lines \[pt\].
     pub(super) height: f32,
@@ -281,7 +280,7 @@ struct ChipFace<'a> {
     is_lit: bool,
 }
 
-/// Curve sample.
+/// Curve sample of a chip.
 #[derive(Clone, Copy)]
 struct Sample {
     style: CurveStyle,

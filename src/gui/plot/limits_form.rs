@@ -48,12 +48,12 @@ impl LimitsForm {
         &self.texts
     }
 
-    /// Reports why the limits are refused.
+    /// Shows why the limits are refused.
     pub(super) fn refuse(&mut self, trouble: String) {
         self.trouble = Some(trouble);
     }
 
-    /// Draws the form.
+    /// Draws the form; returns whether to show the typed limits, to fit the axis, or to wait.
     pub(super) fn ui(
         &mut self,
         ui: &mut Ui,
@@ -85,7 +85,7 @@ impl LimitsForm {
         answer
     }
 
-    /// Draws the field; returns whether the limit was entered.
+    /// Draws the field; returns whether Enter was pressed in it.
     fn limit_ui(&mut self, ui: &mut Ui, index: usize, name: &str, unit: &str) -> bool {
         let mut is_entered = false;
         ui.horizontal(|ui| {

@@ -69,7 +69,7 @@ impl ZoomGesture {
         f64::from(self.both.y)
     }
 
-    /// Returns the combined zoom factor of a plot with a single zoomable axis.
+    /// Returns a single zoom factor that combines all gestures.
     pub(super) fn along_one_axis(self) -> f64 {
         let pinched = (self.both.x * self.both.y).sqrt();
         f64::from(pinched * self.sideways)
@@ -99,8 +99,8 @@ pub(super) fn drawn_box_ui(
     }
     let pointer = ui.input(|input| input.pointer.latest_pos());
     let pressed_at = ui.input(|input| input.pointer.press_origin());
-    // When the button is released, the input no longer contains the drag origin; it was stored in
-    // the last frame.
+    // When the button is released, the input no longer contains the drag origin, so the origin of
+    // the previous frame is used.
     let memory = plot.id.with("box origin");
     let origin = pressed_at.or_else(|| ui.data(|data| data.get_temp(memory)))?;
     ui.data_mut(|data| data.insert_temp(memory, origin));

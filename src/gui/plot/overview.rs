@@ -25,7 +25,7 @@ use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 const HEADER: Vec2 = vec2(52.0, 22.0);
 /// Gap between two cells \[pt\].
 const GAP: f32 = 4.0;
-/// Share of the height of the magnitude if the phase is shown too.
+/// Share of a cell's height for the magnitude, if the phase is shown too.
 const MAGNITUDE_PART: f32 = 0.58;
 /// Minimum size of a cell with texts \[pt\].
 const LEAST_WITH_TEXT: Vec2 = vec2(96.0, 54.0);
@@ -38,7 +38,7 @@ pub struct OverviewCell<'a> {
     pub pair: Pair,
     pub curves: &'a [BodeCurve],
     pub constrained: bool,
-    /// Whether it is the pair in focus.
+    /// Whether the pair is in focus.
     pub selected: bool,
     /// Short text in the corner, such as J; may be empty.
     pub note: String,
@@ -73,7 +73,7 @@ pub enum OverviewEvent {
     Wished(CurveId, CurveWish),
 }
 
-/// Curve whose menu is open.
+/// Curve whose menu is open, and its cell.
 #[derive(Clone, Debug)]
 struct MenuCurve {
     pair: Pair,
@@ -167,7 +167,7 @@ pub fn overview_ui(
     events
 }
 
-/// Returns the range of `log10 omega` of all curves. Frequencies ascend, so that their ends
+/// Returns the range of `log10 omega` of all curves. Frequencies ascend, so the first and the last
 /// suffice.
 fn log_omega_of(cells: &[OverviewCell<'_>]) -> Option<Range> {
     let mut ends = Vec::new();
@@ -312,8 +312,7 @@ impl PlacedCell<'_> {
         }
     }
 
-    /// Paints the vertical ranges, because the cell has no axis, and its note: above the curves,
-    /// which they must not cover.
+    /// Paints the vertical ranges and the note of the cell, which has no axes, above the curves.
     fn paint_head(&self, ui: &Ui, head: Rect, ranges: &str) {
         let palette = self.palette;
         let head = head.shrink2(vec2(3.0, 0.0));

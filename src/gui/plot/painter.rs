@@ -27,14 +27,14 @@ pub(super) struct PanelPainter<'a> {
 /// Gestures handled by the panel itself; its owner handles all others.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Gestures {
-    /// Reports clicks and drags.
+    /// None; clicks and drags are passed to the owner.
     Reported,
-    /// Reports clicks only.
+    /// None; only clicks are passed to the owner.
     Clicks,
-    /// Dragging pans; pinching, and dragging an axis, zoom.
+    /// Dragging pans; pinching and dragging along an axis zoom.
     PanAndZoom,
-    /// Like [`Self::PanAndZoom`], and the ranges follow the data until a gesture changes them; a
-    /// double click fits them again.
+    /// Like [`Self::PanAndZoom`], but the ranges follow the data until a gesture changes them;
+    /// after a double click they follow the data again.
     Following(Follow),
 }
 
@@ -49,7 +49,7 @@ pub(super) struct Follow {
     pub(super) group: Option<Id>,
 }
 
-/// Panel as drawn.
+/// Result of drawing a panel.
 pub(super) struct PanelResponse<R> {
     pub(super) response: Response,
     /// Transform from axis coordinates to the screen.
@@ -83,7 +83,7 @@ impl PanelPainter<'_> {
         }
     }
 
-    /// Returns the frame with its axes.
+    /// Returns the plot with axes, grid and gestures, but without content.
     fn empty_plot<'p>(&self) -> Plot<'p> {
         let plot = quiet_plot(self.id, self.palette)
             .width(self.rect.width())

@@ -35,9 +35,9 @@ pub(super) struct PanelAxis {
 /// Spacing of the tick labels of an axis.
 #[derive(Clone, Debug)]
 pub(super) enum TickSpacing {
-    /// Usual distance of these ticks.
+    /// Usual spacing for this kind of ticks.
     Usual,
-    /// Like `Usual`, with room for the widest number; a digit is this wide \[pt\].
+    /// Like `Usual`, with room for the widest number; `digit_pt` is the width of a digit \[pt\].
     WidestNumber { digit_pt: f64 },
     /// Names at 0, 1, 2 … instead of numbers, without grid lines.
     Names { names: Vec<String>, widest_pt: f64 },
@@ -55,7 +55,6 @@ impl PanelAxis {
         }
     }
 
-    /// Returns the axis with a label.
     pub(super) fn labelled(self, label: impl Into<String>) -> Self {
         Self {
             label: label.into(),
@@ -81,7 +80,7 @@ impl PanelAxis {
         }
     }
 
-    /// Returns the appearance of the axis, if it is drawn.
+    /// Returns the appearance of the axis; empty if the axis is not drawn.
     pub(super) fn hints<'a>(&self, side: Axis, palette: &Palette) -> Vec<AxisHints<'a>> {
         if !self.is_drawn {
             return Vec::new();
@@ -104,7 +103,7 @@ impl PanelAxis {
     }
 }
 
-/// Returns the text at a mark.
+/// Returns the tick label at a mark: a number or a name.
 fn mark_text(ticks: Ticks, spacing: &TickSpacing, mark: GridMark) -> String {
     match spacing {
         TickSpacing::Usual | TickSpacing::WidestNumber { .. } => ticks.text(mark),

@@ -237,7 +237,8 @@ mod tests {
         }
     }
 
-    /// A decade and 100 dB on 100 by 100 points: one decibel is one point high.
+    /// Returns a transform of one decade and 100 dB to 100 by 100 points: a decibel is one point
+    /// high.
     fn transform() -> PlotTransform {
         let frame = Rect::from_min_max(pos2(0.0, 0.0), pos2(100.0, 100.0));
         PlotTransform::new(
@@ -286,7 +287,7 @@ mod tests {
             flat(2, 54.0, Role::Corrected),
             flat(3, 60.0, Role::Nominal),
         ];
-        // Between the points at 3 and 10 rad/s.
+        // The area lies between the curve points at 3 and 10 rad/s.
         let area = Rect::from_min_max(pos2(70.0, 44.0), pos2(75.0, 52.0));
         assert_eq!(
             touched(&curves, Pane::Magnitude, area, &transform()),

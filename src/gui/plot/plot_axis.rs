@@ -61,7 +61,7 @@ impl PlotAxis {
         }
     }
 
-    /// Parses a typed number, with either minus sign, to an axis coordinate.
+    /// Converts a typed number, with an ASCII or a typographic minus sign, to an axis coordinate.
     fn place(self, scene: &BodeScene<'_>, text: &str) -> Result<f64, String> {
         let text = text.trim();
         let kind = match self {

@@ -19,8 +19,8 @@ pub enum BodeQuantity<'a> {
         ratio_unit: &'a str,
         place: ResponsePlace,
     },
-    /// Errors used by the fit: `20 log10 |H_ref| / |H_sim|` above, `Delta phi(H_sim, H_ref)` below
-    /// (M6).
+    /// Ratio and phase difference that enter J: `20 log10 |H_ref| / |H_sim|` above, `Delta
+    /// phi(H_sim, H_ref)` below (M6).
     Error { phase: PhaseErrorUnit },
 }
 
@@ -116,7 +116,8 @@ impl BodeQuantity<'_> {
         self.names().salt
     }
 
-    /// Returns the suffix that distinguishes the labels of this plot from those of the Bode plot.
+    /// Returns the suffix that distinguishes the labels of this plot from the labels of the Bode
+    /// plot.
     pub(super) fn label_suffix(self) -> &'static str {
         self.names().label
     }
@@ -216,7 +217,7 @@ impl BodeQuantity<'_> {
     }
 }
 
-/// Display unit of a pane. For the first two, the drawn values are in decibels.
+/// Display unit of a pane. Decibels and ratios are both drawn from values in decibels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ValueUnit {
     Decibel,
@@ -287,7 +288,7 @@ mod tests {
     fn a_ratio_is_read_from_its_decibels_and_back() {
         let ticks = ValueUnit::Ratio.ticks();
         let drawn = ticks.place(2.0);
-        // 20 log10 2, with a rounding error of each function.
+        // 20 log10 2; the tolerances allow for rounding errors of both functions.
         assert!((drawn - 6.020_599_913_279_624).abs() < 1e-12);
         assert!((ticks.number(drawn) - 2.0).abs() < 1e-12);
         assert!(!ticks.place(0.0).is_finite() && !ticks.place(-1.0).is_finite());

@@ -9,7 +9,7 @@ use crate::gui::widgets::controls::QUESTION;
 /// Name of a value, and the target of its derivation.
 pub type NamedFigure = (String, ExplainTarget);
 
-/// Values listed in an open menu.
+/// Plot and listed values of the open menu, if any.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Questions {
     open: Option<OpenMenu>,
@@ -22,8 +22,8 @@ struct OpenMenu {
 }
 
 impl Questions {
-    /// Opens the menu of a plot on a secondary click on the values `pointed`; returns the value
-    /// chosen in the menu.
+    /// Opens the menu of a plot on a secondary click, listing the values `pointed`; returns the
+    /// value chosen in the menu.
     pub(super) fn ui(
         &mut self,
         response: &Response,

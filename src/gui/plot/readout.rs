@@ -24,7 +24,7 @@ const SAMPLE_GAP: f32 = 6.0;
 pub struct ReadoutCell {
     /// Role; `None` for a difference.
     pub role: Option<Role>,
-    /// Heading.
+    /// Column heading.
     pub name: String,
     /// Magnitude and phase, each with its unit.
     pub values: [String; 2],
@@ -120,7 +120,7 @@ pub(super) fn readout_strip_ui(ui: &Ui, strip: Rect, readout: &Readout, palette:
     response.widget_info(|| WidgetInfo::labeled(WidgetRole::Label, true, readout.sentence()));
 }
 
-/// Returns the place of a column in a strip with the frequency and `cells` cells.
+/// Returns the place of a column in a strip with `cells` cells; column 0 shows the frequency.
 fn column(strip: Rect, place: usize, cells: usize) -> Rect {
     let left = strip.left() + width_before(place, cells) * strip.width();
     let right = strip.left() + width_before(place + 1, cells) * strip.width();
@@ -130,7 +130,7 @@ fn column(strip: Rect, place: usize, cells: usize) -> Rect {
         .shrink2(vec2(PAD, 3.0))
 }
 
-/// Returns the share of the width before a column.
+/// Returns the total width of all columns before a column, as a share of the strip.
 fn width_before(place: usize, cells: usize) -> f32 {
     let width = |column: usize| {
         if column == 0 || column == cells {

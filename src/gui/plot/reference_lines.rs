@@ -24,7 +24,6 @@ impl<'a> PaneLines<'a> {
         self.lines.iter().filter(move |line| line.pane == self.pane)
     }
 
-    /// Paints the lines.
     pub(super) fn paint(self, ui: &Ui, palette: &Palette) {
         let frame = self.transform.frame().shrink(1.0);
         let mut shapes = Vec::new();

@@ -23,7 +23,8 @@ pub(super) fn choose_by_dragging(plot: &PlotUi<'_>, group: Id) {
         return;
     }
     let place = |at: Pos2| plot.plot_from_screen(at).x;
-    // A drag is recognised only after some points of movement, so the press position is used.
+    // egui recognises a drag only after a movement of some points, so the range begins at the press
+    // position.
     let pressed_at = plot.ctx().input(|input| input.pointer.press_origin());
     let pointer = plot.ctx().input(|input| input.pointer.latest_pos());
     let id = stretch_id(group);

@@ -16,14 +16,14 @@ const LABELLED: f64 = 100.0;
 /// Nominal distance between minor marks \[pt\].
 const MINOR: f64 = 25.0;
 
-/// `grid_spacing` with which egui_plot draws marks at the nominal distances in full and half
-/// strength.
+/// Value of `grid_spacing` for which egui_plot draws marks at the distance [`LABELLED`] in full
+/// strength and marks at the distance [`MINOR`] in half strength.
 pub(super) const GRID_SPACING: Rangef = Rangef {
     min: 1.0,
     max: 100.0,
 };
-/// `label_spacing` with which egui_plot labels labelled marks in full strength, and minor marks not
-/// at all.
+/// Value of `label_spacing` for which egui_plot labels marks at the distance [`LABELLED`] in full
+/// strength, and marks at the distance [`MINOR`] not at all.
 pub(super) const LABEL_SPACING: Rangef = Rangef {
     min: 50.0,
     max: 51.0,
@@ -43,7 +43,7 @@ const NAME_GAP: f64 = 6.0;
 pub(super) enum Ticks {
     /// Plain values with labels at least this far apart \[pt\]: decibels, knots, gains.
     Decimal(f64),
-    /// Plain values with labels at fractions of a turn.
+    /// Degrees, labelled at fractions of a turn.
     Degrees,
     /// Values of `log10(omega)`, labelled as frequencies in a unit.
     Frequency(FrequencyUnit),
@@ -80,7 +80,8 @@ impl Ticks {
         }
         let mut gap = self.label_gap();
         let mut found = self.ticks_between(bounds, units_per_point, gap);
-        // A single label does not show the scale: in a low plot the labels may be closer together.
+        // A single label does not show the scale, so the labels of a low plot may be closer
+        // together.
         while count_labels(&found) < 2 && gap > CLOSEST {
             gap = (0.8 * gap).max(CLOSEST);
             found = self.ticks_between(bounds, units_per_point, gap);

@@ -72,8 +72,8 @@ pub(super) struct ViewedRange {
 }
 
 impl ViewedRange {
-    /// Shows `range`, which need not respect the limits; every later range has a width in `widths`
-    /// and lies within `ends`.
+    /// Creates the visible range `range`, which need not respect the limits; every later range has
+    /// a width in `widths` and lies within `ends`.
     pub(super) fn new(range: Range, widths: Range, ends: Range) -> Self {
         Self {
             range,
@@ -83,7 +83,8 @@ impl ViewedRange {
         }
     }
 
-    /// Limits the view to a decade beyond the computed range `computed` \[decades\].
+    /// Limits the view to a decade on either side of `computed`, the range of `log10 omega` of the
+    /// computed curves.
     pub(super) fn reach(&mut self, computed: Range) {
         self.ends = ZoomLimit::Decade.range(computed);
     }
@@ -95,7 +96,6 @@ impl ViewedRange {
         }
     }
 
-    /// Returns the visible range.
     pub(super) fn range(&self) -> Range {
         self.range
     }

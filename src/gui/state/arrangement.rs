@@ -64,7 +64,7 @@ impl Arrangement {
         self.dock_open.unwrap_or(has_room)
     }
 
-    /// Folds or unfolds the dock.
+    /// Folds or unfolds the dock, whatever the window height.
     pub fn open_dock(&mut self, is_open: bool) {
         self.dock_open = Some(is_open);
     }
@@ -74,8 +74,7 @@ impl Arrangement {
         self.group = group;
     }
 
-    /// Brings a view to the front. The view in the dock is unfolded there instead, unless it is in
-    /// front already.
+    /// Brings a view and its group to the front; the view is then no longer shown beside.
     pub fn show(&mut self, view: View) {
         let group = view.facts().group;
         self.group = group;
@@ -85,13 +84,14 @@ impl Arrangement {
         }
     }
 
-    /// Shows a view in the dock.
+    /// Shows a view in the dock, and unfolds the dock.
     pub fn dock_view(&mut self, view: View) {
         self.dock = view;
         self.dock_open = Some(true);
     }
 
-    /// Shows a view beside the view in front, or none.
+    /// Shows a view beside the view in front; with `None`, or with the view in front itself, shows
+    /// none.
     pub fn show_beside(&mut self, view: Option<View>) {
         self.beside = view.filter(|view| *view != self.view());
     }
@@ -106,7 +106,7 @@ impl Arrangement {
         views[(here as isize + by).rem_euclid(views.len() as isize) as usize]
     }
 
-    /// Returns whether a view is visible.
+    /// Returns whether a view is visible: in front, beside, or in the dock.
     pub fn is_shown(&self, view: View) -> bool {
         self.view() == view || self.beside() == Some(view) || self.dock() == Some(view)
     }

@@ -67,8 +67,8 @@ impl AssemblyState {
         &self.assembly
     }
 
-    /// Adds models; rules that the engineer has not changed are proposed again. A model found
-    /// before replaces its earlier version.
+    /// Adds models; rules that the engineer has not changed are proposed again. A model that is
+    /// read again replaces its earlier version.
     pub fn add(&mut self, name: &str, found: Vec<FoundModel>) {
         let known = self.assembly.parts().iter();
         let mut models: Vec<FoundModel> = known.map(|part| part.found.clone()).collect();
@@ -85,7 +85,7 @@ impl AssemblyState {
             .min(self.assembly.parts().len().saturating_sub(1));
     }
 
-    /// Removes all models and the messages about their files; the rules stay.
+    /// Removes all models and the messages about their files; the rules remain.
     pub fn forget_models(&mut self) {
         self.assembly = Assembly::new(Vec::new(), self.assembly.rules().clone());
         self.faults.clear();
@@ -108,7 +108,7 @@ impl AssemblyState {
         self.put(rules);
     }
 
-    /// Undoes the last change.
+    /// Undoes the last change of the rules.
     pub fn undo(&mut self) {
         if let Some(rules) = self.earlier.pop() {
             self.later.push(self.assembly.rules().clone());
@@ -116,7 +116,7 @@ impl AssemblyState {
         }
     }
 
-    /// Redoes the last undone change.
+    /// Redoes the last undone change of the rules.
     pub fn redo(&mut self) {
         if let Some(rules) = self.later.pop() {
             self.earlier.push(self.assembly.rules().clone());

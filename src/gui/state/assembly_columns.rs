@@ -3,7 +3,7 @@
 use gdcm_model::assembly::part::Part;
 use gdcm_model::units::number;
 
-/// A column of the table.
+/// Column of the table of imported models.
 pub struct Column {
     pub heading: &'static str,
     /// Width of the column, as a share of the table's width.

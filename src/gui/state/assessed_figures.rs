@@ -8,10 +8,10 @@ use gdcm_study::results::assessment_table::AssessedModel;
 /// Responses shown by an assessment.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AssessedPairs {
-    /// On-axis responses (Figures 8 to 12).
+    /// On-axis responses (Figures 8 to 12 of the paper).
     #[default]
     OnAxis,
-    /// The other responses (Figures 13 to 19).
+    /// Off-axis responses (Figures 13 to 19 of the paper).
     OffAxis,
     /// Response in focus.
     Focused,
@@ -31,7 +31,7 @@ pub enum CostPart {
 }
 
 impl CostPart {
-    /// Returns the symbol.
+    /// Returns the symbol: "ΔJ", "ΔJ mag" or "ΔJ phase".
     pub fn symbol(self) -> &'static str {
         match self {
             Self::Total => "ΔJ",
@@ -56,7 +56,7 @@ pub struct AssessedFigures {
     pub model: AssessedModel,
     /// Correction applied to the model.
     pub correction: AssessedCorrection,
-    /// Average over squared errors; `None` follows the settings.
+    /// Average of the squared errors over frequency; `None` follows the settings.
     pub average: Option<CostAverage>,
     pub pairs: AssessedPairs,
     /// Whether a table is shown instead of bars.

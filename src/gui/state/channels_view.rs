@@ -5,8 +5,6 @@ use crate::gui::plot::FigureView;
 /// State of the channel plots between frames.
 #[derive(Clone, Debug, Default)]
 pub struct ChannelsView {
-    /// Input channels.
     pub inputs: FigureView,
-    /// Output channels.
     pub outputs: FigureView,
 }

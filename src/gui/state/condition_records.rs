@@ -32,9 +32,7 @@ pub struct ConditionRecords {
     pub rows: Vec<LaidOutRecord>,
     /// Index of the displayed record.
     pub chosen: usize,
-    /// Preparation of the inputs.
     pub inputs: Vec<ChannelPreparation>,
-    /// Preparation of the outputs.
     pub outputs: Vec<ChannelPreparation>,
     /// Identification band \[rad/s\]; `None` selects the band of the study.
     pub band: Option<[f64; 2]>,
@@ -49,8 +47,8 @@ pub struct ConditionRecords {
     )>,
     /// Whether the settings have changed since the latest identification.
     pub changed: bool,
-    /// Upper band limit \[rad/s\] that sets the clock of resampled topics; `None` if unknown for
-    /// some records.
+    /// Upper band limit \[rad/s\] from which the common clock of resampled topics is chosen; `None`
+    /// if unknown for some records.
     pub clock_band_end: Option<f64>,
     /// Records that the engineer has left out; records that are unused only because parts replace
     /// them are not included.
@@ -69,7 +67,7 @@ impl ConditionRecords {
         }
     }
 
-    /// Uses a record, or leaves it out.
+    /// Uses a record, or leaves it out; returns whether the record exists.
     pub fn set_used(&mut self, index: usize, used: bool) -> bool {
         let Some(row) = self.rows.get_mut(index) else {
             return false;
@@ -112,7 +110,7 @@ impl ConditionRecords {
                 self.left_out.push(source);
             }
         }
-        // Behind the earlier parts of the record.
+        // Insert after the earlier parts of the record.
         let mut position = index + 1;
         while self.is_part(position) {
             position += 1;
@@ -184,8 +182,8 @@ impl ConditionRecords {
         self.rows.iter().any(|row| row.table.name == name)
     }
 
-    /// Removes a part of a record. If it was the last part, the whole record is used again, unless
-    /// the engineer left it out.
+    /// Removes a part of a record; returns whether the row is a part. If it was the last part, the
+    /// whole record is used again, unless the engineer left it out.
     pub fn remove_part(&mut self, index: usize) -> bool {
         if !self.is_part(index) {
             return false;
@@ -243,7 +241,7 @@ impl ConditionRecords {
             .map(|(_, note)| format!("⚠ {}", note.mark()))
     }
 
-    /// Resamples topics to the clock required by the identification band.
+    /// Resamples topics to the common clock required by the identification band.
     pub fn follow_band(&mut self, channels: &RecordChannels) {
         self.clock_band_end = channels.resampling.band_end;
         for row in &mut self.rows {
@@ -259,7 +257,8 @@ impl ConditionRecords {
         self.chosen = index.min(self.rows.len().saturating_sub(1));
     }
 
-    /// Returns the row of a record, given by its number in the identification.
+    /// Returns the index of the row that the identification used as record `record`, counted from
+    /// 0.
     pub fn row_of_record(&self, record: usize) -> Option<usize> {
         self.used_rows().nth(record).map(|(index, _)| index)
     }
@@ -282,7 +281,7 @@ impl ConditionRecords {
     }
 
     /// Creates the identification job for the current settings and a band \[rad/s\]; `channels` are
-    /// those of the records.
+    /// the channels of the records.
     ///
     /// # Errors
     /// A message, if no record is used, if all are held out, or if a record lacks a reference.
@@ -356,8 +355,8 @@ impl ConditionRecords {
         Some(job)
     }
 
-    /// Returns these records, restored to replace `now`. Models identified in the meantime stay,
-    /// marked as results of other records.
+    /// Returns these records from the history, to replace the records `now`. Models identified in
+    /// the meantime are kept, but marked as results of other settings.
     pub(super) fn restored(mut self, now: Option<Self>) -> Self {
         let Some(now) = now else {
             return self;
@@ -378,7 +377,8 @@ fn no_samples(whole: &LaidOutRecord, part_s: [f64; 2]) -> String {
     if let Some(span_s) = whole.span_s() {
         let [first, last] = span_s.map(|time_s| telling(time_s, 2));
         message.push_str(&format!(
-            "; it runs from {first} s to {last} s (+{from} +{to} counts from its start)"
+            "; the record runs from {first} s to {last} s (write +{from} and +{to} to count from \
+            its start)"
         ));
     }
     message

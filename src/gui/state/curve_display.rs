@@ -74,7 +74,7 @@ impl CurveDisplay {
         BTreeSet::from([Role::Coupled])
     }
 
-    /// Carries out a command.
+    /// Changes the display as a command requests.
     pub fn carry_out(&mut self, command: CurveCommand) {
         match command {
             CurveCommand::ReadMagnitudes(unit) => self.magnitude = unit,
@@ -131,7 +131,7 @@ impl CurveDisplay {
         }
     }
 
-    /// Drops all display options of models, when another dataset is opened.
+    /// Drops all display options of single models; called when another dataset is opened.
     pub fn forget_models(&mut self) {
         self.hidden_models.clear();
         self.turns.clear();

@@ -96,7 +96,7 @@ pub struct Forms {
 }
 
 impl Forms {
-    /// Returns the editable text in a form's field.
+    /// Returns the editable text in the field of a form.
     pub fn typed_in(&mut self, form: FormKind) -> &mut String {
         self.typed.entry(form).or_default()
     }

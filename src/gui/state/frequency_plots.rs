@@ -1,4 +1,4 @@
-//! Plots over frequency, kept between frames.
+//! State of the frequency plots, kept between frames.
 
 use std::collections::BTreeMap;
 
@@ -10,18 +10,18 @@ use gdcm_study::AcrossRole;
 use crate::gui::plot::overview::OverviewView;
 use crate::gui::plot::{BodeCurve, BodeView};
 
-/// Ranges, transforms and cached curves of the plots over frequency.
+/// Axis ranges, transforms and cached curves of the frequency plots.
 #[derive(Debug, Default)]
 pub struct FrequencyPlots {
-    /// Ranges and transforms of the Bode plot.
+    /// Axis ranges and transforms of the Bode plot.
     pub bode: BodeView,
-    /// Ranges and transforms of the error plot.
+    /// Axis ranges and transforms of the error plot (ratio and phase difference of the models).
     pub error: BodeView,
-    /// Role displayed by the plot across conditions.
+    /// Model role displayed by the plot across conditions.
     pub across_role: AcrossRole,
-    /// Ranges and transforms of the plot across conditions.
+    /// Axis ranges and transforms of the plot across conditions.
     pub across: BodeView,
-    /// Response and role to which the plot across conditions was last fitted.
+    /// Response and role for which the axes of the plot across conditions were last fitted.
     pub across_fitted: Option<(Pair, AcrossRole)>,
     /// Response shapes across conditions, cached between frames.
     pub across_shapes: AirspeedCache,
@@ -30,21 +30,21 @@ pub struct FrequencyPlots {
     pub shapes: BTreeMap<Pair, ResponseCache>,
     /// Curves shown by the Bode plot.
     pub drawn: Vec<BodeCurve>,
-    /// Drawn errors, cached between frames.
+    /// Curves of the model errors, cached between frames.
     pub errors: ErrorCache,
     /// Curves shown by the error plot.
     pub drawn_errors: Vec<BodeCurve>,
 }
 
 impl FrequencyPlots {
-    /// Fits the plots to all their curves.
+    /// Requests that all axes be fitted to their curves in the next frame.
     pub fn fit(&mut self) {
         self.bode.request_fit();
         self.error.request_fit();
         self.across.request_fit();
     }
 
-    /// Fits the plots to other curves, except axes that have been zoomed.
+    /// Requests that the value axes be fitted to other curves, except axes that have been zoomed.
     pub fn refit(&mut self) {
         self.bode.request_refit();
         self.error.request_refit();

@@ -10,7 +10,7 @@ use super::evidence_cache::CachedEvidence;
 use super::pair_set::PairSet;
 use crate::gui::widgets::tables::Sorting;
 
-/// Content of the channel plots, the net-gain plots and the evidence.
+/// Display options of the channel plots, the net-gain plots and the evidence.
 #[derive(Debug, Default)]
 pub struct GainDisplay {
     pub net_gain_pairs: PairSet,

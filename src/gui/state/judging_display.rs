@@ -6,13 +6,13 @@ use super::mapped_cost::MappedCost;
 use super::requirements_page::RequirementsPage;
 use crate::gui::widgets::tables::Sorting;
 
-/// Content of the assessment, the requirements, the variants and the cost map.
+/// Display options of the assessment, the requirements, the variants and the cost map.
 #[derive(Debug, Default)]
 pub struct JudgingDisplay {
     pub mapped_cost: MappedCost,
     pub assessed: AssessedFigures,
     pub assessment_sorting: Sorting,
-    /// Whether responses to a test input are shown although there are flight records.
+    /// Whether responses to a test input are shown even if flight records are available.
     pub shows_test: bool,
     pub requirements_page: RequirementsPage,
     pub requirements_sorting: [Sorting; 2],

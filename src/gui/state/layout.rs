@@ -14,9 +14,9 @@ pub struct Layout {
     pub opens_with: OpensWith,
     /// Whether the left panel is shown in full; `None` follows the window width.
     pub left_open: Option<bool>,
-    /// Sheet over the views.
+    /// Open sheet, which covers part of the views; `None` if it is closed.
     pub sheet: Option<Sheet>,
-    /// Whether the settings are unfolded, over matrix and card.
+    /// Whether the settings are unfolded; they then replace the results below the verdict.
     pub settings_open: bool,
     /// Whether the rarely changed settings are unfolded.
     pub advanced_open: bool,

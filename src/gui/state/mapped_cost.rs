@@ -1,6 +1,6 @@
-//! Correction whose costs the condition map shows.
+//! Correction whose costs are shown in the condition map.
 
-/// Correction whose costs the map shows.
+/// Correction whose costs are shown in the condition map.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MappedCost {
     /// The uncorrected physics representative.
@@ -19,8 +19,8 @@ impl MappedCost {
     /// Returns the menu text.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Before => "before any correction",
-            Self::Own => "each optimum",
+            Self::Before => "the uncorrected model",
+            Self::Own => "each condition's optimum",
             Self::Scheduled => "the schedule",
         }
     }

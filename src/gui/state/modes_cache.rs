@@ -16,7 +16,7 @@ use gdcm_words::Table;
 pub struct CachedModes {
     pub made_of: Option<MadeOf>,
     pub table: Table,
-    /// For each row, the first model in which the mode jumps.
+    /// For each row, the first model whose pole is an outlier of the mode.
     pub jumping: Vec<Option<ModelId>>,
     pub zeros: Vec<(ModelId, Vec<Complex<f64>>)>,
     /// Pole shifts of the physics representative due to couplings.
@@ -27,7 +27,7 @@ pub struct CachedModes {
 #[derive(Debug)]
 pub struct MadeOf {
     pub modes: Arc<ConditionModes>,
-    /// Index of the physics model to whose modes those of the other models are matched.
+    /// Index of the physics model to whose modes the modes of all other models are matched.
     pub reference: usize,
     pub couplings: Option<Arc<FittedCouplings>>,
     /// Response and models whose zeros are shown.

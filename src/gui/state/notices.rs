@@ -1,11 +1,13 @@
-//! Messages to the engineer: notices that come and go, and bars that stay.
+//! Messages to the engineer: notices that disappear by themselves, and bars that remain until
+//! closed.
 
-/// Message that stays until it is closed, about the program or its files.
+/// Message about the program or its files, shown until it is closed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Bar {
     /// A computation panicked.
     Fault {
-        /// The interrupted work, the decisions kept, and the details to send.
+        /// Names the interrupted work, states that the decisions are kept, and gives the details to
+        /// send.
         sentence: String,
     },
     /// Decisions from an earlier window that ended without saving them.
@@ -19,7 +21,7 @@ pub enum Bar {
     /// The dataset was read again and has changed.
     Differences {
         name: String,
-        /// Changes, and decisions that no longer apply.
+        /// Differences from the earlier dataset, and decisions that no longer apply.
         sentences: Vec<String>,
     },
 }
@@ -27,13 +29,11 @@ pub enum Bar {
 /// Outcome that a notice reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoticeKind {
-    /// Success.
     Done,
-    /// Failure.
     Trouble,
 }
 
-/// Short message to the engineer.
+/// Short message that disappears by itself.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Notice {
     pub kind: NoticeKind,

@@ -8,7 +8,6 @@ pub enum OpensWith {
     /// The embedded example.
     #[default]
     Example,
-    /// The start page.
     StartPage,
     /// The study or dataset that was open last.
     LastStudy,

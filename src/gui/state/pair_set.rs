@@ -9,9 +9,7 @@ pub enum PairSet {
     /// keeps its plot.
     #[default]
     Held,
-    /// Response in focus.
     Focused,
-    /// On-axis responses of the dataset.
     OnAxis,
     All,
     /// Responses picked by the engineer.
@@ -41,11 +39,11 @@ impl PairSet {
     /// Describes the set in a sentence.
     pub fn purpose(self) -> &'static str {
         match self {
-            Self::Held => "The responses held, and those held before",
-            Self::Focused => "The response chosen in the matrix",
+            Self::Held => "Responses that are held, or were held since the dataset was opened",
+            Self::Focused => "Response selected in the matrix",
             Self::OnAxis => "The on-axis responses of the dataset",
             Self::All => "Every response that has a gain",
-            Self::Picked => "Those picked with the button beside this list",
+            Self::Picked => "Responses picked with the button beside this list",
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::modes_cache::CachedModes;
 use crate::gui::widgets::tables::Sorting;
 
-/// Content of the pole view.
+/// Display options of the pole view.
 #[derive(Debug, Default)]
 pub struct PolesDisplay {
     /// Whether zeros of the focused response are shown among the poles.

@@ -14,8 +14,8 @@ use crate::gui::plot::Role;
 use crate::gui::plot::quantity::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 use crate::gui::widgets::palette::PlotStyle;
 
-/// Preferences of the window. Fields missing from the text stored by an earlier version get their
-/// defaults.
+/// Preferences of the window. Fields that are missing from a file written by an earlier version get
+/// their default values.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Preferences {
@@ -28,13 +28,14 @@ pub struct Preferences {
     pub magnitude: MagnitudeUnit,
     pub phase: PhaseUnit,
     pub phase_error: PhaseErrorUnit,
-    /// Roles whose visibility differs from the default, which later versions may change.
+    /// Roles whose visibility differs from the default. Only differences are stored, because later
+    /// versions may change the default.
     pub hidden_roles: BTreeSet<Role>,
     /// Whether the Bode and error plots show the envelopes of maximum unnoticeable added
     /// dynamics.
     pub shows_muad: bool,
     pub shows_bands: bool,
-    /// Whether the values at the cursor are not listed.
+    /// Whether the list of values at the cursor is hidden.
     pub lists_no_values: bool,
     pub looks: PlotStyle,
 }

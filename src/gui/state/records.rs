@@ -1,4 +1,4 @@
-//! Records view: flight records by condition.
+//! State of the Records view: flight records by condition.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
@@ -14,7 +14,7 @@ pub use super::records_page::{RecordsPage, TimeModel};
 pub use super::wanted_dataset::WantedDataset;
 use crate::gui::widgets::tables::Sorting;
 
-/// State of the records before or after an edit, to which an undo or redo step returns. Only the
+/// State of the records before or after an edit, which an undo or redo step restores. Only the
 /// conditions changed by the edit are included.
 #[derive(Clone, Debug, Default)]
 pub struct RecordsBefore {
@@ -38,7 +38,7 @@ pub struct RecordsState {
     pub time_models: BTreeSet<TimeModel>,
     /// Whether dragging in the time charts selects parts of the record.
     pub chooses_parts: bool,
-    /// Input shown by the spectrogram.
+    /// Index of the input shown by the spectrogram.
     pub spectrogram: Option<usize>,
     /// Search setting whose field is to be focused.
     pub advanced_field: Option<&'static str>,
@@ -61,7 +61,7 @@ pub struct RecordsState {
 }
 
 impl RecordsState {
-    /// Returns a copy of these conditions' records.
+    /// Returns a copy of the records of the given conditions, to be restored by an undo step.
     pub fn before(&self, conditions: impl IntoIterator<Item = ConditionId>) -> RecordsBefore {
         let conditions = conditions
             .into_iter()
@@ -90,7 +90,8 @@ impl RecordsState {
         now
     }
 
-    /// Returns the channels that lack a unit, with the numbers of affected records and conditions.
+    /// Returns the channels that lack a unit, with the numbers of affected records and conditions;
+    /// `None` if no unit is missing.
     pub fn open_units(&self) -> Option<OpenUnits> {
         let mut open = OpenUnits::default();
         for (id, records) in &self.conditions {

@@ -12,7 +12,7 @@ pub enum RecordsPage {
     Histories,
     /// Excitation of the inputs, and its highest frequency.
     Inputs,
-    /// The measured response with the models.
+    /// Measured frequency response, compared with the models.
     Response,
     /// Poles over the model order.
     Stabilisation,
@@ -45,42 +45,45 @@ impl RecordsPage {
             Self::Histories => (
                 "Time",
                 "Time",
-                "Every channel of the chosen record over time; bridged and cut samples are marked",
+                "Every channel of the selected record over time; bridged gaps and cut parts are \
+                marked",
             ),
             Self::Inputs => (
                 "Inputs",
                 "Inputs",
-                "Excited inputs of each record, and the highest frequency of the excitation",
+                "Spectrum of each input in each record: which inputs are excited, and up to which \
+                frequency",
             ),
             Self::Response => (
                 "Response",
                 "Response",
-                "The measured response with its error bars, under the models and their bands",
+                "Measured response with error bars, and the models with their confidence bands",
             ),
             Self::Stabilisation => (
                 "Stabilisation",
                 "Orders",
-                "Poles over the model order: poles that stay are the aircraft's",
+                "Poles over the model order: poles of the aircraft remain as the order increases",
             ),
             Self::Poles => (
                 "Identified poles",
                 "Poles",
-                "Poles of the recommended model with their standard deviations; grey: not determined",
+                "Poles of the recommended model with their standard deviations; grey: not \
+                determined by the records",
             ),
             Self::Fit => (
                 "Fit",
                 "Fit",
-                "Fit of the model to each record and output, in frequency and in time",
+                "Fit of the model to each record and output, in the frequency and time domains",
             ),
             Self::Columns => (
                 "Columns",
                 "Columns",
-                "Columns of the chosen record with its time and its channels",
+                "Assignment of the record's columns to time and channels",
             ),
             Self::Conditions => (
                 "Conditions",
                 "Conditions",
-                "Identified models of every condition; a click shows the condition",
+                "Identification results of every condition; click a row to show its condition",
             ),
         }
     }
@@ -109,7 +112,6 @@ impl TimeModel {
         }
     }
 
-    /// Returns the line colour.
     pub fn color(self, palette: &Palette) -> Color32 {
         match self {
             Self::Identified => palette.accent,

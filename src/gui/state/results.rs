@@ -31,13 +31,13 @@ pub struct Sureness<'a> {
 }
 
 impl<'a> Sureness<'a> {
-    /// Returns the error bar of a value, and its confidence level.
+    /// Returns the error bar of a value with its confidence level; `None` if it is not available.
     pub fn bar(&self, scalar: Scalar) -> Option<(&'a ErrorBar, f64)> {
         let uncertainty = self.uncertainty?;
         Some((uncertainty.bar(self.condition, scalar)?, uncertainty.level))
     }
 
-    /// Returns the half-width of a value's error bar: relative, or in \[s\] for delays.
+    /// Returns the half-width of a value's error bar: a ratio, or \[s\] for delays.
     pub fn half(&self, scalar: Scalar) -> Option<f64> {
         let (bar, level) = self.bar(scalar)?;
         bar.half_width(level)
@@ -49,7 +49,7 @@ impl<'a> Sureness<'a> {
     }
 }
 
-/// Result of the displayed condition, available before those of the others.
+/// Result of the displayed condition, available before the results of the other conditions.
 #[derive(Clone, Debug)]
 pub struct FirstResult {
     /// Number of the request that produced the result.
@@ -60,31 +60,31 @@ pub struct FirstResult {
     pub outcome: Result<ConditionAnalysis, ConditionFailure>,
 }
 
-/// Work in progress, including the live analysis.
+/// Background work in progress, including the analysis of the current settings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Background {
-    /// Live analysis in progress: steps done, total.
+    /// Progress of the analysis of the current settings: steps done, total.
     pub analysis: Option<(usize, usize)>,
     /// Problems whose optimality proof is running or waiting.
     pub proofs: Vec<Arc<Problem>>,
-    /// Whether the costs of constraining and releasing are being computed.
+    /// Whether the costs of constraining and releasing responses are being computed.
     pub toggles: bool,
-    /// Curves in progress: models done, total.
+    /// Progress of the response curves: models done, total.
     pub curves: Option<(usize, usize)>,
-    /// Error bars in progress: steps done, total. Each model contributes its response, and the
+    /// Progress of the error bars: steps done, total. Each model contributes its response, and the
     /// analysis with this model as the representative.
     pub bars: Option<(usize, usize)>,
-    /// Responses to all records in progress: steps done, total.
+    /// Progress of the responses to all records: steps done, total.
     pub time_histories: Option<(usize, usize)>,
-    /// Couplings in progress: steps done, total.
+    /// Progress of the couplings: steps done, total.
     pub couplings: Option<(usize, usize)>,
     /// Number of jobs that the visible views wait for.
     pub views: usize,
-    /// Report in progress: conditions done, total.
+    /// Progress of the report: conditions done, total.
     pub report: Option<(usize, usize)>,
-    /// Identification in progress: parts done, total.
+    /// Progress of the identification: parts done, total.
     pub identification: Option<(usize, usize)>,
-    /// Whether some work was stopped, by hand or by a fault.
+    /// Whether some work was stopped, by the engineer or by a fault.
     pub stopped: bool,
 }
 
@@ -112,7 +112,7 @@ pub struct Results {
     /// Costs of constraining or releasing each response, with their job; see
     /// `State::toggles`.
     pub toggles: Option<(TogglesJob, Arc<Toggles>)>,
-    /// Responses for drawing, with their job; see `State::curves`.
+    /// Frequency responses of the displayed condition, with their job; see `State::curves`.
     pub curves: Option<(CurvesJob, Arc<ConditionCurves>)>,
     /// Modes by model, with their job; see `State::modes`.
     pub modes: Option<(ModesJob, Arc<ConditionModes>)>,
@@ -122,7 +122,8 @@ pub struct Results {
     pub across: Option<(AcrossJob, Arc<AcrossCurves>)>,
     /// Uncertainty, with its job; see `State::uncertainty`.
     pub uncertainty: Option<(UncertaintyJob, Arc<Uncertainty>)>,
-    /// Benefit of the couplings, in use or not, with the job; see `State::couplings`.
+    /// Assessed benefit of the couplings, whether or not they are in use, with the job; see
+    /// `State::couplings`.
     pub couplings: Option<(CouplingsJob, AssessedCouplings)>,
     /// Requirements, with their job; see `State::requirements`.
     pub requirements: Option<(RequirementsJob, Arc<Requirements>)>,
@@ -142,14 +143,14 @@ pub struct Results {
     pub requested: u64,
     /// Number of the request that produced the analysis.
     pub received: u64,
-    /// Time of the oldest unanswered request \[s, window clock\].
+    /// Time of the oldest request without a result \[s, window clock\].
     pub waiting_since: Option<f64>,
     /// Whether a frame with an analysis has been painted.
     pub is_painted: bool,
     /// Computing time of the newest analysis \[ms\].
     pub elapsed_ms: f64,
-    /// Whether the newest request was stopped, by hand or by a fault. The displayed results then
-    /// remain older than the settings.
+    /// Whether the newest request was stopped, by the engineer or by a fault. The displayed results
+    /// then remain older than the settings.
     pub stopped: bool,
 }
 
@@ -179,7 +180,7 @@ impl Results {
         match self.background.bars {
             Some(progress) if !self.is_behind() => bar_words(progress),
             None if self.background.stopped => {
-                "Error bars: stopped; Compute, below, continues them".to_owned()
+                "Error bars: stopped. Choose Compute, below, to continue".to_owned()
             }
             _ => self.absence().to_owned(),
         }

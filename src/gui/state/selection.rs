@@ -13,8 +13,8 @@ pub struct Selection {
     pub hovered: Option<ModelId>,
     /// Condition under the pointer, in the list or as a dot.
     pub hovered_condition: Option<ConditionId>,
-    /// Description of the plot element under the pointer, in a single line of the status bar, so
-    /// that no tooltip covers curves.
+    /// Description of the plot element under the pointer. It is shown in the status bar, because a
+    /// tooltip would cover curves.
     pub told: Option<String>,
     /// The only model shown beside the representatives.
     pub isolated: Option<ModelId>,

@@ -1,4 +1,4 @@
-//! Sheets over the views.
+//! Sheets that cover part of the views.
 
 use crate::gui::widgets::controls::QUESTION;
 
@@ -7,9 +7,9 @@ use crate::gui::widgets::controls::QUESTION;
 pub enum Sheet {
     /// Reasons for the result.
     Reasons,
-    /// Physics models, beside the rail.
+    /// Physics models, beside the narrow form of the left panel.
     Models,
-    /// Identified models, beside the rail.
+    /// Identified models, beside the narrow form of the left panel.
     Identified,
     /// Derivation of a value.
     Derivation,
@@ -19,7 +19,7 @@ impl Sheet {
     /// Returns the heading, which is also the accessible name.
     pub fn title(self) -> &'static str {
         match self {
-            Self::Reasons => "Why the result is so",
+            Self::Reasons => "Reasons for the result",
             Self::Models => "Physics models",
             Self::Identified => "Identified models",
             Self::Derivation => QUESTION,

@@ -36,7 +36,6 @@ impl TableKind {
         Self::Channels,
     ];
 
-    /// Returns the title.
     pub fn name(self) -> &'static str {
         match self {
             Self::Conditions => "conditions",
@@ -184,7 +183,7 @@ fn model_row(state: &State, bundle: BundleKind, model: &Model) -> Row {
     ]
 }
 
-/// Returns the title with the condition and the confidence level.
+/// Returns the title of a table with error bars: subject, condition and confidence level.
 fn title_with_bars(state: &State, kind: TableKind) -> String {
     let mut subject = kind.name().to_owned();
     if let Some(level) = state.sureness().level() {
@@ -214,7 +213,7 @@ impl HalfWidths {
     }
 }
 
-/// Converts a half-width as a ratio or in \[s\] to \[%\] or \[ms\].
+/// Converts a half-width from a ratio to \[%\] or, for delays, from \[s\] to \[ms\].
 fn displayed_half(scalar: Scalar, half: Option<f64>) -> Option<f64> {
     let half = half?;
     if scalar.is_delay() {

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use gdcm_plot::figure::FigureKind;
 use gdcm_study::PhaseCorrection;
 
-/// Views grouped by subject.
+/// Group of views on the same subject.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum ViewGroup {
     /// Responses over frequency.
@@ -41,16 +41,17 @@ impl ViewGroup {
     }
 }
 
-/// Plot between the side panels.
+/// Content shown between the side panels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum View {
     /// Response in focus: magnitude and phase.
     Bode,
-    /// Errors of the response in focus, as used by the fit.
+    /// Magnitude ratio and phase difference of the models in the response in focus, as used by the
+    /// fit.
     Error,
     /// Every response, in small plots.
     Overview,
-    /// A response in every condition.
+    /// The response in focus, in every condition.
     Across,
     /// Poles and modes of every model in the condition.
     Poles,
@@ -68,7 +69,8 @@ pub enum View {
     Requirements,
     /// Net gains over airspeed (Figures 6 and 7).
     NetGain,
-    /// Phase gained and price paid by delay or lead in each channel, up to ten times the band.
+    /// Phase change by delay or lead in each channel, and the gain that leads add above the band,
+    /// up to ten times the band.
     Leads,
     /// Flight records in the condition, and models identified from them.
     Records,
@@ -106,7 +108,7 @@ impl View {
         self.facts().name
     }
 
-    /// Returns the kind of figure on paper, if the view has one.
+    /// Returns the kind of exported figure, if the view has one.
     pub fn figure(self) -> Option<FigureKind> {
         self.facts().figure
     }
@@ -122,13 +124,14 @@ impl View {
             },
             Self::Error => ViewFacts {
                 name: "Error",
-                purpose: "Data of the fit: magnitude ratio and phase difference of the response in focus, with G, D and bounds",
+                purpose: "Magnitude ratio and phase difference between identified and physics \
+                    models in the response in focus, with G, D and bounds",
                 figure: Some(FigureKind::Error),
                 ..ViewFacts::PLAIN
             },
             Self::Overview => ViewFacts {
                 name: "Overview",
-                purpose: "Every response of the condition, small",
+                purpose: "Small plots of all responses of the condition",
                 figure: Some(FigureKind::Overview),
                 ..ViewFacts::PLAIN
             },
@@ -163,7 +166,7 @@ impl View {
             },
             Self::Channels => ViewFacts {
                 name: "Channels",
-                purpose: "Gain of every channel against airspeed",
+                purpose: "Gain or delay of every channel over airspeed",
                 group: ViewGroup::Schedule,
                 is_of_all_conditions: true,
                 figure: Some(FigureKind::Channels),
@@ -188,13 +191,14 @@ impl View {
             },
             Self::Compare => ViewFacts {
                 name: "Compare",
-                purpose: "Variants: decisions kept under names, beside the present decisions",
+                purpose: "Variants (named sets of decisions) compared with the current decisions",
                 group: ViewGroup::Judge,
                 ..ViewFacts::PLAIN
             },
             Self::Requirements => ViewFacts {
                 name: "Requirements",
-                purpose: "Requirements of a qualification: bandwidth and phase delay, modes, summary costs",
+                purpose: "Requirements as in a qualification: bandwidth, phase delay and modes, \
+                    with a summary of J",
                 group: ViewGroup::Judge,
                 takes_dock: true,
                 is_of_all_conditions: true,
@@ -203,7 +207,8 @@ impl View {
             },
             Self::Leads => ViewFacts {
                 name: "Leads",
-                purpose: "Effect of the leads in each channel, and their price above the band",
+                purpose: "Effect of the leads in each channel, and the gain that they add above \
+                    the band",
                 group: ViewGroup::Schedule,
                 is_docked: true,
                 figure: Some(FigureKind::Leads),
@@ -211,7 +216,7 @@ impl View {
             },
             Self::NetGain => ViewFacts {
                 name: "Net gain",
-                purpose: "Net gain of the held responses against airspeed, with the schedule",
+                purpose: "Net gain of the selected responses over airspeed, with the schedule",
                 group: ViewGroup::Schedule,
                 is_docked: true,
                 long_name: Some("Net gain over airspeed"),
@@ -230,22 +235,22 @@ pub struct ViewFacts {
     pub name: &'static str,
     /// Purpose, in a sentence.
     pub purpose: &'static str,
-    /// Whether the view shows results of every condition. It then reports when these belong to
-    /// older settings.
+    /// Whether the view shows results of every condition. Such a view displays a notice while its
+    /// results belong to older settings.
     pub is_of_all_conditions: bool,
     pub group: ViewGroup,
     pub is_docked: bool,
-    /// Whether the view takes the space of the dock.
+    /// Whether the dock is hidden while this view is in front.
     pub takes_dock: bool,
     /// Heading in the dock, if longer than the tab text.
     pub long_name: Option<&'static str>,
-    /// Figure on paper. The variants have none and are saved as tables; for records, the identified
-    /// models are saved.
+    /// Kind of exported figure. The variants have none and are saved as tables; for records, the
+    /// identified models are saved.
     pub figure: Option<FigureKind>,
 }
 
 impl ViewFacts {
-    /// Properties of a view of the first group, to be completed by a name and a figure.
+    /// Default properties, in the first group; name and purpose must be added.
     const PLAIN: Self = Self {
         name: "",
         purpose: "",

@@ -82,7 +82,7 @@ impl WantedDataset {
     }
 }
 
-/// Returns whether a column is an input or an output, as stated in the file or known from its
+/// Returns whether a column is an input or an output, as stated in the file or implied by its
 /// meaning; `None` if unknown.
 fn known_side(column: &RecordColumn) -> Option<ChannelSide> {
     if column.side.is_some() {

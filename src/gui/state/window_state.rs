@@ -31,15 +31,13 @@ use super::results::{Results, Sureness};
 pub struct RecentFile {
     /// Last known path.
     pub path: PathBuf,
-    /// Displayed name.
     pub name: String,
-    /// Displayed folder.
     pub folder: String,
     /// Whether the file was missing when last checked.
     pub missing: bool,
 }
 
-/// Window state.
+/// Complete state of the window.
 #[derive(Debug)]
 pub struct State {
     /// The study, the only saved part.
@@ -48,11 +46,11 @@ pub struct State {
     pub is_example: bool,
     /// Whether the start page covers everything else.
     pub on_start_page: bool,
-    /// Dataset to which the displayed selection was last adapted.
+    /// Dataset to which `follow_dataset` last adapted the state.
     followed: Arc<Dataset>,
     /// Undo history.
     pub history: History<RecordsBefore>,
-    /// File name of the study, or a substitute.
+    /// File name of the study, or a substitute if it has not been saved.
     pub study_name: String,
     /// Whether there are unsaved decisions.
     pub unsaved: bool,
@@ -168,8 +166,8 @@ impl State {
     }
 
     /// Returns whether the results of the other conditions, and everything derived from them,
-    /// belong to older settings than that of the displayed condition. Views report this beside each
-    /// such result.
+    /// belong to older settings than the result of the displayed condition. Views display a notice
+    /// beside such results.
     pub fn others_are_older(&self) -> bool {
         match &self.results.first {
             Some(first) => {
@@ -197,7 +195,7 @@ impl State {
         Some(toggles)
     }
 
-    /// Returns the responses of the displayed condition, for drawing.
+    /// Returns the frequency responses of the displayed condition; `None` until they are computed.
     pub fn curves(&self) -> Option<&Arc<ConditionCurves>> {
         let (job, curves) = self.results.curves.as_ref()?;
         if job.condition != self.condition().id() || !self.is_shown_dataset(&job.dataset) {
@@ -206,7 +204,7 @@ impl State {
         Some(curves)
     }
 
-    /// Returns the modes of every model in the displayed condition.
+    /// Returns the modes of every model in the displayed condition; `None` until they are computed.
     pub fn modes(&self) -> Option<&Arc<ConditionModes>> {
         let (job, modes) = self.results.modes.as_ref()?;
         if !Arc::ptr_eq(&job.condition, self.condition()) {
@@ -227,7 +225,7 @@ impl State {
         Some(table)
     }
 
-    /// Returns the assessment to compute.
+    /// Returns the model, the correction and the average for which the assessment is computed.
     pub fn assessment_choice(&self) -> AssessmentChoice {
         let assessed = &self.display.judging.assessed;
         AssessmentChoice {
@@ -237,8 +235,8 @@ impl State {
         }
     }
 
-    /// Returns the requirements; until they are ready, those from an older analysis of the same
-    /// dataset.
+    /// Returns the requirements; until they are ready, the requirements from an older analysis of
+    /// the same dataset.
     pub fn requirements(&self) -> Option<&Arc<Requirements>> {
         let (job, requirements) = self.results.requirements.as_ref()?;
         if !self.is_shown_dataset(&job.analysis.study.dataset) {
@@ -248,8 +246,8 @@ impl State {
     }
 
     /// Returns the responses of the models to the test input in the displayed condition, or the
-    /// reason for their absence; until they are ready, those of an older analysis in the same
-    /// condition.
+    /// reason for their absence. Until they are ready, returns the responses from an older analysis
+    /// in the same condition.
     pub fn test_answers(&self) -> Option<&Result<Arc<TestAnswers>, String>> {
         let (job, answers) = self.results.test_answers.as_ref()?;
         if !self.is_shown_dataset(&job.analysis.study.dataset)
@@ -262,7 +260,7 @@ impl State {
     }
 
     /// Returns the comparison of a job's record with the tolerances, or the reason for its absence;
-    /// until it is ready, the comparison of an older analysis.
+    /// until it is ready, the comparison from an older analysis.
     pub fn record_history(
         &self,
         job: &RecordHistoryJob,
@@ -274,8 +272,8 @@ impl State {
         Some(history)
     }
 
-    /// Returns the responses of the models to all records; until they are ready, those of an older
-    /// analysis with the same records.
+    /// Returns the responses of the models to all records; until they are ready, the responses from
+    /// an older analysis with the same records.
     pub fn time_histories(&self) -> Option<&Arc<TimeHistories>> {
         let (job, histories) = self.results.time_histories.as_ref()?;
         if job.records != self.records.history_records() {
@@ -293,8 +291,8 @@ impl State {
         }
     }
 
-    /// Returns the benefit of the couplings, in use or not; until it is ready, the benefit under
-    /// older settings.
+    /// Returns the assessed benefit of the couplings, whether or not they are in use; until it is
+    /// ready, the benefit under older settings.
     pub fn couplings(&self) -> Option<&AssessedCouplings> {
         let (known, assessed) = self.results.couplings.as_ref()?;
         if !self.is_shown_dataset(&known.study.dataset)
@@ -305,8 +303,8 @@ impl State {
         Some(assessed)
     }
 
-    /// Returns the responses of a model in each condition; until they are ready, those for older
-    /// settings.
+    /// Returns the responses of a model in each condition; until they are ready, the responses for
+    /// older settings.
     pub fn across(&self) -> Option<&Arc<AcrossCurves>> {
         let (job, curves) = self.results.across.as_ref()?;
         if !self.is_shown_dataset(&job.dataset) {
@@ -367,8 +365,8 @@ impl State {
         }
     }
 
-    /// Returns the newest analysis with the uncertainty computed so far, as written to files and
-    /// shown in derivations.
+    /// Returns the newest analysis with the uncertainty computed so far; used by exported files and
+    /// derivations.
     pub fn analysis_with_bars(&self) -> Option<Analysis> {
         let analysis = self.analysis()?.clone();
         Some(Analysis {
@@ -377,7 +375,8 @@ impl State {
         })
     }
 
-    /// Describes the state after a computation was stopped.
+    /// Returns the message shown after a computation was stopped: results are outdated, or there
+    /// are none.
     pub fn after_stop(&self) -> &'static str {
         match self.analysis() {
             Some(_) => "the results are older than the settings",
@@ -385,8 +384,8 @@ impl State {
         }
     }
 
-    /// Adapts the state to a replaced dataset: keeps the response in focus if the dataset contains
-    /// it, otherwise selects the first response.
+    /// Adapts the state to a replaced dataset. Keeps the response in focus if the dataset contains
+    /// it; otherwise selects the first on-axis response, or the first response if none is on-axis.
     pub fn follow_dataset(&mut self) {
         let dataset = &self.study.dataset;
         if Arc::ptr_eq(dataset, &self.followed) {

@@ -27,7 +27,7 @@ use crate::gui::widgets::tables::{TableLook, table_ui};
 /// Minimum plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(190.0, 150.0);
 
-/// Draws the choices of the header, from right to left.
+/// Draws the selectors in the header, from right to left.
 pub fn assessment_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let shown = state.display.judging.assessed;
     let mut chosen = shown;
@@ -126,7 +126,7 @@ fn pairs_choice_ui(ui: &mut Ui, chosen: &mut AssessedFigures) {
         (
             AssessedPairs::Focused,
             "in focus",
-            "The response chosen in the matrix",
+            "Response selected in the matrix",
         ),
         (AssessedPairs::All, "all", "Every response"),
     ];
@@ -177,7 +177,7 @@ pub fn assessment_view_ui(
         .iter()
         .map(|&pair| Plot::new(state.dataset().pair_name(pair)).panel(plots.panel(pair)));
     let figure = Figure::default().plots(panels);
-    let message = "No response of this kind: choose others above";
+    let message = "No response of this kind: choose another kind above";
     let scene = FigureScene {
         selected: Some(MarkId::Condition(state.condition().id())),
         columns: &columns,

@@ -17,7 +17,7 @@ use crate::gui::state::window_state::State;
 
 /// Bar width, relative to the distance between conditions.
 const BAR: f64 = 0.6;
-/// Half the length of the line at the sum of both parts, relative to the distance between
+/// Half the length of the line that marks the sum of both parts, relative to the distance between
 /// conditions.
 const HALF_TOTAL: f64 = 0.38;
 /// Colour strength of the phase part, relative to the magnitude part \[%\].
@@ -26,7 +26,7 @@ pub(super) const PHASE_PERCENT: u8 = 45;
 const MARGIN: f64 = 0.12;
 /// Distance between a value label and its bar, relative to the visible range.
 const NUMBER_GAP: f64 = 0.05;
-/// Value from which a label has no decimals: 9.95 rounds to 10.0.
+/// Labels of values from this magnitude on have no decimals: 9.95 would be rounded to 10.0.
 const WHOLE_FROM: f64 = 9.95;
 
 /// Plots of the change of J, one for each response.
@@ -43,7 +43,7 @@ struct PlacedChange {
     change: CostChange,
 }
 
-/// Part of J.
+/// Part of the change of J that is drawn as a separate bar.
 #[derive(Clone, Copy, PartialEq)]
 enum BarPart {
     Magnitude,
@@ -98,7 +98,7 @@ impl PlacedChange {
 }
 
 impl AssessmentPlots<'_> {
-    /// Returns the change in a condition; `None` if it is left out.
+    /// Returns the change in a condition; `None` if the assessment omits this condition.
     fn change(&self, condition: ConditionId, pair: Pair) -> Option<CostChange> {
         self.table.change(condition, pair)
     }
@@ -128,8 +128,9 @@ impl AssessmentPlots<'_> {
             .with_all(left_out.iter().map(|at| left_out_note(*at, range)))
     }
 
-    /// Returns the value labels of the displayed condition and of the largest change, unless these
-    /// are neighbours. Labels on every bar would overlap; the status line shows the other values.
+    /// Returns the value labels of the displayed condition and, unless the two are neighbours, of
+    /// the condition with the largest change. Labels on every bar would overlap; the status line
+    /// shows the other values.
     fn numbers(&self, found: &[PlacedChange], range: Range) -> Vec<Note> {
         let largest = found
             .iter()

@@ -1,5 +1,5 @@
-//! Views over frequency: the response in focus, its errors as used by the fit, the same response in
-//! every condition, and all responses in a condition.
+//! Views over frequency: the response in focus, the model errors in this response, the same
+//! response in every condition, and all responses in a condition.
 
 use egui::{Align2, Pos2, Rect, Ui, vec2};
 
@@ -107,8 +107,8 @@ fn drawn_curve(curves: &[BodeCurve], role: Role) -> Option<&BodeCurve> {
         .find(|curve| !curve.hidden && curve.role == role)
 }
 
-/// Returns the region above the band, where curves only illustrate the price of leads; `None`
-/// without leads (M15.6).
+/// Returns the region above the band in which the corrected model is not valid and only shows the
+/// gain added by leads; `None` without leads (M15.6).
 fn invalid_region(state: &State, curves: &[BodeCurve]) -> Option<InvalidRegion> {
     let leads = &state.shown()?.compensated.as_ref()?.leads;
     leads.filters().iter().find_map(|(_, filter)| *filter)?;
@@ -124,7 +124,8 @@ fn invalid_region(state: &State, curves: &[BodeCurve]) -> Option<InvalidRegion> 
     })
 }
 
-/// Returns the corrected magnitudes with and without leads at a frequency \[dB\].
+/// Returns the magnitudes \[dB\] of the corrected model with and without leads at `omega`
+/// \[rad/s\].
 fn lead_ends_db(corrected: &BodeCurve, curves: &[BodeCurve], omega: f64) -> Option<[f64; 2]> {
     let without = drawn_curve(curves, Role::WithoutLeads)?;
     Some([
@@ -158,13 +159,13 @@ fn missing_phase(curves: &[BodeCurve], band: Band) -> Option<BodeBand> {
     })
 }
 
-/// Remaining magnitude below which the magnitudes count as matched \[dB\].
+/// Remaining magnitude difference \[dB\] below which the magnitudes count as matched.
 const MATCHED_DB: f64 = 0.05;
-/// Remaining delay below which the phases count as matched \[s\].
+/// Remaining delay \[s\] below which the phases count as matched.
 const MATCHED_S: f64 = 0.5e-3;
 
-/// Returns the notes on magnitude and phase: J before and after the correction, and the remaining
-/// error.
+/// Returns the notes in the magnitude and phase panes: J before and after the correction, and the
+/// gain and delay that the correction leaves uncorrected.
 fn effect_notes(state: &State, pair: Pair) -> Option<[PaneNote; 2]> {
     let shown = state.shown()?;
     let change = shown.cost[pair]?;
@@ -216,8 +217,8 @@ fn frequency_words(state: &State, omega: f64) -> String {
     format!("{} {}", number(unit.of_omega(omega)), unit.symbol())
 }
 
-/// Draws the errors of every kept physics model and of the corrected model, in the response in
-/// focus.
+/// Draws the ratio and phase difference of every kept physics model and of the corrected model to
+/// the identified model, in the response in focus.
 pub fn error_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -267,7 +268,7 @@ pub fn error_view_ui(
     state.display.frequency.drawn_errors = curves;
 }
 
-/// Draws the choice between phase differences in degrees and in milliseconds.
+/// Draws the selector between phase differences \[deg\] and equivalent delays \[ms\].
 pub fn error_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let mut unit = state.display.curves.phase_error;
     let units = [
@@ -284,7 +285,7 @@ pub fn error_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) 
     }
 }
 
-/// Returns the message shown instead of missing errors.
+/// Returns the message shown if there are no error curves.
 pub fn error_message(state: &State, pair: Pair) -> String {
     let name = state.dataset().pair_name(pair);
     let undefined = match state.shown() {
@@ -299,7 +300,10 @@ pub fn error_message(state: &State, pair: Pair) -> String {
             )
         }
         Some(_) => {
-            format!("{name} is not compared: a representative has no such response in the band")
+            format!(
+                "{name} is not compared: a representative has no values of this response \
+                within the band"
+            )
         }
         None => match state.curves_message() {
             Some(message) => message.to_owned(),
@@ -391,7 +395,8 @@ pub fn across_view_ui(
     }
 }
 
-/// Fits the plot after another response or model was selected, once the new curves are available.
+/// Fits the value axes in each frame until the curves of a newly selected response or model are
+/// available.
 fn fit_across(state: &mut State) {
     let asked = (
         state.display.selection.pair,
@@ -401,7 +406,7 @@ fn fit_across(state: &mut State) {
         return;
     }
     state.display.frequency.across.request_refit();
-    // Until then, the previous curves are drawn.
+    // Until then, the previous curves are drawn, and the fit must be repeated.
     if let Some((job, _)) = &state.results.across
         && job.models == across_job(state).models
     {
@@ -443,7 +448,7 @@ pub fn across_curves(state: &mut State) -> Vec<BodeCurve> {
     drawn
 }
 
-/// Draws every response in the displayed condition; a click shows a response in Bode.
+/// Draws every response in the displayed condition; a click shows a response in the Bode view.
 pub fn overview_view_ui(
     ui: &mut Ui,
     state: &mut State,

@@ -107,7 +107,7 @@ struct ChannelPlots<'a> {
     name: &'static str,
     rect: Rect,
     figure: Figure,
-    /// Index among all channels.
+    /// Index of the first of these plots among the plots of all channels.
     first_plot: usize,
     view: &'a mut FigureView,
 }

@@ -92,7 +92,8 @@ fn variant_ui(ui: &mut Ui, variant: &Variant, is_overlaid: bool, commands: &mut 
                 commands.push(Edit::TakeVariant { name: name.clone() }.into());
             }
             let label = format!("Overlay variant {name}");
-            let hint = "Draws its corrected model in Bode, and its net gains, dotted";
+            let hint = "Draws the variant's corrected model in the Bode view (dotted) and its net \
+                gains (hollow squares)";
             if toggle_ui(ui, ("Overlay", &label), is_overlaid, hint) {
                 let overlaid = if is_overlaid { None } else { Some(name) };
                 commands.push(DisplayCommand::Overlay(overlaid).into());
@@ -109,7 +110,7 @@ fn variant_button_ui(ui: &mut Ui, verb: &str, name: &str, hint: &str) -> bool {
         .clicked()
 }
 
-/// Returns the analyses that the comparison needs.
+/// Returns the jobs that analyse the variants.
 pub fn variant_jobs(state: &State) -> Vec<VariantJob> {
     let mut jobs = Vec::new();
     for variant in &state.study.variants {
@@ -173,7 +174,8 @@ fn difference_table(state: &State) -> Table {
 /// Builds the table of the effects of the current decisions and of each variant.
 fn effect_table(state: &State) -> Table {
     let condition = state.condition().id();
-    let title = format!("Effect in condition {condition}, and of the schedule over all conditions");
+    let title =
+        format!("Effects in condition {condition}, and of the schedule over all conditions");
     let mut columns = vec!["value".to_owned(), "now".to_owned()];
     let mut analyses = vec![state.analysis()];
     for variant in &state.study.variants {

@@ -34,7 +34,7 @@ const LEAST_PLOT: Vec2 = vec2(220.0, 150.0);
 /// Initial width of texts and tables, as a share of the view's width.
 const WORDS_PART: f32 = 0.56;
 
-/// Draws the choice between coupling corrections.
+/// Draws the selector of the coupling correction: none, mixing, or mixing and feedback.
 pub fn couplings_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let shown = state.study.settings.couplings;
     let mut chosen = shown;
@@ -69,7 +69,7 @@ pub fn couplings_job(state: &State) -> CouplingsJob {
     }
 }
 
-/// Returns whether the couplings are assessed whichever view is shown. Couplings in use are
+/// Returns whether the couplings are assessed even while their view is hidden. Couplings in use are
 /// assessed for their cost; unused couplings if they may be worthwhile: with matched delays or
 /// requested leads, and with enough conditions.
 pub fn are_couplings_judged(state: &State) -> bool {
@@ -201,8 +201,8 @@ struct CouplingsWords<'a> {
 }
 
 impl CouplingsWords<'_> {
-    /// Draws whether the couplings are used, and the button that uses them, or that removes them if
-    /// they are not worthwhile.
+    /// Draws the button that uses the couplings, or the button that removes them if they are in use
+    /// but not worthwhile.
     fn use_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         if !are_couplings_used(self.state) {
             let name = self.assessment.couplings.name();
@@ -261,7 +261,7 @@ impl CouplingsWords<'_> {
         if let Some(condition) = self.assessment.conditions.get(&self.state.condition().id())
             && let Err(why) = &condition.poles
         {
-            let words = format!("Poles of this condition: {why}");
+            let words = format!("No poles for this condition: {why}");
             ui.add(Label::new(self.palette.dim(words)).wrap());
         }
     }
@@ -309,18 +309,18 @@ impl CouplingsWords<'_> {
             });
     }
 
-    /// Builds the loop table: in each condition, the minimum singular value, and the largest effect
-    /// on an on-axis response at ten times the band.
+    /// Builds the loop table: in each condition, the minimum singular value, and the on-axis
+    /// response that the couplings change most between the band and ten times its upper end.
     fn loop_table(&self) -> Table {
         let dataset = self.state.dataset();
         let columns = [
             "condition",
-            "least singular value",
+            "minimum singular value",
             "at [rad/s]",
-            "above the band [dB]",
+            "change above the band [dB]",
             "response",
         ];
-        let mut table = Table::new("The loop of each condition", columns);
+        let mut table = Table::new("Coupling loop in each condition", columns);
         for (id, condition) in &self.assessment.conditions {
             let mut least = String::new();
             let mut at = String::new();
@@ -345,7 +345,7 @@ impl CouplingsWords<'_> {
         let mut table = pole_table(self.assessment);
         table.title = format!("Poles of the physics representative of condition {id}");
         table.rows.retain(|row| row[0] == id);
-        // All rows have the same condition.
+        // Remove the condition column, because all rows have the same condition.
         for row in &mut table.rows {
             row.remove(0);
         }

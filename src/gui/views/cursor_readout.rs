@@ -1,4 +1,5 @@
-//! Values of the principal curves at the pointer, at marked frequencies, or at the largest error.
+//! Values of the principal curves at the pointer, at marked frequencies, or where the integrand of
+//! J is largest.
 
 use gdcm_method::fidelity::summand;
 use gdcm_model::response::wrap;
@@ -47,8 +48,8 @@ struct Difference {
 }
 
 impl<'a> ReadoutSource<'a> {
-    /// Returns the values at `cursor`, else at the first mark, else at the largest error within the
-    /// band \[rad/s\]. With exactly two marks, returns the changes between them.
+    /// Returns the values at `cursor` \[rad/s\], else at the first mark, else where the integrand
+    /// of J is largest within the band. With exactly two marks, returns the changes between them.
     pub(super) fn readout(&self, cursor: Option<f64>, marks: &[f64]) -> Option<Readout> {
         if let [from, to] = *marks {
             return Some(self.changes(from, to));
@@ -76,7 +77,7 @@ impl<'a> ReadoutSource<'a> {
         listed
     }
 
-    /// Lists the changes from one frequency to another \[rad/s\].
+    /// Lists the changes of the values between two frequencies \[rad/s\].
     fn changes(&self, from: f64, to: f64) -> Readout {
         let mut cells = Vec::new();
         for ListedCurve { role, curve } in self.listed_curves() {
@@ -183,7 +184,7 @@ impl<'a> ReadoutSource<'a> {
                 continue;
             };
             let error = summand(db, deg);
-            // Among equal errors, the one at the highest frequency is chosen.
+            // `is_ge`: among equal values, the highest frequency is chosen.
             if largest.is_none_or(|largest| error.total_cmp(&largest.error).is_ge()) {
                 largest = Some(ErrorAt { omega, error });
             }

@@ -30,7 +30,8 @@ const TEXT_WIDTH: f32 = 400.0;
 /// Minimum bar width \[pt\].
 const LEAST_BAR: f32 = 60.0;
 
-/// Shows whether the scatter at a given airspeed is due to trim, due to identification, or real.
+/// Shows whether the scatter at equal airspeed is due to trim, due to identification, or
+/// unexplained by both.
 pub fn evidence_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -107,7 +108,8 @@ impl EvidencePage<'_> {
                 .any(|test| test.variable == variable && test.needed);
             if !is_needed {
                 ui.label(self.palette.small_warning(format!(
-                    "The schedule depends on airspeed and {variable}, but no response is found to need {variable}"
+                    "The schedule depends on airspeed and {variable}, but no response depends \
+                    significantly on {variable}"
                 )));
             }
         }
@@ -137,7 +139,8 @@ impl EvidencePage<'_> {
         ui.add_space(6.0);
     }
 
-    /// Draws a scatter: its name, a bar divided among its sources, and its values.
+    /// Draws a row for one kind of scatter: its name, a bar divided among its sources, and its
+    /// values.
     fn split_ui(&self, ui: &mut Ui, name: &str, split: Option<&VarianceDecomposition>) {
         let size = vec2(ui.available_width(), BAR_HEIGHT + 3.0);
         let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
@@ -192,7 +195,7 @@ impl EvidencePage<'_> {
         sorting: &mut Sorting,
         commands: &mut Vec<Command>,
     ) {
-        /// Index of the column with the ratio to the expected difference.
+        /// Index of the column with the ratio of the difference to the expected difference.
         const RATIO: usize = 6;
         let (table, differences) = difference_table(state.dataset(), self.uncertainty);
         heading_ui(ui, &table.title);
@@ -232,7 +235,8 @@ impl EvidencePage<'_> {
         });
     }
 
-    /// Draws the errors of each form of the schedule.
+    /// Draws the root mean square error of each form of the schedule, in fitted and in left-out
+    /// conditions.
     fn forms_table_ui(
         &self,
         ui: &mut Ui,
@@ -282,7 +286,7 @@ fn heading_ui(ui: &mut Ui, text: &str) {
     ui.label(RichText::new(text).size(SMALL_SIZE).strong());
 }
 
-/// Names a painted text for screen readers.
+/// Gives a painted text an accessible name for screen readers.
 fn name_label(response: &Response, name: String) {
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, &name));
 }

@@ -1,4 +1,4 @@
-//! Views as figures on paper.
+//! Exported figures of the views.
 
 use std::sync::Arc;
 
@@ -26,8 +26,8 @@ pub fn figure_of(state: &State, view: View) -> Option<Figure> {
     } else {
         state.analysis().cloned()
     };
-    // The requirements of the study may be newer than those of the analysis, which does not depend
-    // on them.
+    // The requirements of the study may be newer than the requirements of the analysis, which does
+    // not depend on them.
     let analysis = analysis.map(|analysis| analysis.asked_with(&state.study.requirements));
     let source = condition_source(state);
     request(state, view)?.figure(analysis.as_ref(), source.as_ref())
@@ -55,7 +55,7 @@ pub fn figure_name(state: &State, view: View) -> String {
     name
 }
 
-/// Returns the request for a view's figure, equal to that of the command `gdcm figure`.
+/// Returns the request for a view's figure, equal to the request of the command `gdcm figure`.
 pub fn request(state: &State, view: View) -> Option<FigureRequest> {
     let kind = view.figure()?;
     let pairs = view_content(view).figure_pairs;

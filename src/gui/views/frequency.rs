@@ -38,7 +38,7 @@ pub(super) struct FrequencyPlot<'a> {
 
 impl FrequencyPlot<'_> {
     /// Draws the plot with cursors, values at the cursor and chips. Pushes the resulting commands,
-    /// and a description for the element under the pointer.
+    /// and a description of the element under the pointer.
     pub(super) fn ui(self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let Self {
             state,
@@ -250,8 +250,8 @@ pub(in crate::gui) fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCurv
     drawn
 }
 
-/// Returns the errors in a response of the displayed condition, as used by the fit; empty until the
-/// responses are available.
+/// Returns the error curves of a response in the displayed condition, as used by the fit; empty
+/// until the responses are available.
 pub(super) fn error_curves(state: &mut State, pair: Pair, options: &BodeOptions) -> Vec<BodeCurve> {
     let mut cache = std::mem::take(&mut state.display.frequency.errors);
     let curves = match condition_source(state) {
@@ -293,7 +293,7 @@ fn with_interaction(
         let is_reference = reference == Some(&curve.id);
         let is_hovered = state.display.selection.hovered.as_ref() == Some(id);
         let is_selected = state.display.curves.selected.contains(id);
-        // A click on the reference has no effect.
+        // The reference cannot be rejected, so it is not highlighted as selected.
         curve.highlighted = is_hovered || (is_selected && !is_reference);
         let note = if is_reference {
             "reference for the errors"

@@ -42,7 +42,8 @@ pub struct GainPlots<'a> {
 }
 
 impl GainPlots<'_> {
-    /// Returns the scene, with marks at the displayed condition and at the one under the pointer.
+    /// Returns the scene, with marks at the displayed condition and at the condition under the
+    /// pointer.
     pub fn scene<'b>(
         &'b self,
         name: &'static str,
@@ -120,11 +121,13 @@ impl FigureWords for GainPlots<'_> {
         }
         let choice = analysis.study.choice(*id);
         if choice.held_out {
-            words.push("held out of the schedule to validate it".to_owned());
+            words.push("held out to validate the schedule".to_owned());
         } else if !choice.is_in_schedule() {
             words.push("not in the schedule".to_owned());
         }
-        words.push("Ctrl+click: add to the schedule or remove; right-click: explain".to_owned());
+        words.push(
+            "Ctrl+click: add to or remove from the schedule; right-click: explain".to_owned(),
+        );
         Some(words.join(" · "))
     }
 
@@ -191,7 +194,7 @@ pub fn gain_command(state: &State, event: FigureEvent) -> Option<Command> {
 pub fn bar_words(bar: &Bar, scalar: Scalar, level: f64) -> String {
     let remarks = bar.remarks().join(", ");
     let Some(half) = bar.half_width(level) else {
-        return format!("no bar: {remarks}");
+        return format!("no error bar: {remarks}");
     };
     let half = if scalar.is_delay() {
         format!("± {:.1} ms", s_to_ms(half))
@@ -218,8 +221,9 @@ pub fn bars_switch_ui(ui: &mut Ui, state: &State, name: &str, commands: &mut Vec
     let shown = !state.display.gains.hide_bars;
     let level = 100.0 * state.study.settings.uncertainty.level;
     let hint = format!(
-        "{level:.0} % bars: thick for the choice of the physics model (identification), thin with the unknown trim of the flight. \
-         Bands: confidence of the schedule, and prediction for another condition"
+        "{level:.0} % error bars. Thick: uncertainty of the identification, for the chosen \
+        physics model. Thin: with the unknown trim of the flight. Bands: confidence of the \
+        schedule, and prediction for another condition"
     );
     if toggle_ui(ui, ("bars", name), shown, &hint) {
         commands.push(DisplayCommand::ShowBars(!shown).into());

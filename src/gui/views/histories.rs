@@ -92,7 +92,7 @@ pub fn histories_ui(
         )
     };
     if let OverTime::Test(_) = responses {
-        // The first plot is the input.
+        // `1 +`: the first plot shows the input.
         scene.accented = Some(1 + state.display.selection.pair.output);
         scene.least = LEAST_PLOT;
     }
@@ -113,7 +113,9 @@ fn subject_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
     if choices.is_empty() {
         let words = match &state.records.reading {
             Some(reading) => format!("reading {reading} …"),
-            None => "No flight record of this condition is used (view Records): the models answer a test input instead".to_owned(),
+            None => "No flight record of this condition is in use (view Records): responses to a \
+                test input are shown instead"
+                .to_owned(),
         };
         ui.label(palette.small(words));
     } else {
@@ -168,7 +170,7 @@ impl SharesTable<'_> {
             });
     }
 
-    /// Returns a cell's colour: a warning outside the corridor, and for an opposite trend.
+    /// Returns a cell's colour: the warning colour outside the corridor, and for an opposite trend.
     fn color(&self, row: usize, column: usize) -> Option<Color32> {
         let cells = &self.table.rows[row];
         match column {
@@ -195,13 +197,14 @@ fn test_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
             (
                 TestInputShape::Doublet,
                 "doublet",
-                "One side for the first half of its duration, the other side for the second half",
+                "To one side for the first half of its duration, to the other side for the second \
+                half",
             ),
         ];
-        choice_ui(ui, "Course of the test input", &mut shape, &choices);
+        choice_ui(ui, "Shape of the test input", &mut shape, &choices);
         if shape != test.shape {
             let changed = TestInput { shape, ..test };
-            commands.push(set_test_input(state, "course of the test input", changed));
+            commands.push(set_test_input(state, "shape of the test input", changed));
         }
         ui.label(palette.small(format!("of {}, the input in focus, by", input.name)));
         let size = test_number_ui(ui, "Size of the test input", test.size, commands);
@@ -233,7 +236,7 @@ fn set_test_input(state: &State, name: &'static str, test: TestInput) -> Command
     }
 }
 
-/// Descriptions of the plots over time.
+/// Accessible names of the plots over time.
 struct HistoryWords<'a>(&'a Figure);
 
 impl FigureWords for HistoryWords<'_> {

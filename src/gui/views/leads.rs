@@ -1,4 +1,4 @@
-//! Effect of delay or lead in each channel, and the price paid for leads above the band.
+//! Effect of delay or lead in each channel, and the gain that leads add above the band.
 
 use egui::{Panel, Ui, vec2};
 
@@ -54,7 +54,8 @@ pub fn leads_view_ui(
     let message = match state.study.settings.phase {
         PhaseCorrection::Lead => state.results.absence(),
         _ => {
-            "No leads: the phase is corrected by delays, or not at all (to change: Settings, phase, \"delay or lead\")"
+            "No leads: the phase is corrected by delays, or not at all. To use leads, choose \
+            Settings, phase, \"delay or lead\""
         }
     };
     let mut view = state
@@ -82,8 +83,8 @@ fn figure(state: &State) -> Figure {
 }
 
 /// Builds the channel table: delay or lead, phase at the upper end of the band, replaced servo, and
-/// the gain added above the band as the price. The title gives the highest frequency at which the
-/// corrected model is valid. `None` without leads.
+/// the gain added above the band. The title gives the highest frequency at which the corrected
+/// model is valid. `None` without leads.
 pub fn leads_table(state: &State) -> Option<Table> {
     let leads = state.shown()?.correction.leads.as_ref()?;
     let price = LeadPrice::of(leads);
@@ -101,7 +102,7 @@ pub fn leads_table(state: &State) -> Option<Table> {
         "channel".to_owned(),
         "lead [ms]".to_owned(),
         format!("phase at {} [deg]", number(top)),
-        "as if servo [rad/s]".to_owned(),
+        "replaced servo [rad/s]".to_owned(),
         format!("gain at {} [dB]", number(above)),
     ];
     let mut table = Table::new(title, columns);

@@ -1,5 +1,5 @@
-//! Views between the side panels. [`view_content`] lists for each view its drawing, header, needed
-//! background results and figure.
+//! Views between the side panels. [`view_content`] lists, for each view, its drawing function,
+//! header, background jobs and figure.
 
 use std::sync::Arc;
 
@@ -64,7 +64,7 @@ use requirements::{
 pub use compare::overlay_job;
 pub use couplings::{are_couplings_judged, couplings_job, offered_couplings, used_couplings};
 
-/// Returns a view's content: drawing, header, background jobs and figures.
+/// Returns a view's content: drawing function, header, background jobs and figure.
 pub fn view_content(view: View) -> ViewContent {
     match view {
         View::Bode => BODE,
@@ -94,14 +94,14 @@ pub struct ViewContent {
     pub tools: fn(&mut Ui, &State, &Palette, &mut Vec<Command>),
     /// Width of the tools \[pt\]; the title takes the rest.
     pub tools_width: f32,
-    /// Computations needed in addition to the live analysis.
+    /// Computations needed in addition to the analysis of the current settings.
     pub needs: fn(&State) -> Vec<Need>,
     /// Responses in the figure on paper; empty if it shows all responses or none.
     pub figure_pairs: fn(&State) -> Vec<Pair>,
 }
 
 impl ViewContent {
-    /// View without content, tools and needs.
+    /// View without drawing, header controls and background jobs.
     const PLAIN: Self = Self {
         draw: |_, _, _, _| {},
         title: ViewTitle::None,
@@ -119,7 +119,7 @@ pub enum ViewTitle {
     Condition,
     /// The response in focus, and the condition.
     Response,
-    /// The response in focus, in views of all conditions.
+    /// The response in focus without the condition, for views of all conditions.
     Focus,
     Words(fn(&State) -> String),
 }

@@ -113,8 +113,8 @@ fn reference_index(state: &State, modes: &ConditionModes) -> usize {
     modes.condition.nominal()
 }
 
-/// Describes a mode: its values, its name, its largest participations, and the meaning of the pole
-/// of a discrete-time model.
+/// Describes a mode: its values, its name, its largest participations and, for a discrete-time
+/// model, the conversion of its pole to `s`.
 pub(super) fn mode_description(mode: &Mode, model: &Model) -> Vec<String> {
     let mut words = vec![mode_values(mode)];
     words.extend(mode_name(mode, model));
@@ -183,8 +183,8 @@ fn participation_words(mode: &Mode, model: &Model, most: usize) -> Option<String
 }
 
 /// Builds the mode table of the physics bundle: a row for each mode of the reference model,
-/// followed from model to model. Also returns, for each row, the first model in which the mode
-/// jumps.
+/// followed from model to model. Also returns, for each row, the first model whose pole is an
+/// outlier of the mode.
 fn modes_table(
     state: &State,
     modes: &ConditionModes,
@@ -203,7 +203,7 @@ fn modes_table(
         "Im λ",
         "spread [rad/s]",
         "states",
-        "outlying at",
+        "outlier in",
     ];
     let mut table = Table::new(title, columns);
     let mut jumping = Vec::new();

@@ -1,4 +1,4 @@
-//! Background results that a view needs in addition to the live analysis.
+//! Background results that a view needs in addition to the analysis of the current settings.
 
 use gdcm_study::jobs::analysis_jobs::{AssessmentJob, CouplingsJob, VariantJob};
 use gdcm_study::jobs::curve_jobs::{AcrossJob, ModesJob};
@@ -7,7 +7,7 @@ use gdcm_study::jobs::requirement_jobs::{
     RecordHistoryJob, RequirementsJob, TestAnswersJob, TimeHistoriesJob,
 };
 
-/// Computation that a view needs in addition to the live analysis.
+/// Computation that a view needs in addition to the analysis of the current settings.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Need {
     /// Modes of all models in the condition.

@@ -28,21 +28,21 @@ use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
 /// Width of the controls in a single line \[pt\].
 pub const NET_GAIN_CONTROLS: f32 = 410.0;
 
-/// Describes the plots.
+/// Returns the description of the plots in the view's header.
 pub fn net_gain_words(state: &State) -> String {
     let level = 100.0 * state.study.settings.uncertainty.level;
     let bars = if state.display.gains.hide_bars {
         String::new()
     } else {
-        format!(", bars of {level:.0} %")
+        format!(", {level:.0} % error bars")
     };
     format!(
-        "k of output times k of input, {} responses{bars}",
+        "output k times input k, {} responses{bars}",
         state.display.gains.net_gain_pairs.name()
     )
 }
 
-/// Draws the controls of responses and schedule, from right to left.
+/// Draws the controls for responses and schedule, from right to left.
 pub fn net_gain_header_ui(
     ui: &mut Ui,
     state: &State,
@@ -50,7 +50,8 @@ pub fn net_gain_header_ui(
     commands: &mut Vec<Command>,
 ) {
     let shown = state.display.gains.show_evidence;
-    let hint = "Significant differences at equal airspeed, and the error of each form of the schedule: evidence for its degree";
+    let hint = "Evidence for the degree of the schedule: significant differences at equal \
+        airspeed, and the error of each form";
     if toggle_ui(ui, ("evidence", "evidence"), shown, hint) {
         commands.push(DisplayCommand::ShowEvidence(!shown).into());
     }
@@ -115,7 +116,7 @@ pub fn net_gain_view_ui(
         state.results.absence()
     } else {
         match state.display.gains.net_gain_pairs {
-            PairSet::Picked => "No response is picked: choose one in the matrix, then + above",
+            PairSet::Picked => "No response is picked: select one in the matrix, then click +",
             _ => "No response is held: hold one in the matrix",
         }
     };
@@ -165,8 +166,8 @@ fn evidence_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut
             ui.label(palette.dim(state.results.absence()));
             return;
         };
-        let hint = "fit: root mean square of the residuals of ln(net gain); unseen: the same for each condition under the schedule \
-                    fitted without it";
+        let hint = "fit: root mean square residual of ln(net gain); unseen: residuals of each \
+            condition from the schedule fitted without it";
         ui.label(
             RichText::new("Error of each form [% of the net gain]")
                 .size(SMALL_SIZE)

@@ -135,7 +135,7 @@ pub fn poles(state: &State) -> Option<Figure> {
 }
 
 /// Returns the figure as shown in the window: arcs of equal frequency follow the visible range, and
-/// the most important models have larger marks.
+/// the nominal model and the representatives have larger marks.
 fn dressed(mut figure: Figure, view: &FigureView) -> Figure {
     if let [_, slow] = &mut figure.plots[..] {
         slow.title = "s-plane, slow modes".to_owned();
@@ -179,7 +179,7 @@ fn dot_size(key: Option<&str>) -> f64 {
     }
 }
 
-/// Descriptions of the pole plots.
+/// Accessible names of the pole plots, and descriptions of their marks.
 struct PoleWords<'a> {
     state: &'a State,
     dots: usize,
@@ -222,7 +222,7 @@ impl FigureWords for PoleWords<'_> {
     }
 }
 
-/// Draws the mode table; a click isolates the first model in which the mode jumps.
+/// Draws the mode table; a click isolates the first model whose pole is an outlier of the mode.
 fn modes_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let CachedModes { table, jumping, .. } = &state.display.poles.modes;
     let look = TableLook {

@@ -135,8 +135,8 @@ fn set_mode_tolerances(state: &State, tolerances: ModeToleranceTable) -> Command
     })
 }
 
-/// Draws the limits beyond which the overview reports a corrected model as far from the identified
-/// model.
+/// Draws the limits beyond which the overview marks a corrected model as too far from the
+/// identified model.
 pub fn overview_limits_ui(
     ui: &mut Ui,
     state: &State,
@@ -152,8 +152,8 @@ pub fn overview_limits_ui(
         ui.label(palette.small("%, phase delay ±"));
         let phase_delay = LimitField::in_ms("Limit of the phase delay");
         phase_delay.ui(ui, &mut changed.phase_delay_s, commands);
-        ui.label(palette.small("ms, time inside at least"));
-        let share_inside = LimitField::in_percent("Least time inside");
+        ui.label(palette.small("ms, time within tolerance at least"));
+        let share_inside = LimitField::in_percent("Minimum time within tolerance");
         share_inside.ui(ui, &mut changed.share_inside, commands);
         ui.label(palette.small("%"));
     });
@@ -175,7 +175,7 @@ fn set_overview_limits(state: &State, limits: OverviewLimits) -> Command {
     })
 }
 
-/// Field of a limit.
+/// Text field for a limit, with its unit conversion.
 struct LimitField {
     /// Accessible name.
     name: String,
@@ -186,7 +186,7 @@ struct LimitField {
 }
 
 impl LimitField {
-    /// Creates a field in the stored unit.
+    /// Creates a field that displays the stored value without conversion.
     fn new(name: impl Into<String>) -> Self {
         Self {
             name: name.into(),
@@ -212,7 +212,7 @@ impl LimitField {
         }
     }
 
-    /// Draws the field, and changes `value` after an entry.
+    /// Draws the field, and changes `value` if a number was entered.
     fn ui(&self, ui: &mut Ui, value: &mut f64, commands: &mut Vec<Command>) {
         let text = self.text(*value);
         let entry = number_entry_ui(ui, &self.name, &text, "", FIELD, commands);
@@ -221,7 +221,7 @@ impl LimitField {
         }
     }
 
-    /// Draws a field that may be empty, otherwise like [`ui`](Self::ui).
+    /// Like [`ui`](Self::ui), but an empty field gives `None`.
     fn optional_ui(&self, ui: &mut Ui, value: &mut Option<f64>, commands: &mut Vec<Command>) {
         let text = match value {
             Some(value) => self.text(*value),
@@ -239,8 +239,8 @@ impl LimitField {
     }
 }
 
-/// Returns the command that changes the inputs of the requirements; `name` is used in the decision
-/// history.
+/// Returns the command that changes the settings of the requirements; `name` is used in the
+/// decision history.
 pub fn decided(
     state: &State,
     name: &'static str,

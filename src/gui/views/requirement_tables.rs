@@ -14,7 +14,7 @@ use super::over_time::time_histories_job;
 use crate::gui::state::requirements_page::RequirementsPage;
 use crate::gui::state::window_state::State;
 
-/// Table on a page.
+/// Table on a page, with the data that determine its cell colours.
 pub(super) struct PageTable<'a> {
     pub(super) table: Table,
     kind: TableKind<'a>,
@@ -56,7 +56,8 @@ impl PageTable<'_> {
         }
     }
 
-    /// Returns the colour of a mode inside or outside its tolerance; grey without a verdict.
+    /// Returns the colour of a mode inside or outside its tolerance: grey without a verdict, `None`
+    /// in other columns.
     fn mode_hue(&self, row: usize, column: usize) -> Option<Hue> {
         if !self.table.columns[column].ends_with(": tolerance") {
             return None;
@@ -71,8 +72,8 @@ impl PageTable<'_> {
         }
     }
 
-    /// Returns the colour of a mean J within or beyond the acceptable limit; other columns have no
-    /// limit.
+    /// Returns the colour of a mean J within or beyond the acceptable limit; `None` in other
+    /// columns.
     fn summary_hue(&self, requirements: &Requirements, row: usize, column: usize) -> Option<Hue> {
         let finding = summary_of_row(requirements, &self.table.rows[row])?;
         let cost = match self.table.columns[column].as_str() {
@@ -88,7 +89,7 @@ impl PageTable<'_> {
     }
 }
 
-/// Returns grey for values that depend on the model above the band.
+/// Returns grey for values that depend on the model above the band; `None` for other cells.
 fn bandwidth_hue(requirements: &Requirements, row: usize, column: usize) -> Option<Hue> {
     let name = BANDWIDTH_NUMBERS.get(column.checked_sub(BANDWIDTH_HEADS)?)?;
     if requirements.bandwidth.get(row)?.rests_above(name) {

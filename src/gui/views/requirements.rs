@@ -1,5 +1,5 @@
-//! Requirements beyond J as in a qualification, for physics, corrected, scheduled and identified
-//! models side by side (M17).
+//! Requirements in addition to J, as in a qualification, evaluated for the physics, corrected,
+//! scheduled and identified models side by side (M17).
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -42,7 +42,7 @@ use crate::gui::widgets::tables::{TableClick, TableLook, table_grid_ui};
 
 /// Text above every page.
 pub(super) const NO_QUALIFICATION: &str =
-    "Models, not aircraft: these numbers are no qualification (docs/requirements.md)";
+    "These values describe models and do not replace a qualification (docs/requirements.md)";
 /// Minimum plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(220.0, 150.0);
 /// Initial table height, as a share of the view's height.
@@ -55,7 +55,8 @@ pub fn requirements_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Com
         (
             RequirementsPage::Summary,
             "summary",
-            "Corrected against identified models: mean J, shares inside the MUAD envelopes, errors over time",
+            "Corrected models compared with identified models: mean J, shares of the band inside \
+            the MUAD envelopes, deviations over time",
         ),
         (
             RequirementsPage::Modes,
@@ -152,8 +153,8 @@ pub fn requirements_view_ui(
     }
 }
 
-/// Draws the inputs of the bandwidth requirements: the sticks that command an attitude, and the
-/// engineer's levels.
+/// Draws the settings of the bandwidth requirements: which attitudes are commanded by a stick, and
+/// the engineer's levels.
 fn bandwidth_inputs_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         ui.label(palette.small("attitude command:"));
@@ -163,7 +164,7 @@ fn bandwidth_inputs_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: 
     });
 }
 
-/// Draws a check box for each attitude that a stick may command.
+/// Draws a check box for each attitude that may be commanded by a stick.
 fn attitude_commands_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let mut outputs = BTreeSet::new();
     for pair in state.dataset().measuring_pairs().marked() {
@@ -189,7 +190,7 @@ fn attitude_commands_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>)
     }
 }
 
-/// Draws the number of levels, and the buttons that remove the levels or read them from a file.
+/// Draws the number of level boundaries, and the buttons that remove them or read them from a file.
 fn levels_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let levels = state.study.requirements.levels.all().len();
     let text = if levels == 0 {
@@ -208,14 +209,15 @@ fn levels_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
     button_ui(ui, Button::new("Levels…").small(), hint, ask, commands);
 }
 
-/// View of available requirements.
+/// Context for drawing the computed requirements.
 struct RequirementsView<'a> {
     requirements: &'a Requirements,
     palette: &'a Palette,
 }
 
 impl RequirementsView<'_> {
-    /// Draws which results are missing, and the reservations about the others.
+    /// Draws a line for each kind of missing result, and the reservations about the available
+    /// results.
     fn reservations_ui(&self, ui: &mut Ui) {
         let mut lines = Vec::new();
         for missing in &self.requirements.missing {
@@ -237,7 +239,7 @@ impl RequirementsView<'_> {
         }
     }
 
-    /// Draws phase delay over bandwidth; a click shows the response in Bode.
+    /// Draws phase delay over bandwidth; a click on a mark shows the response in the Bode view.
     fn plots_ui(&self, ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
         let figure: Figure = figure_of(state, View::Requirements).unwrap_or_default();
         let pairs = bandwidth_pairs(self.requirements);
@@ -247,7 +249,8 @@ impl RequirementsView<'_> {
             .figures
             .remove(&View::Requirements)
             .unwrap_or_default();
-        let message = "No on-axis response is an angle or its rate, or none crosses −135° and −180°: the table lists the reasons";
+        let message = "No on-axis response is an angle or an angular rate, or none crosses −135° \
+            and −180°. The table lists the reasons";
         let words = BandwidthWords {
             state,
             requirements: self.requirements,
@@ -281,7 +284,7 @@ impl RequirementsView<'_> {
         state.display.figures.insert(View::Requirements, view);
     }
 
-    /// Draws the tables of the page; a click on a row shows its subject.
+    /// Draws the tables of the page; a click on a row shows its response or condition.
     fn tables_ui(&self, ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
         let condition = state.condition().id();
         let mut sortings = state.display.judging.requirements_sorting;
@@ -393,8 +396,8 @@ fn role_at(
     None
 }
 
-/// Returns the commands that show the response in Bode, with marks at the frequencies that define
-/// its bandwidth and phase delay.
+/// Returns the commands that show the response in the Bode view, with marks at the frequencies that
+/// define its bandwidth and phase delay.
 fn bode_commands(requirements: &Requirements, model: BandwidthModel) -> Vec<Command> {
     let mut commands: Vec<Command> = vec![
         SelectionCommand::SelectCondition(model.condition).into(),
@@ -418,7 +421,7 @@ fn bode_commands(requirements: &Requirements, model: BandwidthModel) -> Vec<Comm
     commands
 }
 
-/// Descriptions of the bandwidth plots.
+/// Accessible names of the bandwidth plots, and descriptions of their marks.
 struct BandwidthWords<'a> {
     state: &'a State,
     requirements: &'a Requirements,
@@ -451,7 +454,7 @@ impl FigureWords for BandwidthWords<'_> {
                 ));
             }
         }
-        words.push("click: mark in Bode".to_owned());
+        words.push("click: show in Bode".to_owned());
         Some(words.join(" · "))
     }
 }

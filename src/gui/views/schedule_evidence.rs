@@ -19,7 +19,7 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
 
-/// Scheduled conditions, and the evidence, in the same order.
+/// Evidence for each form of the schedule; its conditions are in the order of `conditions`.
 #[derive(Clone, Copy)]
 pub(super) struct ScheduleEvidence<'a> {
     pub(super) conditions: &'a [ConditionId],
@@ -122,7 +122,7 @@ fn percent_text(rms_ln: Option<f64>) -> String {
     }
 }
 
-/// Formats a delay error \[ms\].
+/// Formats a delay error \[s\] in milliseconds; "–" for `None`.
 fn delay_text(error_s: Option<f64>) -> String {
     match error_s {
         Some(error_s) => format!("{:.2}", s_to_ms(error_s)),

@@ -23,7 +23,7 @@ const SLIDER_START: f64 = 1e-3;
 const LABEL_WIDTH: f32 = 60.0;
 const TYPED_WIDTH: f32 = 62.0;
 
-/// Summary of M15 in five steps.
+/// Tooltip of the phase correction: summary of its method (M15) in five steps.
 const LEADS_IN_SHORT: &str = "Delay or lead:\n\
     1  For each response, a straight line through the origin is fitted to the missing phase over the band. Its slope is a delay or, \
     if negative, a lead.\n\
@@ -32,7 +32,7 @@ const LEADS_IN_SHORT: &str = "Delay or lead:\n\
     4  The gains are then computed as without leads, for the remaining error.\n\
     5  The price is gain above the band [dB].";
 
-/// Returns the value that the program determines for an automatic setting.
+/// Returns the value that the program determines for an automatic setting; `None` without a result.
 fn found_value(state: &State, setting: &Setting) -> Option<Value> {
     let shown = state.shown()?;
     if *setting == setting::GAIN_BOUNDS {
@@ -44,7 +44,7 @@ fn found_value(state: &State, setting: &Setting) -> Option<Value> {
     }
 }
 
-/// Draws the controls of settings, and pushes the decisions taken with them.
+/// Context for drawing the controls of settings; collects the commands for changed settings.
 pub struct SettingControls<'a, 'c> {
     pub ui: &'a mut Ui,
     pub state: &'a State,
@@ -57,7 +57,7 @@ impl SettingControls<'_, '_> {
         self.commands.push(setting.to(value).into());
     }
 
-    /// Reports a refused entry, and completes the decision when editing ends.
+    /// Reports a refused entry, and ends the undo step when editing ends.
     fn end(&mut self, entered: Entered) {
         if let Some(refusal) = entered.refusal {
             self.commands.push(FormCommand::Refuse(refusal).into());
@@ -197,8 +197,8 @@ impl SettingControls<'_, '_> {
         self.apply(setting, typed);
     }
 
-    /// Draws a check box that enables a threshold, and the threshold; `initial` is the value when
-    /// it is enabled.
+    /// Draws a check box that enables a threshold, and a field for the threshold; `initial` is its
+    /// value when it is enabled.
     fn threshold_ui(
         &mut self,
         setting: &'static Setting,
@@ -227,7 +227,7 @@ impl SettingControls<'_, '_> {
         if clicked {
             let enabled = if counts { Some(initial) } else { None };
             self.set(setting, enabled);
-            // Each click is a decision of its own.
+            // Each click is a separate undo step.
             self.commands.push(StudyCommand::EndEdit.into());
         }
         self.apply(setting, entered);
@@ -320,7 +320,8 @@ impl SettingControls<'_, '_> {
         field.ui(self.ui, value)
     }
 
-    /// Draws the box that lets the program determine a value; returns its new state after a click.
+    /// Draws the check box that lets the program determine a value; returns its new state after a
+    /// click.
     fn automatic_ui(&mut self, setting: &Setting, value: Value) -> Option<Automatic> {
         let mut is_automatic = value == Value::Nothing;
         let response = self.ui.checkbox(&mut is_automatic, "auto");

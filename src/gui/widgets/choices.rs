@@ -4,7 +4,8 @@ use egui::{Button, ComboBox, Response, Role, Ui, WidgetInfo};
 
 use super::controls::{hint_ui, named, named_switch};
 
-/// Draws a small drop-down list.
+/// Draws a small drop-down list of choices (value, text, tooltip); stores the selected value in
+/// `value`.
 pub fn choice_ui<T: Copy + PartialEq>(
     ui: &mut Ui,
     name: &str,

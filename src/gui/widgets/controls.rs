@@ -39,7 +39,7 @@ pub fn named(response: Response, role: Role, name: impl Into<String>) -> Respons
     response
 }
 
-/// Names an on/off control.
+/// Names an on/off control and reports its state for screen readers and tests.
 pub fn named_switch(
     response: Response,
     role: Role,
@@ -52,7 +52,7 @@ pub fn named_switch(
     response
 }
 
-/// Adds a hint if it is not empty: an empty hint would show an empty box.
+/// Adds a tooltip unless `hint` is empty, because egui would draw an empty box.
 pub fn hint_ui(response: Response, hint: impl Into<String>) -> Response {
     let hint = hint.into();
     if hint.is_empty() {
@@ -107,7 +107,7 @@ pub const ROW_HEIGHT: f32 = 20.0;
 /// State and height of a clickable list row.
 pub struct RowLook {
     pub is_selected: bool,
-    /// Whether the pointer is on the row's item elsewhere in the window.
+    /// Whether the pointer is over the same item elsewhere in the window.
     pub is_pointed: bool,
     /// Height \[pt\].
     pub height: f32,
@@ -195,7 +195,8 @@ pub fn elided_among(
     room: f32,
     size: f32,
 ) -> String {
-    /// Share of the kept letters that precedes the gap.
+    /// Shares of the kept letters that precede the gap, in the order in which they are tried: gap
+    /// in the middle, at the beginning, at the end.
     const HEADS: [f32; 3] = [0.5, 0.0, 1.0];
     for head in HEADS {
         let shown = elided_at(ui, text, room, size, head);

@@ -71,8 +71,8 @@ pub fn entry_ui(ui: &mut Ui, name: &str, value: &str, hint: &str, width: f32) ->
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RefusedEntry(pub String);
 
-/// Like [`entry_ui`], for a number; refuses any other text with the reason. The inner `None` means
-/// that the field was emptied.
+/// Like [`entry_ui`], but for a number; refuses any other text with the reason. The inner `None`
+/// means that the field was emptied.
 pub fn number_entry_ui<C: From<RefusedEntry>>(
     ui: &mut Ui,
     name: &str,
@@ -111,7 +111,7 @@ const PASSES_AFTER_ESCAPE: u64 = 2;
 pub struct NumberField<'a> {
     /// Accessible name, unique in the window.
     pub name: &'a str,
-    /// Meaning, with the unit.
+    /// Tooltip: meaning and unit.
     pub hint: &'a str,
     /// Unit of the number; empty if dimensionless.
     pub unit: &'static str,
@@ -187,7 +187,7 @@ impl<'a> NumberField<'a> {
         entered
     }
 
-    /// Returns the key under which this program stores `item` for this field.
+    /// Returns the key of `item`, a value that this field keeps in egui's memory between frames.
     fn key(&self, item: &str) -> Id {
         Id::unique((item, self.name))
     }
@@ -247,7 +247,7 @@ impl<'a> NumberField<'a> {
     }
 
     /// Returns the refusal, for example "Band from: expected a number from 0.0001 to 12 rad/s,
-    /// found 30; it stays 0.500 rad/s."
+    /// found 30; 0.500 rad/s is kept."
     fn refusal(&self, found: &str, before: f64) -> String {
         let kind = if self.is_whole {
             "a whole number"
@@ -263,7 +263,8 @@ impl<'a> NumberField<'a> {
         };
         let stays = number_text(self.digits, before);
         format!(
-            "{}: expected {kind} from {least} to {most}{unit}, found {found}; it stays {stays}{unit}",
+            "{}: expected {kind} from {least} to {most}{unit}, found {found}; {stays}{unit} is \
+            kept",
             self.name
         )
     }
@@ -295,7 +296,7 @@ fn number_in(text: &str, unit: &str) -> Option<f64> {
     if value.is_finite() { Some(value) } else { None }
 }
 
-/// Formats a number for a field.
+/// Formats a number with the digits chosen for the field.
 fn number_text(digits: Digits, value: f64) -> String {
     match digits {
         Digits::Significant => significant(value),

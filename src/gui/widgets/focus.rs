@@ -27,7 +27,7 @@ pub enum Region {
     Models,
 }
 
-/// Regions as drawn.
+/// Regions and selected rows of the last frames, kept in egui's memory.
 #[derive(Clone, Default)]
 struct Regions {
     parts: BTreeMap<Region, Part>,
@@ -44,7 +44,7 @@ struct Part {
     controls: Vec<Id>,
     /// Control that had the focus last.
     visited: Option<Id>,
-    /// Visible place.
+    /// Visible rectangle.
     place: Option<Rect>,
 }
 
@@ -112,7 +112,7 @@ pub fn begin_with(ctx: &Context, row: Id) {
     });
 }
 
-/// Returns the visible place of a region in the window.
+/// Returns the visible rectangle of a region; `None` if it has not been drawn.
 pub fn region_place(ctx: &Context, region: Region) -> Option<Rect> {
     let place = ctx.data_mut(|data| {
         data.get_temp_mut_or_default::<Regions>(key())
@@ -165,13 +165,13 @@ fn had_focus() -> Id {
     Id::unique("had anything the focus")
 }
 
-/// Returns whether a control had the focus after the last frame: Escape was meant for that control,
-/// and has removed its focus by now.
+/// Returns whether a control had the focus after the last frame. Such a control has already used
+/// Escape, and lost its focus.
 pub fn was_focused(ctx: &Context) -> bool {
     ctx.data(|data| data.get_temp(had_focus()).unwrap_or(false))
 }
 
-/// Consumes Escape to close something, unless it was meant for a control.
+/// Consumes Escape in order to close something, unless a focused control has used the key.
 pub fn take_escape(ctx: &Context) -> bool {
     !was_focused(ctx) && ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape))
 }
@@ -181,7 +181,7 @@ const WIDTH: f32 = 2.0;
 /// Gap between the ring and its control \[pt\].
 const GAP: f32 = 1.0;
 
-/// Draws the focus ring above everything, alike around controls, list rows, cells and plots.
+/// Draws the same focus ring around controls, list rows, cells and plots, above all other content.
 pub fn focus_ring_ui(ctx: &Context, palette: &Palette) {
     let focused = ctx.memory(|memory| memory.focused());
     ctx.data_mut(|data| data.insert_temp(had_focus(), focused.is_some()));

@@ -51,7 +51,7 @@ pub struct Palette {
     pub background: Color32,
     /// Background of side panels and bars.
     pub panel: Color32,
-    /// Elements on a panel: buttons, legends, tooltips.
+    /// Background of elements on a panel: buttons, legends, tooltips.
     pub raised: Color32,
     /// Separators and outlines.
     pub line: Color32,
@@ -85,7 +85,7 @@ pub struct Palette {
     pub good_ground: Color32,
     /// Text of zero values and of excluded names.
     pub quiet_text: Color32,
-    /// Marks of low emphasis: bars, and ticks in boxes.
+    /// Marks of low emphasis: bars, and check marks in boxes.
     pub quiet_mark: Color32,
     /// Colours of J at [`HEAT_COSTS`]: a single hue with increasing contrast to the background.
     pub heat: [Color32; 5],
@@ -243,8 +243,8 @@ impl CurveColors {
     /// Returns the text of the menu entry.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Standard => "Standard colours of curves",
-            Self::ForAllEyes => "Colours of curves for all eyes",
+            Self::Standard => "Standard curve colours",
+            Self::ForAllEyes => "Curve colours for colour-blind readers",
         }
     }
 }
@@ -347,7 +347,7 @@ mod tests {
                     );
                 }
             }
-            // Names of excluded items and links also appear on selections, errors on panels.
+            // Names of excluded items and links also appear on selections, and warnings on panels.
             for (text, surfaces) in [
                 (palette.quiet_text, [background, panel, raised, selected]),
                 (palette.accent, [background, panel, raised, selected]),

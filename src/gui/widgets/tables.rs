@@ -87,7 +87,7 @@ pub struct TableClick {
 
 /// Colours of the cells, and the rows in focus.
 pub struct TableLook<'a> {
-    /// Text colour of a cell, by row and column; the default colour if `None`.
+    /// Text colour of a cell, by row and column; `None` for the default colour.
     pub color: &'a dyn Fn(usize, usize) -> Option<Color32>,
     /// Whether a row is in focus.
     pub selected: &'a dyn Fn(usize) -> bool,

@@ -1,4 +1,4 @@
-//! Putting models together in the window, by its controls.
+//! Assembling a dataset from models in the window, through its controls.
 
 use gdcm::gui::commands::assembling::AssemblingCommand;
 use gdcm::gui::state::assembling::AssemblyState;
@@ -14,7 +14,7 @@ pub(super) fn bench(window: &Window) -> &AssemblyState {
         .expect("models are being imported")
 }
 
-/// Replaces the text in a field, and leaves the field open.
+/// Replaces the text in a field, which keeps the focus.
 pub(super) fn fill_in(window: &mut Window, field: &str, text: &str) {
     window.get_by_label(field).focus();
     window.run_steps(2);
@@ -23,7 +23,7 @@ pub(super) fn fill_in(window: &mut Window, field: &str, text: &str) {
     window.run_steps(2);
 }
 
-/// Replaces the text in a field and presses Enter, which carries out a form.
+/// Replaces the text in a field and presses Enter, which submits a form.
 pub(super) fn type_into(window: &mut Window, field: &str, text: &str) {
     fill_in(window, field, text);
     window.key_press(Key::Enter);
@@ -142,7 +142,7 @@ fn channels_taken_by_position_and_what_is_not_used_are_said() {
     assert_eq!(bench(&window).assembly().cautions().len(), 1);
     assert!(
         window
-            .query_by_label_contains("caution: no names of channels in the file")
+            .query_by_label_contains("caution: channels without names in the file")
             .is_some()
     );
     assert!(

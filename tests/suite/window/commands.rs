@@ -1,4 +1,4 @@
-//! The command table: palette, key page, tables and tour.
+//! Command table: palette, key page, tables and tour.
 
 use gdcm::gui::commands::assembling::AssemblingCommand;
 use gdcm::gui::commands::command_table::{command_table, every_command};
@@ -174,7 +174,7 @@ fn the_page_of_keys_is_made_from_the_table_and_fits_the_least_window() {
     assert!(close.max.y < 560.0, "{close}");
 }
 
-/// Text put on the clipboard in the last frames.
+/// Returns the text that was put on the clipboard in the next frames.
 fn copied(window: &mut Window) -> String {
     for _ in 0..4 {
         window.step();
@@ -298,7 +298,7 @@ fn tables_of_the_matrix_and_the_result_have_the_bars_of_their_figures() {
     );
 }
 
-/// Opens a form by the palette.
+/// Opens a form through the palette.
 fn ask_for_form(window: &mut Window, query: &str) {
     press(window, Modifiers::COMMAND, Key::K);
     window.event(Event::Text(query.to_owned()));

@@ -1,4 +1,4 @@
-//! Long work, and work that fails.
+//! Long computations, and computations that fail.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, Once};
@@ -16,7 +16,8 @@ use gdcm_study::{Engine, Study};
 use super::views::show;
 use super::*;
 
-/// Executes as the program does; while armed it panics inside a task, or keeps the tasks waiting.
+/// Executor that works like the program's, but on request panics inside a task or keeps the tasks
+/// waiting.
 #[derive(Clone, Default)]
 struct Trap {
     panics: Arc<AtomicBool>,
@@ -32,7 +33,8 @@ impl Trap {
         }
     }
 
-    /// As [`Trap::setup`], with nothing left to compute beside the first results, which could run into the trap before them.
+    /// Like [`Trap::setup`], but with results of the example already cached, so that no background
+    /// job runs into the trap before the first results.
     fn warm_setup(&self) -> Setup {
         let trap = self.clone();
         Setup {
@@ -47,7 +49,8 @@ impl Trap {
     }
 }
 
-/// Opens the trap when it is dropped, also by a failing test: waiting work holds threads that other tests need.
+/// Opens the trap when dropped, even if the test fails, because waiting tasks occupy threads that
+/// other tests need.
 struct Closed<'a>(&'a Trap);
 
 impl Drop for Closed<'_> {
@@ -71,7 +74,8 @@ impl Executor for Trap {
     }
 }
 
-/// Notes the places of panics, as the program does, beside the panic handling of the tests.
+/// Records the locations of panics, as the program does, in addition to the panic handler of the
+/// tests.
 fn note_panics() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
@@ -127,7 +131,7 @@ fn a_panic_while_computing_is_told_with_what_to_send_and_the_study_stays() {
         3.0,
         "and edited, with a new engine"
     );
-    click(&mut window, "Put away");
+    click(&mut window, "Close message");
     assert!(
         window
             .query_by_label_contains("A fault in the program")
@@ -219,7 +223,7 @@ fn quitting_does_not_wait_for_what_is_being_computed() {
     });
     let start = Instant::now();
     drop(window);
-    // The running computation would never end.
+    // Without cancellation, the running computation would never end.
     assert!(start.elapsed() < Duration::from_secs(30));
     drop(closed);
 }
@@ -258,7 +262,7 @@ fn a_long_computation_can_be_stopped_and_taken_up_again() {
     let mut window = window_with(example(), trap.warm_setup());
     let before = state(&window).results.received;
     unfold_settings(&mut window, true);
-    // However fast the machine is, nothing is computed before the click.
+    // The closed trap prevents any computation before the click, even on a fast machine.
     let closed = trap.close();
     window
         .get_by_role_and_label(Role::SpinButton, "Frequencies in the band")
@@ -304,7 +308,8 @@ fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
     let mut window = window_with(example(), trap.setup());
     show(&mut window, View::Evidence);
     unfold_settings(&mut window, true);
-    // Five times the points: far more work than the frames until the first part is seen give it time for.
+    // Five times the usual number of frequencies: the computation lasts longer than the frames
+    // until its first progress is visible.
     window
         .get_by_role_and_label(Role::SpinButton, "Frequencies in the band")
         .set_value_accesskit(1000.0);
@@ -318,7 +323,8 @@ fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
     wait_until(&mut window, "a part of the error bars", |window| {
         counts(window).is_some_and(|(done, total)| done > 0 && total == 2 * models)
     });
-    // However fast the machine is, only computations that have begun are finished before the click.
+    // With the trap closed, only computations already begun are completed before the click, even on
+    // a fast machine.
     let closed = trap.close();
     wait_until(&mut window, "the button", |window| {
         window.query_by_label("Stop").is_some()
@@ -340,7 +346,7 @@ fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
         format!("{done}; without error bars: their computation was stopped")
     );
     drop(closed);
-    window.get_by_label("Error bars: stopped; Compute, below, continues them");
+    window.get_by_label("Error bars: stopped. Choose Compute, below, to continue");
     click(&mut window, "Compute");
     wait_for_bars(&mut window);
     assert!(
@@ -364,7 +370,8 @@ fn couplings_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
     wait_until(&mut window, "a part of the assessment", |window| {
         steps(window).is_some_and(|(done, _)| done > 0)
     });
-    // However fast the machine is, the steps after the fits without each condition are not computed before the click.
+    // With the trap closed, the steps after the fits without each condition are not computed before
+    // the click, even on a fast machine.
     let closed = trap.close();
     wait_until(&mut window, "the button", |window| {
         window.query_by_label("Stop").is_some()

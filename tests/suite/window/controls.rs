@@ -1,4 +1,4 @@
-//! Every control by name; a machine without a display.
+//! Accessible names of all controls; start without a display.
 
 use super::*;
 
@@ -36,7 +36,7 @@ fn every_control_has_a_label_of_its_own() {
     assert!(twice.is_empty(), "{twice:?}");
 }
 
-/// Message without a display.
+/// Starts the window without a display; returns exit status and message.
 #[cfg(target_os = "linux")]
 fn without_a_display(arguments: &[&Path]) -> (Option<i32>, String) {
     let output = Command::new(env!("CARGO_BIN_EXE_gdcm"))

@@ -1,4 +1,4 @@
-//! Couplings by hand: looked at before they are used, offered, used, seen and undone (M16).
+//! Couplings in the window: shown before they are used, proposed, used and undone (M16).
 
 use gdcm::gui::commands::display::DisplayCommand;
 use gdcm::gui::commands::layout::LayoutCommand;
@@ -58,7 +58,7 @@ fn couplings_are_looked_at_used_drawn_and_undone() {
         "{said}"
     );
     assert!(
-        said.contains("own correction") && said.contains("Loop at the sticks"),
+        said.contains("own correction") && said.contains("Coupling loop at the inputs"),
         "{said}"
     );
     assert_eq!(state(&window).study, before, "looking decides nothing");
@@ -77,16 +77,17 @@ fn couplings_are_looked_at_used_drawn_and_undone() {
         CouplingCorrection::MixingAndFeedback
     );
     assert!(!texts(&window).contains("Not in use"));
-    // The map beside the conditions has what they did off the axis.
+    // The map beside the conditions shows their off-axis cost.
     window.get_by_label_contains("19 responses not held, condition 3: mean J of magnitude");
-    // The poles that move are drawn among those of the models.
+    // The shifted poles are drawn among the poles of the models.
     show(&mut window, View::Poles);
     wait_until(&mut window, "the poles", |window| {
         gdcm::gui::views::poles::poles(state(window)).is_some()
     });
     let figure = gdcm::gui::views::poles::poles(state(&window)).unwrap();
     assert!(figure.plots[0].panels[0].marks.iter().any(is_after));
-    // In Bode the corrected curve is the whole; couplings alone are there on wish.
+    // In the Bode view, the corrected curve contains the complete correction; a curve with the
+    // couplings alone is optional.
     show(&mut window, View::Bode);
     settle(&mut window);
     assert!(!has_alone(&window));
@@ -119,12 +120,13 @@ fn couplings_are_offered_once_leads_do_what_a_channel_can() {
         CouplingCorrection::MixingAndFeedback
     );
     assert!(offered_couplings(state(&window)).is_none());
-    // Their cost is among the reasons in every view.
+    // The cost of the couplings is listed among the reasons, in every view.
     assessed(&mut window);
     give(&mut window, LayoutCommand::ShowSheet(Some(Sheet::Reasons)));
     let said = texts(&window);
     assert!(
-        said.contains("Above the band, at 120 rad/s") && said.contains("newly unstable"),
+        said.contains("Above the band, at 120 rad/s")
+            && said.contains("unstable with the couplings"),
         "{said}"
     );
 }
@@ -159,7 +161,7 @@ fn couplings_that_cannot_be_found_are_told_beside_the_verdict() {
     );
     give(&mut window, LayoutCommand::ShowSheet(Some(Sheet::Reasons)));
     assert!(
-        texts(&window).contains("Everything here is without them."),
+        texts(&window).contains("All results are computed without couplings."),
         "{}",
         texts(&window)
     );

@@ -1,4 +1,4 @@
-//! Hands on every curve: the plot of errors, menus, boxes, cursors, units.
+//! Interaction with curves: error plot, menus, boxes, cursors, units.
 
 use gdcm::gui::plot::picking::PICK_RADIUS;
 use gdcm::gui::state::view::View;
@@ -9,7 +9,7 @@ use super::plots::{drag_along, place_on_nominal};
 use super::views::show;
 use super::*;
 
-/// A role's curve in the error plot.
+/// Returns the curve of a role in the error plot.
 fn error(window: &Window, role: CurveRole) -> BodeCurve {
     let mut curves = state(window).display.frequency.drawn_errors.iter();
     curves
@@ -35,7 +35,8 @@ fn the_plot_of_errors_shows_what_the_fit_sees() {
     let gain = shown.comparison.delta.gain[pair].unwrap();
     let delay_s = shown.comparison.delta.delay_s[pair].unwrap();
     let before = error(&window, CurveRole::Representative);
-    // The medians (M6) on the drawing grid, whose points differ from the comparison grid.
+    // G and D are medians (M6) on the comparison grid, and the drawing grid has other frequencies;
+    // hence the tolerances.
     let ratio_db = middle(before.magnitude_db.iter().copied());
     let phase = before.omega.iter().zip(&before.phase_deg[..]);
     assert!(
@@ -48,7 +49,7 @@ fn the_plot_of_errors_shows_what_the_fit_sees() {
     let net_db = 20.0 * shown.correction.net_gain(pair).log10();
     let net_delay_s = shown.correction.net_delay_s(pair);
     for k in [0, before.omega.len() / 2, before.omega.len() - 1] {
-        // A few roundings in numbers up to 360.
+        // The tolerance allows a few rounding errors in numbers up to 360.
         assert!((before.magnitude_db[k] - net_db - after.magnitude_db[k]).abs() < 1e-10);
         let taken = (before.omega[k] * net_delay_s).to_degrees();
         assert!((before.phase_deg[k] - taken - after.phase_deg[k]).abs() < 1e-10);
@@ -101,7 +102,7 @@ fn a_click_in_the_plot_of_errors_rejects_a_model_and_its_zoom_is_that_of_the_bod
     choose_condition_10(&mut window);
     show(&mut window, View::Error);
     let nominal = error(&window, CurveRole::Nominal);
-    // Where the step of the physics model takes it farthest from the others.
+    // Here the discontinuity of the nominal model separates it from the other models.
     let at = nominal.omega.iter().position(|&omega| omega > 2.0).unwrap();
     let view = &state(&window).display.frequency.error;
     let place = view
@@ -158,7 +159,7 @@ fn a_click_on_a_reference_line_of_the_errors_rejects_nothing() {
     let before = state(&window).study.clone();
     let panes = [Pane::Magnitude, Pane::Phase];
     let omegas = [0.8, 1.5, 3.0, 7.0];
-    // Zero: the identified model that the others are compared with.
+    // The zero line is the identified model, with which the others are compared.
     for (pane, omega) in panes
         .into_iter()
         .flat_map(|pane| omegas.map(|omega| (pane, omega)))
@@ -178,7 +179,7 @@ fn a_click_on_a_reference_line_of_the_errors_rejects_nothing() {
     }
     let zero = error(&window, CurveRole::IdentifiedRepresentative);
     assert!(!zero.detail.contains("click"), "{}", zero.detail);
-    // G, D, quantiles and bounds.
+    // Reference lines: G, D, quantiles and bounds.
     let pair = state(&window).display.selection.pair;
     let source = ConditionSource {
         study: &state(&window).study,
@@ -263,7 +264,7 @@ fn phases_are_wrapped_and_a_curve_is_moved_by_a_turn_on_wish() {
     }
 }
 
-/// Chooses an entry of the menu that a secondary click on the nominal curve opens.
+/// Chooses an entry in the context menu of the nominal curve.
 fn choose_from_menu_of_nominal(window: &mut Window, entry: &str) {
     let place = place_on_nominal(window);
     window.hover_at(place);
@@ -414,7 +415,7 @@ fn the_values_of_every_role_at_the_cursor_are_listed_and_two_marks_show_what_cha
         pinned.len() == 2 && (pinned[1] / middle - 1.0).abs() < 1e-9,
         "{pinned:?} {middle}"
     );
-    choose_of_curves(&mut window, "List no values at the cursor");
+    choose_of_curves(&mut window, "Hide the values at the cursor");
     assert!(window.query_by_label_contains("Δ corrected: ").is_none());
 }
 
@@ -464,10 +465,10 @@ fn a_model_is_rejected_for_a_reason_in_words() {
         window.run_steps(1);
     }
     window.run_steps(2);
-    window.get_by_label("Reason of the rejection").focus();
+    window.get_by_label("Rejection reason").focus();
     window.run_steps(2);
     window
-        .get_by_label("Reason of the rejection")
+        .get_by_label("Rejection reason")
         .type_text("a step near this trim");
     window.run_steps(2);
     click(&mut window, "Reject with reason");

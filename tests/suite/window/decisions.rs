@@ -1,4 +1,4 @@
-//! Decisions by hand, and their results.
+//! Decisions in the window, and their results.
 
 use gdcm::gui::commands::layout::LayoutCommand;
 use gdcm_words::derivation::derivation;
@@ -41,7 +41,7 @@ fn from_the_example_to_exported_corrections() {
 
     let on_axis = pair(&window, "Q", "LON");
     let wanted = state(&window).shown().unwrap().comparison.delta.gain[on_axis].unwrap();
-    // Held exactly: only the rounding of a product of two gains.
+    // The constraint is exact up to the rounding of a product of two gains.
     assert!((net_gain(&window, "Q", "LON") / wanted - 1.0).abs() < 1e-9);
     click(&mut window, "Hold LON → Q");
     assert!(!state(&window).study.settings.constrained[on_axis]);
@@ -50,7 +50,8 @@ fn from_the_example_to_exported_corrections() {
         "free, it goes where the others pull it"
     );
 
-    // LAT → P is held and stays; LON → Q is free: hold it again, free PED → R, and let alpha move that one's dots.
+    // LAT → P remains constrained. Constrain LON → Q again and release PED → R, so that alpha
+    // changes the gains of its channels.
     click(&mut window, "Hold LON → Q");
     let before = first(&window);
     slide(&mut window, "α gains", 12.5);
@@ -121,7 +122,7 @@ fn every_choice_can_be_undone_and_done_again() {
 
 #[test]
 fn at_least_one_model_stays_in_each_bundle() {
-    // Its three identified models are all in sight.
+    // In this dataset all three identified models fit in the list without scrolling.
     let mut window = window_with(Opened::Dataset(crate::REFERENCE_DATASET.clone()), warm());
     let models: Vec<String> = state(&window)
         .condition()
@@ -136,7 +137,7 @@ fn at_least_one_model_stays_in_each_bundle() {
     let notice = state(&window).notice.clone().expect("the refusal is shown");
     assert_eq!(notice.kind, NoticeKind::Trouble);
     assert!(
-        notice.text.contains("at least one must stay"),
+        notice.text.contains("at least one must remain"),
         "{}",
         notice.text
     );

@@ -1,4 +1,4 @@
-//! Data that leave little to go by, in the window.
+//! Sparse data in the window.
 
 use std::path::PathBuf;
 
@@ -10,10 +10,10 @@ use super::views::give;
 use super::*;
 use crate::made_up::two_lags;
 
-/// Its last identified model ends at 11.9 rad/s.
+/// Dataset whose last identified model ends at 11.9 rad/s.
 const SHORT: &str = include_str!("../../data/edges/short-measurement.json");
 
-/// The window on a file, its results there.
+/// Opens a dataset and waits for its results.
 fn window_on(text: &str) -> Window {
     let origin = DatasetOrigin::File(PathBuf::from("edge.json"));
     window_with(

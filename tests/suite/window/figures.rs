@@ -1,4 +1,4 @@
-//! Figures of a view as files and on the clipboard.
+//! Saving and copying the figure of a view.
 
 use std::fs;
 
@@ -11,7 +11,7 @@ use gdcm_plot::figure::{ColumnWidth, FigureFormat};
 use super::views::show;
 use super::*;
 
-/// Asks for a view's file through the button in its header, and types where to put it.
+/// Saves a view through the button in its header, with a typed path.
 fn save_figure(window: &mut Window, view: View, format: &str, path: &Path) {
     click(window, &format!("Save or copy {}", view.name()));
     click(window, &format!("Save as {format}…"));
@@ -19,7 +19,7 @@ fn save_figure(window: &mut Window, view: View, format: &str, path: &Path) {
     click(window, "Save figure");
 }
 
-/// Saves a view and asserts that the file holds its figure.
+/// Saves a view and asserts that the file contains its figure.
 fn assert_saved(window: &mut Window, view: View, format: FigureFormat, folder: &Path) {
     let path = folder.join(format!("{}.{}", view.name(), format.extension()));
     save_figure(window, view, &format.extension().to_uppercase(), &path);

@@ -1,4 +1,4 @@
-//! Opening and saving.
+//! Opening and saving files.
 
 use gdcm::gui::commands::form::FormCommand;
 use gdcm::gui::state::forms::FormKind;
@@ -10,7 +10,7 @@ fn a_file_that_cannot_be_read_leaves_what_is_open_and_says_what_is_wrong() {
     let mut window = window();
     choose_condition_10(&mut window);
     click(&mut window, "Reject 3 suggested");
-    // Nothing that is not saved is lost without a question.
+    // Unsaved decisions are not lost without a question.
     let before = state(&window).study.clone();
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("broken.json");
@@ -88,7 +88,7 @@ fn decisions_are_saved_first_and_what_they_kept_waiting_is_opened_then() {
         "and it is open"
     );
     assert_eq!(open_study(&path).unwrap().study.choices, decided);
-    // Waiting work is done once.
+    // The postponed action is not carried out a second time.
     click(&mut window, "Keep physics model V+5kt");
     save_as(&mut window, &folder.path().join("other.gdcm-study.json"));
     assert_eq!(state(&window).study_name, "other.gdcm-study.json");
@@ -135,7 +135,7 @@ pub(super) fn small_dataset() -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/small-dataset.json")
 }
 
-/// A file dropped on the window.
+/// File dropped on the window.
 #[derive(Debug)]
 pub(super) struct Dropped(pub(super) std::path::PathBuf);
 

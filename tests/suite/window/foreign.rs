@@ -1,4 +1,5 @@
-//! Files of other programs, imported through the controls alone: the program finds missing units and inverted signs.
+//! Files of other programs, imported through the controls: the program finds missing units and
+//! inverted signs.
 
 use gdcm::gui::commands::assembling::AssemblingCommand;
 use gdcm::gui::commands::file::FileCommand;
@@ -46,7 +47,7 @@ fn a_foreign_tree_with_a_turned_channel_and_inches_is_carried_to_corrected_model
         bench(window).reading.is_none()
     });
     type_into(&mut window, "Unit of input 1", "%");
-    // An inch of stick has no known size.
+    // The stick travel per inch is unknown and must be entered.
     assert!(window.query_by_label_contains("to complete").is_some());
     type_into(
         &mut window,
@@ -69,7 +70,8 @@ fn a_foreign_tree_with_a_turned_channel_and_inches_is_carried_to_corrected_model
     });
     settle(&mut window);
 
-    // The sign is found by the program, named before anything else, and turned by its button.
+    // The program finds the inverted sign, reports it before all other cautions, and inverts it by
+    // a button.
     let words = doubted(&window);
     assert!(
         words.len() == 1 && words[0].starts_with("COL → NZ differs by half a turn"),
@@ -77,16 +79,16 @@ fn a_foreign_tree_with_a_turned_channel_and_inches_is_carried_to_corrected_model
     );
     window.get_by_label("its sign seems reversed");
     let before = cost(&window);
-    click(&mut window, "Turn NZ");
+    click(&mut window, "Reverse sign of NZ");
     assert_eq!(doubted(&window), Vec::<String>::new());
-    // Half a turn alone is a J of 20 * 0.0175 * 180^2.
+    // A phase difference of 180 degrees alone gives a J of 20 * 0.0175 * 180^2.
     assert!(
         before > 5_000.0 && cost(&window) < 0.1 * before,
         "{before} and {}",
         cost(&window)
     );
 
-    // Corrected models for the other program.
+    // Exports corrected models for the other program.
     let path = folder.path().join("corrected.mat");
     window.state_mut().dispatch(FormCommand::ShowForm(Some(
         gdcm::gui::state::forms::FormKind::ExportAs,
@@ -201,7 +203,7 @@ fn reading_is_told_beside_stop_which_ends_it_and_leaves_what_was_open() {
     assert!(state(&window).records.reading.is_none());
     window.get_by_label_contains("stopped reading");
 
-    // A dataset that is opened, too.
+    // Stop also cancels the opening of a dataset.
     let name = state(&window).dataset().name().to_owned();
     let large = folder.path().join("large.json");
     let blanks = " ".repeat(60 << 20);

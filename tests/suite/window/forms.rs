@@ -1,4 +1,4 @@
-//! The forms, worked from the keyboard.
+//! Forms, used from the keyboard.
 
 use super::*;
 
@@ -12,7 +12,7 @@ fn type_text(window: &mut Window, text: &str) {
     window.run_steps(2);
 }
 
-/// A window whose home directory is `home`.
+/// Opens a window whose home directory is `home`.
 fn window_at(home: &Path) -> Window {
     window_with(
         example(),

@@ -1,4 +1,4 @@
-//! Derivations, models in the overview, and tables as files, requested in plots and tables.
+//! Derivations, models in the overview, and exported tables, requested in plots and tables.
 
 use gdcm::gui::commands::command::Command as Action;
 use gdcm::gui::commands::command_table::every_command;
@@ -28,7 +28,8 @@ fn secondary_click(window: &mut Window, at: egui::Pos2) {
     window.run_steps(3);
 }
 
-/// Asks for a figure in the menu that is open, and asserts that its derivation ends in the value.
+/// Requests the derivation of a value through the open menu, and asserts that it ends with this
+/// value.
 fn ask(window: &mut Window, entry: &str, expected: f64) {
     window.get_by_label(entry).click();
     window.run_steps(3);
@@ -45,7 +46,7 @@ fn ask(window: &mut Window, entry: &str, expected: f64) {
         found.title,
         found.value
     );
-    window.get_by_label_contains("It rests on");
+    window.get_by_label_contains("Based on");
     window.key_press(Key::Escape);
     window.run_steps(3);
     assert_eq!(

@@ -1,4 +1,4 @@
-//! Worked without the pointer.
+//! Keyboard operation without a pointer.
 
 use egui::{Color32, Shape};
 
@@ -15,7 +15,7 @@ fn press(window: &mut Window, modifiers: Modifiers, key: Key) {
     window.run_steps(3);
 }
 
-/// Label of the focused control; empty without focus.
+/// Returns the label of the focused control; empty without focus.
 fn focused(window: &Window) -> String {
     let found = window
         .root()
@@ -26,7 +26,7 @@ fn focused(window: &Window) -> String {
         .unwrap_or_default()
 }
 
-/// Gives the focus to a field for a number, types into it and presses Enter.
+/// Focuses a number field, types a value and presses Enter.
 fn enter(window: &mut Window, field: &str, text: &str) {
     window
         .get_by_role_and_label(Role::SpinButton, field)
@@ -169,7 +169,7 @@ fn what_the_keyboard_reaches_is_scrolled_into_view() {
     );
 }
 
-/// The rings drawn in the last frame.
+/// Returns the focus rings drawn in the last frame.
 fn rings(window: &Window) -> Vec<egui::Rect> {
     fn is_ring(color: Color32, width: f32) -> bool {
         width == 2.0 && color == Palette::dark().accent
@@ -189,7 +189,7 @@ fn rings(window: &Window) -> Vec<egui::Rect> {
 #[test]
 fn a_ring_surrounds_whatever_has_the_focus() {
     let mut window = window();
-    // The matrix rings the response shown too.
+    // The matrix also draws a ring around the response in focus.
     let at_rest = rings(&window).len();
     for label in [CONDITION_10, "Keep physics model V+10kt", "Hold PED → R"] {
         window.get_by_label(label).focus();
@@ -223,7 +223,7 @@ fn a_number_out_of_order_or_out_of_range_is_refused_with_a_word_and_the_old_one_
         (
             "Band from",
             "30",
-            "from 0.0001 to 12 rad/s, found 30; it stays 0.500 rad/s",
+            "from 0.0001 to 12 rad/s, found 30; 0.500 rad/s is kept",
         ),
         ("Band from", "12", "found min 12, max 12"),
         ("Band to", "0,1", "from 0.5 to 100000 rad/s, found 0.1"),

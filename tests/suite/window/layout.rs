@@ -1,4 +1,4 @@
-//! Where things are: on small screens, in the rail, in menus and forms.
+//! Layout on small screens, in the rail, in menus and in forms.
 
 use egui::{LayerId, Order};
 
@@ -9,7 +9,7 @@ use gdcm::gui::state::sheet::Sheet;
 use super::views::{give, show};
 use super::*;
 
-/// The window in a screen of so many points, drawn with so many pixels each.
+/// Opens a window of this size \[pt\] with this number of pixels per point.
 fn window_of(size: egui::Vec2, pixels_per_point: f32) -> Window {
     let builder = Harness::builder()
         .with_size(size)
@@ -21,7 +21,7 @@ fn window_of(size: egui::Vec2, pixels_per_point: f32) -> Window {
 
 const SMALL: egui::Vec2 = vec2(1280.0, 720.0);
 
-/// Verdict, result, matrix, settings line and export are whole on the screen.
+/// Asserts that verdict, result, matrix, settings line and export are completely visible.
 fn assert_answered(window: &Window, view: View) {
     let screen = egui::Rect::from_min_size(Pos2::ZERO, SMALL);
     let is_whole = |label: &str, place: egui::Rect| {
@@ -57,7 +57,7 @@ fn assert_answered(window: &Window, view: View) {
 
 #[test]
 fn the_answer_is_on_a_small_screen_in_every_view() {
-    // The second is a screen of 1920 x 1080 pixels at 150 %.
+    // The second case is a screen of 1920 x 1080 pixels at 150 %.
     for pixels_per_point in [1.0, 1.5] {
         let mut window = window_of(SMALL, pixels_per_point);
         for view in View::ALL {
@@ -107,7 +107,7 @@ fn a_narrow_window_has_a_rail_with_sheets_and_a_key_shows_the_panel() {
             .next()
             .is_some()
     );
-    // A click beside it.
+    // Click beside the sheet.
     window.drag_at(pos2(900.0, 300.0));
     window.run_steps(1);
     window.drop_at(pos2(900.0, 300.0));
@@ -152,7 +152,7 @@ fn the_menu_of_the_schedule_stands_in_the_order_of_its_settings() {
     );
 }
 
-/// The place of a form on the screen.
+/// Returns the rectangle of a form.
 fn form(window: &Window, kind: FormKind) -> egui::Rect {
     assert_eq!(state(window).forms.shown, Some(kind));
     let id = egui::Id::unique(("form", kind, false));

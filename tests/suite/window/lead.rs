@@ -1,4 +1,4 @@
-//! Leads by hand: taken, seen, and undone (M15).
+//! Leads in the window: enabled, displayed and undone (M15).
 
 use gdcm::gui::commands::display::DisplayCommand;
 use gdcm::gui::commands::layout::LayoutCommand;
@@ -32,7 +32,7 @@ fn what_leads_cost_is_drawn_up_to_ten_times_the_band_and_the_flight_ends_where_i
     }
 
     let mut window = window();
-    // A little beyond the band of 0.5 to 12 rad/s.
+    // Curves extend slightly beyond the band of 0.5 to 12 rad/s.
     assert!((last(&window, CurveRole::Corrected) - 20.4).abs() < 1e-6);
     let before = state(&window).display.frequency.bode.omega_range().1;
     give(&mut window, setting::PHASE.to(PhaseCorrection::Lead));
@@ -165,8 +165,9 @@ fn the_phase_without_leads_lies_beside_the_corrected_one_and_the_result_tells_se
         phase(&with) > phase(&without) + 10.0,
         "lead turns the phase up"
     );
-    // The gains differ a little, the phase is that of gains alone: the example's delays are none. Between two frequencies of
-    // either grid a phase is interpolated, and is 0.01 degrees off.
+    // The phases are equal because the example's correction has no delays; only the gains differ
+    // slightly. Interpolation between the frequencies of two grids adds an error of about 0.01
+    // degrees.
     assert!((phase(&without) - phase(&gains_alone)).abs() < 0.05);
     give(&mut window, LayoutCommand::ShowSheet(Some(Sheet::Reasons)));
     let told = window

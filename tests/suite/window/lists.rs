@@ -1,4 +1,4 @@
-//! Texts in the lists, and their legibility.
+//! Legibility of texts in the lists.
 
 use gdcm::gui::commands::layout::LayoutCommand;
 use gdcm::gui::commands::selection::SelectionCommand;
@@ -8,7 +8,7 @@ use gdcm_study::Edit;
 use super::views::give;
 use super::*;
 
-/// The window at its least width.
+/// Opens a window of minimum width.
 fn narrow_window(height: f32) -> Window {
     let mut window = Harness::builder()
         .with_size(vec2(900.0, height))
@@ -17,7 +17,8 @@ fn narrow_window(height: f32) -> Window {
     window
 }
 
-/// Texts painted in the last frame inside `area`, each with its rectangle, without those under a sheet.
+/// Returns the texts painted in the last frame inside `area`, with their rectangles; texts covered
+/// by a sheet are omitted.
 pub(super) fn texts_in(window: &Window, area: egui::Rect) -> Vec<(String, egui::Rect)> {
     let shapes = &window.output().shapes;
     let covers = |clipped: &egui::epaint::ClippedShape| match &clipped.shape {
@@ -39,7 +40,7 @@ pub(super) fn texts_in(window: &Window, area: egui::Rect) -> Vec<(String, egui::
         .collect()
 }
 
-/// Asserts that no two texts in `area` lie over one another.
+/// Asserts that no two texts in `area` overlap.
 fn assert_apart(window: &Window, area: egui::Rect, what: &str) {
     let texts = texts_in(window, area);
     for (index, (text, place)) in texts.iter().enumerate() {
@@ -56,7 +57,7 @@ fn assert_apart(window: &Window, area: egui::Rect, what: &str) {
 #[test]
 fn at_the_least_size_no_text_of_a_list_lies_over_another() {
     let mut window = narrow_window(560.0);
-    // Bounds that leave gains unmatched give every condition its marks.
+    // With this bound, gains remain unmatched and every condition is marked.
     unfold_settings(&mut window, true);
     window
         .get_by_label("Upper gain bound")
@@ -202,7 +203,7 @@ fn no_two_labels_of_the_plots_lie_over_one_another_on_any_response_of_any_condit
         .collect();
     let pairs: Vec<Pair> = state(&window).study.settings.constrained.pairs().collect();
     assert_eq!((conditions.len(), pairs.len()), (11, 24));
-    // Between the panels, which are 272 and 352 points wide, below the bar of the views.
+    // The region between the panels (272 and 352 points wide) and below the view bar.
     let size = window.ctx.content_rect();
     let centre = egui::Rect::from_min_max(
         pos2(272.0, 80.0),

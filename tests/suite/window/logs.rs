@@ -1,4 +1,5 @@
-//! Logs as they come off aircraft, opened in the window: channels are proposed, and a dataset is made of them without a word typed.
+//! Logs of autopilots in the window: channels are proposed, and a dataset is made from them without
+//! typing.
 
 use gdcm::gui::commands::records::RecordsCommand;
 use gdcm::gui::state::records::WantedDataset;
@@ -7,7 +8,7 @@ use super::records::rows_shown;
 use super::views::{give, show};
 use super::*;
 
-/// The window on a log, in the form for the channels of a new dataset.
+/// Opens a log and the form for the channels of a new dataset.
 fn asked(log: &str, bytes: &[u8]) -> (Window, tempfile::TempDir) {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join(log), bytes).unwrap();
@@ -26,7 +27,7 @@ fn wanted(window: &Window) -> &WantedDataset {
     &state(window).records.wanted
 }
 
-/// Makes the dataset that is proposed, and gives its record's notes.
+/// Makes the proposed dataset, and returns the notes of its record.
 fn made(window: &mut Window, name: &str) -> Vec<String> {
     click(window, "Make the dataset");
     wait_until(window, "the dataset", |window| {
@@ -65,7 +66,7 @@ fn a_log_of_px4_proposes_its_setpoints_and_rates() {
     );
     let notes = made(&mut window, "quadrotor");
     assert!(
-        notes.iter().any(|note| note.contains("signs are PX4's")),
+        notes.iter().any(|note| note.contains("signs follow PX4's")),
         "{notes:?}"
     );
     let units: Vec<&str> = state(&window)
@@ -115,7 +116,7 @@ fn a_log_of_ardupilot_proposes_outputs_of_its_controller_and_rates_of_its_identi
         notes.iter().any(|note| note.contains("P = SIDD.Gx")),
         "{notes:?}"
     );
-    // The signal added by the identification mode drives the loop from outside.
+    // The signal added by the identification mode is an external reference of the loop.
     let row = &state(&window).records.conditions[&ConditionId(1)].rows[0];
     assert!(
         row.possible_references().contains(&("SIDD.Targ", true)),

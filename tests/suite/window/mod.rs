@@ -1,4 +1,4 @@
-//! The window, driven by accessible labels: no display, no GPU.
+//! The window, operated by accessible labels: no display, no GPU.
 
 mod assembling;
 mod commands;
@@ -60,12 +60,12 @@ use gdcm_study::{Engine, Study};
 
 pub(crate) type Window = Harness<'static, GdcmApp>;
 
-/// Far above the time on the slowest machine: only a hang reaches it.
+/// Far above the time needed on the slowest machine, so that only a hang exceeds it.
 const LIMIT: Duration = Duration::from_secs(900);
 
 const CONDITION_10: &str = "Condition 10: 60 kt, low altitude, high weight";
 
-/// The window on the example, its first results there.
+/// Opens the example and waits for its first results.
 pub(crate) fn window() -> Window {
     window_with(example(), warm())
 }
@@ -74,7 +74,8 @@ fn example() -> Opened {
     Opened::Dataset(crate::EXAMPLE.clone())
 }
 
-/// An engine that has analysed the example, error bars and all: most windows begin with that, and none has to wait for it again.
+/// Engine that has already analysed the example, including error bars. Most tests start with it, so
+/// that they need not wait for these results.
 static WARM: LazyLock<Engine> = LazyLock::new(|| {
     let mut engine = Engine::default().with_proofs_within(LIVE_PROOF);
     let analysis = engine
@@ -93,7 +94,7 @@ fn warm() -> Setup {
     }
 }
 
-/// The window on a few conditions of the example, its first results there.
+/// Opens a few conditions of the example and waits for their first results.
 pub(crate) fn few_window() -> Window {
     window_with(Opened::Dataset(crate::FEW.clone()), Setup::default())
 }
@@ -119,7 +120,7 @@ fn window_with(opened: Opened, setup: Setup) -> Window {
     window
 }
 
-/// Draws frames until something is so.
+/// Draws frames until a condition is met; fails after [`LIMIT`].
 pub(crate) fn wait_until(window: &mut Window, what: &str, is_so: impl Fn(&Window) -> bool) {
     let limit = Instant::now() + LIMIT;
     while !is_so(window) {
@@ -136,7 +137,8 @@ pub(crate) fn wait_until(window: &mut Window, what: &str, is_so: impl Fn(&Window
     window.run_steps(1);
 }
 
-/// Draws frames until nothing is being computed or read, and the curves of the condition shown are there.
+/// Draws frames until nothing is being computed or read, and the curves of the displayed condition
+/// are available.
 pub(crate) fn settle(window: &mut Window) {
     window.run_steps(2);
     wait_until(window, "the results", |window| {
@@ -194,7 +196,7 @@ fn choose_condition_10(window: &mut Window) {
     click(window, "Response LON → Q");
 }
 
-/// Unfolds the settings, those that are seldom changed too, or folds them.
+/// Unfolds the settings, including the rarely changed ones, or folds them.
 pub(crate) fn unfold_settings(window: &mut Window, is_open: bool) {
     use gdcm::gui::commands::layout::LayoutCommand::{ShowAdvanced, ShowSettings};
     for command in [ShowSettings(is_open), ShowAdvanced(is_open)] {
@@ -203,7 +205,7 @@ pub(crate) fn unfold_settings(window: &mut Window, is_open: bool) {
     window.run_steps(2);
 }
 
-/// Moves the slider of a setting, which is unfolded for that.
+/// Unfolds the settings and moves the slider of a setting.
 pub(crate) fn slide(window: &mut Window, name: &str, value: f64) {
     unfold_settings(window, true);
     window
@@ -220,7 +222,7 @@ pub(crate) fn fill(window: &mut Window, field: &str, path: &Path) {
     window.run_steps(2);
 }
 
-/// Exports from the open form to a file, and returns the message.
+/// Exports from the open form to a file, and returns the notice.
 fn exported(window: &mut Window, path: &Path) -> Notice {
     window.get_by_label("Path of the export").focus();
     window.key_press_modifiers(Modifiers::COMMAND, Key::A);
@@ -257,14 +259,14 @@ fn wait_for_toggles(window: &mut Window) {
     });
 }
 
-/// Draws frames until nothing is computed beside the window either.
+/// Draws frames until no background job is running.
 fn wait_for_background(window: &mut Window) {
     wait_until(window, "what is computed beside", |window| {
         state(window).results.background_since.is_none()
     });
 }
 
-/// Saves the study as the form does.
+/// Saves the study at a path, as the form does.
 pub(crate) fn save_as(window: &mut Window, path: &Path) {
     window.state_mut().save_study_as(path.to_owned());
     settle(window);

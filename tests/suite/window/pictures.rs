@@ -1,6 +1,7 @@
-//! A picture of every view in both themes, as it was looked at and found good.
+//! Compares every view, in both themes, with a picture that was inspected and accepted.
 //!
-//! `GDCM_PICTURES=write cargo test pictures` makes them anew, to be looked at again before they are kept.
+//! `GDCM_PICTURES=write cargo test pictures` renews the pictures; inspect them before accepting
+//! them.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -23,8 +24,8 @@ use super::assembling::type_into;
 use super::views::{give, show};
 use super::*;
 
-/// Size of the window \[pt\], folder of the pictures, and pixels of the window on either side of one of the saved picture: where only
-/// a test looks, letters stay legible and files small.
+/// Format of saved pictures: window size \[pt\], folder, and reduction factor. Pictures for
+/// comparison are reduced as far as letters remain legible, so that the files are small.
 #[derive(Clone, Copy)]
 struct Format {
     size: [usize; 2],
@@ -32,13 +33,13 @@ struct Format {
     scale: usize,
 }
 
-/// Size of the compared pictures.
+/// Format of the compared pictures.
 const COMPARED: Format = Format {
     size: [1280, 720],
     folder: "tests/data/pictures",
     scale: 2,
 };
-/// Size of the pictures in the documentation: as large as the renderer allows.
+/// Format of the pictures in the documentation, at full window resolution.
 const SHOWN: Format = Format {
     size: [1280, 720],
     folder: "assets/screenshots",
@@ -58,12 +59,13 @@ impl Format {
     }
 }
 
-/// Channel difference from which a pixel counts as different: rounding in the last digit moves a curve by less.
+/// Minimum channel difference of a pixel that counts as different. A curve moved by rounding in the
+/// last digit changes its pixels by less.
 const OTHER: u8 = 40;
-/// Share of pixels that may differ: a digit or two. A missing line of text or curve is more.
+/// Maximum share of differing pixels: a digit or two may differ, but not a line of text or a curve.
 const MOST_OTHERS: f64 = 0.002;
 
-/// The textures of a window, as the frames before have left them.
+/// Textures of a window after all frames so far.
 #[derive(Clone, Default)]
 struct Textures(Rc<RefCell<HashMap<egui::TextureId, ColorImage>>>);
 
@@ -97,7 +99,7 @@ fn colour(of: egui::Color32) -> Color {
     Color::from_rgba_premultiplied(r, g, b, a)
 }
 
-/// Pixels of the window, red, green and blue, averaged over squares of the format's scale.
+/// Renders the window as red, green and blue values, averaged over squares of the format's scale.
 fn picture(window: &Window, textures: &Textures, format: Format) -> Vec<u8> {
     fn corner(at: Pos2) -> [u32; 2] {
         [at.x.round().max(0.0) as u32, at.y.round().max(0.0) as u32]
@@ -200,7 +202,8 @@ fn read(name: &str, format: Format) -> Vec<u8> {
     pixels
 }
 
-/// Returns the difference between a picture and the kept picture; a run that renews the pictures keeps it instead.
+/// Returns a message if a picture differs from the accepted one. If pictures are being renewed,
+/// saves the picture instead.
 fn miss(name: &str, window: &Window, textures: &Textures, format: Format) -> Option<String> {
     let found = picture(window, textures, format);
     if std::env::var("GDCM_PICTURES").is_ok_and(|what| what == "write") {
@@ -210,7 +213,7 @@ fn miss(name: &str, window: &Window, textures: &Textures, format: Format) -> Opt
     (part > MOST_OTHERS).then(|| format!("{name}: {:.2} % of the pixels are others", 100.0 * part))
 }
 
-/// Part of the pixels that differ.
+/// Returns the share of differing pixels.
 fn others(one: &[u8], other: &[u8]) -> f64 {
     assert_eq!(one.len(), other.len());
     let pairs = one.chunks(3).zip(other.chunks(3));
@@ -262,11 +265,11 @@ fn every_view_looks_as_it_did_in_both_themes() {
                     .is_some_and(|of| of.rows.len() == 9),
                 _ => true,
             });
-            // Running work is shown in the status bar.
+            // The status bar shows running work, which would change the picture.
             wait_until(&mut window, "rest", |window| {
                 !state(window).results.background.is_busy()
             });
-            // Tooltips, fades and the bars of a scroll area come to rest.
+            // Wait for the end of the animations of tooltips, fades and scroll bars.
             window.run_steps(8);
             let name = format!("{}-{theme}", view.name().to_lowercase().replace(' ', "-"));
             misses.extend(miss(&name, &window, &textures, COMPARED));
@@ -334,7 +337,7 @@ fn the_pictures_of_the_pages_are_those_of_the_window() {
             .as_ref()
             .is_some_and(|bench| bench.reading.is_none() && !bench.sources.is_empty())
     });
-    // Where the folder is, is another place each time.
+    // Replace the paths, because the temporary folder changes with every run.
     for (field, text) in [
         ("Name of the dataset", "models"),
         ("Path of the dataset to make", "models.json.gz"),

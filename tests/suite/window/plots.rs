@@ -1,4 +1,4 @@
-//! The plots, worked with the pointer.
+//! Interaction with plots by the pointer.
 
 use gdcm::gui::commands::display::DisplayCommand;
 use gdcm::gui::state::view::View;
@@ -10,10 +10,11 @@ use super::lists::texts_in;
 use super::views::{give, show};
 use super::*;
 
-/// A point of the nominal model's curve.
+/// Returns the position of a point on the nominal model's curve.
 pub(super) fn place_on_nominal(window: &Window) -> Pos2 {
     let nominal = drawn(window, CurveRole::Nominal);
-    // At 2 rad/s the nominal model is 3 dB above the bundle: nothing else is near.
+    // At 2 rad/s the nominal model is 3 dB above the other curves, so that the pointer can hit no
+    // other.
     let at = nominal.omega.iter().position(|&omega| omega > 2.0).unwrap();
     let view = &state(window).display.frequency.bode;
     view.screen_position(Pane::Magnitude, nominal.omega[at], nominal.magnitude_db[at])
@@ -39,7 +40,8 @@ fn a_click_on_a_curve_rejects_it_and_another_click_restores_it() {
         window.drop_at(place);
         settle(&mut window);
         assert_eq!(state(&window).study.is_rejected(&id), rejected);
-        // A second click soon after would be a double click, which fits the plot.
+        // Wait, because a second click soon after the first would be a double click, which fits the
+        // plot.
         window.run_steps(4);
     }
 }
@@ -56,7 +58,8 @@ fn a_double_click_on_a_curve_leaves_no_decision() {
     window.hover_at(place);
     window.run_steps(2);
     for _ in 0..2 {
-        // Both in one frame: a frame of the harness takes nearly as long as two clicks may be apart.
+        // Press and release in the same frame: a frame of the test harness takes nearly as long as
+        // the maximum interval of a double click.
         for pressed in [true, false] {
             let button = PointerButton::Primary;
             let modifiers = Modifiers::NONE;
@@ -78,7 +81,7 @@ fn a_double_click_on_a_curve_leaves_no_decision() {
     );
 }
 
-/// Presses the primary button at `from` and drags it to `to`, in steps; it is not let go.
+/// Presses the primary button at `from` and drags to `to` in steps, without releasing the button.
 pub(super) fn drag_along(window: &mut Window, from: Pos2, to: Pos2) {
     window.hover_at(from);
     window.run_steps(2);
@@ -86,12 +89,12 @@ pub(super) fn drag_along(window: &mut Window, from: Pos2, to: Pos2) {
     window.run_steps(1);
     for step in 1..=6 {
         window.hover_at(from + (to - from) * (step as f32 / 6.0));
-        // Long enough for the answer to an earlier step to come.
+        // Wait until the results for an earlier step have arrived.
         settle(window);
     }
 }
 
-/// Position of a frequency in the magnitude plot, near its lower edge.
+/// Returns the position of a frequency in the magnitude plot, near its lower edge.
 fn place_of(window: &Window, omega: f64) -> Pos2 {
     let view = &state(window).display.frequency.bode;
     let frame = *view.transform(Pane::Magnitude).unwrap().frame();
@@ -99,7 +102,7 @@ fn place_of(window: &Window, omega: f64) -> Pos2 {
     pos2(place.x, frame.bottom() - 12.0)
 }
 
-/// The frequency at a place of the magnitude plot.
+/// Returns the frequency at a position in the magnitude plot.
 fn omega_at(window: &Window, place: Pos2) -> f64 {
     let transform = *state(window)
         .display
@@ -137,12 +140,12 @@ fn a_dragged_end_of_the_band_stays_under_the_pointer_and_the_view_follows_when_i
         } else {
             band(&window).1
         };
-        // A hundredth of a point on the screen.
+        // The tolerance is a hundredth of a point on the screen.
         assert!(
             (found / expected - 1.0).abs() < 1e-4,
             "{end} dragged to {expected}: {found}"
         );
-        // As far as curves are drawn: 1.7 times the band on either side.
+        // The axis shows the range of the curves: 1.7 times the band at either end.
         let (first, last) = state(&window).display.frequency.bode.omega_range();
         let (min, max) = band(&window);
         assert!(
@@ -261,7 +264,7 @@ fn an_idle_window_draws_no_frames() {
         assert_asks_for_no_frame(&mut window, tab);
     }
     show(&mut window, View::Bode);
-    // A pointer that rests on a curve: its name is shown, and stays.
+    // While the pointer rests on a curve, its name remains visible.
     let nominal = drawn(&window, CurveRole::Nominal);
     let view = &state(&window).display.frequency.bode;
     let place = view
@@ -328,7 +331,8 @@ fn what_is_out_of_sight_is_not_tessellated() {
     assert_little_is_hidden(&window, "Bode zoomed in");
 }
 
-/// Every shape in view is tessellated as a whole: dashes and letters at an edge have a few triangles beyond it.
+/// Asserts that few triangles lie outside the visible area. Shapes are tessellated as a whole, so
+/// dashes and letters at an edge have a few triangles beyond it.
 fn assert_little_is_hidden(window: &Window, what: &str) {
     let (hidden, all) = hidden_triangles(window);
     assert!(
@@ -337,7 +341,8 @@ fn assert_little_is_hidden(window: &Window, what: &str) {
     );
 }
 
-/// Count of triangles in the last frame outside their clip rectangles, and count of all triangles.
+/// Returns the number of triangles outside their clip rectangles in the last frame, and the number
+/// of all triangles.
 fn hidden_triangles(window: &Window) -> (usize, usize) {
     let output = window.output();
     let mut hidden = 0;
@@ -367,7 +372,7 @@ fn pointing_at_plots_starts_no_analysis() {
     let requested = state(&window).results.requested;
     let analysis = state(&window).results.analysis.clone();
     for step in 0..40 {
-        // From corner to corner, across lists, plots, matrix and settings.
+        // Moves diagonally across lists, plots, matrix and settings.
         window.hover_at(pos2(40.0 * step as f32, 25.0 * step as f32));
         window.run_steps(1);
     }
@@ -381,7 +386,8 @@ fn pointing_at_plots_starts_no_analysis() {
     assert_eq!(same, Some(true));
 }
 
-/// Expected values of the curves in Airspeeds within the band, as magnitude and phase.
+/// Returns the value ranges to which the Airspeeds view should be fitted, from the curves within
+/// the band: magnitude and phase.
 fn across_values(window: &Window) -> [Range; 2] {
     let state = state(window);
     let made_of = (state.dataset(), state.analysis());
@@ -399,7 +405,7 @@ fn across_values(window: &Window) -> [Range; 2] {
         .map(|pane| fitted_values(&drawn, pane, (band.min(), band.max())).expect("curves"))
 }
 
-/// Whether Airspeeds shows just that, but for a margin.
+/// Returns whether the Airspeeds view shows these ranges with at most a small margin.
 fn across_is_fitted(window: &Window) -> bool {
     let view = &state(window).display.frequency.across;
     let values = across_values(window);
@@ -414,7 +420,7 @@ fn across_is_fitted(window: &Window) -> bool {
         })
 }
 
-/// Turns the wheel over the magnitudes of Airspeeds.
+/// Turns the mouse wheel over the magnitude plot of the Airspeeds view.
 fn zoom_across(window: &mut Window) {
     let frame = *state(window)
         .display
@@ -499,7 +505,7 @@ fn the_label_of_airspeeds_lies_inside_its_plot() {
         .transform(Pane::Magnitude)
         .unwrap()
         .frame();
-    // The heading's copy is above it.
+    // Ignore the same text in the heading above the plot.
     let labels = texts_in(&window, frame.expand(30.0))
         .into_iter()
         .filter(|(text, _)| text == "LON → Q");

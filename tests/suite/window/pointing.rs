@@ -1,4 +1,5 @@
-//! Texts under the pointer: in the status line over plots, in small tooltips over lists.
+//! Texts for the element under the pointer: in the status bar for plots, in small tooltips for
+//! lists.
 
 use std::collections::BTreeSet;
 
@@ -9,16 +10,16 @@ use gdcm::gui::plot::overview::OverviewView;
 use super::views::{give, show};
 use super::*;
 
-/// Rests the pointer at a place for longer than any tooltip waits.
+/// Rests the pointer at a position for longer than any tooltip delay.
 fn rest_at(window: &mut Window, at: Pos2) {
-    // The pointer comes from elsewhere, so that no earlier tooltip is in the way.
+    // The pointer starts elsewhere, so that no earlier tooltip is open.
     window.hover_at(pos2(3.0, 3.0));
     window.run_steps(3);
     window.hover_at(at);
     window.run_steps(10);
 }
 
-/// The part of the screen that the tooltips take.
+/// Returns the rectangles of the open tooltips.
 fn tooltips(window: &Window) -> Vec<egui::Rect> {
     let layers = window
         .ctx
@@ -30,7 +31,8 @@ fn tooltips(window: &Window) -> Vec<egui::Rect> {
         .collect()
 }
 
-/// Asserts that pointing at a mark of a plot opens nothing, and that the status line describes the mark.
+/// Asserts that pointing at a plot mark opens no tooltip, and that the status bar describes the
+/// mark.
 fn assert_told(window: &mut Window, what: &str, at: Pos2) {
     rest_at(window, at);
     let told = state(window).display.selection.told.clone();
@@ -122,7 +124,7 @@ fn marked_frequencies_are_named_over_the_plot_and_not_over_its_curves() {
     );
 }
 
-/// In how many lines the texts of the tooltip stand that opens at a place.
+/// Returns the number of text lines in the tooltip that opens at a position.
 fn lines_of_tooltip(window: &mut Window, at: Pos2) -> usize {
     fn labels(window: &Window) -> BTreeSet<String> {
         let nodes = window.query_all_by_role(Role::Label);
@@ -139,7 +141,7 @@ fn lines_of_tooltip(window: &mut Window, at: Pos2) -> usize {
     let [place] = open[..] else {
         panic!("one tooltip: {open:?}")
     };
-    // The marks under it were there before.
+    // Texts below the tooltip existed before it was opened.
     let is_new =
         |label: &Option<String>, rect: egui::Rect| !before.contains(&format!("{label:?} {rect}"));
     let nodes = window.query_all_by_role(Role::Label);
@@ -160,7 +162,7 @@ fn a_tooltip_has_a_name_and_four_rows_at_most() {
 
     let mut window = window();
     choose_condition_10(&mut window);
-    // A model with every entry: trim, ratio, distance, and the reason for its rejection.
+    // A model whose tooltip has every entry: trim, ratio, distance, and reason for its rejection.
     let reject = gdcm_study::Edit::RejectBecause {
         model: ModelId::new(ConditionId(10), BundleKind::Physics, "V+10kt"),
         reason: "a step near this trim".to_owned(),
@@ -171,7 +173,7 @@ fn a_tooltip_has_a_name_and_four_rows_at_most() {
     assert!((3..=5).contains(&lines), "{lines} lines about a model");
     let cell = place(&window, "Response LON → Q");
     let lines = lines_of_tooltip(&mut window, cell.left_bottom() + vec2(8.0, -6.0));
-    // The heads of the columns are a line too.
+    // The column headings add a line.
     assert!((5..=6).contains(&lines), "{lines} lines about a response");
     let condition = place(&window, CONDITION_10);
     let lines = lines_of_tooltip(&mut window, condition.left_center() + vec2(6.0, 0.0));

@@ -1,4 +1,5 @@
-//! Cautions about identified models in the Records view: marks at their places, and buttons with remedies.
+//! Cautions about identified models in the Records view: marks beside the affected items, and
+//! buttons with remedies.
 
 use std::fs;
 
@@ -12,8 +13,8 @@ use super::*;
 
 const OF: ConditionId = ConditionId(7);
 
-/// The window on four flights of which the last is held out and was flown with outputs of another size; the band reaches far beyond
-/// the sweeps.
+/// Opens a dataset with four flights. The last flight is held out, and its outputs are scaled by
+/// 1.6; the band extends far beyond the sweeps.
 fn doubtful() -> (Window, tempfile::TempDir) {
     fn larger(line: &str) -> String {
         let cells = line
@@ -61,7 +62,7 @@ fn doubtful() -> (Window, tempfile::TempDir) {
     (window, folder)
 }
 
-/// Presses a button that the record list may have scrolled out of sight.
+/// Clicks a button that may be outside the visible part of the record list.
 fn press(window: &mut Window, label: &str) {
     window.get_by_label(label).click_accesskit();
     window.run_steps(3);
@@ -82,12 +83,12 @@ fn cautions_stand_as_marks_at_their_places_and_their_buttons_act() {
         codes.contains(&"held-out") && codes.contains(&"band-narrowed"),
         "{codes:?}"
     );
-    // At the record that is not predicted, and at no other.
+    // Only the record that the models do not predict is marked.
     window.get_by_label("Cautions of flight 3");
     assert!(window.query_by_label("Cautions of flight 1").is_none());
-    // Beyond the band of the sweeps.
+    // The band extends beyond the sweeps, so the response has a caution.
     click(&mut window, "Page Response");
-    window.get_by_label_contains("⚠ shows nothing");
+    window.get_by_label_contains("⚠ no response shown");
     press(&mut window, "Fit flight 3 too");
     assert!(
         records(&window).rows.iter().all(|row| !row.guess.held_out) && records(&window).changed

@@ -1,4 +1,5 @@
-//! Flight records in the window: from the example's records to corrected models, by the controls.
+//! Flight records in the window: from the example's records to corrected models, through the
+//! controls.
 
 use std::path::{Path, PathBuf};
 
@@ -28,7 +29,7 @@ use crate::made_up::{Flight, Gusts, stable_aircraft, tries};
 
 const CONDITION_10_ID: ConditionId = ConditionId(10);
 
-/// The window on the records at condition 10 in the example.
+/// Opens the Records view at condition 10 of the example.
 fn records_window() -> Window {
     let mut window = window();
     click(&mut window, CONDITION_10);
@@ -83,7 +84,8 @@ fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_la
         .identification()
         .unwrap()
         .clone();
-    // The known figure of this condition is 0.86, of the held-out record 0.92 (M14, a trial in numpy: 0.86).
+    // Reference value of the cost: 0.86, from independent numpy code (M14); 0.92 for the held-out
+    // record.
     assert!((found.cost - 0.86).abs() < 0.05, "J/dof {}", found.cost);
     let held_out = found
         .held_out_cost
@@ -158,7 +160,7 @@ fn all_conditions_are_identified_one_after_the_other_and_stand_in_a_table() {
                 .get(&id)
                 .is_some_and(|of| !of.rows.is_empty())
         });
-        // A small search: only its end matters here.
+        // A small search space is enough, because only the end of the identification matters here.
         if window.query_by_label("Identification: orders").is_none() {
             click(&mut window, "Advanced");
         }
@@ -267,7 +269,7 @@ fn parts_of_a_record_that_are_typed_or_dragged_are_records_of_their_own_in_its_p
         (rows(&window), part(&window, 1).0),
         (10, Some([first, last]))
     );
-    // The search space is typed too, and impossible values are refused.
+    // The search space can be typed as well; impossible values are refused.
     click(&mut window, "Advanced");
     type_into(&mut window, "Identification: orders", "8 10");
     assert_eq!(
@@ -441,7 +443,8 @@ const REDO: Modifiers = Modifiers {
     ..Modifiers::COMMAND
 };
 
-/// Name, use, role and columns of each record of condition 10, and the weight of the study.
+/// Returns name, use, role and columns of each record in condition 10, the output delays, and the
+/// weight alpha of the gains.
 fn decided(window: &Window) -> String {
     let of = state(window).records.conditions.get(&CONDITION_10_ID);
     let rows = of.iter().flat_map(|records| &records.rows);
@@ -577,7 +580,7 @@ fn a_part_counts_from_the_start_of_the_record_too_and_one_without_samples_is_ref
         "{span_s:?}"
     );
     window.get_by_label(
-        "runs from 42.30 s to 81.30 s on its clock, +0.00 s to +39.00 s from its start",
+        "42.30 s to 81.30 s on the record's time axis, +0.00 s to +39.00 s from its start",
     );
     type_into(&mut window, "Part of the record", "5 34");
     let told = state(&window).notice.clone().expect("it is refused");
@@ -597,7 +600,7 @@ fn a_part_counts_from_the_start_of_the_record_too_and_one_without_samples_is_ref
     );
 }
 
-/// Records at conditions with used records, and the count of these conditions.
+/// Returns the number of used records, and the number of conditions with used records.
 fn used_rows(window: &Window) -> (usize, usize) {
     let used = state(window)
         .records
@@ -610,7 +613,7 @@ fn used_rows(window: &Window) -> (usize, usize) {
         })
 }
 
-/// The README, "From flight records to identified models", step 5, word by word.
+/// Follows step 5 of the README section "From flight records to identified models".
 #[test]
 fn all_conditions_come_from_one_archive_as_the_readme_says() {
     let mut window = records_window();
@@ -623,7 +626,7 @@ fn all_conditions_come_from_one_archive_as_the_readme_says() {
     wait_until(&mut window, "the archive", |window| {
         used_rows(window) == (99, 11)
     });
-    window.get_by_label("81 records of 9 conditions added; 18 there already");
+    window.get_by_label("81 records of 9 conditions added; 18 already loaded");
     let records = &state(&window).records;
     assert!(
         records
@@ -640,15 +643,16 @@ fn all_conditions_come_from_one_archive_as_the_readme_says() {
             "its own records are kept"
         );
     }
-    // The page Conditions has them all, none of them identified yet.
+    // The Conditions page lists all conditions; none is identified yet.
     click(&mut window, "Page Conditions");
     assert_eq!(condition_table(state(&window)).rows.len(), 11);
-    // Adding is a step like others.
+    // Adding records is an undoable step.
     step(&mut window, UNDO);
     assert_eq!(used_rows(&window), (18, 2));
     step(&mut window, REDO);
     assert_eq!(used_rows(&window), (99, 11));
-    // A search of little, so that the walk takes seconds; the whole one where all is tried.
+    // By default, a small search space limits the duration to seconds; the thorough run uses the
+    // whole space.
     let is_quick = tries(1, 2) == 1;
     let search = SearchSpace {
         orders: vec![8],
@@ -693,7 +697,8 @@ fn all_conditions_come_from_one_archive_as_the_readme_says() {
     assert_eq!(state(&window).study.taken_models().count(), 11);
 }
 
-/// A record of the example's channels without units, with samples that leave most units ambiguous.
+/// Returns a record of the example's channels without units, whose samples leave most units
+/// ambiguous.
 fn without_units(phase: f64) -> String {
     let row = |k: u32| {
         let at = 0.02 * f64::from(k);
@@ -758,7 +763,8 @@ fn units_that_no_file_says_are_asked_once_for_the_records_of_all_conditions() {
     assert_eq!([5, 8, 10].map(|id| factor(&window, id, 0)), [1.0; 3]);
     step(&mut window, UNDO);
     assert_eq!(open(&window), Some((3, 3)));
-    // In another unit: what is said of the columns of one record is said of all that were added.
+    // A unit set for the columns of a record also applies to all added records with the same
+    // columns.
     click(&mut window, "Choose others…");
     assert_eq!(
         (state(&window).condition().id(), state(&window).records.page),
@@ -835,7 +841,7 @@ fn a_record_is_added_once_a_changed_file_takes_its_place_and_another_of_its_name
         ["cond10_flight"],
         "the same is not added twice"
     );
-    window.get_by_label("nothing added: 1 record there already");
+    window.get_by_label("nothing added: 1 record already loaded");
     assert_eq!(
         add(&mut window, &second),
         ["cond10_flight", "cond10_flight (2)"]
@@ -915,8 +921,9 @@ fn a_condition_without_identified_models_offers_to_identify_them_from_records_in
     });
 }
 
-/// A dataset of which condition 7 has a known aircraft for its physics model and four flights of it for records, in all of which Q is
-/// logged three samples of 40 ms late; the band reaches far beyond the sweeps, which end at 8 rad/s.
+/// Writes a dataset in which condition 7 has a known aircraft as physics model, and four of its
+/// flights as records. Q is logged three samples of 40 ms late in all flights. The band extends far
+/// beyond the sweeps, which end at 8 rad/s.
 pub(crate) fn late_dataset(folder: &Path) -> PathBuf {
     fn rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
         matrix
@@ -984,7 +991,7 @@ fn what_is_late_in_all_records_and_a_band_that_they_do_not_show_are_mended_by_th
     });
     settle(&mut window);
     for _ in 0..2 {
-        // Once more does not take it out twice.
+        // A second click must not remove the delay twice.
         window.get_by_label_contains("ms from Q").click();
         window.run_steps(2);
         let delay_s = records(&window).unwrap().outputs[1].delay_s;
@@ -1040,7 +1047,7 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
     wait_until(&mut window, "its two topics", |window| {
         rows_shown(window) == 2
     });
-    click(&mut window, "Make a dataset of them…");
+    click(&mut window, "Make a dataset from them…");
     for (field, text) in [
         ("Lower end of the band to identify", "3"),
         ("Upper end of the band to identify", "25"),
@@ -1058,7 +1065,7 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
         problems.contains("no column for the output q"),
         "{problems}"
     );
-    // Enter in a field makes the dataset too.
+    // Enter in a field also makes the dataset.
     type_into(&mut window, "Outputs of the dataset", "q [rad/s]");
     wait_until(&mut window, "the dataset", |window| {
         state(window).dataset().name() == "prbs"
@@ -1076,7 +1083,8 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
         .identification()
         .unwrap()
         .clone();
-    // M14.13, the trial in numpy: 35.9, 30.8 and 22.6 dB at 5, 8 and 20 rad/s.
+    // Reference values from independent numpy code (M14.13): 35.9, 30.8 and 22.6 dB at 5, 8 and 20
+    // rad/s.
     let model = PreparedModel::of(&found.refined.dynamics);
     for ends in [[(5.0, 35.9), (20.0, 22.6)], [(8.0, 30.8), (20.0, 22.6)]] {
         let grid = FrequencyGrid::logarithmic(Band::new(ends[0].0, ends[1].0).unwrap(), 2);
@@ -1093,8 +1101,8 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
     click(&mut window, "The refined models");
     assert!(state(&window).study.taken_models().any(|(id, _)| id == of));
 
-    // Its sweep, through which gusts are fed back, and by way of the position reference that drove the loop: 31.4 dB at 8 rad/s, where
-    // the direct way is 1.3 dB off.
+    // The sweep is distorted by feedback of gusts. With the position reference that drove the loop,
+    // the result is 31.4 dB at 8 rad/s; the direct estimate is off by 1.3 dB.
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/quadrotor/sweep.csv");
     give(&mut window, RecordsCommand::Add(vec![data]));
     wait_until(&mut window, "the sweep", |window| rows_shown(window) == 2);
@@ -1118,9 +1126,9 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
     wait_until(&mut window, "the models of the sweep", |window| {
         !state(window).records.conditions[&of].changed
     });
-    click(&mut window, "By way of x0");
+    click(&mut window, "Use x0 as reference");
     assert_eq!(state(&window).records.conditions[&of].references, ["x0"]);
-    // The list of columns takes it back, and takes it again.
+    // The list of columns can deselect the reference, and select it again.
     click(&mut window, "Choose a reference…");
     window.run_steps(10);
     for expected in [&[][..], &["x0".to_owned()][..]] {
@@ -1155,7 +1163,7 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
     assert!((at_8_db - 30.8).abs() < 1.0, "{at_8_db} dB");
 }
 
-/// Records of the condition shown.
+/// Returns the number of records in the displayed condition.
 pub(super) fn rows_shown(window: &Window) -> usize {
     let state = state(window);
     state
@@ -1165,13 +1173,13 @@ pub(super) fn rows_shown(window: &Window) -> usize {
         .map_or(0, |records| records.rows.len())
 }
 
-/// A window that makes a dataset from two records in a folder, with these channels.
+/// Opens a window that makes a dataset with these channels from two records in a folder.
 fn making_a_dataset(folder: &Path, inputs: &str, outputs: &str) -> Window {
     let mut window = window();
     show(&mut window, View::Records);
     give(&mut window, RecordsCommand::Add(vec![folder.to_owned()]));
     wait_until(&mut window, "the records", |window| rows_shown(window) == 2);
-    click(&mut window, "Make a dataset of them…");
+    click(&mut window, "Make a dataset from them…");
     fill_in(&mut window, "Inputs of the dataset", inputs);
     type_into(&mut window, "Outputs of the dataset", outputs);
     window
@@ -1267,7 +1275,8 @@ fn topics_with_clocks_of_their_own_become_the_record_of_a_dataset() {
         "{:?}",
         row.problems
     );
-    // They are on the clock that the band takes which is identified over: 20 4/3 of its end over 2 pi, as far as the rate has 50 Hz.
+    // The record is resampled to 20 * 4/3 samples per period at the upper end of the identified
+    // band, but at most to 50 Hz, the rate of the slower file.
     let of_study = state(&window).study.settings.band.max();
     assert!(is_at(&window, of_study), "{} Hz", rate_hz(&window));
     give(&mut window, RecordsCommand::SetBand(Some([0.5, 3.0])));

@@ -1,10 +1,10 @@
-//! Decisions that were not saved, after the window is gone.
+//! Recovery of unsaved decisions after the window has disappeared.
 
 use std::path::PathBuf;
 
 use super::*;
 
-/// Keeps unsaved decisions in a directory of its own after a short delay.
+/// Returns a setup that keeps unsaved decisions in a separate directory, after a short delay.
 fn setup(directory: &Path) -> Setup {
     Setup {
         directory: Some(directory.to_owned()),
@@ -13,7 +13,7 @@ fn setup(directory: &Path) -> Setup {
     }
 }
 
-/// The recovery files of a directory.
+/// Returns the recovery files in a directory.
 fn kept(directory: &Path) -> Vec<PathBuf> {
     let Ok(entries) = std::fs::read_dir(directory.join("recovery")) else {
         return Vec::new();
@@ -24,7 +24,7 @@ fn kept(directory: &Path) -> Vec<PathBuf> {
         .collect()
 }
 
-/// A window whose decisions are not saved, and are kept.
+/// Opens a window with unsaved decisions that have been written to the recovery directory.
 fn with_decisions(opened: Opened, directory: &Path) -> Window {
     let mut window = window_with(opened, setup(directory));
     slide(&mut window, "α gains", 12.5);
@@ -35,9 +35,9 @@ fn with_decisions(opened: Opened, directory: &Path) -> Window {
     window
 }
 
-/// The next window, once it offers the lost decisions.
+/// Opens further windows until one offers the lost decisions.
 fn next_window(directory: &Path) -> Window {
-    // The thread of a window that is gone may hold its file for a moment more.
+    // A thread of the previous window may keep its recovery file open for a moment.
     let limit = Instant::now() + LIMIT;
     loop {
         let mut window = window_with(example(), setup(directory));

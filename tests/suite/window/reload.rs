@@ -1,10 +1,10 @@
-//! A dataset whose file changes on the disk while it is open.
+//! A dataset whose file changes while it is open.
 
 use std::path::PathBuf;
 
 use super::*;
 
-/// A copy of the small dataset that may be changed.
+/// Copy of the small dataset whose file the tests change.
 struct Copy {
     _folder: tempfile::TempDir,
     path: PathBuf,
@@ -27,12 +27,12 @@ impl Copy {
         }
     }
 
-    /// Writes another name of the dataset into the file: the figures stay.
+    /// Changes the dataset's name in the file, but no values.
     fn rename(&self, name: &str) {
         self.change("\"name\": \"two", &format!("\"name\": \"{name} two"));
     }
 
-    /// Writes one thing differently into the file.
+    /// Replaces `before` in the file.
     fn change(&self, before: &str, after: &str) {
         assert!(self.text.contains(before), "{before}");
         std::fs::write(&self.path, self.text.replacen(before, after, 1)).unwrap();
@@ -120,7 +120,7 @@ fn what_is_open_may_be_kept_and_the_next_change_is_told_again() {
     let before = state(&window).dataset().name().to_owned();
     copy.rename("renewed");
     wait_until(&mut window, "the change is told", is_told);
-    click(&mut window, "Keep what is open");
+    click(&mut window, "Keep the open dataset");
     assert!(!is_told(&window) && state(&window).dataset().name() == before);
     copy.rename("once more");
     wait_until(&mut window, "the next change is told", is_told);
@@ -163,7 +163,7 @@ fn what_is_different_after_a_reload_is_listed() {
     );
     window.get_by_label("Keep physics model V+6kt");
     assert!(state(&window).unsaved);
-    click(&mut window, "Put the list away");
+    click(&mut window, "Close list");
     assert!(window.query_by_label_contains("was reloaded").is_none());
     window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     settle(&mut window);

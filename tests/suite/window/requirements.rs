@@ -1,4 +1,4 @@
-//! The questions of a qualification by hand (M17).
+//! Requirements of a qualification, in the window (M17).
 
 use std::sync::Arc;
 
@@ -41,10 +41,11 @@ fn bandwidth_modes_and_summary_stand_in_tables_and_a_row_is_marked_in_bode() {
     let requirements = state(&window).requirements().unwrap().clone();
     let said = texts(&window);
     assert!(
-        said.contains("these numbers are no qualification") && said.contains("ω_BW [rad/s]"),
+        said.contains("do not replace a qualification") && said.contains("ω_BW [rad/s]"),
         "{said}"
     );
-    // The numbers are those of the command: one finding a condition, measuring response and role.
+    // The values equal those of the command: one finding for each condition, on-axis response and
+    // role.
     let roles = if state(&window).analysis().unwrap().schedule.is_ok() {
         4
     } else {
@@ -71,7 +72,7 @@ fn bandwidth_modes_and_summary_stand_in_tables_and_a_row_is_marked_in_bode() {
         give(&mut window, DisplayCommand::ShowRequirements(chosen));
         assert!(texts(&window).contains(heading), "{heading}");
     }
-    // A click on a mark goes to Bode, where the frequencies are marked that its numbers are read at.
+    // A click on a mark shows the Bode view, with marks at the frequencies that define its values.
     give(
         &mut window,
         DisplayCommand::ShowRequirements(RequirementsPage::Bandwidth),
@@ -127,10 +128,11 @@ fn a_click_on_a_mark_is_of_that_model() {
     show(&mut window, View::Requirements);
     let requirements = shown_requirements(&mut window);
     let p_lat = pair(&window, "P", "LAT");
-    // Without leads the corrected models' marks lie on the physics models'.
+    // Without leads, the marks of the corrected models coincide with the marks of the physics
+    // models.
     let role = RequirementRole::Identified;
     let of_role = |of: &&BandwidthFinding| of.pair == p_lat && of.role == role;
-    // The mark farthest from all other marks: nothing hides it.
+    // The mark with the largest distance from all others cannot be hidden by another mark.
     let places = |of: &BandwidthFinding| gdcm_plot::figure::requirements::bandwidth_place(of);
     let apart = |of: &BandwidthFinding| -> f64 {
         let Some([x, y]) = places(of) else {
@@ -174,7 +176,7 @@ fn a_click_on_a_mark_is_of_that_model() {
     .map(Option::unwrap);
     assert_eq!(crossings.len(), 3, "{crossings:?}");
     for ((name, omega), expected) in crossings.iter().zip(expected) {
-        // Roots are found to a relative 1e-12 each time that the answer is computed anew.
+        // Each computation finds the roots with a relative error of up to 1e-12.
         assert!(
             (omega / expected - 1.0).abs() < 1e-11,
             "{name}: {omega} {expected}"
@@ -267,7 +269,7 @@ fn models_answer_to_a_step_or_a_doublet_of_the_input_in_focus() {
         step.models
     );
     window.get_by_label("P [deg/s] over time");
-    click(&mut window, "Course of the test input");
+    click(&mut window, "Shape of the test input");
     click(&mut window, "doublet");
     let doublet = answers(&mut window);
     assert!(
@@ -399,7 +401,7 @@ fn the_summary_has_what_the_records_that_are_open_say() {
         format!("{:.2}", rms(RequirementRole::Identified))
     );
     assert!(texts(&window).contains("J_rms") && texts(&window).contains("Theil P"));
-    // The overview has them too, and its limits are decided, undone and drawn.
+    // The overview includes these results; its limits can be changed, undone and drawn.
     let overview = |window: &Window| {
         let limits = &state(window).study.requirements.overview;
         RequirementsOverview::new(
@@ -431,7 +433,7 @@ fn the_summary_has_what_the_records_that_are_open_say() {
     );
     assert!(texts(&window).contains("pitch rate inside") && texts(&window).contains("≥ 90"));
     click(&mut window, "Limits of the overview");
-    type_into(&mut window, "Least time inside", "100.5");
+    type_into(&mut window, "Minimum time within tolerance", "100.5");
     assert!(
         overview(&window).is_outside(pitch, column),
         "nothing is inside for longer than always"
@@ -449,7 +451,7 @@ fn the_summary_has_what_the_records_that_are_open_say() {
     give(&mut window, StudyCommand::Undo);
     assert_eq!(overview(&window), usual);
 
-    // The saved file holds both displayed tables, with numbers.
+    // The saved file contains both displayed tables with their values.
     let folder = tempfile::tempdir().unwrap();
     let width = gdcm_plot::figure::ColumnWidth::Double;
     let path = folder.path().join("summary.csv");
@@ -536,7 +538,7 @@ fn tolerances_are_reached_without_a_record_and_those_of_modes_are_edited() {
     ] {
         type_into(&mut window, field, "1e4");
     }
-    // A mode without the oscillation of the flown mode stays outside any tolerance.
+    // A mode that does not oscillate, unlike the flown mode, is outside any tolerance.
     assert!(
         outside(&shown(&mut window)) < outside(&usual),
         "nothing is so far from flight"
@@ -600,7 +602,7 @@ fn a_condition_without_rates_and_records_says_so_in_words() {
     });
     let said = texts(&window);
     assert!(
-        said.contains("No on-axis response is an angle or its rate"),
+        said.contains("No on-axis response is an angle or an angular rate"),
         "{said}"
     );
     assert!(
@@ -613,7 +615,7 @@ fn a_condition_without_rates_and_records_says_so_in_words() {
     );
     let said = texts(&window);
     assert!(
-        said.contains("No flight record of this condition is used (view Records)"),
+        said.contains("No flight record of this condition is in use (view Records)"),
         "{said}"
     );
 }

@@ -1,4 +1,4 @@
-//! First steps: the line over the example, the start page, and the first view.
+//! First steps: the bar above the example, the start page, and the first view.
 
 use gdcm::gui::commands::layout::LayoutCommand;
 use gdcm::gui::state::opens_with::OpensWith;
@@ -8,7 +8,7 @@ use super::*;
 
 const WAYS: [&str; 3] = ["Open dataset…", "Import models…", "Import records…"];
 
-/// The window on the example, with nothing waited for: on the start page no curves are drawn.
+/// Opens the example without waiting for results, because no curves are drawn on the start page.
 fn begun_with(setup: Setup) -> Window {
     let build = |creation: &mut eframe::CreationContext<'static>| {
         GdcmApp::with(&creation.egui_ctx, example(), setup).expect("a thread can be started")

@@ -1,4 +1,4 @@
-//! Contents of the views, through their controls.
+//! Contents of the views, tested through their controls.
 
 use gdcm::gui::commands::command::Command as Action;
 use gdcm::gui::commands::display::DisplayCommand;
@@ -116,7 +116,8 @@ fn a_click_on_a_pole_rejects_its_model_and_the_modes_are_listed() {
         .sum();
     assert_eq!(marks.len(), order, "a mark for each state of each model");
     let table = &state(&window).display.poles.modes.table;
-    // One row a real pole and one a pair of the reference model.
+    // The table has a row for each real pole and for each pair of complex poles of the reference
+    // model.
     let reference = condition.model(
         BundleKind::Physics,
         state(&window)
@@ -134,7 +135,7 @@ fn a_click_on_a_pole_rejects_its_model_and_the_modes_are_listed() {
         );
     }
 
-    // The fastest pole of a perturbed model is clear of the crowd.
+    // The fastest pole of a perturbed model is far from other marks.
     let fastest = marks.iter().min_by(|a, b| a[0].total_cmp(&b[0])).unwrap();
     let at = state(&window).display.figures[&View::Poles]
         .position(0, *fastest)
@@ -265,7 +266,8 @@ fn the_evidence_answers_which_differences_are_in_earnest() {
     let mut window = window_with(Opened::Dataset(crate::REFERENCE_DATASET.clone()), warm());
     show(&mut window, View::Evidence);
     wait_for_bars(&mut window);
-    // The independent numpy code finds the ratio 5.39 with the three suggested models of condition 10 rejected, which 3 and 5 lack.
+    // Independent numpy code gives a ratio of 5.39. It also rejects the suggested models of
+    // condition 10, which does not affect conditions 3 and 5.
     window.get_by_label(
         "significant: a physical effect, or a model-form error; expected: from trim and identification uncertainty",
     );
@@ -391,7 +393,7 @@ fn an_assessment_can_be_had_for_every_model_correction_and_response() {
     let table = shown.assessment().unwrap();
     let text = assessment_text_table(shown, table);
     assert_eq!((text.rows.len(), text.columns.len()), (24, 12));
-    // The condition's own J, as the matrix shows it.
+    // J of the condition's own correction, as shown in the matrix.
     let condition = shown.condition().id();
     let lon_q = pair(&window, "Q", "LON");
     let own = shown.shown().unwrap().cost[lon_q].unwrap();
@@ -514,13 +516,13 @@ fn a_double_click_on_its_edge_puts_a_panel_back() {
     }
 
     let mut window = window();
-    // Test frames are 0.25 s apart.
+    // In the test harness, frames are 0.25 s apart, so that a double click needs a longer delay.
     window
         .ctx
         .options_mut(|options| options.input_options.max_double_click_delay = 5.0);
     let before = edge(&window);
     let y = 500.0;
-    // The edge of the answer panel, some points left of its content.
+    // The edge of the result panel is a few points left of its content.
     let at = pos2((1600.0_f32 - 352.0).round(), y);
     window.drag_at(at);
     window.run_steps(2);

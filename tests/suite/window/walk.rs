@@ -1,4 +1,5 @@
-//! A long random walk through the window: nothing panics, and the displayed results equal those of a fresh computation.
+//! Long random walk through the window: nothing panics, and the displayed results equal the results
+//! of a new computation.
 
 use gdcm::gui::commands::command::Command as Action;
 use gdcm::gui::commands::command_table::every_command;
@@ -16,11 +17,11 @@ use gdcm_study::decisions::setting;
 use super::*;
 use crate::made_up::tries;
 
-/// Frames are drawn, and results compared, after so many steps.
+/// Number of steps between frames, and between comparisons.
 const STEPS_OF_A_FRAME: usize = 4;
 const STEPS_OF_A_COMPARISON: usize = 100;
 
-/// Numbers that look random and are the same in every run: the 64-bit linear congruential generator of Knuth's MMIX.
+/// Reproducible pseudo-random numbers: the 64-bit linear congruential generator of Knuth's MMIX.
 struct Dice(u64);
 
 impl Dice {
@@ -33,7 +34,8 @@ impl Dice {
     }
 }
 
-/// Whether a command stays within the window: no file, no desktop, no end.
+/// Returns whether a command stays within the window: it does not access files or the desktop, and
+/// does not close the window.
 pub(super) fn stays_within(command: &Action) -> bool {
     !matches!(
         command,
@@ -86,7 +88,8 @@ fn assert_fresh(window: &Window, step: usize) {
                     fresh.comparison, shown.comparison,
                     "step {step}, condition {id}"
                 );
-                // A later proof gives the same optimum or a better value.
+                // A later optimality proof gives the same optimum or a better value, within this
+                // tolerance.
                 let same = (fresh.gains.objective - shown.gains.objective).abs()
                     <= 1e-6 * (1.0 + fresh.gains.objective);
                 assert!(
@@ -110,13 +113,13 @@ fn random_commands_never_panic_and_leave_what_a_fresh_computation_gives() {
         if let Some(command) = random_command(&window, &mut dice) {
             window.state_mut().dispatch(command);
         }
-        // A form in front would keep the rest from being seen.
+        // Close any form, which would block the other controls.
         window.state_mut().dispatch(FormCommand::ShowForm(None));
         if step % STEPS_OF_A_FRAME == 0 {
             window.run_steps(1);
         }
         if step % STEPS_OF_A_COMPARISON == 0 {
-            // The curves of the plots are made where they can be seen.
+            // Show the Bode view, because plots compute their curves only while they are visible.
             window
                 .state_mut()
                 .dispatch(LayoutCommand::ShowView(View::Bode));

@@ -1,5 +1,5 @@
-//! All analysis results: `corrections.json`, `corrections.csv`, and the content of the former as a
-//! MATLAB struct.
+//! All analysis results: as `corrections.json`, as `corrections.csv`, and as a MATLAB struct with
+//! the content of `corrections.json`.
 
 use std::collections::BTreeSet;
 
@@ -15,7 +15,7 @@ use crate::files::export_contents::ExportContents;
 use crate::formats::mat;
 use crate::formats::variables::{Value, Variable};
 
-/// `corrections.json`.
+/// Export as `corrections.json`.
 pub(super) const JSON: ExportFormat = ExportFormat {
     name: "json",
     extension: "json",
@@ -33,7 +33,7 @@ pub(super) const JSON: ExportFormat = ExportFormat {
     },
 };
 
-/// `corrections.csv`.
+/// Export as `corrections.csv`.
 pub(super) const CSV: ExportFormat = ExportFormat {
     name: "csv",
     extension: "csv",
@@ -49,7 +49,7 @@ pub(super) const CSV: ExportFormat = ExportFormat {
     },
 };
 
-/// The MATLAB struct `corrections`.
+/// Export as the MATLAB struct `corrections`.
 pub(super) const MAT: ExportFormat = ExportFormat {
     name: "mat",
     extension: "mat",
@@ -72,14 +72,15 @@ fn all_conditions(analysis: &Analysis) -> BTreeSet<ConditionId> {
     analysis.conditions.keys().copied().collect()
 }
 
-/// Channel values are arrays, ordered as the dataset's `inputs` and `outputs`.
+/// Channel values become arrays, in the order of the dataset's `inputs` and `outputs`.
 const LAYOUT: Layout = Layout {
     by_channel: &["inputs", "outputs"],
     by_name: &["discontinuity"],
     columns: &["table"],
 };
 
-/// Members of `corrections.json` that are repeated in MATLAB under their names in earlier versions.
+/// Members of `corrections.json` that the MATLAB struct repeats under the names of earlier
+/// versions.
 const EARLIER_NAMES: [EarlierName; 6] = [
     EarlierName::new("gain_objective", "gain_solution", "objective"),
     EarlierName::new("gain_lower_bound", "gain_solution", "lower_bound"),
@@ -89,7 +90,7 @@ const EARLIER_NAMES: [EarlierName; 6] = [
     EarlierName::new("delay_matched", "delay_solution", "matched"),
 ];
 
-/// Earlier name of a member of a solution.
+/// Name in earlier versions of a member of a solution.
 struct EarlierName {
     name: &'static str,
     solution: &'static str,
@@ -107,14 +108,14 @@ impl EarlierName {
 }
 
 /// Returns the members of `corrections.json` as a struct. Lists of responses become logical
-/// matrices with a row per output and a column per input; `net_gains` becomes several matrices, and
-/// its original form is kept as `net_gain_table`. Members of earlier versions keep their names.
+/// matrices with a row per output and a column per input. `net_gains` becomes several matrices; its
+/// original form is kept as `net_gain_table`. Names from earlier versions are kept.
 fn corrections_struct(mut corrections: Tree, dataset: &Dataset) -> Value {
     let settings = &mut corrections["settings"];
     for name in ["constrained", "ignored"] {
         settings[name] = marked_responses(&settings[name], dataset);
     }
-    // Absent if coherence is not used.
+    // This setting is absent if coherence is not used.
     if settings.get("coherence_threshold").is_none() {
         settings["coherence_threshold"] = Tree::Null;
     }
@@ -123,7 +124,7 @@ fn corrections_struct(mut corrections: Tree, dataset: &Dataset) -> Value {
             restructure_condition(condition, dataset);
         }
     }
-    // Names and units become separate columns below.
+    // Names and units of the channels are added as separate columns below.
     if let Some(members) = corrections.as_object_mut() {
         members.shift_remove("inputs");
         members.shift_remove("outputs");
@@ -151,7 +152,7 @@ fn corrections_struct(mut corrections: Tree, dataset: &Dataset) -> Value {
     value
 }
 
-/// Changes a condition's members as described at [`corrections_struct`].
+/// Changes the members of a condition as described at [`corrections_struct`].
 fn restructure_condition(condition: &mut Tree, dataset: &Dataset) {
     condition["held"] = marked_responses(&condition["held"], dataset);
     condition["held_out"] = condition.get("held_out").cloned().unwrap_or(false.into());
@@ -177,7 +178,8 @@ fn restructure_condition(condition: &mut Tree, dataset: &Dataset) {
     }
 }
 
-/// Returns a list with a row for each output and, in each row, a value for each input.
+/// Returns the values of all responses as a list of rows, one per output; each row has a value for
+/// each input.
 fn response_table(dataset: &Dataset, value: impl Fn(&str, &str) -> Tree) -> Tree {
     let mut rows = Vec::new();
     for output in dataset.outputs() {
@@ -190,7 +192,8 @@ fn response_table(dataset: &Dataset, value: impl Fn(&str, &str) -> Tree) -> Tree
     Tree::Array(rows)
 }
 
-/// Returns a matrix that marks the responses in a list of pairs (output, input).
+/// Returns a logical matrix (outputs x inputs) that marks the responses in a list of pairs (output,
+/// input).
 fn marked_responses(pairs: &Tree, dataset: &Dataset) -> Tree {
     let pairs = pairs.as_array().map(Vec::as_slice).unwrap_or_default();
     response_table(dataset, |output, input| {
@@ -201,8 +204,8 @@ fn marked_responses(pairs: &Tree, dataset: &Dataset) -> Tree {
     })
 }
 
-/// Returns the member `key` of a response's net gain, or the entry at `place` if it is a list; null
-/// if missing.
+/// Returns the member `key` of the net gain of a response or, if `place` is given, the entry of
+/// that member at this index; null if missing.
 fn net_gain_value(
     net_gains: &[Tree],
     output: &str,
@@ -247,7 +250,7 @@ mod tests {
     use super::*;
     use crate::files::dataset_file::embedded_example;
 
-    /// Collects the paths of all JSON members, without list indices and names of channels and
+    /// Collects the paths of all JSON members, leaving out list indices and names of channels and
     /// models.
     fn json_paths(json: &serde_json::Value, path: &str, found: &mut BTreeSet<String>) {
         match json {

@@ -1,4 +1,4 @@
-//! Corrected models as files: for MATLAB, for NumPy, and as `gdcm-models`.
+//! Corrected models as files: for MATLAB, for NumPy, and in the format `gdcm-models`.
 
 use std::path::Path;
 
@@ -22,11 +22,11 @@ use crate::formats::mat;
 use crate::formats::npy::write_npz;
 use crate::formats::variables::{TextArray, Value, Variable};
 
-/// Corrected models, in the format given by the file extension.
+/// Export of corrected models; the file extension selects the format.
 pub(super) const STATE_SPACE: ExportFormat = ExportFormat {
     name: "state-space",
     extension: "mat",
-    words: "Corrected models as state-space",
+    words: "Corrected models in state-space form",
     options: &["--condition", "--model", "--correction", "--pade"],
     check_path: |path| ModelsFormat::from_path(path).map(drop),
     contents: |analysis, request| contents_of_models(analysis, request),
@@ -35,7 +35,7 @@ pub(super) const STATE_SPACE: ExportFormat = ExportFormat {
         let dataset = &export.analysis.study.dataset;
         let remarks = models.iter().map(ExportedModel::words).collect();
         let exported = match ModelsFormat::from_path(export.path)? {
-            // Compressed: matrices with delays are mostly zeros.
+            // Packed, because matrices with delays are mostly zeros.
             ModelsFormat::Mat => {
                 Exported::bytes(mat::write_packed(&[models_variable(&models, dataset)])?)
             }
@@ -58,7 +58,7 @@ enum ModelsFormat {
 }
 
 impl ModelsFormat {
-    /// Chooses the format by the file extension.
+    /// Chooses the format by the file extension; fails for an unknown extension.
     fn from_path(path: &Path) -> Result<Self, ExportFault> {
         let extension = path
             .extension()
@@ -73,8 +73,9 @@ impl ModelsFormat {
     }
 }
 
-/// Returns the models in the form of `gdcm-models`, each with its block `contains`. The names are
-/// "condition 10, nominal"; the notes describe the correction and its accuracy.
+/// Returns the models in the form of `gdcm-models`, each with a block `contains` that states the
+/// parts of its correction. Names are of the form "condition 10, nominal"; the notes describe the
+/// correction and its accuracy.
 fn containing_models(models: &[ExportedModel], dataset: &Dataset) -> Vec<ContainingModel> {
     let mut containing = Vec::with_capacity(models.len());
     for model in models {
@@ -147,7 +148,7 @@ fn units_of(channels: &[Channel]) -> Value {
     cell_of_texts(channels.iter().map(|channel| channel.unit.clone()))
 }
 
-/// Name of a model metric in files, and the function that computes it.
+/// Name of a model metric in files, with the function that computes it.
 type Metric = (&'static str, fn(&ExportedModel) -> f64);
 
 const METRICS: [Metric; 8] = [
@@ -164,7 +165,7 @@ const METRICS: [Metric; 8] = [
     ("gain_above_band_db", ExportedModel::gain_above_band_db),
 ];
 
-/// Name of a part of a correction, and the function that returns its source.
+/// Name of a part of a correction, with the function that returns its source.
 type ContainedPart = (&'static str, fn(&ExportContents) -> PartSource);
 
 const CONTAINED: [ContainedPart; 4] = [
@@ -174,8 +175,9 @@ const CONTAINED: [ContainedPart; 4] = [
     ("couplings", |contents| contents.couplings),
 ];
 
-/// Returns the models as arrays, the only type of NumPy files: for model 0 `A_0`, `B_0`, `C_0`,
-/// `D_0` and `StateName_0`; the other arrays have an entry for each model or channel.
+/// Returns the models as arrays, because NumPy files hold nothing else: `A_0`, `B_0`, `C_0`, `D_0`
+/// and `StateName_0` for model 0, and so on; each of the other arrays has an entry for each model
+/// or channel.
 fn model_arrays(models: &[ExportedModel], dataset: &Dataset) -> Vec<Variable> {
     let mut arrays = NamedArrays::default();
     for (place, model) in models.iter().enumerate() {
@@ -296,7 +298,9 @@ mod tests {
                 "{phase_deg}"
             );
             assert!(
-                model.words().contains("are left out, up to"),
+                model
+                    .words()
+                    .contains("are left out, which causes a phase error of up to"),
                 "{}",
                 model.words()
             );
@@ -395,7 +399,8 @@ mod tests {
                 let gain = result.correction.net_gain(pair);
                 let largest = curve.iter().map(|value| value.norm()).fold(0.0, f64::max) * gain;
                 for (found, expected) in found.curve(pair).iter().zip(curve) {
-                    // Both methods close the loop: one in the states, the other at each frequency.
+                    // The exported model closes the loop in the states, the reference at each
+                    // frequency.
                     assert!(
                         (found - expected * gain).norm() <= 1e-9 * largest,
                         "{pair:?} of {}",

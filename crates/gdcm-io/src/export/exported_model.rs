@@ -13,7 +13,7 @@ use super::{ExportRequest, ExportedRole};
 use crate::export_fault::ExportFault;
 use crate::files::export_contents::{ExportContents, LeftOutPart, PartSource};
 
-/// A corrected model, ready to be written.
+/// A corrected model, with the facts that describe it.
 pub(super) struct ExportedModel {
     pub(super) condition: ConditionId,
     /// True airspeed \[kt\].
@@ -27,16 +27,16 @@ pub(super) struct ExportedModel {
     pub(super) states: Vec<String>,
     /// Number of states that represent delays.
     delay_states: usize,
-    /// Number of lead filter states.
+    /// Number of states that represent lead filters.
     lead_states: usize,
-    /// Order of the Padé approximants; 0 in discrete time, where delays are exact.
+    /// Order of the Padé approximants of delays; 0 in discrete time, where delays are exact.
     pub(super) pade_order: usize,
-    /// Maximum phase error \[deg\] at the top of the band due to the approximants.
+    /// Maximum phase error \[deg\] at the upper end of the band due to the Padé approximants.
     approximation_error_deg: f64,
-    /// Phase lag \[deg\] at the top of the band of the delays in the condition's own correction
-    /// that the schedule omits.
+    /// Phase lag \[deg\] at the upper end of the band due to delays in the condition's own
+    /// correction that the schedule omits.
     pub(super) left_out_deg: f64,
-    /// Parts of the correction in the model.
+    /// Parts of the correction that the model contains.
     pub(super) contents: ExportContents,
     /// Upper end of the band, the highest compared frequency \[rad/s\].
     pub(super) band_top_rad_s: f64,
@@ -159,7 +159,7 @@ fn exported_model(
     })
 }
 
-/// Returns the words placed before "correction" in descriptions.
+/// Names the correction in the description of an exported model.
 fn correction_words(correction: AssessedCorrection) -> &'static str {
     match correction {
         AssessedCorrection::Scheduled => "scheduled",
@@ -169,7 +169,7 @@ fn correction_words(correction: AssessedCorrection) -> &'static str {
     }
 }
 
-/// Describes the couplings in a model; empty without couplings.
+/// Describes the couplings in a model; empty if there are none.
 fn couplings_words(analysis: &Analysis, dynamics: &StateSpace) -> &'static str {
     let has_delays =
         !StateSpace::timing(dynamics).is_plain() && dynamics.timing().sample_time_s.is_none();
@@ -179,14 +179,15 @@ fn couplings_words(analysis: &Analysis, dynamics: &StateSpace) -> &'static str {
     ) {
         (None, _) => "",
         (Some(_), CouplingCorrection::MixingAndFeedback) if has_delays => {
-            "; with mixing and feedback of the model, its own delays inside the loop as Pade approximants"
+            "; with mixing and feedback; the model's own delays are inside the loop, as Pade \
+            approximants"
         }
         (Some(_), CouplingCorrection::MixingAndFeedback) => "; with mixing and feedback, exact",
         (Some(_), _) => "; with mixing, exact",
     }
 }
 
-/// Returns the requested physics model of a condition.
+/// Returns the physics model of a condition that `role` selects.
 fn model_of<'c>(
     analysis: &Analysis,
     role: &ExportedRole,
@@ -255,8 +256,8 @@ fn result_of<'a>(
     })
 }
 
-/// Returns the state names: "LON lead 1" and "LON delay 1" of inputs, the model's own names, "Q
-/// delay 1" and "Q lead 1" of outputs.
+/// Returns the state names, in this order: "LON lead 1" and "LON delay 1" for inputs, the names of
+/// the model's states, "Q delay 1" and "Q lead 1" for outputs.
 fn state_names(analysis: &Analysis, model: &Model, corrected: &CorrectedModel) -> Vec<String> {
     let CorrectedModel {
         lead_states,
@@ -289,14 +290,14 @@ fn add_state_names(names: &mut Vec<String>, channels: &[Channel], part: &str, co
 }
 
 impl ExportedModel {
-    /// Returns the maximum phase error \[deg\] at the top of the band due to the export: from
-    /// approximants and omitted delays.
+    /// Returns the maximum phase error \[deg\] at the upper end of the band due to the export, that
+    /// is, to Padé approximants and omitted delays.
     pub(super) fn phase_error_deg(&self) -> f64 {
         self.approximation_error_deg + self.left_out_deg
     }
 
     /// Returns the frequency \[rad/s\] above which the lead filters make the model invalid;
-    /// infinite without leads.
+    /// infinity without lead filters.
     pub(super) fn not_valid_above_rad_s(&self) -> f64 {
         match &self.price {
             Some(described) => described.price.limit_rad_s,
@@ -304,8 +305,8 @@ impl ExportedModel {
         }
     }
 
-    /// Returns the gain \[dB\] at ten times the band that the leads add to the most affected
-    /// response; 0 without leads.
+    /// Returns the gain \[dB\] that the leads add to the most affected response at ten times the
+    /// upper end of the band; 0 without leads.
     pub(super) fn gain_above_band_db(&self) -> f64 {
         match &self.price {
             Some(DescribedPrice { price, .. }) => {
@@ -315,7 +316,7 @@ impl ExportedModel {
         }
     }
 
-    /// Describes the model and its accuracy in a line.
+    /// Describes the model and its accuracy in a single line.
     pub(super) fn words(&self) -> String {
         let price = match &self.price {
             Some(described) => format!("; {}", described.words),
@@ -332,8 +333,8 @@ impl ExportedModel {
         )
     }
 
-    /// Describes the omitted delays of the condition's own correction and their phase lag at the
-    /// top of the band; empty without such delays.
+    /// Describes the omitted delays of the condition's own correction, and their phase lag at the
+    /// upper end of the band; empty without omitted delays.
     fn left_out_words(&self) -> String {
         if self.left_out_deg == 0.0 {
             return String::new();
@@ -341,7 +342,8 @@ impl ExportedModel {
         let left_out = telling(self.left_out_deg, 3);
         let top = number(self.band_top_rad_s);
         format!(
-            "; the delays of the condition's own correction are left out, up to {left_out} deg at {top} rad/s"
+            "; the delays of the condition's own correction are left out, which causes a phase \
+            error of up to {left_out} deg at {top} rad/s"
         )
     }
 
@@ -363,7 +365,7 @@ impl ExportedModel {
             let words = match (has_delays, self.delay_states) {
                 (true, _) => "gains and delays exact",
                 (false, 0) => "gains exact, without delays",
-                // Own delays in discrete time are whole samples.
+                // In discrete time, the model's own delays are whole samples, and therefore exact.
                 (false, _) => "gains and the model's own delays exact",
             };
             return words.to_owned();
@@ -391,7 +393,7 @@ fn greatest(gains_db: &[f64]) -> f64 {
     gains_db.iter().copied().fold(0.0, f64::max)
 }
 
-/// Formats an upper bound on a phase error \[deg\]; nonzero errors below 0.001 are given as 0.001.
+/// Formats an upper bound on a phase error \[deg\]; a nonzero bound below 0.001 is given as 0.001.
 fn bound_words(error_deg: f64) -> String {
     /// Minimum reported bound.
     const LEAST_DEG: f64 = 1e-3;

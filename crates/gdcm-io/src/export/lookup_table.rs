@@ -1,4 +1,4 @@
-//! Scheduled gains and delays at given airspeeds, as lookup tables for linear interpolation: as
+//! Lookup tables of scheduled gains and delays at given airspeeds, for linear interpolation: as
 //! text, and for MATLAB.
 
 use std::fmt::Write;
@@ -17,7 +17,7 @@ use crate::files::export_contents::ExportContents;
 use crate::formats::mat;
 use crate::formats::variables::{Value, Variable};
 
-/// The lookup table as text.
+/// Export of the lookup table as text.
 pub(super) const CSV: ExportFormat = ExportFormat {
     name: "table-csv",
     extension: "csv",
@@ -31,7 +31,7 @@ pub(super) const CSV: ExportFormat = ExportFormat {
     },
 };
 
-/// The lookup table for MATLAB.
+/// Export of the lookup table for MATLAB.
 pub(super) const MAT: ExportFormat = ExportFormat {
     name: "table-mat",
     extension: "mat",
@@ -47,11 +47,11 @@ pub(super) const MAT: ExportFormat = ExportFormat {
 
 const OPTIONS: &[&str] = &["--breakpoints"];
 
-/// Quantity in a column: a gain, or a time \[s\].
+/// Quantity of a column: a gain, or a time \[s\].
 #[derive(Debug, PartialEq)]
 struct Quantity {
     name: &'static str,
-    /// Part of the names of MATLAB fields.
+    /// Name of the quantity in the names of MATLAB fields.
     field: &'static str,
     is_time: bool,
 }
@@ -78,11 +78,11 @@ const LEAD: Quantity = Quantity {
 };
 
 impl Quantity {
-    /// Returns the error of `value`: \[%\] for a gain, \[ms\] for a time.
+    /// Returns the error of `value`: relative \[%\] for a gain, absolute \[ms\] for a time.
     fn error(&self, value: f64, truth: f64) -> f64 {
         let difference = value - truth;
         if difference == 0.0 {
-            // Equal values have no error, even if both are zero, where a percentage is undefined.
+            // Equal values have no error, even if both are zero and a percentage is undefined.
             0.0
         } else if self.is_time {
             1e3 * difference.abs()
@@ -92,7 +92,7 @@ impl Quantity {
     }
 }
 
-/// Airspeed and second variable of a row.
+/// Airspeed and value of the second variable of a row.
 #[derive(Clone, Copy)]
 struct Breakpoint {
     airspeed_kt: f64,
@@ -100,12 +100,12 @@ struct Breakpoint {
     second: Option<f64>,
 }
 
-/// Values of a channel quantity at the breakpoints.
+/// Values of a quantity of a channel at the breakpoints.
 struct Column {
     quantity: &'static Quantity,
     channel: Channel,
     name: String,
-    /// A value for each row.
+    /// One value for each row of the table.
     values: Vec<f64>,
     /// Maximum deviation of the table from the schedule: \[%\] for a gain, \[ms\] for a time.
     error: TableError,
@@ -134,7 +134,8 @@ impl<'e> BreakpointTable<'e> {
     /// the scheduled conditions.
     ///
     /// # Errors
-    /// [`ExportFault::Breakpoints`] if the airspeeds do not increase.
+    /// [`ExportFault::Breakpoints`] if the airspeeds are not finite and increasing, or if there are
+    /// none; [`ExportFault::Curve`] if the schedule contains a value that is not finite.
     fn new(scheduled: Scheduled<'e>, breakpoints_kt: Option<&[f64]>) -> Result<Self, ExportFault> {
         scheduled.check()?;
         let airspeeds_kt = match breakpoints_kt {
@@ -192,7 +193,7 @@ impl<'e> BreakpointTable<'e> {
         }
     }
 
-    /// Adds the entries of the normalised mixing matrix as columns, row by row.
+    /// Adds the entries of the normalised mixing matrix as columns, in row-major order.
     fn add_mixing(&mut self, couplings: &CouplingMatrices) {
         let (inputs, _) = self.scheduled.dataset.names_of_channels();
         for (to, receiver) in inputs.iter().enumerate() {
@@ -248,13 +249,13 @@ impl<'e> BreakpointTable<'e> {
         }
     }
 
-    /// Returns remarks on the schedule, and the table's deviations from it.
+    /// Returns the remarks on the schedule, followed by the deviations of the table from it.
     fn remarks(&self) -> Vec<String> {
         let mut remarks = self.scheduled.notes();
         for column in &self.columns {
             if column.error.error > 0.0 {
                 remarks.push(format!(
-                    "table of the {}: off by up to {}",
+                    "table of the {}: maximum error {}",
                     column.words(),
                     column.error_words()
                 ));
@@ -263,8 +264,8 @@ impl<'e> BreakpointTable<'e> {
         remarks
     }
 
-    /// Returns the table as CSV, preceded by comment lines (#) that describe it and the maximum
-    /// deviation of each column from its curve.
+    /// Returns the table as CSV, preceded by comment lines (#) that describe it and state the
+    /// maximum deviation of each column from its curve.
     fn csv(&self) -> String {
         let mut text = String::new();
         self.write_description(&mut text);
@@ -286,7 +287,8 @@ impl<'e> BreakpointTable<'e> {
             let _ = writeln!(text, "# {line}");
         }
         text.push_str(
-            "# Greatest error of linear interpolation in this table, end values outside it, against the curves:\n",
+            "# Maximum error of linear interpolation in this table (with the end values outside \
+            its range), compared with the curves:\n",
         );
         for column in &self.columns {
             let _ = writeln!(
@@ -374,7 +376,8 @@ impl<'e> BreakpointTable<'e> {
         }
     }
 
-    /// Adds the channel names and columns of one side, "input" or "output".
+    /// Adds the channel names and the columns of all inputs or all outputs; `side` is "input" or
+    /// "output".
     fn add_side_fields(&self, fields: &mut Fields, side: &str, names: Vec<String>) {
         fields.add(&format!("{side}s"), cell_of_texts(names));
         let mut quantities = vec![&GAIN, &DELAY];
@@ -441,7 +444,7 @@ impl<'e> BreakpointTable<'e> {
         }
     }
 
-    /// Returns a matrix of these columns with a row for each breakpoint.
+    /// Returns a matrix with a row for each breakpoint and a column for each of `columns`.
     fn columns_matrix(&self, columns: &[&Column]) -> Value {
         let mut values = Vec::new();
         for column in columns {
@@ -459,8 +462,8 @@ fn distinct_airspeeds_kt(scheduled: &Scheduled<'_>) -> Vec<f64> {
     airspeeds_kt
 }
 
-/// Returns the ends and the middle of the second variable's range, over which its effect is nearly
-/// linear; a single `None` without a second variable.
+/// Returns the ends and the middle of the second variable's range, which suffice because its effect
+/// is nearly linear; a single `None` without a second variable.
 fn second_values(scheduled: &Scheduled<'_>) -> Vec<Option<f64>> {
     match &scheduled.schedule.second {
         Some(term) => vec![

@@ -1,4 +1,4 @@
-//! Conversion of JSON to MATLAB values, so that both have the same schema.
+//! Conversion of JSON to MATLAB values with the same structure.
 
 use serde_json::Value as Json;
 
@@ -8,35 +8,35 @@ use crate::files::export_contents::ExportContents;
 use crate::formats::strides::first_index_fastest;
 use crate::formats::variables::{Array, CellArray, ElementKind, StructArray, Value};
 
-/// Longest name that MATLAB accepts (`namelengthmax`).
+/// Maximum length of a name in MATLAB (`namelengthmax`).
 pub(super) const LONGEST_NAME: usize = 63;
 
 static NULL: Json = Json::Null;
 
-/// Names of members that are not converted as ordinary lists and objects.
+/// Names of members that need a special conversion.
 pub(super) struct Layout {
-    /// Objects with a member for each channel, which become arrays in channel order.
+    /// Objects with a member for each channel; they become arrays in channel order.
     pub(super) by_channel: &'static [&'static str],
-    /// Objects with member names that MATLAB does not accept, which become structs with the fields
+    /// Objects with member names that MATLAB does not accept; they become structs with the fields
     /// `name` and `value`.
     pub(super) by_name: &'static [&'static str],
-    /// Lists of objects that become a single struct of columns instead of a struct array.
+    /// Lists of objects that become a struct of columns rather than a struct array.
     pub(super) columns: &'static [&'static str],
 }
 
-/// Whether a value is a number, or null for a missing number.
+/// Returns whether a value is a number, or null for a missing number.
 fn is_number(json: &Json) -> bool {
     matches!(json, Json::Number(_) | Json::Null)
 }
 
-/// Returns a number; NaN for null.
+/// Converts a JSON number; null becomes NaN.
 fn number(json: &Json) -> f64 {
     json.as_f64().unwrap_or(f64::NAN)
 }
 
 impl Layout {
     /// Converts a JSON value: objects become structs, lists of objects struct arrays, rectangular
-    /// lists of numbers matrices, lists of texts cell columns, and null becomes NaN.
+    /// lists of numbers matrices, lists of strings cell columns, and null becomes NaN.
     pub(super) fn value(&self, name: &str, json: &Json) -> Value {
         match json {
             Json::Null | Json::Number(_) => Value::number(number(json)),
@@ -87,7 +87,8 @@ impl Layout {
         }
     }
 
-    /// Returns a row of structs with the same fields; missing members are empty.
+    /// Converts objects to a row of structs with the same fields; a missing member becomes an empty
+    /// value.
     fn records(&self, objects: &[&Json]) -> Value {
         let mut fields = Vec::new();
         for name in names_of(objects) {
@@ -106,9 +107,9 @@ impl Layout {
         })
     }
 
-    /// Returns the leaves as an array of this shape; in `leaves` the last index runs fastest.
-    /// Objects become a struct of arrays, numbers an array, truth values a logical array, lists of
-    /// numbers an array with an additional index, all others cells.
+    /// Converts values to an array of this shape; in `leaves` the last index runs fastest. Objects
+    /// become a struct of arrays, numbers an array, booleans a logical array, lists of numbers an
+    /// array with an additional index, and all other values cells.
     fn gathered(&self, shape: &[usize], leaves: Vec<&Json>) -> Value {
         if leaves.iter().any(|leaf| leaf.is_object()) {
             return self.gathered_objects(shape, &leaves);
@@ -144,7 +145,8 @@ impl Layout {
         })
     }
 
-    /// Returns a struct with an array for each member name; members by channel add an index.
+    /// Converts objects to a struct with an array for each member name; members by channel add an
+    /// index to the array.
     fn gathered_objects(&self, shape: &[usize], leaves: &[&Json]) -> Value {
         let mut fields = Fields::default();
         for name in names_of(leaves) {
@@ -174,7 +176,7 @@ impl Layout {
     }
 }
 
-/// Returns the member of an object at a position; null if there is none.
+/// Returns the member of an object at an index; null if there is none.
 fn member_at(value: &Json, at: usize) -> &Json {
     match value {
         Json::Object(members) => members.values().nth(at).unwrap_or(&NULL),
@@ -182,7 +184,7 @@ fn member_at(value: &Json, at: usize) -> &Json {
     }
 }
 
-/// Returns the leaves as ones and zeros, if all are truth values.
+/// Returns booleans as ones and zeros; `None` unless all leaves are booleans.
 fn truth_values(leaves: &[&Json]) -> Option<Vec<f64>> {
     let mut numbers = Vec::with_capacity(leaves.len());
     for leaf in leaves {
@@ -191,8 +193,8 @@ fn truth_values(leaves: &[&Json]) -> Option<Vec<f64>> {
     Some(numbers)
 }
 
-/// Returns the common length if all leaves are lists of equally many numbers; null stands for a
-/// missing list.
+/// Returns the common length of the leaves if all are lists of equally many numbers; null counts as
+/// a missing list.
 fn row_length(leaves: &[&Json]) -> Option<usize> {
     let length = leaves
         .iter()
@@ -207,7 +209,7 @@ fn row_length(leaves: &[&Json]) -> Option<usize> {
     Some(length)
 }
 
-/// Returns all distinct member names, in order of appearance.
+/// Returns the distinct member names of all objects, in order of appearance.
 fn names_of<'j>(objects: &[&'j Json]) -> Vec<&'j str> {
     let mut names: Vec<&str> = Vec::new();
     for object in objects {
@@ -223,7 +225,8 @@ fn names_of<'j>(objects: &[&'j Json]) -> Vec<&'j str> {
     names
 }
 
-/// Returns a field name that MATLAB accepts: a letter, then letters, digits and _.
+/// Returns a name that MATLAB accepts for a field: other characters than letters and digits become
+/// _, the name starts with a letter, and it is cut to [`LONGEST_NAME`].
 fn valid_name(name: &str) -> String {
     let mut valid = String::new();
     if !name.starts_with(|first: char| first.is_ascii_alphabetic()) {
@@ -239,7 +242,8 @@ fn valid_name(name: &str) -> String {
     valid
 }
 
-/// Returns the array shape in MATLAB, with at least two dimensions; a list becomes a column.
+/// Returns the dimensions of an array in MATLAB, of which there are at least two; a list becomes a
+/// column.
 fn sides(shape: &[usize]) -> Vec<usize> {
     if let [length] = shape {
         vec![*length, 1]
@@ -258,14 +262,14 @@ fn array(shape: &[usize], numbers: Vec<f64>, kind: ElementKind) -> Value {
     })
 }
 
-/// Struct fields, in order.
+/// Fields of a struct, in order.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Fields {
     fields: Vec<(String, Value)>,
 }
 
 impl Fields {
-    /// Adds a field. Names come from the program: letters, digits and _.
+    /// Adds a field. `name` must consist of letters, digits and _.
     pub(super) fn add(&mut self, name: &str, value: Value) {
         self.fields.push((name.to_owned(), value));
     }
@@ -276,7 +280,7 @@ impl Fields {
     }
 }
 
-/// Returns a row of structs with the same fields.
+/// Returns a row of structs, which must have the same fields.
 pub(super) fn records(records: Vec<Fields>) -> Value {
     let shape = vec![1, records.len()];
     let mut fields: Vec<(String, Vec<Value>)> = Vec::new();
@@ -291,7 +295,7 @@ pub(super) fn records(records: Vec<Fields>) -> Value {
     Value::Struct(StructArray { shape, fields })
 }
 
-/// Returns a column of cells with one text each.
+/// Returns a cell column with one string per cell.
 pub(super) fn cell_of_texts(texts: impl IntoIterator<Item = String>) -> Value {
     let values: Vec<Value> = texts.into_iter().map(Value::text).collect();
     Value::Cell(CellArray {
@@ -300,24 +304,24 @@ pub(super) fn cell_of_texts(texts: impl IntoIterator<Item = String>) -> Value {
     })
 }
 
-/// Returns a row of numbers.
+/// Returns a row vector.
 pub(super) fn row(values: impl IntoIterator<Item = f64>) -> Value {
     let values: Vec<f64> = values.into_iter().collect();
     matrix(1, values.len(), values)
 }
 
-/// Returns a column of numbers.
+/// Returns a column vector.
 pub(super) fn column(values: impl IntoIterator<Item = f64>) -> Value {
     let values: Vec<f64> = values.into_iter().collect();
     matrix(values.len(), 1, values)
 }
 
-/// Returns a matrix from its values by columns.
+/// Returns a matrix from its values in column-major order.
 pub(super) fn matrix(rows: usize, columns: usize, values: Vec<f64>) -> Value {
     Value::Array(Array::matrix(rows, columns, values))
 }
 
-/// Returns the correction parts in a file with their sources, and the omitted parts.
+/// Returns a struct with the source of each correction part in a file, and with the omitted parts.
 pub(super) fn contained_parts(contents: &ExportContents, dataset: &Dataset) -> Value {
     let mut fields = Fields::default();
     for (name, source) in contents.parts() {

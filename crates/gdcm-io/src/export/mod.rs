@@ -1,6 +1,6 @@
-//! A study's corrections for other tools: programs and tables that compute them elsewhere,
-//! corrected models, and all results as MATLAB variables. Each is an [`ExportFormat`]; the command
-//! line, the window and the documentation use [`EXPORTERS`].
+//! A study's corrections for other tools: programs and tables that compute the corrections
+//! elsewhere, corrected models, and all results as MATLAB variables. Each is an [`ExportFormat`];
+//! the command line, the window and the documentation list the formats in [`EXPORTERS`].
 
 mod all_results;
 mod corrected_models;
@@ -26,26 +26,26 @@ use crate::file_error::FileError;
 use crate::files::export_contents::ExportContents;
 use crate::output_set::OutputSet;
 
-/// A format for exporting a study's corrections.
+/// A format in which a study's corrections can be exported.
 #[derive(Clone, Copy, Debug)]
 pub struct ExportFormat {
     /// Name on the command line.
     pub name: &'static str,
-    /// File extension.
+    /// File extension, without the dot.
     pub extension: &'static str,
-    /// Description in words.
+    /// Short description, for lists of formats.
     pub words: &'static str,
     /// Accepted command-line options.
     pub options: &'static [&'static str],
-    /// Rejects an unsuitable file name, before the analysis.
+    /// Rejects a file name that does not suit the format; called before the analysis.
     check_path: fn(&Path) -> Result<(), ExportFault>,
-    /// Returns the correction parts in the file.
+    /// Returns the correction parts that the file will contain.
     contents: fn(&Analysis, &ExportRequest) -> ExportContents,
-    /// Returns the file contents.
+    /// Computes the contents of the file.
     export: for<'e> fn(&Export<'e>) -> Result<Exported<'e>, ExportFault>,
 }
 
-/// All exports, in display order; the first is the default.
+/// All export formats, in display order; the first is the default.
 pub static EXPORTERS: [ExportFormat; 9] = [
     all_results::MAT,
     programs::MATLAB,
@@ -59,7 +59,7 @@ pub static EXPORTERS: [ExportFormat; 9] = [
 ];
 
 impl ExportFormat {
-    /// Returns the format with this name.
+    /// Returns the format with this command-line name; `None` for an unknown name.
     pub fn named(name: &str) -> Option<Self> {
         EXPORTERS.into_iter().find(|format| format.name == name)
     }
@@ -77,7 +77,7 @@ impl PartialEq for ExportFormat {
     }
 }
 
-/// Choice of the physics model to export at each condition.
+/// Physics model to export at each condition.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum ExportedRole {
     /// The model at the condition's own trim.
@@ -97,20 +97,20 @@ pub struct ExportRequest {
     /// Airspeeds \[kt\] of a lookup table; by default the distinct airspeeds of the scheduled
     /// conditions.
     pub breakpoints_kt: Option<Vec<f64>>,
-    /// Condition to be exported; all if `None`.
+    /// Condition whose models are exported; all conditions if `None`.
     pub condition: Option<ConditionId>,
-    /// Model of the condition.
+    /// Which physics model of a condition is exported.
     pub role: ExportedRole,
-    /// Correction of the model.
+    /// Correction that is applied to exported models.
     pub correction: AssessedCorrection,
-    /// Delay approximant.
+    /// Padé approximant of the delays of exported models.
     pub pade: Pade,
 }
 
-/// Origin of an exported correction, stated in the file.
+/// Origin of the exported corrections, stated in the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ExportSource {
-    /// Study name.
+    /// Name of the study.
     pub name: String,
     /// SHA-256 of the dataset's file, in hexadecimal.
     pub sha256: String,
@@ -120,15 +120,15 @@ pub struct ExportSource {
 #[derive(Clone, Copy)]
 pub struct Export<'e> {
     pub analysis: &'e Analysis,
-    /// Origin of the correction.
     pub source: &'e ExportSource,
     pub request: &'e ExportRequest,
-    /// Output file.
+    /// Path of the output file.
     pub path: &'e Path,
 }
 
 impl<'e> Export<'e> {
-    /// Returns remarks on the cost of the scheduled leads, for files that contain them.
+    /// Returns remarks on the cost of the scheduled leads, for files that contain these leads;
+    /// empty without leads.
     fn price_remarks(&self) -> Vec<String> {
         let Ok(schedule) = &self.analysis.schedule else {
             return Vec::new();
@@ -142,10 +142,10 @@ impl<'e> Export<'e> {
         }
     }
 
-    /// Returns the study's schedule with its couplings.
     /// Returns the schedule of the study with its couplings.
+    ///
     /// # Errors
-    /// A study without a schedule, or without the couplings that it requests.
+    /// Fails if the study has no schedule, or lacks the couplings that it requests.
     fn scheduled(&self) -> Result<Scheduled<'e>, ExportFault> {
         let analysis = self.analysis;
         let schedule = match &analysis.schedule {
@@ -168,7 +168,7 @@ impl<'e> Export<'e> {
 /// Function that writes a file.
 type Writing<'e> = Box<dyn FnOnce(&mut dyn Write) -> io::Result<()> + 'e>;
 
-/// File contents, and remarks on them, line by line.
+/// File contents, with remarks on them line by line.
 pub struct Exported<'e> {
     write: Writing<'e>,
     remarks: Vec<String>,
@@ -192,7 +192,8 @@ impl<'e> Exported<'e> {
     }
 }
 
-/// Rejects a file name that does not suit the export, before the analysis.
+/// Rejects a file name that does not suit the export format; meant to be called before the
+/// analysis.
 ///
 /// # Errors
 /// [`FileError::Export`] with the reason.
@@ -200,12 +201,12 @@ pub fn check_export(format: ExportFormat, path: &Path) -> Result<(), FileError> 
     (format.check_path)(path).map_err(|fault| FileError::export(path, fault))
 }
 
-/// Returns the correction parts in the requested file.
+/// Returns the correction parts that the requested file will contain.
 pub fn export_contents(analysis: &Analysis, request: &ExportRequest) -> ExportContents {
     (request.format.contents)(analysis, request)
 }
 
-/// Writes the requested export and returns remarks, line by line; [`export_contents`] describes the
+/// Writes the requested export and returns remarks, line by line. [`export_contents`] describes the
 /// contents of the file.
 pub fn write_export(
     analysis: &Analysis,

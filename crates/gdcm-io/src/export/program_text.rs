@@ -1,8 +1,9 @@
-//! Numbers and texts in exported programs and tables.
+//! Numbers and strings in exported programs and tables.
 
-/// Formats a finite number with 17 significant digits: every language reads back the same value.
+/// Formats a finite number with 17 significant digits, from which every language recovers the same
+/// value.
 pub(super) fn number(value: f64) -> String {
-    // Adding zero turns minus zero into zero.
+    // `+ 0.0` turns minus zero into zero.
     format!("{:.16e}", value + 0.0)
 }
 
@@ -12,9 +13,9 @@ pub(super) fn number_list(values: &[f64]) -> String {
     numbers.join(", ")
 }
 
-/// Escapes a text for a comment in any language: visible ASCII characters remain, symbols in the
-/// program's own texts get ASCII equivalents, and all others are written as code points. The result
-/// can neither end nor begin a comment.
+/// Escapes a string for a comment in any language: visible ASCII characters remain, the symbols
+/// that this program uses get ASCII equivalents, and all other characters are written as code
+/// points. The result can neither end nor begin a comment.
 pub(super) fn comment(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     for character in text.chars() {
@@ -37,19 +38,19 @@ pub(super) fn comment(text: &str) -> String {
             _ => plain.push_str(&format!("<U+{:04X}>", u32::from(character))),
         }
     }
-    // A comment line that ends in a backslash continues on the next.
+    // In C, a comment line that ends in a backslash continues on the next line.
     if plain.ends_with('\\') {
         plain.push('.');
     }
     plain
 }
 
-/// Writes a text as a C string literal; bytes other than plain characters become octal escapes.
+/// Writes a string as a C string literal; bytes other than plain characters become octal escapes.
 pub(super) fn c_text(text: &str) -> String {
     let mut quoted = String::from("\"");
     for byte in text.bytes() {
         match byte {
-            // A question mark could begin a trigraph.
+            // `?`: a question mark could begin a trigraph.
             b'"' | b'\\' | b'?' | 0..0x20 | 0x7f.. => quoted.push_str(&format!("\\{byte:03o}")),
             _ => quoted.push(char::from(byte)),
         }
@@ -58,7 +59,7 @@ pub(super) fn c_text(text: &str) -> String {
     quoted
 }
 
-/// Writes a text as a Python string literal.
+/// Writes a string as a Python string literal.
 pub(super) fn python_text(text: &str) -> String {
     let mut quoted = String::from("\"");
     for character in text.chars() {

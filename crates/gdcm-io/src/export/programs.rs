@@ -1,5 +1,5 @@
 //! The schedule as a function in other programming languages: one template per language, filled
-//! with formatted numbers and texts.
+//! with numbers and strings.
 
 use std::io;
 use std::path::Path;
@@ -27,12 +27,12 @@ struct Language {
     exp: &'static str,
     min: &'static str,
     max: &'static str,
-    /// Name of the function that evaluates a polynomial from its coefficients and `v`.
+    /// Name of the function that evaluates a polynomial, given its coefficients and `v`.
     polynomial: &'static str,
-    /// Name of the function that interpolates a table from airspeeds, values and `a`.
+    /// Name of the function that interpolates a table, given airspeeds, values and `a`.
     table: &'static str,
-    /// Whether lists of numbers are declared as arrays; otherwise they are written in square
-    /// brackets.
+    /// Whether lists of numbers must be declared as arrays; otherwise they are written in place, in
+    /// square brackets.
     declares_arrays: bool,
     /// Writes a channel name as a string literal.
     text: fn(&str) -> String,
@@ -69,7 +69,7 @@ const C_LANGUAGE: Language = Language {
     text: c_text,
 };
 
-/// A MATLAB function, called by the name of its file.
+/// Export as a MATLAB function, which is called by the name of its file.
 pub(super) const MATLAB: ExportFormat = ExportFormat {
     name: "m",
     extension: "m",
@@ -80,7 +80,7 @@ pub(super) const MATLAB: ExportFormat = ExportFormat {
     export: |export| MATLAB_LANGUAGE.export(export),
 };
 
-/// A Python module.
+/// Export as a Python module.
 pub(super) const PYTHON: ExportFormat = ExportFormat {
     name: "py",
     extension: "py",
@@ -91,7 +91,7 @@ pub(super) const PYTHON: ExportFormat = ExportFormat {
     export: |export| PYTHON_LANGUAGE.export(export),
 };
 
-/// A C header.
+/// Export as a C header.
 pub(super) const C: ExportFormat = ExportFormat {
     name: "h",
     extension: "h",
@@ -154,8 +154,8 @@ impl Language {
             .map_err(io::Error::other)
     }
 
-    /// Returns the name and source of each part of the correction, and the omitted parts, as string
-    /// literals of the language.
+    /// Returns the template values for the parts of the correction: name and source of each part,
+    /// and the omitted parts, as string literals of the language.
     fn contained_parts(&self, scheduled: &Scheduled<'_>) -> Value {
         let mut parts = Vec::new();
         for (name, source) in scheduled.contents.parts() {
@@ -168,8 +168,8 @@ impl Language {
         context! { parts, left_out }
     }
 
-    /// Returns the mixing `M~(V)`, at an airspeed clamped and scaled as for the couplings, and the
-    /// feedback `K`, both row by row.
+    /// Returns the template values of the couplings: the mixing `M~(V)` and the feedback `K`, both
+    /// row by row, with the clamping and scaling of the airspeed on which `M~` depends.
     fn coupling_values(&self, couplings: &CouplingMatrices) -> Value {
         let airspeeds = couplings.airspeeds();
         let (inputs, outputs) = couplings.feedback().shape();
@@ -234,8 +234,8 @@ impl Language {
         }
     }
 
-    /// Returns the expression of a curve in the airspeed `a`, the scaled airspeed `v` and the
-    /// scaled second variable `z`, with its arrays `c0`, `c1` and so on.
+    /// Returns the expression of a curve in terms of the airspeed `a`, the scaled airspeed `v` and
+    /// the scaled second variable `z`, together with the arrays `c0`, `c1`, … that it uses.
     fn expression(&self, curve: &Curve) -> Value {
         let mut arrays = Vec::new();
         let mut value = self.regression_expression(&curve.figures, &mut arrays);
@@ -277,8 +277,8 @@ impl Language {
         }
     }
 
-    /// Returns the expression of a list of numbers; for a language that declares arrays, the list
-    /// is added to `arrays`.
+    /// Returns the expression of a list of numbers. For a language that declares arrays, this is
+    /// the name of an array, which is added to `arrays`.
     fn array_expression(&self, values: &[f64], arrays: &mut Vec<String>) -> String {
         let numbers = number_list(values);
         if !self.declares_arrays {
@@ -289,7 +289,7 @@ impl Language {
     }
 }
 
-/// Returns the template values of the second variable, if the schedule has one.
+/// Returns the template values of the second variable; `None` if the schedule has none.
 fn second_variable_values(scheduled: &Scheduled<'_>) -> Option<Value> {
     let term = scheduled.schedule.second.as_ref()?;
     let name = format!("{}_{}", term.variable.name(), term.variable.unit());
@@ -303,7 +303,7 @@ fn second_variable_values(scheduled: &Scheduled<'_>) -> Option<Value> {
     })
 }
 
-/// Returns the template values of the lead filters, if the schedule has any.
+/// Returns the template values of the lead filters; `None` if the schedule has none.
 fn lead_values(scheduled: &Scheduled<'_>) -> Option<Value> {
     let leads = scheduled.schedule.leads.as_ref()?;
     Some(context! {
@@ -313,7 +313,7 @@ fn lead_values(scheduled: &Scheduled<'_>) -> Option<Value> {
     })
 }
 
-/// Returns the expression of the scaled airspeed, identical in every language.
+/// Returns the expression of the scaled airspeed, which is valid in every language.
 fn scaled_airspeed(airspeeds: &Airspeeds) -> String {
     if airspeeds.half_range_kt == 0.0 {
         return number(0.0);
@@ -333,12 +333,13 @@ fn stem(path: &Path) -> String {
     }
 }
 
-/// Reserved words of MATLAB (`iskeyword`) and GNU Octave, and the functions in the file.
+/// Reserved words of MATLAB (`iskeyword`) and GNU Octave, and the names of functions in the
+/// exported file.
 const KEYWORDS: &str = "break case catch classdef continue do else elseif end end_try_catch end_unwind_protect endfor \
     endfunction endif endparfor endswitch endwhile for function global if otherwise parfor persistent return spmd switch try \
     until unwind_protect unwind_protect_cleanup while gdcm_polynomial gdcm_table";
 
-/// Rejects a file name that is not a valid function name in MATLAB.
+/// Rejects a file name that is not a valid name of a MATLAB function.
 fn check_function_name(name: &str) -> Result<(), ExportFault> {
     let is_name = name.starts_with(|first: char| first.is_ascii_alphabetic())
         && name.len() <= LONGEST_NAME

@@ -1,5 +1,5 @@
 //! The schedule in the form exported to programs and tables: gain, delay and lead filter of each
-//! channel as curves over airspeed, and the file headings.
+//! channel as curves over airspeed, and the headings of the files.
 
 use gdcm_method::correction::Channel;
 use gdcm_method::couplings::CouplingMatrices;
@@ -13,11 +13,11 @@ use super::program_text::{comment, number};
 use crate::export_fault::ExportFault;
 use crate::files::export_contents::ExportContents;
 
-/// Number of airspeed intervals of the table that approximates a lead filter which varies with
-/// airspeed.
+/// Number of airspeed intervals in the table that approximates a lead filter whose time constant
+/// varies with airspeed.
 const LEAD_INTERVALS: u32 = 100;
 
-/// A schedule with its dataset and study.
+/// A schedule, with the dataset and the study from which it comes.
 #[derive(Clone)]
 pub(super) struct Scheduled<'e> {
     pub(super) schedule: &'e Schedule,
@@ -25,19 +25,19 @@ pub(super) struct Scheduled<'e> {
     pub(super) source: &'e ExportSource,
     /// Mixing and feedback, if any.
     pub(super) couplings: Option<&'e CouplingMatrices>,
-    /// Correction parts in a file with the schedule.
+    /// Correction parts that a file with the schedule contains.
     pub(super) contents: ExportContents,
 }
 
 /// A gain, or a time \[s\], over airspeed.
 pub(super) struct Curve {
-    /// A polynomial in the scaled airspeed, or a table.
+    /// Dependence on airspeed: a polynomial in the scaled airspeed, or a table.
     pub(super) figures: Regression,
     /// Coefficient of the scaled second variable; `None` without one.
     pub(super) slope: Option<f64>,
-    /// Whether the other fields give the natural logarithm of the value.
+    /// Whether `figures` and `slope` give the natural logarithm of the value.
     pub(super) of_logarithm: bool,
-    /// Upper limit of the value, whose lower limit is then zero.
+    /// Upper limit of the value; the lower limit is then zero. `None` if the value is not limited.
     pub(super) upper: Option<Regression>,
 }
 
@@ -104,8 +104,8 @@ impl Scheduled<'_> {
         }
     }
 
-    /// Returns the numerator time constant `a` \[s\] of a channel's lead filter, which equals `b`
-    /// without a lead. `None` if the schedule has no leads.
+    /// Returns the numerator time constant `a` \[s\] of a channel's lead filter; without a lead in
+    /// this channel, `a` equals the denominator's `b`. `None` if the schedule has no leads.
     pub(super) fn zero_s(&self, channel: Channel) -> Option<Curve> {
         let leads = self.schedule.leads.as_ref()?;
         let least = self.schedule.airspeeds.min_kt;
@@ -113,7 +113,8 @@ impl Scheduled<'_> {
         if leads.taus_s[channel].figures().len() == 1 || least == most {
             return Some(Curve::constant(self.zero_at_s(channel, least)?));
         }
-        // The numerator time constant is not a polynomial in airspeed even if the signed delay is.
+        // A table, because the numerator time constant is not a polynomial in airspeed even if the
+        // signed delay is.
         let mut airspeeds_kt = Vec::new();
         let mut values = Vec::new();
         for place in 0..=LEAD_INTERVALS {
@@ -139,7 +140,7 @@ impl Scheduled<'_> {
         }
     }
 
-    /// Returns the remarks on the schedule.
+    /// Returns the remarks on the schedule: missing delays, cost of leads, and cautions.
     pub(super) fn notes(&self) -> Vec<String> {
         let (inputs, outputs) = self.dataset.names_of_channels();
         let mut notes = Vec::new();
@@ -155,7 +156,7 @@ impl Scheduled<'_> {
         notes
     }
 
-    /// Returns the remarks on the schedule, and a remark on lead filters given as tables.
+    /// Returns the remarks on the schedule, and a remark if lead filters are given as tables.
     pub(super) fn notes_of_curves(&self) -> Vec<String> {
         let mut notes = self.notes();
         let has_lead_table = all_channels(self.dataset).into_iter().any(|channel| {
@@ -171,7 +172,7 @@ impl Scheduled<'_> {
         notes
     }
 
-    /// Returns the heading of a file with the schedule, line by line, including these notes.
+    /// Returns the heading of a file with the schedule, line by line; `notes` are included.
     pub(super) fn heading(&self, notes: &[String]) -> Vec<String> {
         let airspeeds = &self.schedule.airspeeds;
         let quantities = if self.schedule.has_delays() {
@@ -180,7 +181,7 @@ impl Scheduled<'_> {
             "Gains (no delays)"
         };
         let mut lines = vec![
-            format!("{quantities} that correct a model of a helicopter, scheduled with airspeed."),
+            format!("{quantities} that correct a helicopter model, scheduled with airspeed."),
             "The model gets the input Mi*u(t - tau_i); its output ym gives y(t) = Mo*ym(t - tau_o).".to_owned(),
             "Units: airspeed in knots, delays in seconds, gains without a unit.".to_owned(),
             format!(
@@ -196,9 +197,12 @@ impl Scheduled<'_> {
         if self.couplings.is_some() {
             lines.extend(
                 [
-                    "Couplings: in place of u1 = Mi*u(t - tau_i), after leads, the model itself gets u2 = mixing*u1 + feedback*ym;",
-                    "ym is its output before any correction. Where it has a feed-through D, u2 and ym depend on each other at once:",
-                    "solved, u2 = u1m + F*(y0) of u1m = mixing*u1, y0 = C*x + D*u1m, F = feedback*inverse(I - D*feedback).",
+                    "Couplings: instead of u1 = Mi*u(t - tau_i), after leads, the model itself \
+                    gets u2 = mixing*u1 + feedback*ym;",
+                    "ym is its output before any correction. If the model has a feed-through D, \
+                    u2 and ym depend on each other instantaneously;",
+                    "the solution is u2 = u1m + F*y0, where u1m = mixing*u1, y0 = C*x + D*u1m, F \
+                    = feedback*inverse(I - D*feedback).",
                 ]
                 .map(str::to_owned),
             );
@@ -213,7 +217,7 @@ impl Scheduled<'_> {
         lines
     }
 
-    /// Describes the lead filters; empty without them.
+    /// Describes the lead filters, line by line; empty without lead filters.
     fn lead_lines(&self) -> Vec<String> {
         let Some(leads) = &self.schedule.leads else {
             return Vec::new();
@@ -225,20 +229,21 @@ impl Scheduled<'_> {
         };
         vec![
             format!(
-                "Lead: each input, after its gain and delay, and each output, before them, passes {filter},"
+                "Lead: each input, after its gain and delay, and each output, before them, passes \
+                through {filter},"
             ),
             format!(
-                "with b = {} s for all, and a in seconds for each; where a = b there is no lead.",
+                "with b = {} s for all channels, and a [s] for each channel; a = b means no lead.",
                 number(lag_s)
             ),
             format!(
-                "In fixed-step code use Tustin's rule and a step of at most {} s.",
+                "In fixed-step code, use Tustin's rule and a step of at most {} s.",
                 number(0.5 * lag_s)
             ),
         ]
     }
 
-    /// Rejects curves with coefficients or values that are not finite.
+    /// Rejects a schedule with coefficients or values that are not finite.
     pub(super) fn check(&self) -> Result<(), ExportFault> {
         for channel in all_channels(self.dataset) {
             self.check_curve(channel, "gain", &self.gain(channel))?;

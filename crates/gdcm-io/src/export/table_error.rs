@@ -2,13 +2,13 @@
 
 /// Number of grid intervals in the search for the maximum error.
 const GRID: usize = 2000;
-/// Number of golden-section steps: each multiplies the interval by 0.618.
+/// Number of golden-section steps; each multiplies the interval by 0.618.
 const STEPS: usize = 60;
 
-/// Maximum error of linear interpolation in a table.
+/// Maximum error of a table, with its position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct TableError {
-    /// Absolute error, in the unit of the `measure` passed to [`Self::greatest`].
+    /// Error at that airspeed, in the unit of the `measure` passed to [`Self::greatest`].
     pub(super) error: f64,
     /// Airspeed \[kt\] at which the maximum occurs.
     pub(super) airspeed_kt: f64,
@@ -16,7 +16,7 @@ pub(super) struct TableError {
 
 impl TableError {
     /// Finds the maximum error within `range_kt` of a table that samples `curve` at `points`;
-    /// `measure` returns the error of an interpolated value, given the true one.
+    /// `measure` returns the error of an interpolated value, given the exact value.
     ///
     /// A grid search is refined by a golden-section search.
     pub(super) fn greatest(
@@ -53,7 +53,7 @@ impl TableError {
         greatest
     }
 
-    /// Returns the larger error; `self` if they are equal.
+    /// Returns the larger of two errors; `self` if they are equal.
     pub(super) fn or_greater(self, other: Self) -> Self {
         if other.error > self.error {
             other
@@ -63,7 +63,7 @@ impl TableError {
     }
 }
 
-/// Interpolates a table linearly at an airspeed; outside its range, the end values apply.
+/// Interpolates a table linearly at an airspeed; the end values apply outside its range.
 fn interpolated(points: &[f64], values: &[f64], airspeed_kt: f64) -> f64 {
     let above = points.partition_point(|&point| point <= airspeed_kt);
     match (above.checked_sub(1), points.get(above)) {

@@ -1,14 +1,14 @@
-//! Errors near the beginning of a dataset or a study, without reading the rest.
+//! Finds errors near the beginning of a dataset or a study without reading the rest.
 //!
 //! ```text
 //! n <- 64 KiB
-//! 1  text <- the first n bytes, unpacked; if that is the whole file, stop (fully read later)
+//! 1  text <- the first n bytes, uncompressed; stop if the file is shorter (it is soon read in full)
 //! 2  read text up to its last comma as a dataset or a study
-//! 3  an error other than the end of the text: report it
-//! 4  n <- 16 n, and again up to 16 MiB
+//! 3  if there is an error other than the end of the text, return it
+//! 4  n <- 16 n; repeat up to 16 MiB
 //! ```
 //!
-//! A sixteenth of a valid file is read twice.
+//! The checked beginning of a valid file is read again by the full reader.
 
 use std::io::Read;
 use std::path::Path;
@@ -20,25 +20,27 @@ use crate::location::Outline;
 use crate::reading_budget::ReadingBudget;
 use crate::source::{text_reader, without_mark};
 
-/// Number of bytes checked first.
+/// Length of the first check \[bytes\].
 const FIRST: usize = 1 << 16;
-/// Growth factor from one checked length to the next.
+/// Ratio of the length of a check to the length of the previous check.
 const GROWTH: usize = 16;
-/// Number of bytes checked last.
+/// Length of the last check \[bytes\].
 const LAST: usize = 16 << 20;
 
-/// Looks for the first structural error of a dataset or a study: text that is not JSON, another
-/// format or version, values with a type other than their keys require, lists that are too long.
+/// Checks the beginning of a dataset or a study for structural errors: text that is not JSON,
+/// another format or version, values of a type that their keys do not permit, lists that are too
+/// long.
 ///
 /// # Errors
-/// Returns this error if it is within the first 16 MiB, and an error if the file is missing.
+/// Returns the first such error within 16 MiB, or an error if the file cannot be opened.
 pub fn check_beginning(path: &Path) -> Result<(), FileError> {
     let mut reader = text_reader(path)?;
     let mut text = Vec::new();
     let mut length = FIRST;
     while length <= LAST {
         let wanted = length - text.len();
-        // The full reader reports a file that cannot be read or unpacked.
+        // A file that cannot be read or uncompressed is left to the full reader, which reports the
+        // error.
         let Ok(found) = reader.by_ref().take(wanted as u64).read_to_end(&mut text) else {
             return Ok(());
         };
@@ -51,9 +53,10 @@ pub fn check_beginning(path: &Path) -> Result<(), FileError> {
     Ok(())
 }
 
-/// Returns the first error in an incomplete text: one that continues in the file.
+/// Returns the first error in the beginning of a file, in which the end of the text is not an
+/// error.
 fn check_text(text: &[u8], path: &Path) -> Result<(), FileError> {
-    // A number or a word cut off at the end would be read with another value.
+    // Stop at the last comma: a number or a word that is cut off would be read with another value.
     let Some(comma) = text.iter().rposition(|&byte| byte == b',') else {
         return Ok(());
     };
@@ -66,7 +69,7 @@ fn check_text(text: &[u8], path: &Path) -> Result<(), FileError> {
         check_dataset_text(text, path, &budget)
     };
     match checked {
-        // The cut-off itself is expected, since the text continues.
+        // The end of the text is expected, because it is only the beginning of the file.
         Err(FileError::CutOff { .. }) => Ok(()),
         checked => checked,
     }
@@ -86,7 +89,7 @@ mod tests {
         let commas = SMALL.bytes().enumerate().filter(|(_, byte)| *byte == b',');
         let mut tried = 0;
         for (at, _) in commas {
-            // Within the number or the word behind the comma, too.
+            // Also cuts the text within the number or the word after the comma.
             for end in at + 1..(at + 8).min(SMALL.len()) {
                 check_text(&SMALL.as_bytes()[..end], Path::new("small.json")).unwrap();
                 tried += 1;
@@ -95,7 +98,7 @@ mod tests {
         assert!(tried > 1000, "{tried}");
     }
 
-    /// A file that begins with `begin` and exceeds every reading limit.
+    /// Creates a file that begins with `begin` and exceeds every size limit for reading.
     fn endless(begin: &str) -> tempfile::NamedTempFile {
         let file = tempfile::NamedTempFile::new().unwrap();
         std::fs::write(&file, begin).unwrap();

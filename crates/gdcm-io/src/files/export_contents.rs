@@ -1,5 +1,5 @@
-//! Contents of an export: gains, delays, leads and couplings, each scheduled or of the condition's
-//! own correction; and the omitted parts.
+//! Contents of an export: whether its gains, delays, leads and couplings are scheduled or corrected
+//! for each condition alone, and which parts are omitted.
 
 use serde_json::{Value, json};
 
@@ -13,16 +13,16 @@ use gdcm_words::schedule::delayed_channel_text;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PartSource {
     Scheduled,
-    /// Each condition's own correction.
+    /// From the correction of each condition alone.
     Own,
-    /// Own and scheduled correction, side by side.
+    /// Both: the correction of each condition alone, and the schedule.
     OwnAndScheduled,
-    /// Not in the file.
+    /// The export does not contain the part.
     None,
 }
 
 impl PartSource {
-    /// Returns the word for the source in files.
+    /// Returns the source as written in files.
     pub fn word(self) -> &'static str {
         match self {
             Self::Scheduled => "scheduled",
@@ -44,7 +44,8 @@ impl PartSource {
         if is_own { Self::Own } else { Self::None }
     }
 
-    /// Combines the source of this part with the source of the same part in the schedule.
+    /// Combines the source of a part in the corrections of single conditions (`self`) with its
+    /// source in the schedule.
     fn beside(self, scheduled: Self) -> Self {
         match (self, scheduled) {
             (Self::Own, Self::Scheduled) => Self::OwnAndScheduled,
@@ -54,19 +55,19 @@ impl PartSource {
     }
 }
 
-/// A part of the conditions' corrections that an export omits.
+/// A part of the corrections that an export omits.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LeftOutPart {
-    /// Delays of a channel in the own corrections of some conditions, which the schedule omits.
+    /// Delays of a channel that some conditions are corrected with, but that the schedule lacks.
     Delay(DelayedChannel),
     /// The scheduled lead filters.
     Leads,
-    /// The requested couplings, with the reason why they are unavailable.
+    /// Couplings that the study requests but that are unavailable, with the reason.
     Couplings(String),
 }
 
 impl LeftOutPart {
-    /// Returns the stable code of the part.
+    /// Returns the stable code of the omitted part.
     pub fn code(&self) -> &'static str {
         match self {
             Self::Delay(_) => "delay-not-scheduled",
@@ -82,7 +83,7 @@ impl LeftOutPart {
                 format!("{} (not scheduled)", delayed_channel_text(delayed, dataset))
             }
             Self::Leads => "the lead filters of the schedule".to_owned(),
-            Self::Couplings(why) => format!("the couplings that the study asks for: {why}"),
+            Self::Couplings(why) => format!("the couplings requested by the study: {why}"),
         }
     }
 }
@@ -95,13 +96,12 @@ pub struct ExportContents {
     pub leads: PartSource,
     /// Mixing and feedback, identical for all conditions.
     pub couplings: PartSource,
-    /// The omitted parts.
     pub left_out: Vec<LeftOutPart>,
 }
 
 impl ExportContents {
-    /// Returns the contents of the result files: the own correction of each condition, beside the
-    /// schedule if it exists.
+    /// Returns the contents of the result files: the correction of each condition alone, together
+    /// with the schedule if it exists.
     pub fn of_results(analysis: &Analysis) -> Self {
         let own = Self::of_own(analysis);
         let Ok(schedule) = &analysis.schedule else {
@@ -123,7 +123,8 @@ impl ExportContents {
         }
     }
 
-    /// Returns the contents of an exported schedule; empty without a schedule.
+    /// Returns the contents of an exported schedule; without a schedule, only couplings can be
+    /// present.
     pub fn of_scheduled(analysis: &Analysis) -> Self {
         match &analysis.schedule {
             Ok(schedule) => Self::of_schedule(analysis, schedule),
@@ -131,7 +132,7 @@ impl ExportContents {
         }
     }
 
-    /// Returns the contents of corrected models at these conditions.
+    /// Returns the contents of a file with the corrected models of these conditions.
     ///
     /// # Errors
     /// [`ScheduleError`] if the schedule is requested but does not exist.
@@ -210,7 +211,7 @@ impl ExportContents {
         contents
     }
 
-    /// Returns the name and source of each part, in report order.
+    /// Returns the name and source of each part, in the order used in reports.
     pub fn parts(&self) -> [(&'static str, PartSource); 4] {
         [
             ("gains", self.gains),
@@ -227,7 +228,7 @@ impl ExportContents {
             .join(", ")
     }
 
-    /// Describes the omitted parts.
+    /// Describes each omitted part in words.
     pub fn left_out_words(&self, dataset: &Dataset) -> Vec<String> {
         self.left_out
             .iter()
@@ -235,7 +236,7 @@ impl ExportContents {
             .collect()
     }
 
-    /// Returns the lines of both: "contains: …", then "left out: …" for each omitted part.
+    /// Returns lines for a report: "contains: …", then "left out: …" for each omitted part.
     pub fn lines(&self, dataset: &Dataset) -> Vec<String> {
         let mut lines = vec![format!("contains: {}", self.words())];
         for words in self.left_out_words(dataset) {
@@ -244,7 +245,7 @@ impl ExportContents {
         lines
     }
 
-    /// Returns the block `contains` for files.
+    /// Returns the JSON object that files hold under the key `contains`.
     pub fn json(&self, dataset: &Dataset) -> Value {
         json!({
             "gains": self.gains.word(),

@@ -24,15 +24,15 @@ use crate::file_error::FileError;
 use crate::json_text::{Nested, write_compact};
 use crate::output_set::OutputSet;
 
-/// Identification results, with the additional information in the file.
+/// Identification results and the records on which they are based, as written to a file.
 pub struct IdentifiedModels<'f> {
-    /// Results in the units of the channels.
+    /// Identified models, in the units of `channels`.
     pub found: &'f Identification,
     pub channels: &'f RecordChannels,
-    /// Records used, in order.
+    /// Records used, in the order of their indices in the results.
     pub records: &'f [ConditionRecord],
     pub cautions: &'f [CautionNote],
-    /// Notes on assumptions and choices made while the records were read.
+    /// Notes on assumptions made while the records were read.
     pub reading: &'f [String],
 }
 
@@ -54,15 +54,16 @@ struct MeasuredText {
     omega_rad_s: Vec<f64>,
     re: Nested<3>,
     im: Nested<3>,
-    /// Multiple coherence of each output.
+    /// Multiple coherence, outputs x frequencies.
     coherence: Nested<2>,
     partial_coherence: Nested<3>,
     sd_db: Nested<3>,
     sd_deg: Nested<3>,
 }
 
-/// Adds identification results as a file to `outputs`: the recommended model, then the CT-PBSID
-/// model without refinement, then the rest of the bundle. Values that are not finite become `null`.
+/// Adds a file with identification results to `outputs`: the recommended model, then the CT-PBSID
+/// model without refinement, then the other models of the bundle. Non-finite values are written as
+/// `null`.
 pub fn add_identified(
     results: &IdentifiedModels<'_>,
     path: &Path,
@@ -114,9 +115,9 @@ fn label(rule: &ChannelRule) -> ChannelLabel {
     }
 }
 
-/// Returns the validation: the cost per degree of freedom of the fitted and of the held-out
-/// records, the latter also with the uncertainty of the model taken into account; in the time
-/// domain, the fit of each output in the held-out records \[%\], and Theil's coefficient.
+/// Returns the validation results: the cost per degree of freedom of the fitted records and of the
+/// held-out records, for the held-out records also normalised with the uncertainty of the model; in
+/// the time domain, the fit of each output \[%\] and Theil's coefficient for the held-out records.
 fn validation_text(found: &Identification) -> Value {
     let (fit_percent, theil) = match &found.validation {
         Some(in_time) => (json!(in_time.fit_percent), json!(in_time.theil)),
@@ -155,8 +156,8 @@ fn measured_text(measured: &ResponseEstimate) -> MeasuredText {
     }
 }
 
-/// Returns the values of all responses, outputs x inputs x frequencies; `value` is evaluated for
-/// each point and each response.
+/// Returns an array outputs x inputs x frequencies; `value` receives a frequency point and the
+/// (output, input) index.
 fn response_array(
     points: &[EstimatePoint],
     value: impl Fn(&EstimatePoint, (usize, usize)) -> f64,
@@ -177,7 +178,7 @@ fn response_array(
     }
 }
 
-/// Returns a caution, with its record if it concerns only one.
+/// Converts a caution to JSON, with the name of its record if it concerns a single record.
 fn caution_text(note: &CautionNote) -> Value {
     let single_record = match note.records.as_slice() {
         [record] => Some(record),
@@ -204,8 +205,8 @@ fn pole_text(estimate: &PoleEstimate) -> Value {
     })
 }
 
-/// Returns record `index`: first and last time \[s\] of the part used and of each used segment, and
-/// the reasons why other segments were not used.
+/// Describes the record at `index`: first and last time \[s\] of the used part and of each used
+/// segment, and the reasons why other segments were not used.
 fn record_text(found: &Identification, index: usize, record: &ConditionRecord) -> Value {
     let mut reasons = Vec::new();
     if let Some(used) = found.record_uses.get(index) {

@@ -1,4 +1,4 @@
-//! The program's own file formats.
+//! File formats of this program.
 
 pub mod beginning;
 pub mod corrections_file;

@@ -41,7 +41,7 @@ struct ModelsText {
     models: Vec<ModelText>,
 }
 
-/// Adds the models as a file to `outputs`.
+/// Adds a file with the models to `outputs`.
 pub fn add_models(
     models: &[FoundModel],
     path: &Path,
@@ -59,10 +59,10 @@ fn write_models(models: &[FoundModel], file: &mut dyn Write) -> io::Result<()> {
     write_compact(&text, file)
 }
 
-/// A corrected model, and a description of the correction parts in it.
+/// A corrected model with a description of the applied parts of the correction.
 pub(crate) struct ContainingModel {
     pub(crate) model: FoundModel,
-    /// The block `contains`.
+    /// JSON object written under the key `contains`.
     pub(crate) contains: Value,
 }
 
@@ -80,7 +80,7 @@ struct ContainingModelsText {
     models: Vec<ContainingModelText>,
 }
 
-/// Writes corrected models as a file.
+/// Writes corrected models to a file.
 pub(crate) fn write_containing_models(
     models: &[ContainingModel],
     file: &mut dyn Write,
@@ -100,11 +100,11 @@ pub(crate) fn write_containing_models(
     write_compact(&text, file)
 }
 
-/// Converts a model outside a dataset to text.
+/// Converts a model outside a dataset to its form in the file.
 pub(crate) fn model_text(model: &FoundModel) -> ModelText {
     let text = ModelText::from_draft(model.draft.clone());
     let role = match &model.draft.origin {
-        // This value represents an unknown origin.
+        // This value represents an unknown origin, which is not written.
         Origin::Perturbed { perturbation: None } => None,
         Origin::Identified { .. } => Some("identified".to_owned()),
         Origin::Nominal { .. } | Origin::Perturbed { .. } => text.role,
@@ -131,7 +131,7 @@ pub(crate) fn model_text(model: &FoundModel) -> ModelText {
     }
 }
 
-/// Returns the channel names; empty strings if they are unknown.
+/// Returns the channel names; an unknown name becomes an empty string.
 fn names_text(labels: &[ChannelLabel]) -> Option<Limited<LabelText, MOST_CHANNELS>> {
     let mut names = Vec::with_capacity(labels.len());
     for label in labels {
@@ -140,7 +140,7 @@ fn names_text(labels: &[ChannelLabel]) -> Option<Limited<LabelText, MOST_CHANNEL
     Some(Limited(names))
 }
 
-/// Returns the channel units; empty strings if they are unknown.
+/// Returns the channel units; an unknown unit becomes an empty string.
 fn units_text(labels: &[ChannelLabel]) -> Option<Limited<String, MOST_CHANNELS>> {
     let mut units = Vec::with_capacity(labels.len());
     for label in labels {
@@ -149,11 +149,12 @@ fn units_text(labels: &[ChannelLabel]) -> Option<Limited<String, MOST_CHANNELS>>
     Some(Limited(units))
 }
 
-/// Reads the models in a text in one of this program's formats; `None` for any other text. The
-/// second list holds cautions about unknown keys.
+/// Reads the models from a file in one of this program's model formats, with cautions about unknown
+/// keys.
 ///
-/// Also `None` if an unknown key resembles a delay. Such a text is read as general JSON, with all
-/// supported notations of delays, and the rest becomes a question.
+/// Returns `None` for any other file, and if the name of an unknown key suggests a delay: such a
+/// file is read as general JSON instead, which supports more notations of delays and asks the
+/// engineer about the rest.
 pub(crate) fn found_models(
     text: &[u8],
     path: &Path,
@@ -162,7 +163,7 @@ pub(crate) fn found_models(
     let (texts, unknown) = match MODELS.decode::<ModelsText>(text, path, budget) {
         Ok((text, unknown)) => (text.models, unknown),
         Err(_) => {
-            // The other keys of the file are identification results.
+            // Unknown keys need no caution: they are identification results.
             let (text, _) = IDENTIFIED.decode::<ModelsText>(text, path, budget).ok()?;
             (text.models, Vec::new())
         }
@@ -177,7 +178,7 @@ pub(crate) fn found_models(
     Some((models, unknown))
 }
 
-/// Whether the caution about an unknown key names a key that resembles a delay.
+/// Returns whether a caution about an unknown key contains a word that suggests a delay.
 fn names_delay(words: &str) -> bool {
     let words = words.to_lowercase();
     ["delay", "\"tau", "\"td", "dead", "latency"]
@@ -185,7 +186,7 @@ fn names_delay(words: &str) -> bool {
         .any(|word| words.contains(word))
 }
 
-/// Returns the labels of a dataset's channels.
+/// Returns labels with the names and units of channels.
 pub(crate) fn labels(channels: &[Channel]) -> Vec<ChannelLabel> {
     let mut labels = Vec::with_capacity(channels.len());
     for channel in channels {
@@ -211,8 +212,8 @@ pub(crate) fn bare_draft(name: String, origin: Origin) -> ModelDraft {
     }
 }
 
-/// Converts the text of the model at `index`, which becomes part of its variable name. `None` if
-/// neither matrices nor a response give its dimensions.
+/// Converts the model at `index` (from 0), which is part of its variable name. Returns `None` if
+/// neither the matrices nor a response give its dimensions.
 fn found_model(mut text: ModelText, index: usize) -> Option<FoundModel> {
     let origin = match text.origin() {
         Some(origin) => origin,
@@ -253,8 +254,8 @@ fn found_model(mut text: ModelText, index: usize) -> Option<FoundModel> {
     })
 }
 
-/// Returns `count` labels from channel names and units, each list possibly empty; `None` if the
-/// length of a list is not `count`.
+/// Returns the labels of `count` channels from their names and units; either list may be empty.
+/// Returns `None` if another length differs from `count`.
 fn labels_from_texts(
     count: usize,
     names: Vec<LabelText>,

@@ -1,4 +1,4 @@
-//! Requirement files (M17): `requirements.json` and `requirements.csv`, with the same values.
+//! Requirement files (M17): `requirements.json` and `requirements.csv`, which hold the same values.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -23,10 +23,10 @@ use crate::source::Source;
 const NAME: &str = "gdcm-requirements";
 const VERSION: u64 = 1;
 
-/// Requirement file names.
+/// Names of the two requirement files, in the order JSON, CSV.
 pub const REQUIREMENT_FILES: [&str; 2] = ["requirements.json", "requirements.csv"];
 
-/// Returns the requirement file paths in a directory.
+/// Returns the paths of the JSON and the CSV file in a directory.
 pub fn requirement_paths(directory: &Path) -> [PathBuf; 2] {
     REQUIREMENT_FILES.map(|name| directory.join(name))
 }
@@ -49,18 +49,17 @@ struct DatasetName<'a> {
     sha256: &'a str,
 }
 
-/// Findings on the requirements, and the dataset to which they apply.
+/// Findings on the requirements, with the dataset to which they apply.
 #[derive(Clone, Copy)]
 pub struct RequirementResults<'a> {
     pub requirements: &'a Requirements,
     pub time_histories: &'a TimeHistories,
-    /// Dataset name.
     pub dataset: &'a str,
     /// SHA-256 of the dataset's file.
     pub sha256: &'a str,
 }
 
-/// Writes both files or neither into a directory, which is created if missing.
+/// Writes the JSON and the CSV file, or neither, into a directory, which is created if missing.
 pub fn write_requirements(
     results: RequirementResults<'_>,
     directory: &Path,
@@ -93,10 +92,10 @@ pub fn write_requirements(
     outputs.persist()
 }
 
-/// Column headings.
+/// Column names of the CSV file, separated by blanks.
 const HEADING: &str = "question condition airspeed_kt role model output input mode record tolerance quantity value low high remark";
 
-/// Writes a row for each value.
+/// Writes the CSV file: a row for each value.
 fn write_rows(
     requirements: &Requirements,
     time_histories: &TimeHistories,
@@ -118,7 +117,7 @@ fn write_rows(
     write_records(file, rows.into_iter())
 }
 
-/// Subject of a value: the first ten cells of a row.
+/// Identification of a value: the first ten cells of its CSV row.
 #[derive(Clone, Copy, Default)]
 struct Subject<'a> {
     question: &'a str,
@@ -134,7 +133,7 @@ struct Subject<'a> {
 }
 
 impl Subject<'_> {
-    /// Returns the row of the quantity `name`.
+    /// Returns the CSV row of the quantity `name`.
     fn row(
         &self,
         name: &str,
@@ -162,7 +161,7 @@ impl Subject<'_> {
     }
 }
 
-/// Formats a value; empty if it is missing.
+/// Formats a value; a missing value becomes an empty cell.
 fn cell(value: Option<f64>) -> String {
     match value {
         Some(value) => value.to_string(),
@@ -200,19 +199,19 @@ fn bandwidth_remark(finding: &BandwidthFinding, name: &'static str, is_known: bo
         remarks.push("gain-limited".to_owned());
     }
     if name == "omega_bw_rad_s" && finding.rule == Some(BandwidthRule::PhaseGainUnknown) {
-        remarks.push("of the phase margin; the gain margin is not known".to_owned());
+        remarks.push("from the phase margin; the gain margin is unknown".to_owned());
     }
     if name == "phase_delay_s" && finding.phase_delay_of_line {
-        remarks.push("of the least-squares line".to_owned());
+        remarks.push("from the least-squares line".to_owned());
     }
     if finding.rests_above(name) {
-        remarks.push("rests on the response above the band".to_owned());
+        remarks.push("depends on the response above the band".to_owned());
     }
     if finding.rests_below_band.contains(&name) {
-        remarks.push("rests on the response below the band".to_owned());
+        remarks.push("depends on the response below the band".to_owned());
     }
     if let Some(count) = finding.swaps_left_out.get(name) {
-        remarks.push(format!("{count} swaps without it"));
+        remarks.push(format!("{count} exchanges of models give no value"));
     }
     remarks.join("; ")
 }
@@ -228,7 +227,7 @@ fn mode_rows(finding: &ModeFinding) -> Vec<Vec<String>> {
     rows
 }
 
-/// Returns the rows of a mode for the model with this role.
+/// Returns the CSV rows of a mode of the model with this role.
 fn model_mode_rows(finding: &ModeFinding, role: &str, numbers: &ModeNumbers) -> Vec<Vec<String>> {
     let mode = match finding.name {
         Some(name) => format!("{} {name}", finding.number),
@@ -268,7 +267,7 @@ fn summary_rows(finding: &SummaryFinding) -> Vec<Vec<String>> {
     rows
 }
 
-/// Returns the rows of a time history: quantities without a tolerance, then those of each
+/// Returns the CSV rows of a time history: quantities without a tolerance, then those of each
 /// tolerance.
 fn history_rows(finding: &HistoryFinding) -> Vec<Vec<String>> {
     let subject = Subject {
@@ -282,7 +281,9 @@ fn history_rows(finding: &HistoryFinding) -> Vec<Vec<String>> {
         ..Subject::default()
     };
     let remark = match (finding.j_rms, finding.j_rms_left_out.as_slice()) {
-        (None, _) => "no output is an angle, a rate, a speed or an acceleration".to_owned(),
+        (None, _) => {
+            "J_rms needs an output that is an angle, a rate, a speed or an acceleration".to_owned()
+        }
         (Some(_), []) => String::new(),
         (Some(_), left_out) => format!("without {}", left_out.join(", ")),
     };
@@ -305,18 +306,18 @@ fn history_rows(finding: &HistoryFinding) -> Vec<Vec<String>> {
     rows
 }
 
-/// Returns the unit of an excess; for a correlation, the trend that it indicates.
+/// Returns the unit of an excess, or the trend that a correlation indicates.
 fn tolerance_remark(finding: &ToleranceFinding, name: &str) -> String {
     match (name, finding.correlation, finding.trend) {
         ("largest_excess", ..) => finding.unit.clone(),
-        ("correlation", None, _) => "flown or simulated does not move".to_owned(),
+        ("correlation", None, _) => "the flown or the simulated output is constant".to_owned(),
         ("correlation", _, Some(trend)) => format!("off-axis, trend {}", trend.name()),
         _ => String::new(),
     }
 }
 
-// Tables for requirements that the engineer supplies as separate files, for any study (M17): levels
-// of bandwidth and phase delay, tolerances of time histories.
+// Tables that the engineer supplies as separate files, for use in any study (M17): level boundaries
+// of bandwidth and phase delay, and tolerances of time histories.
 
 const TOLERANCES: Format = Format {
     name: "gdcm-tolerances",
@@ -344,7 +345,10 @@ pub fn read_levels(path: &Path) -> Result<LevelBoundaries, FileError> {
         .map_err(|error| json_error(text, path, Location::default(), &error))
 }
 
-/// Reads a tolerance table completely, or returns an error. Unknown keys become cautions.
+/// Reads a tolerance table, with cautions about unknown keys.
+///
+/// # Errors
+/// [`FileError`] if the file cannot be read, or any part of it is invalid.
 pub fn load_tolerances(path: &Path) -> Result<(ToleranceTable, Vec<String>), FileError> {
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget)?;
@@ -358,7 +362,7 @@ pub fn load_tolerances(path: &Path) -> Result<(ToleranceTable, Vec<String>), Fil
     }
 }
 
-/// Adds a tolerance table to `outputs`.
+/// Adds a file with a tolerance table to `outputs`.
 pub fn add_tolerances(
     table: &ToleranceTable,
     path: &Path,

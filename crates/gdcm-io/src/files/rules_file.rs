@@ -1,5 +1,5 @@
-//! Rules files, `*.gdcm-rules.json`: the engineer's rules on the files in a folder, which can be
-//! reused for other folders.
+//! Rules files, `*.gdcm-rules.json`: rules for reading the models in a folder, which can be reused
+//! for other folders.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -20,7 +20,6 @@ use crate::output_set::OutputSet;
 use crate::reading_budget::ReadingBudget;
 use crate::source::Source;
 
-/// File extension.
 const RULES_EXTENSION: &str = "gdcm-rules.json";
 
 /// Returns the path of the rules file beside a dataset: "week.gdcm-rules.json" beside
@@ -34,7 +33,10 @@ pub fn rules_path(dataset: &Path) -> PathBuf {
     dataset.with_file_name(format!("{stem}.{RULES_EXTENSION}"))
 }
 
-/// Reads a rules file completely, or returns an error. Unknown keys become cautions.
+/// Reads a rules file, with cautions about unknown keys.
+///
+/// # Errors
+/// [`FileError`] if the file cannot be read, or any part of it is invalid.
 pub fn load_rules(path: &Path) -> Result<(Rules, Vec<String>), FileError> {
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget)?;
@@ -45,7 +47,7 @@ pub fn load_rules(path: &Path) -> Result<(Rules, Vec<String>), FileError> {
     Ok((rules, cautions))
 }
 
-/// Adds a rules file to `outputs`.
+/// Adds a file with the rules to `outputs`.
 pub fn add_rules(rules: &Rules, path: &Path, outputs: &mut OutputSet) -> Result<(), FileError> {
     let text = RulesText::from_rules(rules);
     outputs.add(path, |file| write_pretty(&text, file))
@@ -102,7 +104,8 @@ impl RulesText {
         Ok(rules)
     }
 
-    /// Rejects invalid signs, whether for all files, for roles or for single models.
+    /// Rejects signs other than 1 and -1 in the rules for all files, for roles and for single
+    /// models.
     fn check_signs(&self) -> Result<(), ContentError> {
         check_signs("signs", &self.signs)?;
         for (role, signs) in &self.role_signs {
@@ -116,7 +119,7 @@ impl RulesText {
         Ok(())
     }
 
-    /// Rejects invalid declarations, whether for roles, folders and files, or for single models.
+    /// Rejects invalid declarations for roles, folders, files and single models.
     fn check_declarations(&self) -> Result<(), ContentError> {
         for scoped in &self.declarations {
             check_declarations(&format!("declarations, {}", scoped.of), &scoped.channels)?;
@@ -163,8 +166,8 @@ fn check_signs(place: &str, signs: &Signs) -> Result<(), ContentError> {
     Ok(())
 }
 
-/// Rejects an invalid factor, a unit beside a factor for the same channel, an empty unit, and an
-/// invalid sign.
+/// Rejects a factor that is zero or not finite, an empty unit, a channel with both a unit and a
+/// factor, and an invalid sign.
 fn check_declarations(place: &str, declared: &ChannelDeclarations) -> Result<(), ContentError> {
     for (channel, factor) in &declared.factors {
         let entry = format!("{place}, factors, {channel}");
@@ -208,11 +211,10 @@ pub(crate) const FORMAT: Format = Format {
     version: 1,
 };
 
-/// Maximum number of patterns, and of conversions, in a rules file.
+/// Maximum number of patterns, and maximum number of conversions, in a rules file.
 const MOST_PATTERNS: usize = 200;
 
-/// Maximum number of declarations in a rules file, each of which applies to a role, to folders or
-/// to a file.
+/// Maximum number of declarations in a rules file.
 const MOST_DECLARATIONS: usize = 1000;
 
 #[derive(Deserialize, Serialize)]
@@ -234,13 +236,13 @@ pub(crate) struct RulesText {
     pub(crate) conversions: Vec<UnitRule>,
     #[serde(default = "standard", deserialize_with = "list::<MOST_PATTERNS, _, _>")]
     pub(crate) patterns: Vec<String>,
-    /// Channel signs for all files.
+    /// Channel signs that apply to all files.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub(crate) signs: Signs,
-    /// Channel signs for the models with a role, "identified" or "physics".
+    /// Channel signs that apply to the models of a role, "identified" or "physics".
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub(crate) role_signs: BTreeMap<String, Signs>,
-    /// Channel units, factors and signs of the models with a role, in folders, or in a file.
+    /// Channel units, factors and signs that apply to a role, a folder or a file.
     #[serde(
         default,
         skip_serializing_if = "Vec::is_empty",
@@ -250,7 +252,7 @@ pub(crate) struct RulesText {
     /// Sample time \[s\] for models without a sample time; 0 for continuous time.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) sample_time_s: Option<f64>,
-    /// Column headings of tables, by file.
+    /// Column headings of tables, by file name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub(crate) headings: BTreeMap<String, Vec<String>>,
     /// Rules for single models, by file and variable.
@@ -258,7 +260,7 @@ pub(crate) struct RulesText {
     pub(crate) models: BTreeMap<String, RowRule>,
 }
 
-/// Returns the default patterns for a file that contains none.
+/// Returns the patterns used for a file that contains none.
 fn standard() -> Vec<String> {
     pattern_texts(standard_patterns())
 }

@@ -1,4 +1,4 @@
-//! Study files, `*.gdcm-study.json`: the decisions of a study, and a reference to its dataset.
+//! Study files, `*.gdcm-study.json`: the decisions of a study, with a reference to its dataset.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -43,13 +43,14 @@ const FORMAT: Format = Format {
 
 /// File extension of a study.
 pub const STUDY_EXTENSION: &str = "gdcm-study.json";
-/// Name of the dataset in a study of the embedded example, which has no path.
+/// Dataset name in a study of the embedded example, whose dataset has no path.
 const EMBEDDED: &str = "embedded example";
 
-/// A study with its dataset, and the changes of the dataset since the study was saved.
+/// A study read from a file, with its dataset and the changes of the dataset since the study was
+/// saved.
 #[derive(Clone, Debug)]
 pub struct OpenedStudy {
-    /// The study, with all decisions that still apply.
+    /// The study, with all decisions that still apply to the dataset.
     pub study: Study,
     pub loaded: LoadedDataset,
     pub path: PathBuf,
@@ -58,7 +59,7 @@ pub struct OpenedStudy {
     pub differences: Vec<Difference>,
 }
 
-/// Members of a study file, as JSON.
+/// Content of a study file.
 #[derive(Deserialize, Serialize)]
 struct StudyText {
     format: String,
@@ -69,24 +70,24 @@ struct StudyText {
     settings: Settings<ResponseNames>,
     #[serde(deserialize_with = "list::<MOST_CONDITIONS, _, _>")]
     conditions: Vec<ConditionText>,
-    /// Identified models that replace those of the dataset; absent if there are none.
+    /// Identified models that replace those of the dataset.
     #[serde(
         default,
         skip_serializing_if = "Vec::is_empty",
         deserialize_with = "list::<MOST_CONDITIONS, _, _>"
     )]
     taken: Vec<TakenText>,
-    /// Channels whose sign is reversed in some models; absent if there are none.
+    /// Channels whose sign is reversed in some models.
     #[serde(
         default,
         skip_serializing_if = "Vec::is_empty",
         deserialize_with = "list::<MOST_CHANNELS, _, _>"
     )]
     signs: Vec<TurnedChannel>,
-    /// Decisions about the requirements; absent if they are the defaults.
+    /// Decisions about the requirements; omitted if they are the defaults.
     #[serde(default, skip_serializing_if = "is_default")]
     requirements: RequirementSettings,
-    /// Variants: alternative decisions with a name; absent in older studies.
+    /// Named alternatives to the decisions; absent in older studies.
     #[serde(
         default,
         skip_serializing_if = "Vec::is_empty",
@@ -106,7 +107,7 @@ struct TakenText {
     records: Vec<RecordText>,
 }
 
-/// A variant: decisions with a name.
+/// A named alternative to the decisions.
 #[derive(Deserialize, Serialize)]
 struct VariantText {
     name: String,
@@ -115,16 +116,16 @@ struct VariantText {
     conditions: Vec<ConditionText>,
 }
 
-/// Reference to a study's dataset.
+/// Reference from a study to its dataset.
 #[derive(Clone, Deserialize, Serialize)]
 struct DatasetReference {
     /// Path relative to the study's directory, with `/` between its parts; `None` for the embedded
     /// example.
     path: Option<String>,
-    /// Name of the dataset, for display only; "embedded example" for the embedded example.
+    /// Name of the dataset, for display only.
     name: String,
     sha256: String,
-    /// Inventory of the dataset's contents; absent in older studies.
+    /// Summary of the dataset's contents, used to find changes; absent in older studies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     holds: Option<Inventory>,
 }
@@ -211,7 +212,7 @@ fn is_default(settings: &RequirementSettings) -> bool {
     *settings == RequirementSettings::default()
 }
 
-/// Returns the decisions of a study file, checked against the dataset.
+/// Converts the content of a study file to decisions, checked against the dataset.
 fn decisions_of(text: StudyText, dataset: &Dataset) -> Result<Decisions, ContentError> {
     let mut decisions = present_decisions(text.settings, text.conditions, dataset)?;
     decisions.taken = adopted_models(text.taken, dataset)?;
@@ -234,10 +235,10 @@ fn decisions_of(text: StudyText, dataset: &Dataset) -> Result<Decisions, Content
     Ok(decisions)
 }
 
-/// Returns the present decisions, without the variants.
+/// Returns the decisions in effect, without the variants.
 ///
 /// # Errors
-/// A setting outside its range, and a condition that appears twice.
+/// [`ContentError`] for a setting outside its range, or a condition that appears twice.
 fn present_decisions(
     mut settings: Settings<ResponseNames>,
     conditions: Vec<ConditionText>,
@@ -312,13 +313,14 @@ fn adopted_models(
     Ok(adopted)
 }
 
-/// Saves a study completely or not at all, replacing an existing file. The dataset itself is never
-/// overwritten.
+/// Saves a study completely or not at all, replacing an existing file. Never overwrites the
+/// dataset.
 pub fn save_study(study: &Study, loaded: &LoadedDataset, path: &Path) -> Result<(), FileError> {
     save(study, loaded, path, |dataset| path_text(dataset, path))
 }
 
-/// Saves a study with the absolute path of its dataset, because the file is in an unrelated folder.
+/// Saves a recovery file of a study. The path of the dataset is absolute, because the recovery file
+/// is not near the dataset.
 pub(crate) fn save_recovery(
     study: &Study,
     loaded: &LoadedDataset,
@@ -329,8 +331,8 @@ pub(crate) fn save_recovery(
     })
 }
 
-/// Returns the absolute path of a dataset with links resolved; without resolving them if its
-/// directory is inaccessible, so that the decisions are saved in any case.
+/// Returns the absolute path of a dataset with links resolved. If its directory is inaccessible,
+/// links stay unresolved, so that the decisions can still be saved.
 fn settled_or_absolute(dataset: &Path) -> PathBuf {
     if let Ok(settled) = settled(dataset) {
         return settled;
@@ -369,7 +371,8 @@ fn save(
     output.persist()
 }
 
-/// Returns the dataset's file name given in a study file. `None` if the study cannot be read.
+/// Returns the file name of the dataset to which a study file refers, for display. Returns `None`
+/// if the study file cannot be read.
 pub(crate) fn dataset_of_study(path: &Path) -> Option<String> {
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget).ok()?;
@@ -385,13 +388,14 @@ pub(crate) fn dataset_of_study(path: &Path) -> Option<String> {
     }
 }
 
-/// Opens a study and its dataset: at the path given in the study, otherwise beside the study.
+/// Opens a study and its dataset, which is expected at the path given in the study, otherwise in
+/// the directory of the study file.
 pub fn open_study(path: &Path) -> Result<OpenedStudy, FileError> {
     let budget = ReadingBudget::default();
     study_from(&Source::read(path, &budget)?, path, None, &budget)
 }
 
-/// Opens a study whose dataset has moved to `dataset`, both within the same budget.
+/// Opens a study whose dataset has moved to `dataset`. The budget limits the reading of both files.
 pub fn open_study_of(
     path: &Path,
     dataset: &Path,
@@ -400,7 +404,10 @@ pub fn open_study_of(
     study_from(&Source::read(path, budget)?, path, Some(dataset), budget)
 }
 
-/// Checks the structure of a study's text, which may be incomplete.
+/// Checks the structure of the beginning of a study file.
+///
+/// # Errors
+/// [`FileError::CutOff`] if the text ends early, otherwise the first error in it.
 pub(crate) fn check_study_text(
     text: &[u8],
     path: &Path,
@@ -409,8 +416,8 @@ pub(crate) fn check_study_text(
     FORMAT.decode::<StudyText>(text, path, budget).map(drop)
 }
 
-/// Returns the study read from a source; its dataset is at `moved`, or at the path given in the
-/// study.
+/// Opens the study in `source`; its dataset is at `moved` if given, otherwise at the path given in
+/// the study.
 pub(crate) fn study_from(
     source: &Source<'_>,
     path: &Path,
@@ -441,7 +448,7 @@ pub(crate) fn study_from(
     })
 }
 
-/// Loads the dataset of a study, at `moved` or at the path given in the study.
+/// Loads the dataset of a study from `moved` if given, otherwise from the path given in the study.
 fn load_referenced(
     reference: &DatasetReference,
     study: &Path,
@@ -455,7 +462,7 @@ fn load_referenced(
     };
     match load_dataset_within(&path, budget) {
         Ok(loaded) => Ok(loaded),
-        // If reading was stopped, the dataset is not missing.
+        // Cancelled reading does not mean that the dataset is missing.
         Err(error) if error.is_stopped() => Err(error),
         Err(error) => Err(FileError::StudyDataset {
             path: study.to_owned(),
@@ -464,8 +471,8 @@ fn load_referenced(
     }
 }
 
-/// Returns the path of the dataset: as given in the study, or beside the study if the file exists
-/// only there.
+/// Returns the path of the dataset: as given in the study, or in the directory of the study file if
+/// the dataset exists only there.
 fn referenced_path(study: &Path, relative: &str) -> PathBuf {
     let directory = study.parent().unwrap_or(Path::new(""));
     let referenced = directory.join(relative);
@@ -478,11 +485,11 @@ fn referenced_path(study: &Path, relative: &str) -> PathBuf {
     referenced
 }
 
-/// Returns the path of the dataset as written in the study file `study`.
+/// Returns the path of the dataset as written in the study file `study`: relative if possible.
 fn path_text(dataset: &Path, study: &Path) -> Result<String, FileError> {
     let dataset = settled(dataset)?;
     let directory = settled(study)?;
-    // There is no relative path to another drive; the absolute path is used.
+    // There is no relative path to another drive: use the absolute path.
     let relative = directory
         .parent()
         .and_then(|directory| pathdiff::diff_paths(&dataset, directory))
@@ -490,8 +497,9 @@ fn path_text(dataset: &Path, study: &Path) -> Result<String, FileError> {
     slashed(&relative, study)
 }
 
-/// Returns the relative path from the directory of `file` to `folder` (empty: the current
-/// directory), with `/` as the separator; the unchanged `folder` if there is no such path.
+/// Returns the relative path from the directory of `file` to `folder`, with `/` as the separator.
+/// An empty `folder` is the current directory; without a relative path, `folder` itself is
+/// returned.
 pub fn relative_folder(folder: &Path, file: &Path) -> String {
     let folder = if folder.as_os_str().is_empty() {
         Path::new(".")
@@ -504,26 +512,29 @@ pub fn relative_folder(folder: &Path, file: &Path) -> String {
         .replace(std::path::MAIN_SEPARATOR, "/")
 }
 
-/// Returns the relative path from the directory of `file` to `folder`, if there is one.
+/// Returns the relative path from the directory of `file` to `folder`; `None` if there is none.
 fn relative_path(folder: &Path, file: &Path) -> Option<PathBuf> {
     let folder = std::path::absolute(folder).ok()?;
     let file = std::path::absolute(file).ok()?;
     pathdiff::diff_paths(folder, file.parent()?)
 }
 
-/// Returns a path with `/` as the separator.
+/// Returns a path as text with `/` as the separator.
+///
+/// # Errors
+/// [`FileError`] if the path is not valid Unicode.
 fn slashed(path: &Path, study: &Path) -> Result<String, FileError> {
     match path.to_str() {
         Some(text) => Ok(text.replace(std::path::MAIN_SEPARATOR, "/")),
         None => Err(FileError::unwritable(
             study,
-            "the dataset's path is not valid Unicode",
+            "the dataset's path is not valid Unicode; rename the dataset or its folder",
         )),
     }
 }
 
-/// Returns the absolute path to a file, with links in its directory resolved: `..` after a link
-/// would lead elsewhere.
+/// Returns the absolute path of a file, with links in its directory resolved: `..` after an
+/// unresolved link would lead elsewhere.
 fn settled(path: &Path) -> Result<PathBuf, FileError> {
     let failed = |error: std::io::Error| FileError::writing(path, &error);
     let absolute = std::path::absolute(path).map_err(failed)?;
@@ -533,16 +544,16 @@ fn settled(path: &Path) -> Result<PathBuf, FileError> {
         }
         _ => Err(FileError::unwritable(
             path,
-            "this is not the name of a file",
+            "the path does not end in a file name",
         )),
     }
 }
 
-/// Content of an opened file.
+/// Content of a file opened by the user.
 #[derive(Clone, Debug)]
 #[expect(
     clippy::large_enum_variant,
-    reason = "one is made when a file is opened, and taken apart at once"
+    reason = "created once for an opened file and taken apart immediately"
 )]
 pub enum Opened {
     Dataset(LoadedDataset),
@@ -550,8 +561,8 @@ pub enum Opened {
 }
 
 impl Opened {
-    /// Returns the opened study, or a new study of the dataset, with the dataset and its
-    /// differences.
+    /// Returns the study, its dataset and the changes of the dataset. For a dataset, the study is
+    /// new and there are no changes.
     pub fn into_study(self) -> (Study, LoadedDataset, Vec<Difference>) {
         match self {
             Opened::Dataset(loaded) => (Study::new(loaded.dataset.clone()), loaded, Vec::new()),
@@ -565,8 +576,8 @@ impl Opened {
     }
 }
 
-/// Whether a path can only hold models, neither a dataset nor a study: a folder, or a file
-/// according to its name and first character.
+/// Returns whether a path can hold only models, neither a dataset nor a study: true for a folder,
+/// and for a file that by its name and first character is not JSON.
 pub fn holds_models(path: &Path) -> bool {
     let extension = path
         .extension()
@@ -575,14 +586,14 @@ pub fn holds_models(path: &Path) -> bool {
     path.is_dir() || path.is_file() && !is_json && !begins_an_object(path)
 }
 
-/// Whether the first character of a file opens a JSON object.
+/// Returns whether the first character of a file other than blanks opens a JSON object.
 fn begins_an_object(path: &Path) -> bool {
     let mut first = Vec::new();
     let read = std::fs::File::open(path).and_then(|file| file.take(64).read_to_end(&mut first));
     read.is_ok() && first.trim_ascii_start().starts_with(b"{")
 }
 
-/// Opens a dataset or a study, depending on its content, within a budget.
+/// Opens a dataset or a study, depending on the content of the file.
 pub fn load_any(path: &Path, budget: &ReadingBudget<'_>) -> Result<Opened, FileError> {
     let source = Source::read(path, budget)?;
     match Outline::format_of(source.text(), budget).as_deref() {

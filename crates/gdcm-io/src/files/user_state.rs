@@ -20,11 +20,11 @@ use crate::output_set::{make_directory, write_whole};
 use crate::reading_budget::ReadingBudget;
 use crate::source::Source;
 
-/// Maximum number of listed files.
+/// Maximum number of files in the list of recent files.
 const MOST: usize = 10;
 /// File name in the program's directory for user state.
 const NAME: &str = "recent-files.json";
-/// Format and version of the list.
+/// Format and version of the list of recent files.
 const FORMAT: Format = Format {
     name: "gdcm-recent-files",
     version: 1,
@@ -38,7 +38,8 @@ struct RecentText {
     files: Vec<String>,
 }
 
-/// Returns the files listed in `directory`, the newest first; empty if there is no readable list.
+/// Returns the recently used files listed in `directory`, newest first; empty if there is no
+/// readable list.
 pub fn recent_files(directory: &Path) -> Vec<PathBuf> {
     let path = directory.join(NAME);
     let budget = ReadingBudget::default();
@@ -51,14 +52,15 @@ pub fn recent_files(directory: &Path) -> Vec<PathBuf> {
     }
 }
 
-/// Puts a file at the front of the list, which another window may have changed in the meantime.
+/// Puts a file at the front of the list of recent files, which is read again because another window
+/// may have changed it.
 ///
 /// # Errors
-/// Returned if the list cannot be written.
+/// [`FileError`] if the list cannot be written.
 pub fn add_recent_file(directory: &Path, file: &Path) -> Result<(), FileError> {
     let absolute = std::path::absolute(file).ok();
     let Some(file) = absolute.as_deref().and_then(Path::to_str) else {
-        // A name that is not valid Unicode cannot be listed.
+        // Omit a path that is not valid Unicode, which the list cannot hold.
         return Ok(());
     };
     let mut files = vec![file.to_owned()];
@@ -79,11 +81,11 @@ pub fn add_recent_file(directory: &Path, file: &Path) -> Result<(), FileError> {
     write_whole(&directory.join(NAME), |writer| write_pretty(&text, writer))
 }
 
-/// Marker file from an earlier start.
+/// Name of the empty file that marks an earlier program start.
 const STARTED: &str = "started";
 
-/// Returns whether this is the first start, and records it in the program's directory. Also false
-/// if it cannot be recorded: otherwise every start would look like the first.
+/// Returns whether this is the first program start, and marks it in `directory`. Returns false if
+/// it cannot be marked: otherwise every start would look like the first.
 pub fn is_first_start(directory: &Path) -> bool {
     let kept = create_dir_all(directory).and_then(|()| {
         OpenOptions::new()
@@ -94,15 +96,16 @@ pub fn is_first_start(directory: &Path) -> bool {
     kept.is_ok()
 }
 
-// Recovery files: unsaved decisions that survive a crash or a kill.
+// Recovery files: unsaved decisions that survive a crash.
 
-/// Extension of lock files, which are locked while their process runs.
+/// Extension of lock files; the file is locked while its process runs.
 const LOCK_EXTENSION: &str = "lock";
 /// Age below which a lock file may belong to a process that has not locked it yet.
 const YOUNG: Duration = Duration::from_secs(60);
 
-/// Recovery file of an open window: a study file, `PROCESS-NUMBER.gdcm-study.json`. The file beside
-/// it is locked while the process runs, and contains the path of the study's own file.
+/// Recovery file of an open window: a study file named `PROCESS-NUMBER.gdcm-study.json`. A lock
+/// file of the same name is locked while the process runs, and contains the path under which the
+/// user last saved the study.
 #[derive(Debug)]
 pub struct RecoveryFile {
     path: PathBuf,
@@ -114,9 +117,9 @@ impl RecoveryFile {
     /// Claims a unique name in `directory`, which is created if missing.
     ///
     /// # Errors
-    /// Returned if the directory or the lock cannot be created.
+    /// [`FileError`] if the directory or the lock file cannot be created.
     pub fn claim(directory: &Path) -> Result<Self, FileError> {
-        /// Gives windows of one process different names.
+        /// Number of the next recovery file, which distinguishes the windows of a process.
         static NUMBER: AtomicUsize = AtomicUsize::new(1);
         make_directory(directory)?;
         loop {
@@ -148,10 +151,11 @@ impl RecoveryFile {
         &self.path
     }
 
-    /// Writes the study completely or not at all; `saved_as` is the study's own file.
+    /// Writes the study completely or not at all; `saved_as` is the path under which the user last
+    /// saved it.
     ///
     /// # Errors
-    /// Returned if it cannot be written.
+    /// [`FileError`] if the recovery file or the lock file cannot be written.
     pub fn write(
         &mut self,
         study: &Study,
@@ -166,7 +170,7 @@ impl RecoveryFile {
             .set_len(0)
             .and_then(|()| self.lock.rewind())
             .map_err(failed)?;
-        // A name that is not valid Unicode is not kept: a replacement character would lead to
+        // Omit a path that is not valid Unicode: with replacement characters it would lead to
         // another file.
         self.lock
             .write_all(name.to_str().unwrap_or_default().as_bytes())
@@ -177,14 +181,14 @@ impl RecoveryFile {
     /// Removes the recovery file, because its decisions are saved or not wanted.
     ///
     /// # Errors
-    /// Returned if the file exists and cannot be removed.
+    /// [`FileError`] if the file exists and cannot be removed.
     pub fn clear(&mut self) -> Result<(), FileError> {
         remove(&self.path)
     }
 }
 
 impl Drop for RecoveryFile {
-    /// Keeps a written recovery file, with its lock file, for the next start.
+    /// Removes the lock file, unless a recovery file was written: both are kept for the next start.
     fn drop(&mut self) {
         if !self.path.exists() {
             // If the lock file cannot be removed now, the next start removes it.
@@ -193,8 +197,8 @@ impl Drop for RecoveryFile {
     }
 }
 
-/// Recovery file of a window that ended without saving. While this value exists, other windows do
-/// not find the file.
+/// Recovery file of a window that ended without saving. Its lock prevents other windows from
+/// finding it.
 #[derive(Debug)]
 pub struct LostStudy {
     path: PathBuf,
@@ -202,9 +206,9 @@ pub struct LostStudy {
     _lock: File,
     /// Time at which the recovery file was written.
     pub kept_at: SystemTime,
-    /// Dataset of the study, in words.
+    /// File name of the dataset, for display.
     pub dataset: String,
-    /// The study's own file, if any.
+    /// Path under which the user last saved the study, if any.
     pub saved_as: Option<PathBuf>,
 }
 
@@ -214,18 +218,18 @@ impl LostStudy {
         &self.path
     }
 
-    /// Removes the recovery file permanently.
+    /// Removes the recovery file and its lock file.
     ///
     /// # Errors
-    /// Returned if the file cannot be removed.
+    /// [`FileError`] if a file cannot be removed.
     pub fn remove(self) -> Result<(), FileError> {
         remove(&self.path)?;
         remove(&self.lock_path)
     }
 }
 
-/// Returns the recovery files in `directory` whose processes have ended, newest first. Lock files
-/// without a recovery file are removed.
+/// Returns the recovery files in `directory` whose processes have ended, newest first. Removes lock
+/// files without a recovery file.
 pub fn lost_studies(directory: &Path) -> Vec<LostStudy> {
     let Ok(entries) = fs::read_dir(directory) else {
         return Vec::new();
@@ -238,7 +242,7 @@ pub fn lost_studies(directory: &Path) -> Vec<LostStudy> {
     lost
 }
 
-/// Returns the recovery file beside a lock file, unless its process still runs.
+/// Returns the recovery file that belongs to a lock file; `None` if its process still runs.
 fn lost_study(lock_path: &Path) -> Option<LostStudy> {
     if lock_path.extension()? != LOCK_EXTENSION {
         return None;
@@ -254,8 +258,8 @@ fn lost_study(lock_path: &Path) -> Option<LostStudy> {
         Err(TryLockError::WouldBlock | TryLockError::Error(_)) => return None,
     }
     let Ok(kept_at) = fs::metadata(&path).and_then(|study| study.modified()) else {
-        // Left by a process that wrote no recovery file; a recent lock file may belong to a process
-        // that has created but not yet locked it.
+        // No recovery file was written. Keep a recent lock file: its process may have created it
+        // but not yet locked it.
         let created_at = lock.metadata().and_then(|lock| lock.modified()).ok();
         let age = created_at.and_then(|time| time.elapsed().ok());
         if age.is_some_and(|age| age > YOUNG) {
@@ -264,7 +268,7 @@ fn lost_study(lock_path: &Path) -> Option<LostStudy> {
         return None;
     };
     let mut name = String::new();
-    // A path that cannot be read is treated as absent.
+    // Treat an unreadable path as absent.
     let _ = lock.read_to_string(&mut name);
     let saved_as = if name.is_empty() {
         None

@@ -1,4 +1,4 @@
-//! Files in folders, sorted by name, with numbers in names in numerical order.
+//! Lists files in folders, sorted by name; numbers in names are compared by value.
 
 use std::fs;
 use std::io::Read;
@@ -19,12 +19,12 @@ pub(crate) const DEEPEST: usize = 16;
 /// A file to be read.
 pub(super) struct ListedFile {
     pub(super) path: PathBuf,
-    /// Name relative to the requested path.
+    /// Path relative to the listed folder; for a file given by itself, its name.
     pub(super) name: String,
 }
 
-/// Returns the folder to which the file names in models are relative: the first folder given, or
-/// the folder that contains a single file.
+/// Returns the folder to which file names in models are relative: the first source if it is a
+/// folder, otherwise the folder that contains the first source.
 pub fn sources_folder(sources: &[PathBuf]) -> &Path {
     let here = Path::new(".");
     let first = sources.first().map_or(here, PathBuf::as_path);
@@ -40,8 +40,9 @@ pub fn sources_folder(sources: &[PathBuf]) -> &Path {
     }
 }
 
-/// Lists the requested files, and the files with supported endings in folders, sorted by name.
-/// Pipes, sockets and devices in folders are skipped with a message.
+/// Lists the given files, and all files with supported extensions in the given folders, sorted by
+/// name within each folder. Each pipe, socket or device in a folder is skipped with a message in
+/// `skipped`.
 pub(super) fn list_files(
     paths: &[PathBuf],
     skipped: &mut Vec<String>,
@@ -70,17 +71,20 @@ pub(super) fn list_files(
     Ok(files)
 }
 
-/// Files below a requested folder, while they are listed.
+/// State of listing the files below a folder.
 struct Listing<'p> {
     root: &'p Path,
-    /// All files so far, also from other requested paths.
+    /// Files found so far, including those from other given paths.
     files: Vec<ListedFile>,
-    /// Messages about skipped pipes, sockets and devices.
     skipped: &'p mut Vec<String>,
 }
 
 impl Listing<'_> {
-    /// Adds the files in a folder and in its subfolders, which may be nested up to `deeper` levels.
+    /// Adds the files in a folder and in its subfolders, down to `deeper` levels of subfolders.
+    ///
+    /// # Errors
+    /// [`FileError`] if a folder cannot be read or is nested too deeply, or if there are too many
+    /// files.
     fn add_folder(&mut self, folder: &Path, deeper: usize) -> Result<(), FileError> {
         let failed = |error: std::io::Error| FileError::reading(folder, &error);
         let mut entries = fs::read_dir(folder)
@@ -92,7 +96,7 @@ impl Listing<'_> {
             let path = entry.path();
             let is_hidden = entry.file_name().to_string_lossy().starts_with('.');
             let kind = entry.file_type().map_err(failed)?;
-            // Links could form cycles.
+            // Skip linked folders, which could form cycles.
             let is_linked_folder = kind.is_symlink() && path.is_dir();
             if is_hidden || is_linked_folder {
                 continue;
@@ -115,7 +119,7 @@ impl Listing<'_> {
         Ok(())
     }
 
-    /// Adds a file, or a message if the path or its link leads to a pipe, a socket or a device.
+    /// Adds a file; if the path leads to a pipe, a socket or a device, adds a message instead.
     fn add_file(&mut self, path: PathBuf, kind: fs::FileType) {
         let name = path
             .strip_prefix(self.root)
@@ -125,7 +129,7 @@ impl Listing<'_> {
         let target = fs::metadata(&path).map_or(kind, |metadata| metadata.file_type());
         match kind_of(target) {
             Some(kind) => self.skipped.push(format!(
-                "{}: skipped: this is {kind}, not a file",
+                "{}: skipped, because this is {kind}, not a file",
                 sanitized(&name)
             )),
             None => self.files.push(ListedFile { path, name }),
@@ -133,9 +137,10 @@ impl Listing<'_> {
     }
 }
 
-/// Whether a file with a widely used ending (`.log`, `.bin`) has no supported format.
+/// Returns whether a `.log` or `.bin` file, an extension that many programs use, has no supported
+/// log format.
 fn is_other_log(path: &Path) -> bool {
-    /// Number of leading bytes by which formats with these endings are recognised.
+    /// Number of leading bytes by which the log formats are recognised.
     const FIRST: usize = 64;
     if !["bin", "log"].contains(&ending_of(path).as_str()) || !path.is_file() {
         return false;
@@ -169,13 +174,13 @@ fn natural_key(name: &str) -> Vec<TextAndNumber> {
     if !digits.is_empty() {
         parts.push(text_and_number(&mut text, &mut digits));
     }
-    // The end of a name sorts before any letter.
+    // With a NUL character, the end of a name sorts before any letter.
     text.push('\0');
     parts.push((text, 0));
     parts
 }
 
-/// Returns a text and the number after it, and clears both.
+/// Returns a part of a name and the number after it, and clears both.
 fn text_and_number(text: &mut String, digits: &mut String) -> TextAndNumber {
     let number = digits.parse().unwrap_or(u64::MAX);
     digits.clear();

@@ -4,9 +4,9 @@ use crate::file_error::FileError;
 use crate::formats::Importer;
 use crate::reading_budget::VariableFault;
 
-/// An unsupported format.
+/// An unsupported format, with export instructions.
 struct Foreign {
-    /// Possible first bytes.
+    /// First bytes of a file; several alternatives are possible.
     signatures: &'static [&'static [u8]],
     name: &'static str,
     /// How to export the data; `{file}` and `{stem}` represent the file name with and without its
@@ -15,14 +15,14 @@ struct Foreign {
 }
 
 const AS_TABLE: &str = "save it as text in columns (CSV)";
-const UNPACK: &str = "unpack it, or pack it as .zip or .gz";
+const UNPACK: &str = "decompress it, or compress it as .zip or .gz";
 const FROM_FEATHER: &str = "save it as CSV: pandas.read_feather(\"{file}\").to_csv(\"{stem}.csv\")";
 const FROM_PARQUET: &str = "save it as CSV: pandas.read_parquet(\"{file}\").to_csv(\"{stem}.csv\")";
 const FROM_PICKLE: &str = "save its arrays: numpy.savez(\"{stem}.npz\", A=A, B=B, C=C, D=D)";
 const FROM_NETCDF: &str =
     "save it as CSV or as netCDF-4, which is HDF5: nccopy -k nc4 \"{file}\" \"{stem}.h5\"";
 
-const AS_CSV: &str = "save it as CSV or MATLAB";
+const AS_CSV: &str = "save it as a CSV or MATLAB file";
 
 const FOREIGN: [Foreign; 13] = [
     Foreign {
@@ -42,17 +42,17 @@ const FOREIGN: [Foreign; 13] = [
     },
     Foreign {
         signatures: &[b"\x80\x02", b"\x80\x03", b"\x80\x04", b"\x80\x05"],
-        name: "a pickle of Python",
+        name: "a Python pickle",
         remedy: FROM_PICKLE,
     },
     Foreign {
         signatures: &[b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"],
-        name: "an Excel workbook or another document of Microsoft Office",
+        name: "an Excel workbook or another Microsoft Office document",
         remedy: AS_TABLE,
     },
     Foreign {
         signatures: &[b"SQLite format 3"],
-        name: "a database of SQLite",
+        name: "an SQLite database",
         remedy: AS_TABLE,
     },
     Foreign {
@@ -62,12 +62,12 @@ const FOREIGN: [Foreign; 13] = [
     },
     Foreign {
         signatures: &[b"MDF     "],
-        name: "an MDF file of measurements",
+        name: "an MDF measurement file",
         remedy: AS_CSV,
     },
     Foreign {
         signatures: &[b"TDSm"],
-        name: "a TDMS file of LabVIEW",
+        name: "a LabVIEW TDMS file",
         remedy: AS_CSV,
     },
     Foreign {
@@ -82,25 +82,25 @@ const FOREIGN: [Foreign; 13] = [
     },
     Foreign {
         signatures: &[b"7z\xbc\xaf\x27"],
-        name: "an archive of 7-Zip",
+        name: "a 7-Zip archive",
         remedy: UNPACK,
     },
     Foreign {
         signatures: &[b"\xfd7zXZ"],
-        name: "a file packed by xz",
+        name: "an xz-compressed file",
         remedy: UNPACK,
     },
 ];
 
 /// Importer that recognises unsupported formats and rejects them with export instructions.
 pub(super) const FOREIGN_FORMAT: Importer = Importer {
-    name: "a file of a format that is not read",
+    name: "a file of an unsupported format",
     endings: &["parquet", "feather", "pkl"],
     recognises: |bytes, _| find_foreign(bytes).is_some(),
     read: |bytes, path, _| Err(FileError::variables(path, unsupported(bytes))),
 };
 
-/// Returns the fault for an unsupported format.
+/// Returns the error for a file of an unsupported format.
 fn unsupported(bytes: &[u8]) -> VariableFault {
     match find_foreign(bytes) {
         Some(Foreign { name, remedy, .. }) => VariableFault::unsupported("", *name, *remedy),

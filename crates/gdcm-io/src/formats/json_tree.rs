@@ -1,4 +1,4 @@
-//! Any JSON, read within a budget.
+//! JSON of any structure, read within a memory budget.
 
 use std::cell::RefCell;
 use std::fmt;
@@ -18,15 +18,15 @@ pub(super) enum Tree {
     Number(f64),
     Text(String),
     List(Vec<Tree>),
-    /// Sorted by name; of members with the same name, only the last is kept.
+    /// Members sorted by name; of members with equal names, only the last is kept.
     Object(Vec<(String, Tree)>),
 }
 
 impl Tree {
-    /// Reads a JSON text.
+    /// Parses JSON.
     ///
     /// # Errors
-    /// The text is not JSON, or the budget is exhausted.
+    /// [`VariableFault`] if the text is not JSON, or the budget is exhausted.
     pub(super) fn read(text: &[u8], budget: &ReadingBudget<'_>) -> Result<Self, VariableFault> {
         let refused = RefCell::new(None);
         let mut json = serde_json::Deserializer::from_slice(text);
@@ -39,22 +39,22 @@ impl Tree {
             .and_then(|tree| json.end().map(|()| tree));
         read.map_err(|error| match refused.take() {
             Some(fault) => fault,
-            None => VariableFault::line("", error.line(), format!("this is not JSON: {error}")),
+            None => VariableFault::line("", error.line(), format!("invalid JSON: {error}")),
         })
     }
 }
 
-/// Reads any JSON within a budget: a few bytes can become a list, an object or a name, each with
-/// its own memory.
+/// Reads any JSON value and counts its memory, because a list, an object or a name of a few bytes
+/// in the text needs its own allocation.
 #[derive(Clone, Copy)]
 struct TreeReader<'r> {
     budget: &'r ReadingBudget<'r>,
-    /// Fault of the budget, if it ended the reading.
+    /// Error of the budget if it ended the reading; serde passes on only its own error.
     refused: &'r RefCell<Option<VariableFault>>,
 }
 
 impl TreeReader<'_> {
-    /// Takes the memory of a value from the budget \[bytes\].
+    /// Takes the memory of a value, `size` bytes, from the budget.
     fn take<E: Error>(self, size: usize) -> Result<(), E> {
         // Lists grow by doubling, hence the factor 2; each value is one step of work.
         self.budget.take(1, 2 * size as u64, "").map_err(|fault| {

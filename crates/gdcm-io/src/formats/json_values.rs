@@ -1,5 +1,5 @@
-//! JSON, gzip-packed or not: datasets and models of this program, and JSON of any shape as
-//! variables. Other gzip-packed contents go to their own format.
+//! JSON files, gzip-compressed or not: datasets and models in this program's formats, and any other
+//! JSON as variables. Other gzip-compressed contents are passed to the reader of their format.
 
 use std::path::Path;
 
@@ -16,14 +16,14 @@ use crate::location::Outline;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::source::{GZIP_MAGIC, Source, text_of, without_mark};
 
-/// Overhead of shape, name and number \[bytes\].
+/// Estimated memory of the three allocations for shape, name and number \[bytes\].
 const OVERHEAD: u64 = 3 * 64;
-/// Memory of a value with its shape and a number, or of null \[bytes\].
+/// Estimated memory of a single value \[bytes\].
 const VALUE: u64 = size_of::<Value>() as u64 + OVERHEAD;
 /// Maximum number of array dimensions.
 const MOST_DIMENSIONS: usize = 3;
 
-/// JSON, and any gzip-packed file.
+/// Importer of JSON, and of any gzip-compressed file.
 pub(crate) const JSON: Importer = Importer {
     name: "JSON",
     endings: &["json", "gz"],
@@ -48,7 +48,7 @@ fn read_json(bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Co
         .map_err(|fault| FileError::variables(path, fault))?;
     match format.as_deref() {
         Some("\"gdcm-dataset\"") => {
-            // `Source::of` decompresses the file a second time.
+            // Pass on the compressed bytes: `Source::of` decompresses them again.
             let source = Source::of(bytes, path, budget)?;
             let loaded = dataset_from(&source, DatasetOrigin::File(path.to_owned()), budget)?;
             let dataset = loaded.dataset.as_ref().clone();
@@ -64,7 +64,8 @@ fn read_json(bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Co
     Contents::row_major(read_variables(text, budget), path)
 }
 
-/// Reads decompressed content that does not begin like JSON as a file whose name lacks ".gz".
+/// Reads decompressed content that is not JSON, in the format given by the content and by the file
+/// name without ".gz".
 fn read_unpacked(
     text: &[u8],
     path: &Path,
@@ -78,7 +79,8 @@ fn read_unpacked(
     }
 }
 
-/// Reads the members in a JSON object, or a list under the name "models".
+/// Reads the members of a JSON object as variables; any other JSON value becomes a variable
+/// "models".
 fn read_variables(text: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     let members = match Tree::read(text, budget)? {
         Tree::Object(members) => members,
@@ -117,8 +119,8 @@ fn value_from(json: Tree, budget: &ReadingBudget<'_>) -> Result<Value, VariableF
     })
 }
 
-/// Converts a list: numbers become an array (row by row), texts a text array, anything else a cell
-/// array.
+/// Converts a list: numbers become an array (row by row), strings a string array, anything else a
+/// cell array.
 fn list_value(list: Vec<Tree>, budget: &ReadingBudget<'_>) -> Result<Value, VariableFault> {
     let shape = vec![1, list.len()];
     if !list.is_empty() && list.iter().all(|item| matches!(item, Tree::Text(_))) {
@@ -142,8 +144,8 @@ fn list_value(list: Vec<Tree>, budget: &ReadingBudget<'_>) -> Result<Value, Vari
     Ok(Value::Cell(CellArray { shape, values }))
 }
 
-/// Converts numbers in nested lists; returns nothing if they are not rectangular, or nested too
-/// deeply.
+/// Converts nested lists of numbers to an array; returns `None` if they are not rectangular or are
+/// nested too deeply.
 fn number_array(list: &[Tree], budget: &ReadingBudget<'_>) -> Result<Option<Array>, VariableFault> {
     let shape = shape_of(list);
     if shape.len() > MOST_DIMENSIONS {
@@ -170,7 +172,8 @@ fn number_array(list: &[Tree], budget: &ReadingBudget<'_>) -> Result<Option<Arra
     }))
 }
 
-/// Returns the length of each dimension: of the list, of its first entry, and so on.
+/// Returns the length of each dimension, from the length of the list, of its first entry, and so
+/// on.
 fn shape_of(list: &[Tree]) -> Vec<usize> {
     let mut shape = vec![list.len()];
     let mut inner = list;
@@ -181,7 +184,8 @@ fn shape_of(list: &[Tree]) -> Vec<usize> {
     shape
 }
 
-/// Appends the numbers in nested lists; returns whether the lists have this shape.
+/// Appends the numbers in nested lists row by row; returns whether the lists have the shape
+/// `shape`.
 fn append_numbers(
     list: &[Tree],
     shape: &[usize],
@@ -194,7 +198,7 @@ fn append_numbers(
     if list.len() != length {
         return Ok(false);
     }
-    // Lists grow by doubling.
+    // Take 16 bytes for a number of 8: lists grow by doubling.
     budget.take(length as u64, 16, "")?;
     for item in list {
         match item {

@@ -16,7 +16,7 @@ use crate::formats::{DEEPEST, LARGEST_FILE, MOST_FILES};
 use crate::import::recognise::{DEEPEST as DEEPEST_VALUE, MOST_FOUND};
 use crate::reading_budget::{MOST_MEMORY, MOST_WORK};
 
-/// Returns the rows of the table of file limits.
+/// Returns the table of file limits as Markdown rows.
 fn file_rows() -> String {
     let rows = [
         ("a file of other programs", mebibytes(LARGEST_FILE)),
@@ -69,7 +69,7 @@ fn mebibytes(bytes: u64) -> String {
     format!("{} MiB", bytes >> 20)
 }
 
-/// Returns the rows of the table of settings with a range.
+/// Returns the table of settings with a range as Markdown rows.
 fn setting_rows() -> String {
     SETTINGS
         .iter()
@@ -98,7 +98,7 @@ fn setting_row(setting: &Setting) -> Option<String> {
     ))
 }
 
-/// Returns the table rows at the beginning of `part`.
+/// Returns the Markdown table rows at the beginning of `part`.
 fn table_rows(part: &str) -> &str {
     let mut end = 0;
     for line in part.split_inclusive('\n') {

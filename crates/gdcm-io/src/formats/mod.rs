@@ -1,4 +1,5 @@
-//! Number files from other programs: the format interface, the list of formats, and reading.
+//! Reading of files from other programs: the format interface, the list of formats, and the reading
+//! of folders.
 //!
 //! ```text
 //! bytes -> format, by the first bytes         (the ending decides only between text formats)
@@ -57,19 +58,19 @@ pub(crate) use folders::{DEEPEST, MOST_FILES};
 /// Maximum file size \[bytes\].
 pub(crate) const LARGEST_FILE: u64 = 512 << 20;
 
-/// A file format.
+/// A file format and the functions that recognise and read it.
 pub(crate) struct Importer {
     pub(crate) name: &'static str,
-    /// File name endings, in lower case.
+    /// File name extensions in lower case, without the dot.
     pub(crate) endings: &'static [&'static str],
-    /// Whether the bytes of a file with this ending have the format.
+    /// Returns whether a file has the format, given its bytes and its extension.
     pub(crate) recognises: fn(&[u8], &str) -> bool,
-    /// Reads the contents of the bytes; takes memory from the budget before its use. The path names
-    /// the file in errors.
+    /// Reads the bytes of a file. Takes memory from the budget before using it; the path is for
+    /// errors only.
     pub(crate) read: fn(&[u8], &Path, &ReadingBudget<'_>) -> Result<Contents, FileError>,
 }
 
-/// The formats; the first that recognises a file reads it, and the last recognises any file.
+/// All formats. The first that recognises a file is used; the last recognises any file.
 static FORMATS: [Importer; 14] = [
     NPY,
     ZIP,
@@ -87,37 +88,40 @@ static FORMATS: [Importer; 14] = [
     TEXT,
 ];
 
-/// Contents of a file.
+/// Contents of a file, as read by an importer.
 pub(crate) enum Contents {
     /// Named values.
     Variables {
         variables: Vec<Variable>,
-        /// Remarks on non-obvious readings.
+        /// Remarks on interpretations that are not obvious.
         notes: Vec<String>,
-        /// Whether the first index of an array of more than two dimensions selects a matrix, as in
-        /// NumPy.
+        /// Whether, in arrays with three dimensions, the first index selects a matrix, as in NumPy.
         pages_first: bool,
     },
-    /// Lines of numbers, whose meaning depends on the kind of data sought.
+    /// Text with lines of numbers; their meaning depends on whether models or records are sought.
     Text(String),
-    /// A dataset in this program's JSON format, with remarks on unknown keys.
+    /// A dataset in this program's JSON format, with cautions about unknown keys.
     Dataset(Box<Dataset>, Vec<String>),
-    /// Models in this program's JSON format, with remarks on unknown keys.
+    /// Models in this program's JSON format, with cautions about unknown keys.
     Models(Vec<FoundModel>, Vec<String>),
-    /// Aircraft logs: records whose columns may have different clocks.
+    /// Aircraft logs: records whose columns may have different time axes.
     Logs(Vec<Columns>),
     Archive {
-        /// Arrays in the archive, which belong together.
+        /// Arrays in the archive; they form one set of variables.
         variables: Vec<Variable>,
-        /// Other files in the archive by path, each with its contents.
+        /// Other files in the archive, by path.
         files: Vec<(String, Result<Contents, FileError>)>,
-        /// Descriptions of files with an unknown format.
+        /// Descriptions of archived files with an unknown format.
         ignored: Vec<String>,
     },
 }
 
 impl Contents {
-    /// Wraps row-major arrays from NumPy or JSON, or the fault.
+    /// Wraps variables in which the first index of arrays with three dimensions selects a matrix,
+    /// as in NumPy and JSON.
+    ///
+    /// # Errors
+    /// The error in `read`, with the path added.
     pub(crate) fn row_major(
         read: Result<Vec<Variable>, VariableFault>,
         path: &Path,
@@ -130,7 +134,11 @@ impl Contents {
         })
     }
 
-    /// Wraps variables, or the fault.
+    /// Wraps variables in which the last index of arrays with three dimensions selects a matrix, as
+    /// in MATLAB.
+    ///
+    /// # Errors
+    /// The error in `read`, with the path added.
     pub(crate) fn variables(
         read: Result<Vec<Variable>, VariableFault>,
         path: &Path,
@@ -144,7 +152,7 @@ impl Contents {
     }
 }
 
-/// Returns the format for the bytes of a file with this name.
+/// Returns the importer for a file, by its bytes and the extension of `path`.
 pub(crate) fn importer_of(bytes: &[u8], path: &Path) -> &'static Importer {
     let ending = ending_of(path);
     FORMATS
@@ -153,8 +161,8 @@ pub(crate) fn importer_of(bytes: &[u8], path: &Path) -> &'static Importer {
         .unwrap_or(&TEXT)
 }
 
-/// Whether a file name has the ending of a known format, except that of studies, which hold neither
-/// models nor records.
+/// Returns whether a file name has the extension of a supported format. Returns false for studies,
+/// which hold neither models nor records.
 pub(crate) fn is_known(path: &Path) -> bool {
     if path.to_string_lossy().ends_with(".gdcm-study.json") {
         return false;
@@ -165,7 +173,7 @@ pub(crate) fn is_known(path: &Path) -> bool {
         .any(|format| format.endings.contains(&ending.as_str()))
 }
 
-/// Returns the ending of a file name, in lower case.
+/// Returns the file name extension in lower case; empty if there is none.
 fn ending_of(path: &Path) -> String {
     match path.extension() {
         Some(ending) => ending.to_string_lossy().to_lowercase(),
@@ -173,29 +181,29 @@ fn ending_of(path: &Path) -> String {
     }
 }
 
-/// Progress of reading files, and its cancellation.
+/// Receives the progress of reading files, and can cancel it.
 pub trait FolderProgress {
-    /// Called before a file is read, with its number from 1, the number of files and its name.
+    /// Receives the start of a file: its number, counted from 1, the number of files, and its name.
     fn reading(&self, number: usize, count: usize, name: &str);
-    /// Called when memory is taken for the contents of a file \[bytes\].
+    /// Receives the memory taken for the contents of a file \[bytes\].
     fn taken(&self, _bytes: u64) {}
-    /// Returns the flag that ends the reading when set.
+    /// Returns the flag that cancels the reading when set.
     fn stop(&self) -> Arc<AtomicBool> {
         Arc::default()
     }
 }
 
-/// A file after reading.
+/// A file that was read.
 pub(crate) struct ImportedFile<'f> {
     pub(crate) path: &'f Path,
-    /// Name relative to the requested path.
+    /// Path relative to the requested folder; for a file given by itself, its name.
     pub(crate) name: &'f str,
-    /// SHA-256 of the bytes, in lower-case hexadecimal.
+    /// SHA-256 of the file in lower-case hexadecimal.
     pub(crate) sha256: String,
     pub(crate) contents: Contents,
 }
 
-/// Imports the bytes of a file.
+/// Reads a file whose bytes are in memory, in the format of the bytes.
 pub(crate) fn import_bytes<'f>(
     bytes: &[u8],
     path: &'f Path,
@@ -211,7 +219,10 @@ pub(crate) fn import_bytes<'f>(
     })
 }
 
-/// Imports one file.
+/// Reads a file in the format of its bytes.
+///
+/// # Errors
+/// [`FileError`] if the file exceeds `LARGEST_FILE`, or cannot be read.
 pub(crate) fn import_file<'f>(
     path: &'f Path,
     name: &'f str,
@@ -220,9 +231,9 @@ pub(crate) fn import_file<'f>(
     import_bytes(&read_bytes(path, LARGEST_FILE, budget)?, path, name, budget)
 }
 
-/// Reads files and folders recursively and passes each file to `take`; returns the number of files
-/// and the reasons why some could not be read. With a single requested file, such a reason is an
-/// error.
+/// Reads files and folders recursively and passes each file to `take`. Returns the number of files,
+/// and the reasons why files were skipped or could not be read. If only a single file is requested,
+/// its error is returned instead.
 pub(crate) fn import(
     paths: &[PathBuf],
     progress: &dyn FolderProgress,
@@ -251,7 +262,7 @@ pub(crate) fn import(
     Ok((files.len(), faults))
 }
 
-/// Prefixes remarks with the name of their file, unless they already begin with it.
+/// Puts the file name before each remark that does not begin with it.
 pub(crate) fn of_file(name: &str, words: Vec<String>) -> impl Iterator<Item = String> {
     words.into_iter().map(move |words| {
         if words.starts_with(name) {
@@ -275,7 +286,7 @@ mod tests {
         assert_eq!(format(b" {\"A\": 1}", "a.txt"), JSON.name);
         assert_eq!(format(b"A = [1 2];", "a.m"), LITERALS.name);
         assert_eq!(format(b"1,2\n3,4\n", "a.csv"), TEXT.name);
-        // These texts are recognised by their content, whatever the ending.
+        // The content decides, not the extension.
         assert_eq!(
             format(b"% a model\nA = [1 2\n 3 4];", "a.txt"),
             LITERALS.name

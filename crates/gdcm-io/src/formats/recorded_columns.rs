@@ -1,27 +1,27 @@
-//! Flight record columns as a format reads them, without the name and the hash of their file.
+//! Columns of a flight record as read from a file, without the name and the hash of the file.
 
 use gdcm_sysid::records::{ModeSpan, RecordColumn, RecordSource, RecordTable};
 
 /// Maximum number of records in a file.
 pub(crate) const MOST_RECORDS: usize = 1000;
 
-/// Columns of one record, without the name and the hash of their file.
+/// Columns of a flight record, without the name and the hash of the file.
 pub(crate) struct Columns {
-    /// Place in the file ("rec(2)"); empty for the whole file.
+    /// Variable in the file that holds the record, such as "rec(2)"; empty for the whole file.
     pub(crate) variable: String,
     pub(crate) columns: Vec<RecordColumn>,
-    /// Whether the columns have names in the file.
+    /// Whether the file gives the names of the columns.
     pub(crate) named: bool,
-    /// Sample time \[s\], if the file gives it.
+    /// Sample time \[s\]; `None` if the file does not give it.
     pub(crate) sample_time_s: Option<f64>,
-    /// Remarks on the reading.
+    /// Notes for the user on how the file was read.
     pub(crate) notes: Vec<String>,
-    /// Logging system modes over time.
+    /// Flight modes over time, as logged.
     pub(crate) modes: Vec<ModeSpan>,
 }
 
 impl Columns {
-    /// Creates named columns without further information.
+    /// Creates named columns without sample time, notes and modes.
     pub(crate) fn new(variable: String, columns: Vec<RecordColumn>) -> Self {
         Self {
             variable,
@@ -33,7 +33,7 @@ impl Columns {
         }
     }
 
-    /// Returns the record with these columns; `name` and `sha256` identify the file.
+    /// Returns a record with these columns; `name` and `sha256` identify the file.
     pub(crate) fn in_file(self, name: &str, sha256: &str) -> RecordTable {
         let file = name.rsplit('/').next().unwrap_or(name);
         let stem = file.rsplit_once('.').map_or(file, |(stem, _)| stem);

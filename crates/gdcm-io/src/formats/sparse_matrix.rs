@@ -1,27 +1,26 @@
-//! Sparse matrices, expanded to full matrices.
+//! Sparse matrices, and their expansion to full matrices.
 
 use crate::formats::variables::{Array, ElementKind};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Nonzero elements with their places.
+/// Nonzero elements of a matrix, with their indices.
 pub(crate) struct SparseEntries {
-    /// Height and width.
+    /// Numbers of rows and columns.
     pub(crate) shape: [usize; 2],
     pub(crate) kind: ElementKind,
-    /// Row of each number, from 0.
+    /// Row index of each element, from 0.
     pub(crate) rows: Vec<usize>,
-    /// Column of each number, from 0.
+    /// Column index of each element, from 0.
     pub(crate) columns: Vec<usize>,
-    /// Real parts.
     pub(crate) re: Vec<f64>,
-    /// Imaginary parts if the numbers are complex.
+    /// Imaginary parts; `None` for real numbers.
     pub(crate) im: Option<Vec<f64>>,
 }
 
 impl SparseEntries {
-    /// Returns the full matrix; entries at the same place are added.
+    /// Returns the full matrix; elements with the same indices are added.
     ///
-    /// `outside` is the fault for a number outside the matrix.
+    /// `outside` creates the error for an element outside the matrix.
     pub(crate) fn full_matrix(
         &self,
         variable: &str,
@@ -44,7 +43,8 @@ impl SparseEntries {
         })
     }
 
-    /// Puts values at their places, by columns; `None` if a place is outside the matrix.
+    /// Returns a full matrix in column-major order with `values` at the indices of the elements;
+    /// `None` if an index is outside the matrix.
     fn expand(&self, values: &[f64]) -> Option<Vec<f64>> {
         let [height, width] = self.shape;
         let mut full = vec![0.0; height.saturating_mul(width)];
@@ -58,23 +58,24 @@ impl SparseEntries {
     }
 }
 
-/// A sparse matrix in compressed columns, as stored by MATLAB and GNU Octave.
+/// Sparse matrix in compressed sparse column format, as stored by MATLAB and GNU Octave.
 pub(crate) struct CompressedColumns {
-    /// Height and width.
+    /// Numbers of rows and columns.
     pub(crate) shape: [usize; 2],
     pub(crate) kind: ElementKind,
-    /// Row of each number, from 0.
+    /// Row index of each element, from 0.
     pub(crate) rows: Vec<usize>,
-    /// For each column the index at which its numbers begin, then the end of the last column.
+    /// Index of the first element of each column, then the number of elements.
     pub(crate) starts: Vec<usize>,
-    /// Real parts; there may be unused entries at the end.
+    /// Real parts; there may be unused numbers at the end.
     pub(crate) re: Vec<f64>,
-    /// Imaginary parts if the numbers are complex.
+    /// Imaginary parts; `None` for real numbers.
     pub(crate) im: Option<Vec<f64>>,
 }
 
 impl CompressedColumns {
-    /// Returns the entries; `None` if column starts, rows and numbers are inconsistent.
+    /// Converts the matrix to elements with indices; `None` if column starts, row indices and
+    /// numbers are inconsistent.
     pub(crate) fn into_entries(self) -> Option<SparseEntries> {
         let stored = *self.starts.last()?;
         let [_, width] = self.shape;
@@ -101,7 +102,7 @@ impl CompressedColumns {
         })
     }
 
-    /// Whether there are at least `stored` numbers with their rows.
+    /// Returns whether there are at least `stored` row indices and numbers.
     fn has_numbers(&self, stored: usize) -> bool {
         let has_imaginary_parts = match &self.im {
             Some(im) => stored <= im.len(),

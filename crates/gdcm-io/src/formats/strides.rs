@@ -1,24 +1,24 @@
-//! Element order in files, and the numbers in binary files.
+//! Order of array elements in files, and decoding of binary numbers.
 
 use crate::formats::variables::ElementKind;
 
-/// Positions of array elements in a file, in the order used by this program: the first index
-/// running fastest.
+/// Iterator over the positions of array elements in a file, in column-major order (first index
+/// fastest), which this program uses.
 pub(crate) struct Places {
     shape: Vec<usize>,
-    /// Distance in the file between neighbours along each dimension \[elements\].
+    /// Distance in the file between neighbouring elements along each dimension, in elements.
     strides: Vec<usize>,
-    /// Index of the next element.
+    /// Indices of the next element.
     index: Vec<usize>,
-    /// Position of the next element.
+    /// Position of the next element in the file.
     place: usize,
-    /// Count of the remaining elements.
+    /// Number of remaining elements.
     left: usize,
 }
 
 impl Places {
-    /// Creates the positions for a file in which the last index runs fastest (row by row); `None`
-    /// if the element count overflows.
+    /// Creates the positions for a file in row-major order (last index fastest); `None` if the
+    /// number of elements overflows.
     pub(crate) fn row_major(shape: &[usize]) -> Option<Self> {
         let left = count(shape)?;
         let mut strides = vec![1; shape.len()];
@@ -28,8 +28,8 @@ impl Places {
         Some(Self::new(shape, strides, left))
     }
 
-    /// Creates the positions for a file in which the first index runs fastest (column by column);
-    /// `None` if the element count overflows.
+    /// Creates the positions for a file in column-major order (first index fastest); `None` if the
+    /// number of elements overflows.
     pub(crate) fn column_major(shape: &[usize]) -> Option<Self> {
         let left = count(shape)?;
         let mut strides = vec![1; shape.len()];
@@ -50,10 +50,9 @@ impl Places {
     }
 }
 
-/// Counts the elements; `None` on overflow.
+/// Returns the number of elements; `None` on overflow.
 ///
-/// The nonzero dimensions are multiplied even if another is zero: an empty array is rejected too if
-/// their product overflows.
+/// The product of the nonzero dimensions must not overflow even if another dimension is zero.
 pub(crate) fn count(shape: &[usize]) -> Option<usize> {
     let mut product = 1_usize;
     for &side in shape {
@@ -87,7 +86,7 @@ impl Iterator for Places {
 
 impl ExactSizeIterator for Places {}
 
-/// Reorders elements from the last index running fastest to the first index running fastest.
+/// Reorders elements from row-major to column-major order.
 pub(crate) fn first_index_fastest<T>(shape: &[usize], elements: Vec<T>) -> Vec<T> {
     let Some(places) = Places::row_major(shape) else {
         return Vec::new();
@@ -98,7 +97,8 @@ pub(crate) fn first_index_fastest<T>(shape: &[usize], elements: Vec<T>) -> Vec<T
         .collect()
 }
 
-/// Extends a shape to at least two dimensions: a scalar becomes 1 x 1, a list becomes a row.
+/// Extends a shape to at least two dimensions: a scalar becomes 1 x 1, and n elements in one
+/// dimension become 1 x n.
 pub(crate) fn matrix_shape(shape: &[usize]) -> Vec<usize> {
     match *shape {
         [] => vec![1, 1],
@@ -110,27 +110,26 @@ pub(crate) fn matrix_shape(shape: &[usize]) -> Vec<usize> {
 /// Interpretation of the bits of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum NumberClass {
-    /// True where any bit is set.
+    /// True if any bit is set.
     Logical,
-    /// Two's complement.
+    /// Two's complement integer.
     Signed,
-    /// No sign.
     Unsigned,
-    /// IEEE 754 binary interchange formats.
+    /// IEEE 754 binary floating-point number.
     Float,
 }
 
-/// Number type in a file.
+/// Type of a number in a binary file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct StoredNumber {
     class: NumberClass,
-    /// Size \[bytes\].
     size: usize,
     big_endian: bool,
 }
 
 impl StoredNumber {
-    /// Creates a type with `size` bytes; `None` if no number has this size.
+    /// Creates the type of a number with `size` bytes; `None` if `class` has no number of this
+    /// size.
     pub(crate) fn new(class: NumberClass, size: usize, big_endian: bool) -> Option<Self> {
         let sizes: &[usize] = match class {
             NumberClass::Float => &[2, 4, 8],
@@ -146,7 +145,7 @@ impl StoredNumber {
         })
     }
 
-    /// Creates a type with a valid size, the lowest byte first.
+    /// Creates a little-endian type; `size` must be valid for the class.
     pub(crate) const fn little_endian(class: NumberClass, size: usize) -> Self {
         Self {
             class,
@@ -160,7 +159,7 @@ impl StoredNumber {
         self.size
     }
 
-    /// Returns the element kind for an array of such numbers.
+    /// Returns the kind of an array with such numbers.
     pub(crate) fn kind(self) -> ElementKind {
         match self.class {
             NumberClass::Logical => ElementKind::Logical,
@@ -169,7 +168,7 @@ impl StoredNumber {
         }
     }
 
-    /// Decodes the number at the beginning of `bytes`, with zeros for missing bytes; integers
+    /// Decodes the number at the beginning of `bytes`; missing bytes count as zeros. Integers
     /// beyond 2^53 are rounded to the nearest float.
     pub(crate) fn decode(self, bytes: &[u8]) -> f64 {
         let bits = self.bits(bytes);
@@ -188,7 +187,7 @@ impl StoredNumber {
         }
     }
 
-    /// Decodes consecutive numbers; an incomplete number at the end is ignored.
+    /// Decodes consecutive numbers; ignores an incomplete number at the end.
     pub(crate) fn decode_all(self, bytes: &[u8]) -> Vec<f64> {
         bytes
             .chunks_exact(self.size)
@@ -196,12 +195,12 @@ impl StoredNumber {
             .collect()
     }
 
-    /// Decodes the number at an offset; `None` if the bytes end too early.
+    /// Decodes the number at an offset \[bytes\]; `None` if the bytes end too early.
     pub(crate) fn at(self, bytes: &[u8], offset: usize) -> Option<f64> {
         Some(self.decode(bytes.get(offset..offset.checked_add(self.size)?)?))
     }
 
-    /// Returns the bits, with zeros for missing bytes.
+    /// Returns the bits of a number; missing bytes count as zeros.
     fn bits(self, bytes: &[u8]) -> u64 {
         let mut eight = [0; 8];
         let count = bytes.len().min(self.size);
@@ -258,8 +257,8 @@ mod stored_number_tests {
 
     #[test]
     fn half_floats_have_the_values_of_the_standard() {
-        // IEEE 754-2008, table 3.5: largest, smallest normal and smallest subnormal number of
-        // binary16.
+        // Largest, smallest normal and smallest subnormal number of binary16 (IEEE 754-2008, table
+        // 3.5).
         let cases = [
             (0x7bff, 65504.0),
             (0x0400, 2f64.powi(-14)),

@@ -1,34 +1,33 @@
-//! Named variables in files from other programs; their meaning is determined elsewhere.
+//! Named variables from files of other programs.
 //!
-//! All readers of such files (MATLAB, NumPy, text) return these values and know nothing about
-//! models.
+//! All readers of such files (MATLAB, NumPy, text) return these values; what they mean for models
+//! and records is determined elsewhere.
 
-/// Number type in the file.
+/// Kind of the elements of an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ElementKind {
-    /// IEEE 754 numbers with 32 or 64 bits.
+    /// Floating-point numbers with 16, 32 or 64 bits.
     Float,
-    /// Signed or unsigned integers.
     Integer,
-    /// True and false, as 1 and 0.
+    /// Logical values, as 1 and 0.
     Logical,
 }
 
-/// Numbers in an array, the first index running fastest (column by column).
+/// Array of numbers in column-major order (first index fastest).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Array {
     /// Length of each dimension; there are at least two dimensions (a scalar is 1 x 1).
     pub shape: Vec<usize>,
     pub kind: ElementKind,
-    /// The numbers, or their real parts. NaN and infinities are kept: code that uses the numbers
-    /// rejects them with their place.
+    /// Numbers, or the real parts of complex numbers. NaN and infinities are kept; code that uses
+    /// the numbers reports their positions.
     pub re: Vec<f64>,
-    /// Imaginary parts if the numbers are complex; as many as real parts.
+    /// Imaginary parts, as many as real parts; `None` for real numbers.
     pub im: Option<Vec<f64>>,
 }
 
 impl Array {
-    /// Creates a real matrix from its values by columns.
+    /// Creates a real matrix from its numbers in column-major order.
     pub fn matrix(rows: usize, columns: usize, values: Vec<f64>) -> Self {
         debug_assert_eq!(rows * columns, values.len());
         Self {
@@ -39,87 +38,87 @@ impl Array {
         }
     }
 
-    /// Counts the elements.
+    /// Returns the number of elements.
     pub fn len(&self) -> usize {
         self.re.len()
     }
 
-    /// Whether there are no elements.
+    /// Returns whether there are no elements.
     pub fn is_empty(&self) -> bool {
         self.re.is_empty()
     }
 }
 
-/// A value with its name.
+/// A named value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variable {
     pub name: String,
     pub value: Value,
 }
 
-/// Content of a variable, by kind.
+/// Value of a variable.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
-    /// Numbers; sparse arrays are expanded with zeros.
+    /// Numbers; a sparse matrix is expanded to a full matrix.
     Array(Array),
     Text(TextArray),
-    /// Values of any kind.
+    /// Array of values of any kind.
     Cell(CellArray),
     Struct(StructArray),
-    /// An object of a class, as far as it could be decoded.
+    /// Object of a class, as far as it could be decoded.
     Object(Object),
-    /// An unreadable value.
+    /// Value that could not be read.
     Opaque {
-        /// Its class, or a description.
+        /// Class name, or a description of the value.
         class: String,
-        /// The reason why it cannot be read.
+        /// Reason why the value could not be read.
         why: String,
     },
 }
 
-/// Texts: the rows of a character array, or an array of strings.
+/// Array of strings, for example the rows of a character array.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextArray {
-    /// Length of each dimension.
+    /// Length of each dimension; there are at least two dimensions.
     pub shape: Vec<usize>,
-    /// The texts, the first index running fastest. Rows of characters keep their padding blanks.
+    /// Strings in column-major order. Rows of a character array keep blanks at their ends.
     pub texts: Vec<String>,
 }
 
-/// Values of any kind, the first index running fastest.
+/// Array of values of any kind, in column-major order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CellArray {
-    /// Length of each dimension.
+    /// Length of each dimension; there are at least two dimensions.
     pub shape: Vec<usize>,
     pub values: Vec<Value>,
 }
 
-/// Records with the same fields, the first index running fastest.
+/// Array of records with the same fields, in column-major order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StructArray {
-    /// Length of each dimension.
+    /// Length of each dimension; there are at least two dimensions.
     pub shape: Vec<usize>,
-    /// The fields in order: name, and a value for each record.
+    /// Fields in file order: name, and a value for each record.
     pub fields: Vec<(String, Vec<Value>)>,
 }
 
-/// Memory charged for a record besides its fields while files are read, even without fields
-/// \[bytes\].
+/// Memory charged for a record in addition to its fields \[bytes\]; positive also for records
+/// without fields.
 pub(crate) const RECORD: u64 = 64;
 
-/// Memory charged for a field besides its name and values \[bytes\].
+/// Memory charged for a field in addition to its name and values \[bytes\].
 const FIELD: usize = 48;
 
-/// An object of a class, or an array of such objects.
+/// Object of a class, or an array of such objects.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object {
-    /// Class name: "ss", "idss", "string".
+    /// Class name, such as "ss", "idss" or "string".
     pub class: String,
     pub records: StructArray,
 }
 
 impl TextArray {
-    /// Creates an array with a single text.
+    /// Creates a 1 x 1 array from a string.
     pub fn one(text: impl Into<String>) -> Self {
         Self {
             shape: vec![1, 1],
@@ -129,17 +128,17 @@ impl TextArray {
 }
 
 impl Value {
-    /// Creates a text.
+    /// Creates a value with a single string.
     pub fn text(text: impl Into<String>) -> Self {
         Self::Text(TextArray::one(text))
     }
 
-    /// Creates a real number.
+    /// Creates a 1 x 1 array from a real number.
     pub fn number(number: f64) -> Self {
         Self::Array(Array::matrix(1, 1, vec![number]))
     }
 
-    /// Creates a logical value.
+    /// Creates a 1 x 1 logical array.
     pub fn truth(truth: bool) -> Self {
         let number = f64::from(u8::from(truth));
         Self::Array(Array {
@@ -148,12 +147,12 @@ impl Value {
         })
     }
 
-    /// Creates an array without elements.
+    /// Creates a 0 x 0 array.
     pub fn empty() -> Self {
         Self::Array(Array::matrix(0, 0, Vec::new()))
     }
 
-    /// Creates an unreadable value with the reason.
+    /// Creates an opaque value; `why` is the reason why it could not be read.
     pub fn opaque(class: impl Into<String>, why: impl Into<String>) -> Self {
         Self::Opaque {
             class: class.into(),
@@ -161,7 +160,7 @@ impl Value {
         }
     }
 
-    /// Iterates over the values inside this value.
+    /// Iterates over the values that this value directly contains.
     pub(crate) fn inner(&self) -> impl Iterator<Item = &Self> {
         let cells: &[Self] = match self {
             Self::Cell(cell) => &cell.values,
@@ -176,7 +175,8 @@ impl Value {
             .chain(fields.iter().flat_map(|(_, values)| values))
     }
 
-    /// Returns its memory, excluding inner values, rounded up \[bytes\].
+    /// Returns an upper bound of the memory of this value without the values that it contains
+    /// \[bytes\].
     pub(crate) fn own_memory(&self) -> u64 {
         let bytes = match self {
             Self::Array(array) => {
@@ -204,15 +204,15 @@ impl Value {
         (size_of::<Self>() + bytes) as u64
     }
 
-    /// Describes the value in a message: "a 3 x 4 array of numbers".
+    /// Describes the value for a message: "a 3 x 4 array of numbers".
     pub fn words(&self) -> String {
         match self {
             Value::Array(array) if array.im.is_some() => {
                 format!("a {} array of complex numbers", dimensions(&array.shape))
             }
             Value::Array(array) => format!("a {} array of numbers", dimensions(&array.shape)),
-            Value::Text(text) if text.texts.len() == 1 => "a text".to_owned(),
-            Value::Text(text) => format!("{} texts", text.texts.len()),
+            Value::Text(text) if text.texts.len() == 1 => "a string".to_owned(),
+            Value::Text(text) => format!("{} strings", text.texts.len()),
             Value::Cell(cell) => format!("a {} cell array", dimensions(&cell.shape)),
             Value::Struct(records) => format!("a {} struct array", dimensions(&records.shape)),
             Value::Object(object) => format!(
@@ -225,19 +225,19 @@ impl Value {
     }
 }
 
-/// Returns the memory of a text \[bytes\].
+/// Returns the memory of a string \[bytes\].
 fn text_memory(text: &str) -> usize {
     size_of::<String>() + text.len()
 }
 
-/// Formats dimensions: "3 x 4".
+/// Formats the dimensions of an array: "3 x 4".
 fn dimensions(shape: &[usize]) -> String {
     let sides: Vec<String> = shape.iter().map(usize::to_string).collect();
     sides.join(" x ")
 }
 
 impl StructArray {
-    /// Creates a single record.
+    /// Creates a 1 x 1 array from the fields of a record.
     pub fn one(fields: Vec<(String, Vec<Value>)>) -> Self {
         Self {
             shape: vec![1, 1],
@@ -245,7 +245,8 @@ impl StructArray {
         }
     }
 
-    /// Returns the values of a field, in the order of the records.
+    /// Returns the values of a field, in the order of the records; `None` if there is no such
+    /// field.
     pub fn field(&self, name: &str) -> Option<&[Value]> {
         self.fields
             .iter()

@@ -1,4 +1,4 @@
-//! Files in zip archives.
+//! Zip archives and the files in them.
 
 use std::collections::HashSet;
 use std::io::Read;
@@ -13,16 +13,16 @@ use crate::formats::variables::Variable;
 use crate::formats::{Contents, Importer, importer_of, is_known};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Maximum ratio of unpacked to packed bytes in deflate (RFC 1951).
+/// Maximum ratio of decompressed to compressed bytes in deflate (RFC 1951).
 const LARGEST_RATIO: u64 = 1032;
 
-/// Number of bytes unpacked between two queries to the budget.
+/// Number of bytes decompressed between two checks against the budget.
 const CHUNK: u64 = 1 << 20;
 
-/// Name ending for NumPy arrays.
+/// Extension of NumPy arrays.
 const ARRAY: &str = ".npy";
 
-/// Zip archives: NumPy arrays (`.npz`), and files with any other format.
+/// Importer of zip archives: NumPy archives (`.npz`), and archives of files with any other format.
 pub(crate) const ZIP: Importer = Importer {
     name: "a zip archive",
     endings: &["npz", "zip"],
@@ -32,7 +32,7 @@ pub(crate) const ZIP: Importer = Importer {
     },
 };
 
-/// Reads the arrays and the other files in an archive; nested archives are not read.
+/// Reads the arrays and the other files in an archive; nested archives are ignored.
 pub(crate) fn read_archive(
     bytes: &[u8],
     budget: &ReadingBudget<'_>,
@@ -46,10 +46,10 @@ pub(crate) fn read_archive(
     })
 }
 
-/// An archive during reading.
+/// State of reading an archive.
 #[derive(Default)]
 struct ArchiveReading {
-    /// Array names.
+    /// Names of the arrays, to detect duplicates.
     names: HashSet<String>,
     variables: Vec<Variable>,
     files: Vec<(String, Result<Contents, FileError>)>,
@@ -62,8 +62,8 @@ impl ArchiveReading {
         file: &ZipFile<'_, '_>,
         budget: &ReadingBudget<'_>,
     ) -> Result<(), VariableFault> {
-        // A few bytes in the archive's directory create a variable or a file, regardless of its
-        // contents.
+        // Each entry needs memory for a variable or a file, whereas a few bytes in the directory of
+        // the archive suffice to create it.
         let overhead = size_of::<Variable>() + size_of::<Contents>() + file.path.len();
         budget.take(1, overhead as u64, "")?;
         if let Some(name) = file.path.strip_suffix(ARRAY) {
@@ -77,8 +77,10 @@ impl ArchiveReading {
                 return self.take_contents(file, (importer.read)(&bytes, path, budget));
             }
         }
-        self.ignored
-            .push(format!("{}: no file of a known kind", file.path));
+        self.ignored.push(format!(
+            "{}: an unsupported format, or an archive in the archive",
+            file.path
+        ));
         Ok(())
     }
 
@@ -98,7 +100,10 @@ impl ArchiveReading {
         Ok(())
     }
 
-    /// Takes the contents read from a file, or the fault; ends if the budget is exhausted.
+    /// Stores the contents of a file, or the error from reading it.
+    ///
+    /// # Errors
+    /// Only an exhausted budget.
     fn take_contents(
         &mut self,
         file: &ZipFile<'_, '_>,
@@ -114,17 +119,17 @@ impl ArchiveReading {
     }
 }
 
-/// A packed file in a zip archive (APPNOTE 6.3).
+/// A file in a zip archive (APPNOTE 6.3).
 struct ZipFile<'z, 'b> {
     /// Path in the archive.
     path: &'z str,
-    /// File offset \[bytes\].
+    /// Offset of the file in the archive \[bytes\].
     offset: u64,
     archive: &'z ZipSliceArchive<&'b [u8]>,
     entry: &'z ZipFileHeaderRecord<'b>,
 }
 
-/// Passes every file in an archive to `visit`, in archive order.
+/// Passes each file in an archive to `visit`, in archive order.
 fn visit_files(
     bytes: &[u8],
     mut visit: impl FnMut(&ZipFile<'_, '_>) -> Result<(), VariableFault>,
@@ -144,7 +149,7 @@ fn visit_files(
         let path = entry.file_path();
         let offset = entry.local_header_offset();
         let path = std::str::from_utf8(path.as_bytes())
-            .map_err(|_| VariableFault::damaged("", "a name is not UTF-8", offset))?;
+            .map_err(|_| VariableFault::damaged("", "a file name is not UTF-8", offset))?;
         visit(&ZipFile {
             path,
             offset,
@@ -155,8 +160,8 @@ fn visit_files(
 }
 
 impl ZipFile<'_, '_> {
-    /// Unpacks the file up to the size given by the archive: a few kilobytes can unpack to
-    /// gigabytes. Faults give `name` as the file.
+    /// Decompresses the file, up to the size stated in the archive, because a few kilobytes can
+    /// expand to gigabytes; `name` is the file name in errors.
     fn unpack(&self, name: &str, budget: &ReadingBudget<'_>) -> Result<Vec<u8>, VariableFault> {
         if self.entry.flags().is_encrypted() {
             return Err(unsupported(name, "an encrypted entry"));
@@ -168,7 +173,7 @@ impl ZipFile<'_, '_> {
         let packed = found.data();
         let length = self.entry.uncompressed_size_hint();
         if length > (packed.len() as u64).saturating_mul(LARGEST_RATIO) {
-            return Err(self.damaged(name, "it claims more bytes than it can unpack to"));
+            return Err(self.damaged(name, "it claims to expand to more bytes than is possible"));
         }
         budget.take(length, 1, name)?;
         let unpacked = match self.entry.compression_method() {
@@ -179,7 +184,7 @@ impl ZipFile<'_, '_> {
                 budget,
             )?,
             method => {
-                let what = format!("an entry packed by method {}", method.as_u16());
+                let what = format!("an entry compressed with method {}", method.as_u16());
                 return Err(unsupported(name, &what));
             }
         };
@@ -192,11 +197,15 @@ impl ZipFile<'_, '_> {
 }
 
 fn unsupported(name: &str, what: &str) -> VariableFault {
-    VariableFault::unsupported(name, what, "pack it again by deflate, without a password")
+    VariableFault::unsupported(
+        name,
+        what,
+        "compress it again with deflate, without a password",
+    )
 }
 
-/// Reads up to the end, where the length and the checksum are compared, or up to the first byte
-/// beyond `length`, unless the reading is stopped.
+/// Reads a whole entry and compares its length; stops at the first byte beyond `length`. The
+/// archive reader compares the checksum at the end.
 fn read_whole(
     reader: impl Read,
     length: u64,
@@ -208,15 +217,20 @@ fn read_whole(
         budget.work(0, "")?;
         match reader.by_ref().take(CHUNK).read_to_end(&mut unpacked) {
             Ok(0) if unpacked.len() as u64 == length => return Ok(Ok(unpacked)),
-            Ok(0) => return Ok(Err(std::io::Error::other("it is not as long as it claims"))),
+            Ok(0) => {
+                return Ok(Err(std::io::Error::other(
+                    "its length differs from the stated \
+                length",
+                )));
+            }
             Ok(_) => {}
             Err(error) => return Ok(Err(error)),
         }
     }
 }
 
-/// Returns the fault for an unreadable archive. A file that begins like an archive has lost its
-/// end, which holds the directory.
+/// Returns the error for an archive that cannot be opened. If it begins like an archive, its end
+/// with the directory is missing.
 fn unreadable(bytes: &[u8]) -> VariableFault {
     if bytes.starts_with(b"PK\x03\x04") {
         return VariableFault::cut_off("", bytes.len());

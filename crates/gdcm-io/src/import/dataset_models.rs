@@ -1,4 +1,4 @@
-//! Models of a dataset file that is read among other model files.
+//! Models of a dataset file that is read as one of several model files.
 
 use std::path::Path;
 
@@ -11,8 +11,8 @@ use gdcm_model::dataset::{BundleKind, Condition, Dataset};
 
 use crate::files::model_collection::labels;
 
-/// Returns every model of the dataset with its provenance and flight condition; `name` is the
-/// dataset file's name relative to the requested path.
+/// Returns every model of a dataset with its provenance and flight condition. `name` is the path of
+/// the dataset file, relative to the folder that is read.
 pub(super) fn models_of_dataset(dataset: &Dataset, name: &str) -> Vec<FoundModel> {
     let mut models = Vec::new();
     for condition in dataset.conditions() {
@@ -45,8 +45,8 @@ pub(super) fn models_of_dataset(dataset: &Dataset, name: &str) -> Vec<FoundModel
     models
 }
 
-/// Returns the flight condition. The record paths, relative to the dataset's folder, become
-/// relative to the requested path.
+/// Returns the flight condition with its records. The paths of the records, which are relative to
+/// the dataset's folder, become relative to the folder that is read.
 fn facts_of(condition: &Condition, name: &str) -> Facts {
     let state = condition.flight_state();
     let mut records = Vec::new();

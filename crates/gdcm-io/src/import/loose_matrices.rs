@@ -9,18 +9,20 @@ use super::recognise::{Found, recognise};
 use crate::formats::variables::{Value, Variable};
 use crate::reading_budget::ReadingBudget;
 
-/// A matrix in a separate file.
+/// A matrix that is the only variable of its file.
 pub(super) struct LooseMatrix {
-    /// Folder, and file name before the letter; the matrices of one group form a model.
+    /// Folder, and file name without the letter of the matrix; the matrices of a group form a
+    /// model.
     group: String,
     file: String,
     sha256: String,
-    /// Matrix values, under its letter as the name.
+    /// The matrix; its letter is the variable name.
     variable: Variable,
 }
 
 impl LooseMatrix {
-    /// Takes the only variable of a file whose name ends in the letter of a matrix.
+    /// Takes the matrix from a file; `None` unless it is the only variable and the file name ends
+    /// in the letter of a matrix.
     pub(super) fn from_variables(variables: &[Variable], file: &str, sha256: &str) -> Option<Self> {
         let [variable] = variables else { return None };
         if !matches!(variable.value, Value::Array(_)) {
@@ -49,8 +51,8 @@ impl LooseMatrix {
     }
 }
 
-/// Returns the letter at the end of a file name, and the part before it: "nominal_A" is A of
-/// "nominal".
+/// Splits a file name without extension into the letter of a matrix at its end and the part before:
+/// "nominal_A" is the matrix A of "nominal".
 pub(super) fn matrix_letter(stem: &str) -> Option<(char, &str)> {
     let letter = stem.chars().last()?;
     if !matches!(letter, 'A' | 'B' | 'C' | 'D' | 'E') {
@@ -63,7 +65,7 @@ pub(super) fn matrix_letter(stem: &str) -> Option<(char, &str)> {
     Some((letter, before.trim_end_matches(['_', '-', '.', ' '])))
 }
 
-/// Builds a model from each group; the file stated is the folder, or the common part of the names.
+/// Builds a model from each group of matrices; the group is the stated file of the model.
 pub(super) fn models_of_matrices(loose: Vec<LooseMatrix>) -> Found<FoundModel> {
     let mut groups: BTreeMap<String, Vec<LooseMatrix>> = BTreeMap::new();
     for matrix in loose {
@@ -84,7 +86,7 @@ fn models_of_group(group: &str, matrices: &[LooseMatrix]) -> Found<FoundModel> {
         .map(|matrix| matrix.variable.clone())
         .collect();
     let mut found = Found::default();
-    // Each file was already read within its budget; copying the matrices once needs no limit.
+    // No limit is needed: each file was already read within its own budget.
     match recognise(&variables, true, &ReadingBudget::new(u64::MAX)) {
         Ok(recognised) => {
             found.items = recognised.items;

@@ -1,4 +1,4 @@
-//! Models and records recognised in files, whatever their format.
+//! Recognition of models and records in files of any format.
 
 mod dataset_models;
 mod loose_matrices;

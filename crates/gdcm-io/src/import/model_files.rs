@@ -1,4 +1,4 @@
-//! Models in files, whatever their format, and in folders.
+//! Reading of models from files of any format, and from folders.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -18,35 +18,34 @@ use crate::formats::variables::Variable;
 use crate::formats::{Contents, FolderProgress, ImportedFile, import, import_bytes, of_file};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Key of the headings for every table with a matching number of columns; all other keys are single
-/// files.
+/// Key in [`Headings`] for all tables with as many columns as there are headings; any other key is
+/// a file.
 pub const EVERY_TABLE: &str = "*";
-/// Number of lines at the beginning of a text in which a named matrix is looked for.
+/// Number of lines at the beginning of a text that are searched for a named matrix.
 const HEADING_LINES: usize = 50;
-/// Maximum number of unused variables listed per file.
+/// Maximum number of unused variables listed for each file.
 const MOST_LISTED: usize = 20;
 
-/// Models found in files.
+/// Results of reading model files.
 #[derive(Clone, Debug, Default)]
 pub struct FoundModels {
-    /// In file order.
+    /// Models in the order of the files.
     pub models: Vec<FoundModel>,
-    /// Files and apparent models that could not be read, each with place and reason.
+    /// Files that could not be read and invalid models, each with its place and the reason.
     pub faults: Vec<String>,
     /// Descriptions of contents that are not models.
     pub ignored: Vec<String>,
-    /// Unused variables beside the models, by file.
+    /// Names of the variables that no model uses, by file.
     pub unused: BTreeMap<String, Vec<String>>,
-    /// Tables of columns in the files, with the headings used.
+    /// Tables of columns, by file, with the headings that were used.
     pub tables: Headings,
-    /// Units to be stated before these tables can be read as frequency responses, by file.
+    /// Missing units without which a table cannot be read as a frequency response, by file.
     pub unsaid: BTreeMap<String, Vec<UnsaidUnit>>,
-    /// Number of files read.
     pub files: usize,
 }
 
 impl FoundModels {
-    /// Returns a line for each file with unused variables.
+    /// Returns a line for each file that has unused variables.
     pub fn unused_words(&self) -> Vec<String> {
         let mut lines = Vec::new();
         for (file, names) in &self.unused {
@@ -60,8 +59,11 @@ impl FoundModels {
     }
 }
 
-/// Reads the models in files and folders, including all subfolders; `headings` name the columns of
-/// tables. An unreadable file is recorded as a fault, and the rest is read.
+/// Reads the models in files, folders and subfolders; `headings` replace the column headings of
+/// tables. A file that cannot be read is recorded in `faults`, and the others are read.
+///
+/// # Errors
+/// [`FileError`] if a folder cannot be read, or the only file.
 pub fn read_models(
     paths: &[PathBuf],
     headings: &Headings,
@@ -80,7 +82,7 @@ pub fn read_models(
     })
 }
 
-/// Reads the models in a file with this name and these bytes, within a budget.
+/// Reads the models in a file whose bytes are in memory.
 pub fn models_of_bytes(
     bytes: &[u8],
     name: &str,
@@ -95,18 +97,18 @@ pub fn models_of_bytes(
     })
 }
 
-/// Name and hash of a file; for an archived file, the hash of the archive.
+/// Name and hash of a file; for a file in an archive, the hash of the archive.
 #[derive(Clone, Copy)]
 struct FileIdentity<'f> {
     name: &'f str,
     sha256: &'f str,
 }
 
-/// State while model files are read.
+/// State of reading model files.
 struct ModelReading<'h> {
     headings: &'h Headings,
     found: FoundModels,
-    /// Matrices in separate files.
+    /// Matrices in separate files, from which models are built at the end.
     matrices: Vec<LooseMatrix>,
 }
 
@@ -173,7 +175,7 @@ impl<'h> ModelReading<'h> {
                     self.add_archived_file(identity, &inner, contents, budget)?;
                 }
                 self.found.ignored.extend(of_file(name, ignored));
-                // NumPy arrays: the first index selects the matrix.
+                // `true`: the first index selects the matrix in NumPy arrays.
                 self.recognise(&variables, &[], identity, true, budget)
                     .map_err(error)?
             }
@@ -182,10 +184,10 @@ impl<'h> ModelReading<'h> {
         Ok(())
     }
 
-    /// Adds the models in an archived file. An unreadable file is recorded as a fault.
+    /// Adds the models in a file of an archive. A file that cannot be read is recorded in `faults`.
     ///
     /// # Errors
-    /// Only cancellation.
+    /// Only a cancellation.
     fn add_archived_file(
         &mut self,
         archive: FileIdentity<'_>,
@@ -216,7 +218,7 @@ impl<'h> ModelReading<'h> {
         }
     }
 
-    /// Recognises the models among variables; a single matrix is kept until all files are read.
+    /// Recognises models among variables; a single matrix is stored until all files have been read.
     fn recognise(
         &mut self,
         variables: &[Variable],
@@ -237,7 +239,8 @@ impl<'h> ModelReading<'h> {
         Ok(found)
     }
 
-    /// Reads the responses in a table, with the headings for this file or for every table.
+    /// Reads the frequency responses in a table, with the headings given for this file or for every
+    /// table.
     fn read_table(
         &mut self,
         mut table: TextTable,
@@ -258,7 +261,7 @@ impl<'h> ModelReading<'h> {
         Ok(models.found)
     }
 
-    /// Adds models with their provenance; the first in a file lists the unused variables.
+    /// Adds models with their provenance; the first model of a file lists the unused variables.
     fn add_found(&mut self, mut found: Found<FoundModel>, identity: FileIdentity<'_>) {
         let FileIdentity { name, sha256 } = identity;
         for (index, model) in found.items.iter_mut().enumerate() {
@@ -282,7 +285,7 @@ impl<'h> ModelReading<'h> {
         self.found.ignored.extend(of_file(name, found.ignored));
     }
 
-    /// Adds the models in separate matrices and returns all models.
+    /// Builds the models whose matrices are in separate files, and returns all models.
     fn finish(mut self) -> FoundModels {
         let separate = models_of_matrices(self.matrices);
         self.found.models.extend(separate.items);
@@ -291,7 +294,7 @@ impl<'h> ModelReading<'h> {
     }
 }
 
-/// Contents of a text file in the search for models.
+/// Contents of a text file that is searched for models.
 enum TextContents {
     Variables {
         variables: Vec<Variable>,
@@ -300,7 +303,8 @@ enum TextContents {
     Table(TextTable),
 }
 
-/// Reads a matrix if the file is named as one, named matrices if there are some, otherwise a table.
+/// Reads a single matrix if the file name ends in the letter of a matrix, named matrices if the
+/// text begins with one, and otherwise a table.
 fn read_text(
     text: &str,
     path: &Path,
@@ -330,7 +334,7 @@ fn read_text(
     Ok(TextContents::Table(table))
 }
 
-/// Whether a line begins a named matrix: "A =", "B:", "C = [".
+/// Returns whether a line is the heading of a matrix, such as "A =", "B:" or "C = [".
 fn is_matrix_heading(line: &str) -> bool {
     let name = line.trim().trim_end_matches(['=', ':', '[']).trim_end();
     matches!(name, "A" | "B" | "C" | "D")

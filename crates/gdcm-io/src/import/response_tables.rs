@@ -16,7 +16,7 @@ use crate::reading_budget::VariableFault;
 /// Frequency responses found in a table.
 pub(super) struct TableModels {
     pub(super) found: Found<FoundModel>,
-    /// Units to be stated before the table can be read as a frequency response.
+    /// Units that the user must state before the table can be read as frequency responses.
     pub(super) unsaid: Vec<UnsaidUnit>,
 }
 
@@ -48,7 +48,9 @@ pub(super) fn models_of_table(table: &TextTable, file: &str) -> Result<TableMode
         model.notes.extend(columns.notes.iter().cloned());
         model.notes.extend(table.notes.iter().cloned());
         if response.coherence.is_some() {
-            model.notes.push("coherence taken as γ²".to_owned());
+            model
+                .notes
+                .push("coherence interpreted as magnitude-squared (γ²)".to_owned());
         }
         found.items.push(model);
     }

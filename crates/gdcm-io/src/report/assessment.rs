@@ -1,5 +1,5 @@
-//! Sections on the benefit of the scheduled correction, the uncertainty of the results (M13), and
-//! the meaning, benefit and cost of couplings in the physics models (M16).
+//! Report sections on the benefit of the scheduled correction, on the uncertainty of the results
+//! (M13), and on the meaning, benefit and cost of couplings in the physics models (M16).
 
 use std::sync::Arc;
 
@@ -33,7 +33,7 @@ use gdcm_words::uncertainty::{
 use super::Unobtrusive;
 use super::page::{CONDITIONS_DRAWN, PAIRS_DRAWN, Page};
 
-/// Returns the analysis with confidence intervals.
+/// Returns the analysis with confidence intervals, which are computed if missing.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `progress` requests it.
@@ -52,7 +52,7 @@ pub(super) fn with_bars(
     })
 }
 
-/// Adds the section on the uncertainty, if confidence intervals are available.
+/// Adds the section on uncertainty; nothing if confidence intervals are not available.
 pub(super) fn add_uncertainty(page: &mut Page, analysis: &Analysis) {
     let Some(uncertainty) = &analysis.uncertainty else {
         return;
@@ -60,10 +60,13 @@ pub(super) fn add_uncertainty(page: &mut Page, analysis: &Analysis) {
     let dataset = &analysis.study.dataset;
     page.section("Uncertainty");
     page.paragraph(
-        "Each result is computed again with every other kept physics model, then with every other identified model, in place of the \
-         representative. The rms change of the first is the trim uncertainty, that of the second, averaged with the other conditions, \
-         the identification uncertainty; the bar is Student's t times the root of the sum of squares (M13). What neither explains is \
-         a physical effect, or a model-form error. An error common to all identified models is not seen, and a bar is not a bound.",
+        "Each result is computed again with every other kept physics model, then with every other \
+        identified model, instead of the representative. The rms change due to the physics \
+        models is the trim uncertainty; the rms change due to the identified models, averaged \
+        with the other conditions, is the identification uncertainty. The half-width of a bar is \
+        Student's t times the root of the sum of their squares (M13). Differences that neither \
+        of them explains are a physical effect or a model-form error. An error common to all \
+        identified models is not detected, and a bar is not a bound.",
     );
     page.paragraph(&differences_summary(uncertainty));
     let mut significant = Vec::new();
@@ -83,8 +86,9 @@ pub(super) fn add_uncertainty(page: &mut Page, analysis: &Analysis) {
         .take(PAIRS_DRAWN)
         .collect();
     if let Some(figure) = evidence_figure(analysis, &pairs) {
-        let caption = "Shares of the variance, and standard deviations of ln k_o k_i, about the mean of each airspeed and about the \
-                       schedule; above the bars, scatter as a multiple of what is expected.";
+        let caption = "Shares of the variance, and standard deviations of ln k_o k_i, about the \
+            mean of each airspeed and about the schedule; above the bars, the ratio of the \
+            scatter to the expected scatter.";
         page.figure(&figure, &figure.title, caption);
     }
     page.table(&scatter_table(dataset, uncertainty));
@@ -101,14 +105,16 @@ const IN_A_FIGURE: usize = 12;
 /// Maximum number of conditions side by side in a table that fits on a page.
 const CONDITIONS: usize = 12;
 
-/// Adds the section on the assessment.
+/// Adds the section on the change of J due to the scheduled correction.
 pub(super) fn add_assessment(page: &mut Page, analysis: &Analysis) {
     page.section("Assessment");
     let choice = usual_choice(analysis);
     let table = AssessmentTable::of(analysis, choice);
     page.paragraph(&format!(
-        "Change of J of the nominal model of each condition under the scheduled correction, against the identified representative; \
-         below 0 is better. J takes {} over frequency; up to {ACCEPTABLE} is acceptable, up to 50 next to indistinguishable.",
+        "Change in J of the nominal model of each condition due to the scheduled correction; J is \
+        the deviation from the identified representative, so negative changes are improvements. \
+        J takes {} over frequency; J up to {ACCEPTABLE} is acceptable, and J up to 50 is nearly \
+        indistinguishable from flight.",
         average_word(choice.average)
     ));
     let mut left_out = Vec::new();
@@ -175,7 +181,7 @@ fn add_figures(page: &mut Page, analysis: &Analysis, pairs: &[Pair], name: &str)
         page.figure(
             &figure,
             &format!("Change of J of {name}"),
-            "The whole, its magnitude part and its phase part.",
+            "Total change, and its magnitude and phase parts.",
         );
     }
     if drawn.len() < pairs.len() {
@@ -213,7 +219,8 @@ fn add_tables(
     let more = assessment.conditions.len() - shown.len();
     if more > 0 {
         page.paragraph(&format!(
-            "{more} more conditions are assessed: gdcm analyze writes them all into assessment.csv."
+            "{more} more conditions were assessed; gdcm analyze writes all of them to \
+            assessment.csv."
         ));
     }
     let mut missing = Vec::new();
@@ -245,7 +252,7 @@ fn parts_table(analysis: &Analysis, assessment: &AssessmentTable, pairs: &[Pair]
         "ΔJ phase",
     ];
     let mut table = Table::new(
-        "J of the nominal models before and under the schedule",
+        "J of the nominal models without and with the schedule",
         columns,
     );
     for assessed in &assessment.conditions {
@@ -271,7 +278,8 @@ fn parts_table(analysis: &Analysis, assessment: &AssessmentTable, pairs: &[Pair]
 /// Maximum number of matrix columns that fit on a page.
 const MATRIX_COLUMNS: usize = 8;
 
-/// Returns the analysis with its couplings assessed, if it has any.
+/// Returns the analysis with the assessment of its couplings, which is computed if missing;
+/// unchanged if no couplings were fitted.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `progress` requests it.
@@ -299,9 +307,11 @@ pub(super) fn add_couplings(page: &mut Page, analysis: &Analysis) {
     }
     page.section("Couplings");
     page.paragraph(
-        "One mixing of the inputs and, where asked for, one feedback of outputs to inputs, the same for all conditions, stand before the \
-         corrections of the channels: what representatives, G, D, gains, delays, leads and J of this report are found on is the physics \
-         model with them. Which model represents its bundle, and which is suspected, is decided without them.",
+        "A mixing of the inputs and, if requested, a feedback of outputs to inputs, common to all \
+        conditions, precede the corrections of the channels. The representatives, G, D, gains, \
+        delays, leads and J in this report are based on the physics models with these couplings. \
+        The choice of the representative of a bundle and the suspected models are determined \
+        without them.",
     );
     let remarks = analysis_coupling_remarks(analysis).into_iter();
     page.list(remarks.map(|remark| remark.text));
@@ -315,8 +325,9 @@ pub(super) fn add_couplings(page: &mut Page, analysis: &Analysis) {
     }
     page.table(&pole_table(assessment));
     if let Some(figure) = couplings_figure(assessment, None, FrequencyUnit::default()) {
-        let caption = "The least singular value of I \u{2212} K H at the sticks, of each condition: 1 is no loop, under 0.5 the loop is close \
-                       to ringing. Poles of the condition that is nearest to it.";
+        let caption = "Minimum singular value of I \u{2212} K H at the sticks in each condition: \
+            1 means that there is no loop; below 0.5 the loop is close to ringing. Poles of the \
+            condition with the smallest value.";
         page.figure(&figure, &figure.title, caption);
     }
 }

@@ -1,5 +1,4 @@
-//! Section on each condition: its representatives, its gains and delays with their basis, and its
-//! plots.
+//! Report section on the conditions: representatives, gains and delays with their basis, and plots.
 
 use std::collections::BTreeSet;
 
@@ -27,8 +26,8 @@ use gdcm_words::remark::RemarkKind;
 use super::Unobtrusive;
 use super::page::{CONDITIONS_DRAWN, MODELS_SHOWN, PAIRS_DRAWN, PAIRS_LISTED, Page, names};
 
-/// Adds the section on the conditions: for each its representatives, gains and delays with their
-/// basis, and plots.
+/// Adds a subsection for each condition: representatives, gains and delays with their basis, and
+/// plots.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `progress` requests it.
@@ -42,7 +41,8 @@ pub(super) fn add_conditions(
     let conditions = analysis.study.dataset.conditions();
     if conditions.len() > CONDITIONS_DRAWN {
         page.paragraph(&format!(
-            "The first {CONDITIONS_DRAWN} conditions have figures; gdcm figure makes those of the others."
+            "Only the first {CONDITIONS_DRAWN} conditions have figures; gdcm figure draws those \
+            of the others."
         ));
     }
     for (index, condition) in conditions.iter().enumerate() {
@@ -105,11 +105,11 @@ fn add_result(page: &mut Page, analysis: &Analysis, result: &ConditionAnalysis) 
             RemarkKind::Trouble => format!("Not matched: {}", remark.text),
         });
     }
-    page.heading_within("What was matched, what was not and why");
+    page.heading_within("Matched and unmatched responses, with reasons");
     page.list(lines);
     page.fine_list(details(study, result));
     if result.compensated.is_some() {
-        page.heading_within("What the leads do and what they cost");
+        page.heading_within("Effect and cost of the leads");
         page.list(lead_words(study, result, analysis.uncertainty.as_deref()));
     }
     add_responses(page, study, result);
@@ -119,7 +119,7 @@ fn add_result(page: &mut Page, analysis: &Analysis, result: &ConditionAnalysis) 
     }
 }
 
-/// Returns the proof status of the gains in a word.
+/// Returns the proof status of the gains as a single word.
 pub(super) fn proof_word(result: &ConditionAnalysis) -> &'static str {
     match result.gains.proof.outcome {
         Outcome::Proven { .. } => "global optimum",
@@ -281,10 +281,10 @@ fn add_responses(page: &mut Page, study: &Study, result: &ConditionAnalysis) {
     page.list(undefined_lines(study, result));
 }
 
-/// Mark of a missing value in tables.
+/// Placeholder for a missing value in tables.
 const MISSING: &str = "–";
 
-/// Formats a value with this many decimals.
+/// Formats a value with `digits` decimals; a missing value as [`MISSING`].
 fn decimals_or_missing(value: Option<f64>, digits: usize) -> String {
     match value {
         Some(value) => decimals(value, digits),
@@ -292,7 +292,7 @@ fn decimals_or_missing(value: Option<f64>, digits: usize) -> String {
     }
 }
 
-/// Formats a change with its sign and one decimal.
+/// Formats a change with its sign and one decimal; a missing value as [`MISSING`].
 fn change_or_missing(value: Option<f64>) -> String {
     match value {
         Some(value) => signed(value, 1),
@@ -349,7 +349,8 @@ fn undefined_lines(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
     lines
 }
 
-/// Adds a table of a bundle's models; for a long bundle, of its most important models.
+/// Adds a table of a bundle's models; of a long bundle, only the models that [`models_shown`]
+/// selects.
 fn add_models(page: &mut Page, study: &Study, result: &ConditionAnalysis, kind: BundleKind) {
     let models = result.condition.bundle(kind);
     let shown = models_shown(study, result, kind);
@@ -405,7 +406,7 @@ fn add_models(page: &mut Page, study: &Study, result: &ConditionAnalysis, kind: 
     }
 }
 
-/// Returns whether a model is kept, in a word.
+/// Describes in a word whether a model is kept.
 fn kept_word(
     study: &Study,
     result: &ConditionAnalysis,
@@ -431,8 +432,8 @@ fn kept_word(
 /// Maximum number of responses in a figure, in at most two rows.
 const IN_A_FIGURE: usize = 10;
 
-/// Adds the plots of a condition: important responses, their errors in the fit, all responses, and
-/// poles.
+/// Adds the plots of a condition: the responses in the objective, their ratios and phase
+/// differences, an overview of all responses, and the poles.
 fn add_plots(page: &mut Page, result: &ConditionAnalysis, source: &ConditionSource<'_>) {
     let options = BodeOptions {
         hidden_models: models_hidden(source.study, result),
@@ -443,7 +444,8 @@ fn add_plots(page: &mut Page, result: &ConditionAnalysis, source: &ConditionSour
     add_poles(page, source, &options);
 }
 
-/// Adds plots of the responses that measure a model, and of their errors in the fit.
+/// Adds Bode plots of the responses in the objective (on-axis; all if none is on-axis), and plots
+/// of ratio and phase difference between the identified representative and the physics models.
 fn add_response_plots(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOptions) {
     let id = source.curves.condition.id();
     let measuring: Vec<Pair> = source.study.dataset.measuring_pairs().marked().collect();
@@ -453,7 +455,7 @@ fn add_response_plots(page: &mut Page, source: &ConditionSource<'_>, options: &B
         let caption = "Magnitude and phase of every model, and of the representative under its own and under the scheduled \
                        correction.";
         page.figure(&bode_figure(source, pairs, options), &title, caption);
-        let title = format!("Condition {id}, what the fit sees of them");
+        let title = format!("Condition {id}, difference between identified and physics models");
         let caption = "Ratio and phase difference of the identified representative and each kept physics model, with G, D, the \
                        bounds and the quantiles.";
         let figure = without_values(error_figure(source, pairs, options));
@@ -461,7 +463,7 @@ fn add_response_plots(page: &mut Page, source: &ConditionSource<'_>, options: &B
     }
     if drawn.len() < measuring.len() {
         page.paragraph(&format!(
-            "{} of {} responses that measure a model are drawn.",
+            "{} of {} responses in the objective are drawn.",
             drawn.len(),
             measuring.len()
         ));
@@ -480,7 +482,7 @@ fn add_overview(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOpt
         page.figure(
             &overview,
             &format!("Condition {id}, magnitude of every response"),
-            "With J before and after the correction; * is held exactly.",
+            "With J before and after the correction; * marks held responses.",
         );
     }
 }
@@ -498,7 +500,8 @@ fn add_poles(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOption
     page.figure(
         &poles_figure(source, &modes, options, (&|_| Vec::new(), &shifts)),
         &format!("Condition {id}, poles of its models"),
-        "Physics models ×, identified ones +; rays of equal damping ratio. A correction of channels moves no pole; couplings do.",
+        "Physics models ×, identified models +; rays of equal damping ratio. Corrections of \
+        channels do not move poles; couplings do.",
     );
 }
 
@@ -513,8 +516,8 @@ fn without_values(mut figure: Figure) -> Figure {
     figure
 }
 
-/// Returns " on axis" if the dataset marks on-axis responses; otherwise every response measures a
-/// model.
+/// Returns " on axis" if the dataset marks on-axis responses. Otherwise all responses enter the
+/// objective, and the words are empty.
 fn on_axis_words(source: &ConditionSource<'_>) -> &'static str {
     if source.study.dataset.on_axis().marked().next().is_some() {
         " on axis"

@@ -25,21 +25,21 @@ pub use self::study::assessment_sentence;
 
 const PROGRAM: &str = concat!("gdcm ", env!("CARGO_PKG_VERSION"));
 
-/// Names and hash of a study's files, for the report.
+/// File names and hash of a study, stated in the report.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReportSource {
-    /// The study's file name; `None` for a study that is not saved.
+    /// File name of the study; `None` if it is not saved.
     pub study: Option<String>,
-    /// Name of the dataset's file; "(embedded example)" without a file.
+    /// File name of the dataset; "(embedded example)" without a file.
     pub dataset: String,
-    /// SHA-256 of the dataset's file, in hexadecimal.
+    /// SHA-256 of the dataset file, in hexadecimal.
     pub sha256: String,
-    /// Irregularities in the dataset's file.
+    /// Irregularities found when the dataset file was read.
     pub cautions: Vec<String>,
 }
 
 impl ReportSource {
-    /// Takes the files of a study: its dataset, and its own file if it is saved. Folders are
+    /// Describes the files of a study: its dataset, and the study file if it is saved. Folders are
     /// omitted, so that the report does not depend on their location.
     pub fn of(loaded: &LoadedDataset, study: Option<&Path>) -> Self {
         let study = study
@@ -54,10 +54,10 @@ impl ReportSource {
     }
 }
 
-/// Subject of a report.
+/// Results from which a report is made.
 #[derive(Clone, Copy, Debug)]
 pub struct ReportSubject<'a> {
-    /// Analysis of the study, whose requirements are reported too.
+    /// Analysis of the study; the report also evaluates its requirements.
     pub analysis: &'a Analysis,
     /// Model responses to flight records, if available.
     pub histories: Option<&'a TimeHistories>,
@@ -65,8 +65,8 @@ pub struct ReportSubject<'a> {
     pub known: &'a KnownPoles,
 }
 
-/// Creates the report on an analysis; `engine` computes the responses to be drawn. Each condition
-/// is a progress step.
+/// Returns the report on an analysis as HTML; `engine` computes the responses that are plotted.
+/// Each condition is a progress step.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `progress` requests it.
@@ -112,7 +112,7 @@ pub fn report(
     Ok(page.finish(&title, &[origin]))
 }
 
-/// Forwards cancellation only; the progress of inner steps is not shown.
+/// Progress that forwards only cancellation: the steps of inner computations are not shown.
 struct Unobtrusive<'a>(&'a dyn Progress);
 
 impl Progress for Unobtrusive<'_> {
@@ -123,7 +123,7 @@ impl Progress for Unobtrusive<'_> {
     fn advanced(&self, _done: usize, _total: usize) {}
 }
 
-/// Writes a report completely or not at all.
+/// Writes a report to `path`, completely or not at all.
 pub fn save_report(report: &str, path: &Path, mut outputs: OutputSet) -> Result<(), FileError> {
     outputs.add(path, |file| file.write_all(report.as_bytes()))?;
     outputs.persist()

@@ -1,5 +1,5 @@
 //! A page written from top to bottom, with numbered sections, tables, figures and a table of
-//! contents; its markup is both HTML and well-formed XML.
+//! contents. The markup is both HTML and well-formed XML.
 
 use gdcm_model::message_text::sanitized;
 use gdcm_plot::figure::drawing::Drawing;
@@ -7,19 +7,20 @@ use gdcm_plot::figure::{ColumnWidth, Figure};
 use gdcm_plot::paper::{escaped, inline_svg};
 use gdcm_words::Table;
 
-/// Maximum number of conditions with figures; every condition has tables.
+/// Maximum number of conditions with figures; the tables list all conditions.
 pub(super) const CONDITIONS_DRAWN: usize = 60;
-/// Maximum number of on-axis responses with figures, and of off-axis responses.
+/// Maximum number of responses with figures, for on-axis and for off-axis responses each.
 pub(super) const PAIRS_DRAWN: usize = 40;
-/// Maximum number of responses in a table of all responses; beyond it, the table lists only on-axis
-/// and constrained responses.
+/// Maximum number of responses for which all are listed in a table; if there are more, only on-axis
+/// and constrained responses are listed.
 pub(super) const PAIRS_LISTED: usize = 48;
 /// Maximum number of models of a bundle that are listed and drawn.
 pub(super) const MODELS_SHOWN: usize = 40;
-/// Maximum number of names in a sentence.
+/// Maximum number of names in a list within a sentence.
 pub(super) const NAMES_SHOWN: usize = 12;
 
-/// Lists names with commas; if there are too many, the first names and how many follow.
+/// Joins names with commas; of more than [`NAMES_SHOWN`] names, the first ones and the number of
+/// the others.
 pub(super) fn names<S: AsRef<str>>(all: &[S]) -> String {
     let shown: Vec<&str> = all.iter().take(NAMES_SHOWN).map(AsRef::as_ref).collect();
     let shown = shown.join(", ");
@@ -48,7 +49,7 @@ struct Heading {
     title: String,
 }
 
-/// A page being written.
+/// A page under construction.
 #[derive(Default)]
 pub(super) struct Page {
     body: String,
@@ -60,14 +61,14 @@ pub(super) struct Page {
 }
 
 impl Page {
-    /// Begins a section.
+    /// Begins a numbered section.
     pub(super) fn section(&mut self, title: &str) {
         self.section += 1;
         self.subsection = 0;
         self.heading("h2", self.section.to_string(), title);
     }
 
-    /// Begins a subsection.
+    /// Begins a numbered subsection.
     pub(super) fn subsection(&mut self, title: &str) {
         self.subsection += 1;
         self.heading("h3", format!("{}.{}", self.section, self.subsection), title);
@@ -89,12 +90,11 @@ impl Page {
         self.body.push_str(&element("h4", title));
     }
 
-    /// Adds a paragraph.
     pub(super) fn paragraph(&mut self, text: &str) {
         self.body.push_str(&element("p", text));
     }
 
-    /// Adds a list; nothing if it is empty.
+    /// Adds a list; nothing if `items` is empty.
     pub(super) fn list(&mut self, items: impl IntoIterator<Item = impl AsRef<str>>) {
         self.add_list("", items);
     }
@@ -115,7 +115,7 @@ impl Page {
         }
     }
 
-    /// Adds facts about a subject as a table: names at the left, values at the right.
+    /// Adds a two-column table of names (left) and values (right), without headings.
     pub(super) fn facts<'a>(&mut self, facts: impl IntoIterator<Item = (&'a str, String)>) {
         self.body.push_str("<table class=\"facts\"><tbody>\n");
         for (name, value) in facts {
@@ -128,8 +128,8 @@ impl Page {
         self.body.push_str("</tbody></table>\n");
     }
 
-    /// Adds a table under its title; its headings are repeated on every page. Nothing is added
-    /// without rows.
+    /// Adds a table under its title; the headings are repeated on every printed page. A table
+    /// without rows is omitted.
     pub(super) fn table(&mut self, table: &Table) {
         if table.rows.is_empty() {
             return;
@@ -158,7 +158,7 @@ impl Page {
         self.body.push_str("</tbody>\n</table>\n");
         if table.rows.len() > ROWS {
             let more = table.rows.len() - ROWS;
-            self.paragraph(&format!("{more} more rows are left out here."));
+            self.paragraph(&format!("{more} more rows are omitted here."));
         }
     }
 
@@ -180,7 +180,7 @@ impl Page {
         }
     }
 
-    /// Adds a numbered figure, with this title and caption instead of its own.
+    /// Adds a numbered figure; `title` and `caption` replace the figure's own texts.
     pub(super) fn figure(&mut self, figure: &Figure, title: &str, caption: &str) {
         self.figures += 1;
         let bare = Figure {
@@ -201,12 +201,12 @@ impl Page {
         ));
     }
 
-    /// Adds fixed markup that is part of the program.
+    /// Adds constant markup without escaping it.
     pub(super) fn fixed(&mut self, markup: &'static str) {
         self.body.push_str(markup);
     }
 
-    /// Finishes the page with a title and `lines` below it.
+    /// Returns the whole page, with a title and `lines` below the title.
     pub(super) fn finish(self, title: &str, lines: &[String]) -> String {
         let mut below = String::new();
         for line in lines {
@@ -257,14 +257,14 @@ fn table_row(tag: &str, cells: &[String], classes: &[&str]) -> String {
     row
 }
 
-/// Returns the first `heads` cells of a row, and those from `from` up to `to`.
+/// Returns the first `heads` cells of a row, and the cells with the indices `from..to`.
 fn columns_between(cells: &[String], heads: usize, from: usize, to: usize) -> Vec<String> {
     let to = to.min(cells.len());
     [&cells[..heads], &cells[from..to]].concat()
 }
 
-/// Returns the class of a column: numbers (`n`), texts short enough for one line (`s`), or other
-/// texts (none).
+/// Returns the CSS class of a column: `n` for numbers, `s` for texts short enough for one line,
+/// none for other texts.
 fn class_of(table: &Table, column: usize) -> &'static str {
     let is_short = table
         .rows
@@ -277,17 +277,17 @@ fn class_of(table: &Table, column: usize) -> &'static str {
     }
 }
 
-/// Escapes a text from any source, so that it contains no markup and no invisible characters.
+/// Escapes a text from any source, so that it contains neither markup nor invisible characters.
 fn words(text: &str) -> String {
     escaped(&sanitized(text))
 }
 
-/// Returns an element with this text.
+/// Returns an HTML element that contains `text`, escaped.
 fn element(tag: &str, text: &str) -> String {
     format!("<{tag}>{}</{tag}>\n", words(text))
 }
 
-/// Returns an element with a class and this text.
+/// Returns an HTML element with a class that contains `text`, escaped.
 fn classed(tag: &str, class: &str, text: &str) -> String {
     format!("<{tag} class=\"{class}\">{}</{tag}>\n", words(text))
 }
@@ -324,7 +324,7 @@ mod tests {
         page.finish("A <title>", &["below & so on".to_owned()])
     }
 
-    /// Parses a page, allowing its document type, which is HTML's and refers to no file.
+    /// Parses a page as XML. The document type is allowed: HTML's refers to no file.
     fn parsed(text: &str) -> Document<'_> {
         Document::parse_with_options(
             text,

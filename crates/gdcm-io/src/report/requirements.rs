@@ -1,4 +1,5 @@
-//! Section on the qualification requirements (M17), with the same values as `gdcm requirements`.
+//! Report section on the qualification requirements (M17), with the same values as `gdcm
+//! requirements`.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +20,7 @@ use super::{ReportSubject, Unobtrusive};
 /// Maximum number of columns in a table that fits on a page.
 const COLUMNS: usize = 9;
 
-/// Adds the section on the requirements, with the responses to flight records if available.
+/// Adds the section on the requirements, with time histories if flight records are available.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `progress` requests it.
@@ -37,16 +38,18 @@ pub(super) fn add_requirements(
     let requirements = engine.requirements(analysis, known, &Unobtrusive(progress))?;
     page.section("Requirements");
     page.paragraph(
-        "What those ask who accept a simulator or a flight control law, of the physics representative as it is, under its own correction \
-         and under the schedule, and of the identified representative. These numbers are no qualification: the tests of the standards \
-         are flown at given conditions with given inputs, and judged by people.",
+        "Criteria used to accept simulators and flight control laws, evaluated for the physics \
+        representative (uncorrected, with its own correction, and with the schedule) and for the \
+        identified representative. These values do not replace a qualification, which requires \
+        flight tests at specified conditions with specified inputs, and a pilot's assessment.",
     );
     add_bandwidth(page, &requirements, &analysis.study);
     add_modes(page, &requirements);
     page.subsection("Summary costs");
     page.paragraph(
-        "Means of J (M4) and of the share of the band, in ln \u{3c9}, inside the envelopes of unnoticeable added dynamics \
-         (MIL-STD-1797A, appendix A, 4.2.1.2), against the identified representative.",
+        "Means of J (M4), and of the share of the band (in ln \u{3c9}) inside the envelopes of \
+        maximum unnoticeable added dynamics (MIL-STD-1797A, appendix A, 4.2.1.2), relative to \
+        the identified representative.",
     );
     page.wide_table_behind(&summary_table(&requirements, histories), 3, COLUMNS - 2);
     let limits = &analysis.study.requirements.overview;
@@ -68,15 +71,17 @@ pub(super) fn add_requirements(
     Ok(())
 }
 
-/// Adds bandwidth and phase delay of the responses in which either is defined, and the reasons why
-/// the others have none.
+/// Adds bandwidth and phase delay of the responses for which either is defined, and the reasons why
+/// the other responses have none.
 fn add_bandwidth(page: &mut Page, requirements: &Requirements, study: &Study) {
     let dataset = &study.dataset;
     page.subsection("Bandwidth and phase delay");
     page.paragraph(
-        "Of the attitude that a stick makes (ADS-33E-PRF 3.3.2, 3.4.1; MIL-DTL-32742): the bandwidth is the lesser of the frequencies at \
-         which 45\u{b0} of phase margin and 6 dB of gain margin are left; the phase delay is the phase lost from \u{3c9}180 to \
-         2 \u{3c9}180 over 2 \u{3c9}180. Levels depend on the mission task and the category; only the engineer's own are drawn.",
+        "For the attitude response to a stick (ADS-33E-PRF 3.3.2, 3.4.1; MIL-DTL-32742): the \
+        bandwidth is the lower of the frequencies with 45\u{b0} of phase margin and with 6 dB of \
+        gain margin; the phase delay is the phase lost from \u{3c9}180 to 2 \u{3c9}180, divided \
+        by 2 \u{3c9}180. Levels depend on the mission task and the category; only those given by \
+        the engineer are drawn.",
     );
     let mut known = requirements.clone();
     known.bandwidth.retain(is_known);
@@ -109,9 +114,10 @@ fn is_known(finding: &BandwidthFinding) -> bool {
 fn add_modes(page: &mut Page, requirements: &Requirements) {
     page.subsection("Modes");
     page.paragraph(
-        "Modes of the identified representative, and of the physics representative in their places, against 14 CFR part 60, appendix C, \
-         table C2A, 2.c.3.a and 2.d.3.a. Gains and delays move no pole; couplings do, and where there are some the corrected model's \
-         stand beside them.",
+        "Modes of the identified representative and the corresponding modes of the physics \
+        representative, with the tolerances of 14 CFR part 60, appendix C, table C2A, 2.c.3.a \
+        and 2.d.3.a. Gains and delays do not move poles. Couplings do: if there are any, the \
+        modes of the corrected model are also listed.",
     );
     let modes = requirements.modes.iter();
     let mut conditions: Vec<ConditionId> = modes.map(|finding| finding.condition).collect();
@@ -121,7 +127,8 @@ fn add_modes(page: &mut Page, requirements: &Requirements) {
     }
 }
 
-/// Adds the comparison of time histories with tolerances, and the records that are not compared.
+/// Adds the comparison of time histories with the tolerances, and a list of the records that are
+/// not compared.
 fn add_histories(page: &mut Page, histories: &TimeHistories) {
     page.subsection("Time histories");
     let source = match histories.tolerance_table.source() {
@@ -129,9 +136,10 @@ fn add_histories(page: &mut Page, histories: &TimeHistories) {
         source => source,
     };
     page.paragraph(&format!(
-        "Share of time for which the models, at the flown sticks, stay within tolerances about flight ({source}): in windows of at most \
-         10 s, each from an estimated initial state and offsets, over all records of a condition. Attitudes are integrals of body rates \
-         from the start of each window, which holds for small angles."
+        "Share of time for which the models, driven by the recorded stick inputs, remain within \
+        the tolerances about the flight data ({source}): in windows of at most 10 s, each from \
+        an estimated initial state and offsets, over all records of a condition. Attitudes are \
+        integrals of body rates from the start of each window, which is valid for small angles."
     ));
     page.table(&tolerance_table(histories));
     if !histories.records.is_empty() {
@@ -147,7 +155,7 @@ fn add_histories(page: &mut Page, histories: &TimeHistories) {
     page.list(remarks.lines());
 }
 
-/// Tabulates the requested tolerances.
+/// Tabulates the tolerances set by the user.
 fn tolerance_table(histories: &TimeHistories) -> Table {
     let mut table = Table::new(
         "Tolerances",
@@ -175,7 +183,8 @@ fn tolerance_table(histories: &TimeHistories) -> Table {
     table
 }
 
-/// Distinct remarks, each with the conditions to which it applies.
+/// Distinct remarks, each with the conditions to which it applies; no conditions if it applies to
+/// all.
 #[derive(Default)]
 struct ConditionRemarks {
     conditions_by_words: BTreeMap<String, Vec<ConditionId>>,

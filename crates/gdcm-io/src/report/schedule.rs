@@ -1,4 +1,5 @@
-//! Section on the channels over the conditions, and on the gains scheduled with airspeed.
+//! Report section on the gains and delays of the channels in each condition, and on the gains
+//! scheduled with airspeed.
 
 use gdcm_method::correction::{Channel, ChannelCorrection};
 use gdcm_method::schedule::Schedule;
@@ -22,7 +23,7 @@ const PAIRS_IN_A_FIGURE: usize = 10;
 /// Maximum number of value columns in a table that fits on a page.
 const COLUMNS: usize = 10;
 
-/// Adds the section on the schedule.
+/// Adds the section on channels and schedule.
 pub(super) fn add_schedule(page: &mut Page, analysis: &Analysis) {
     page.section("Channels and schedule");
     page.subsection("Channels over the conditions");
@@ -43,7 +44,8 @@ pub(super) fn add_schedule(page: &mut Page, analysis: &Analysis) {
     }
 }
 
-/// Adds figures of the channels; `axes` are the drawn quantity and the horizontal axis.
+/// Adds figures of the channels; `axes` are the plotted quantity and the quantity on the horizontal
+/// axis.
 fn add_channels(
     page: &mut Page,
     analysis: &Analysis,
@@ -54,12 +56,13 @@ fn add_channels(
     for channels in channels.chunks(IN_A_FIGURE) {
         let uncertainty = analysis.uncertainty.as_deref();
         let figure = channels_figure(analysis, uncertainty, channels, axes);
-        let caption = "Each condition's optimum, within the bounds it was looked for in; dashed: no correction.";
+        let caption = "Optimum of each condition, and the bounds of its search; dashed: no \
+            correction.";
         page.figure(&figure, title, caption);
     }
 }
 
-/// Adds the schedule over airspeed.
+/// Adds the results that depend on airspeed: facts, remarks, coefficients, gains and figures.
 fn add_airspeed(page: &mut Page, analysis: &Analysis, schedule: &Schedule, channels: &[Channel]) {
     add_schedule_facts(page, analysis, schedule);
     add_schedule_remarks(page, analysis, schedule);
@@ -77,7 +80,7 @@ fn add_airspeed(page: &mut Page, analysis: &Analysis, schedule: &Schedule, chann
     for pairs in shown_pairs(&analysis.study).chunks(PAIRS_IN_A_FIGURE) {
         let figure = net_gain_figure(analysis, analysis.uncertainty.as_deref(), pairs);
         let caption =
-            "Each condition's optimum with its number, and the schedule; dashed: no correction.";
+            "Optimum of each condition, with its id, and the schedule; dashed: no correction.";
         page.figure(&figure, "Net gains against airspeed", caption);
     }
 }
@@ -100,9 +103,9 @@ fn add_schedule_facts(page: &mut Page, analysis: &Analysis, schedule: &Schedule)
         ("Degree used", degree),
         (
             "Airspeeds",
-            format!("{low} to {high} kt; outside, the end value holds"),
+            format!("{low} to {high} kt; outside this range, the end value applies"),
         ),
-        ("Conditions left out of it", left_out),
+        ("Conditions left out", left_out),
     ]);
 }
 
@@ -126,7 +129,7 @@ fn add_schedule_remarks(page: &mut Page, analysis: &Analysis, schedule: &Schedul
     page.list(lines);
 }
 
-/// Returns the conditions that are not in the schedule.
+/// Returns the ids of the conditions that the schedule omits.
 fn not_scheduled(analysis: &Analysis) -> Vec<String> {
     let scheduled: Vec<ConditionId> = analysis.scheduled();
     let mut names = Vec::new();
@@ -138,7 +141,8 @@ fn not_scheduled(analysis: &Analysis) -> Vec<String> {
     names
 }
 
-/// Returns the responses that measure a model, and the constrained responses.
+/// Returns the responses in the objective (on-axis; all if none is on-axis) and the constrained
+/// responses, at most [`PAIRS_DRAWN`].
 fn shown_pairs(study: &Study) -> Vec<Pair> {
     let measuring = study.dataset.measuring_pairs();
     let shown = measuring.map(|pair, measures| *measures || study.settings.constrained[pair]);
@@ -150,10 +154,10 @@ fn add_coefficients(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
     let coefficients = schedule.coefficients(&inputs, &outputs);
     let quantity = quantity_symbol(schedule.settings.quantity);
     let title = if coefficients.scale.is_empty() {
-        format!("The schedule: {quantity} at each airspeed, linear between")
+        format!("Schedule: {quantity} at each airspeed, linear in between")
     } else {
         format!(
-            "The schedule: coefficients of {quantity} in the scaled airspeed, {}",
+            "Schedule: coefficients of {quantity} in the scaled airspeed, {}",
             coefficients.scale
         )
     };
@@ -208,7 +212,7 @@ fn channel_name(dataset: &Dataset, channel: Channel) -> String {
     channel.name(&inputs, &outputs)
 }
 
-/// Column of a table over airspeed: its name, and the function that writes its cell.
+/// Column of a table over airspeed: its name and the function that formats a cell.
 struct AirspeedColumn {
     name: String,
     cell: Box<dyn Fn(&ChannelCorrection) -> String>,

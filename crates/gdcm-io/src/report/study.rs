@@ -1,4 +1,4 @@
-//! Sections on the study as a whole: its results, settings and sources, and the excluded models.
+//! Report sections on the study as a whole: results, settings, sources, and excluded models.
 
 use std::collections::BTreeMap;
 
@@ -23,7 +23,7 @@ use super::conditions::proof_word;
 use super::page::{NAMES_SHOWN, Page, names};
 use super::{PROGRAM, ReportSource};
 
-/// Adds a summary.
+/// Adds the summary of the results.
 pub(super) fn add_summary(page: &mut Page, analysis: &Analysis) {
     page.section("Summary");
     let conditions = analysis.study.dataset.conditions();
@@ -43,7 +43,8 @@ pub(super) fn add_summary(page: &mut Page, analysis: &Analysis) {
     }
     let scheduled = analysis.scheduled().len();
     page.paragraph(&format!(
-        "{solved} of {} conditions have a result, {scheduled} of them make the schedule; {rejected} models are rejected.",
+        "{solved} of {} conditions have a result; the schedule is fitted to {scheduled} of them; \
+        {rejected} models are rejected.",
         conditions.len()
     ));
     page.paragraph(&assessment_sentence(analysis));
@@ -51,7 +52,7 @@ pub(super) fn add_summary(page: &mut Page, analysis: &Analysis) {
     page.table(&condition_table(analysis));
 }
 
-/// Describes the benefit of the schedule to the nominal models in a sentence.
+/// Returns a sentence on the change of J of the nominal models due to the schedule.
 pub fn assessment_sentence(analysis: &Analysis) -> String {
     let dataset = &analysis.study.dataset;
     let measuring = dataset.measuring_pairs();
@@ -72,15 +73,16 @@ pub fn assessment_sentence(analysis: &Analysis) -> String {
         ""
     };
     format!(
-        "J of the nominal models under the schedule, over the {which} of every condition assessed: {found}.{between}"
+        "J of the nominal models with the schedule, over the {which} of all assessed conditions: {found}.{between}"
     )
 }
 
-/// Mark of a missing value in tables.
+/// Placeholder for a missing value in tables.
 const MISSING: &str = "–";
 
 fn condition_table(analysis: &Analysis) -> Table {
-    let title = "The conditions: models kept of those there are, held responses matched of those held, and how sure the gains are";
+    let title = "Conditions: kept models, matched held responses, and whether the gains are \
+        proven optimal";
     let columns = [
         "condition",
         "name",
@@ -131,7 +133,7 @@ fn kept_words(study: &Study, condition: &Condition, kind: BundleKind) -> String 
     format!("{kept} of {}", models.len())
 }
 
-/// Returns how many constrained responses are matched: "4 of 5".
+/// Returns how many of the constrained responses satisfy their constraint: "4 of 5".
 fn matched_words(result: &ConditionAnalysis, unmatched: usize) -> String {
     let held = result.held().marked().count();
     format!("{} of {held}", held.saturating_sub(unmatched))
@@ -170,7 +172,7 @@ pub(super) fn add_settings(page: &mut Page, study: &Study) {
     );
 }
 
-/// Lists the marked responses.
+/// Lists the marked responses by name.
 fn pair_names(dataset: &Dataset, marked: &PairTable<bool>) -> String {
     let pairs: Vec<String> = marked
         .marked()
@@ -183,7 +185,7 @@ fn pair_names(dataset: &Dataset, marked: &PairTable<bool>) -> String {
     }
 }
 
-/// Describes the form of a schedule.
+/// Describes the kind, degree and variables of a schedule.
 pub(super) fn schedule_words(settings: &ScheduleSettings) -> String {
     let kind = match settings.kind {
         ScheduleKind::Polynomial { degree } => format!("polynomial of degree {degree} in airspeed"),
@@ -200,12 +202,12 @@ pub(super) fn schedule_words(settings: &ScheduleSettings) -> String {
         None => String::new(),
     };
     format!(
-        "{kind}{second}, of {quantity}; airspeeds within {} kt are one; {delays}",
+        "{kind}{second}, of {quantity}; airspeeds within {} kt count as equal; {delays}",
         six_digits(settings.airspeed_tolerance_kt)
     )
 }
 
-/// Adds the section on the study's files.
+/// Adds the section on the files of the study and the dataset.
 pub(super) fn add_files(page: &mut Page, study: &Study, source: &ReportSource) {
     page.section("Provenance");
     let dataset = &study.dataset;
@@ -215,8 +217,8 @@ pub(super) fn add_files(page: &mut Page, study: &Study, source: &ReportSource) {
     };
     page.facts([
         ("Dataset", dataset.name().to_owned()),
-        ("Its file", source.dataset.clone()),
-        ("SHA-256 of that file", source.sha256.clone()),
+        ("Dataset file", source.dataset.clone()),
+        ("SHA-256 of the dataset file", source.sha256.clone()),
         ("Study", study_file),
         ("Program", PROGRAM.to_owned()),
         ("Inputs", channel_words(dataset.inputs())),
@@ -258,7 +260,7 @@ pub(super) fn add_models(page: &mut Page, study: &Study) {
     }
     page.section("Sources of the models");
     if models.is_empty() {
-        page.paragraph("The dataset does not say which files its models were made from.");
+        page.paragraph("The dataset does not state the source files of its models.");
         return;
     }
     let columns = [
@@ -269,17 +271,19 @@ pub(super) fn add_models(page: &mut Page, study: &Study) {
         "note",
         "models, by condition",
     ];
-    let mut table = Table::new("The files that the models were made from", columns);
+    let mut table = Table::new("Source files of the models", columns);
     for (cells, models) in models {
         table.row(cells.into_iter().chain([names(&models)]));
     }
     page.table(&table);
     if unknown > 0 {
-        page.paragraph(&format!("Of {unknown} models the dataset does not say."));
+        page.paragraph(&format!(
+            "The dataset does not state the source of {unknown} models."
+        ));
     }
 }
 
-/// Returns file, hash, variable (or records), date and note of a model's source.
+/// Returns the table cells of a model's source: file, hash, variable (or records), date and note.
 fn source_cells(source: &Provenance) -> [String; 5] {
     let Provenance {
         file,
@@ -308,7 +312,8 @@ pub(super) fn add_left_out(page: &mut Page, analysis: &Analysis) {
         page.paragraph("No model is rejected.");
     } else {
         page.paragraph(&format!(
-            "Only the analyst rejects a model. A discontinuity ratio above {SUGGESTION_RATIO} makes it suspect."
+            "Only the analyst can reject a model. A discontinuity ratio above {SUGGESTION_RATIO} \
+            makes a model suspect."
         ));
     }
     page.table(&rejected);
@@ -325,7 +330,7 @@ fn rejected_table(analysis: &Analysis) -> Table {
         "bundle",
         "model",
         "discontinuity ratio",
-        "reason of the analyst",
+        "analyst's reason",
     ];
     let mut table = Table::new("Rejected models", columns);
     for condition in analysis.study.dataset.conditions() {
@@ -336,7 +341,8 @@ fn rejected_table(analysis: &Analysis) -> Table {
     table
 }
 
-/// Adds a row for each rejected model. Of many models without a reason, the last are only counted.
+/// Adds a row for each rejected model. Of the models rejected without a reason, only the first
+/// [`NAMES_SHOWN`] are listed; the others are counted.
 fn rejected_rows(analysis: &Analysis, condition: &Condition, kind: BundleKind, table: &mut Table) {
     let study = &analysis.study;
     let result = analysis.condition(condition.id());
@@ -404,7 +410,7 @@ fn left_out_lines(analysis: &Analysis, condition: &Condition) -> Vec<String> {
     kept.retain(|name| !rejected.contains(name));
     if !kept.is_empty() {
         lines.push(format!(
-            "Condition {id}: suspected by their discontinuity ratios, and kept: {}.",
+            "Condition {id}: suspect because of their discontinuity ratios, but kept: {}.",
             names(&kept)
         ));
     }

@@ -1,7 +1,9 @@
-//! One small study of five conditions in every form of files: known gains and delays come back, or a question is asked.
+//! A small study of five conditions in every supported file format: known gains and delays are
+//! recovered, or a question is asked.
 //!
-//! The identified models are `M_O H M_I` of the physics models, in other units and another order, NZ turned. `make_study_forms.m` beside
-//! the test data writes the same study by GNU Octave.
+//! The identified models are `M_O H M_I` of the physics models, in other units and another channel
+//! order, with the sign of NZ reversed. `make_study_forms.m` beside the test data writes the same
+//! study with GNU Octave.
 
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
@@ -36,20 +38,21 @@ impl FolderProgress for Silent {
 
 const CONDITIONS: usize = 5;
 const CHANNELS: usize = 3;
-/// Names and units of the dataset: inputs, then outputs.
+/// Channel names and units in the dataset: inputs, then outputs.
 const NAMES: [[&str; CHANNELS]; 2] = [["LON", "LAT", "COL"], ["P", "Q", "NZ"]];
 const UNITS: [[&str; CHANNELS]; 2] = [["%", "%", "%"], ["deg/s", "deg/s", "m/s^2"]];
-/// The same channels in the files of identified models, in the dataset's order.
+/// Names and units of the same channels in the files of identified models, in the order of the
+/// dataset.
 const NAMES_OF_FLIGHT: [[&str; CHANNELS]; 2] = [["xb", "LAT", "COL"], ["roll rate", "Q", "-NZ"]];
 const UNITS_OF_FLIGHT: [[&str; CHANNELS]; 2] = [["in", "%", "fraction"], ["rad/s", "rad/s", "g"]];
-/// The dataset's channels in the order of the files of identified models.
+/// Indices of the dataset's channels in the order of the files of identified models.
 const ORDER: [[usize; CHANNELS]; 2] = [[2, 1, 0], [2, 1, 0]];
-/// Percent of the stick's travel in an inch.
+/// Stick travel \[%\] per inch.
 const PERCENT_IN_AN_INCH: f64 = 8.0;
-/// Known delays of the inputs and of the outputs \[s\].
+/// Known delays \[s\] of inputs and outputs.
 const DELAYS_S: [[f64; CHANNELS]; 2] = [[0.01, 0.02, 0.015], [0.005, 0.0, 0.01]];
 
-/// Known gains of the inputs and of the outputs in a condition.
+/// Returns the known gains of inputs and outputs in a condition.
 fn gains(condition: usize) -> [[f64; CHANNELS]; 2] {
     let k = condition as f64;
     [
@@ -62,7 +65,7 @@ fn airspeed_kt(condition: usize) -> f64 {
     40.0 + 20.0 * condition as f64
 }
 
-/// A model as a file has it.
+/// A model as stored in a file.
 struct FileModel {
     condition: usize,
     is_identified: bool,
@@ -124,7 +127,7 @@ fn physics_model(condition: usize) -> FileModel {
     }
 }
 
-/// The identified model of a condition; without delays where the form has no place for them.
+/// Returns the identified model of a condition, without delays if the format cannot store them.
 fn identified_model(condition: usize, has_delays: bool) -> FileModel {
     let [input_gains, output_gains] = gains(condition);
     let input_factors = [PERCENT_IN_AN_INCH, 1.0, 100.0];
@@ -170,7 +173,7 @@ fn identified_model(condition: usize, has_delays: bool) -> FileModel {
     }
 }
 
-/// The physics model and the identified one of every condition.
+/// Returns the physics model and the identified model of every condition.
 fn models(has_delays: bool) -> Vec<FileModel> {
     (0..CONDITIONS)
         .flat_map(|condition| {
@@ -191,7 +194,8 @@ impl FileModel {
         }
     }
 
-    /// Response of an output to an input of the file at a frequency \[rad/s\], from its matrices.
+    /// Returns the frequency response at `omega` \[rad/s\] from the matrices; channels are indexed
+    /// as in the file.
     fn response(&self, output: usize, input: usize, omega: f64) -> Complex<f64> {
         let [a, b, c, d] = &self.matrices;
         let s = Complex::new(0.0, omega);
@@ -209,7 +213,7 @@ impl FileModel {
         value * Complex::from_polar(1.0, -omega * delay_s)
     }
 
-    /// Fields of a struct of MATLAB.
+    /// Returns the model as the fields of a MATLAB struct.
     fn fields(&self) -> Vec<(&'static str, Value)> {
         let mut fields: Vec<(&str, Value)> = ["A", "B", "C", "D"]
             .into_iter()
@@ -257,7 +261,7 @@ fn cell(texts: &[String]) -> Value {
     })
 }
 
-/// A struct array, one element for each list of fields of the same names.
+/// Returns a struct array, one element for each list of fields; all lists have the same names.
 fn struct_array(elements: Vec<Vec<(&'static str, Value)>>) -> Value {
     let mut fields: Vec<(String, Vec<Value>)> = Vec::new();
     let count = elements.len();
@@ -292,7 +296,7 @@ fn condition_folder(root: &Path, condition: usize) -> std::path::PathBuf {
     folder
 }
 
-/// The matrices of one role behind one another: the page is the last index, or as in NumPy the first.
+/// Stacks a matrix of several models; the model index is the last, or the first as in NumPy.
 fn stacked(models: &[&FileModel], matrix: usize, pages_first: bool) -> Value {
     let first = &models[0].matrices[matrix];
     let (rows, columns) = first.shape();
@@ -326,7 +330,7 @@ fn stacked(models: &[&FileModel], matrix: usize, pages_first: bool) -> Value {
     })
 }
 
-/// The models of one role in their order.
+/// Returns the models of one role (identified or physics) in their order.
 fn of_role(models: &[FileModel], is_identified: bool) -> Vec<&FileModel> {
     models
         .iter()
@@ -334,7 +338,7 @@ fn of_role(models: &[FileModel], is_identified: bool) -> Vec<&FileModel> {
         .collect()
 }
 
-// The forms, each written into a folder.
+// Writers of the file formats; each writes the study into a folder.
 
 fn mat_per_model(root: &Path) {
     for model in models(true) {
@@ -358,7 +362,7 @@ fn mat_struct_array(root: &Path) {
     }
 }
 
-/// One struct with a field for each condition, which has one for each model.
+/// Writes one struct with a field for each condition, which contains a field for each model.
 fn mat_one_struct(root: &Path) {
     let mut conditions = Vec::new();
     for (condition, name) in ["c1", "c2", "c3", "c4", "c5"].into_iter().enumerate() {
@@ -377,7 +381,7 @@ fn mat_one_struct(root: &Path) {
     .unwrap();
 }
 
-/// Matrices behind one another, with what all of them share once.
+/// Returns the stacked matrices of several models, and their common variables once.
 fn stack(models: &[&FileModel], pages_first: bool) -> Vec<Variable> {
     let mut variables: Vec<Variable> = (0..4)
         .map(|matrix| {
@@ -443,7 +447,7 @@ fn octave(form: &str, root: &Path) {
     }
 }
 
-/// One matrix a file, without names, units and delays.
+/// Writes one matrix per file, without names, units and delays.
 fn text_matrices(root: &Path) {
     for model in models(false) {
         for (letter, matrix) in ["A", "B", "C", "D"].into_iter().zip(&model.matrices) {
@@ -492,7 +496,8 @@ fn json_models(root: &Path, names_are_objects: bool) {
     }
 }
 
-/// The frequencies of the analysis, and one beyond each end of the band: the responses are compared as they were written.
+/// Returns the frequencies of the analysis, and one beyond each end of the band, so that no
+/// response has to be interpolated.
 fn frequencies() -> Vec<f64> {
     let points = Study::new(Arc::clone(&crate::EXAMPLE.dataset))
         .settings
@@ -501,7 +506,7 @@ fn frequencies() -> Vec<f64> {
     [&[0.3], grid.omega(), &[15.0]].concat()
 }
 
-/// Physics models as files of MATLAB; what is identified is measured.
+/// Writes the physics models as MATLAB files, and each identified model with `write`.
 fn physics_beside(root: &Path, write: impl Fn(&Path, &FileModel)) {
     for condition in 0..CONDITIONS {
         let folder = condition_folder(root, condition);
@@ -515,7 +520,7 @@ fn physics_beside(root: &Path, write: impl Fn(&Path, &FileModel)) {
     }
 }
 
-/// Names of the channels of flight in headings and names of files, in the order of the files.
+/// Names of the flight channels in column headings and file names, in the order of the files.
 const SHORT_NAMES: [[&str; CHANNELS]; 2] = [
     ["theta0", "lat_cyclic", "delta_lon"],
     ["nz", "pitch_rate", "p"],
@@ -554,12 +559,12 @@ fn frf_wide(root: &Path) {
     });
 }
 
-/// "frf_q_delta_lon_run2.csv"
+/// Returns a file name such as "frf_q_delta_lon_run2.csv".
 fn name_of_response(output: &str, input: &str) -> String {
     format!("frf_{output}_{input}_run2.csv")
 }
 
-/// A file for each response, named by `name`.
+/// Writes a file for each response, with the name that `name` returns.
 fn frf_per_response(root: &Path, name: impl Fn(&str, &str) -> String) {
     physics_beside(root, |folder, model| {
         for (output, of_output) in SHORT_NAMES[1].into_iter().enumerate() {
@@ -616,9 +621,8 @@ fn frd_npz(root: &Path, names: impl Fn(&FileModel) -> [Vec<String>; 2]) {
     });
 }
 
-// What the engineer says, and what comes of it.
-
-/// Channels, units and the conversion of an inch of the stick.
+/// Returns rules with the channels, their units, and the conversion factor for the stick travel in
+/// inches.
 fn rules(_: &[FoundModel]) -> Rules {
     let channels = |side: usize| {
         let rule = |channel: usize| ChannelRule {
@@ -643,7 +647,7 @@ fn rules(_: &[FoundModel]) -> Rules {
     }
 }
 
-/// Besides, the units, the factor and the sign of identified files that say none.
+/// Returns rules that also state units, factor and sign for identified files that lack them.
 fn rules_of_role(found: &[FoundModel]) -> Rules {
     let mut rules = Rules {
         units: Vec::new(),
@@ -666,7 +670,8 @@ fn rules_of_role(found: &[FoundModel]) -> Rules {
     rules
 }
 
-/// Besides, the units of the physics files and the order of the channels in the identified ones.
+/// Returns rules that also state the units in the physics files and the channel order of the
+/// identified files.
 fn rules_of_matrices(found: &[FoundModel]) -> Rules {
     let mut rules = rules_of_role(found);
     for channel in rules.inputs.iter_mut().chain(&mut rules.outputs) {
@@ -691,11 +696,11 @@ fn rules_of_matrices(found: &[FoundModel]) -> Rules {
     rules
 }
 
-/// What becomes of a form.
+/// Expected outcome for a file format.
 enum Outcome {
-    /// The known gains come back, and the known delays where the form has a place for them.
+    /// The known gains are recovered, and the known delays if the format can store them.
     Known { has_delays: bool },
-    /// A question of this code is asked, and no dataset is made.
+    /// A question with this code is asked, and no dataset is created.
     Asked(&'static str),
 }
 
@@ -868,7 +873,7 @@ fn known_gains_and_delays_come_back_from_every_form_of_files_or_are_asked_about(
             rules,
             outcome: KNOWN,
         },
-        // What is not said is asked about.
+        // Information that neither the files nor the rules contain is asked for.
         Form {
             name: "text matrices without units",
             write: text_matrices,

@@ -1,4 +1,5 @@
-//! Models and responses as GNU Octave, NumPy, python-control and spreadsheets write them.
+//! Models and responses in files written by GNU Octave, NumPy, python-control and spreadsheet
+//! programs.
 
 use nalgebra::DMatrix;
 
@@ -18,7 +19,7 @@ fn found(name: &str) -> FoundModels {
         .unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
-/// The only model of a file.
+/// Returns the model of a file; asserts that there is exactly one.
 fn model(name: &str) -> FoundModel {
     let mut found = found(name);
     assert_eq!(
@@ -39,12 +40,13 @@ fn response(model: &FoundModel) -> &ResponseDraft {
     model.response().expect("a response")
 }
 
-/// The response of Q to LON in the text that says everything.
+/// Returns the response of Q to LON from the text file that states all names and units.
 fn q_lon() -> ResponseDraft {
     response(&model("text/desc_Q_LON.csv")).clone()
 }
 
-/// Greatest difference of two tables of the responses of one channel pair, as a part of the greatest number.
+/// Asserts that the response of channel pair `(output, input)` equals [`q_lon`] within 1e-9 of its
+/// magnitude; `inputs` is the number of inputs in `found`.
 fn assert_same_response(found: &ResponseDraft, [output, inputs, input]: [usize; 3], name: &str) {
     let expected = q_lon();
     let count = expected.omega.len();
@@ -175,7 +177,7 @@ fn a_transfer_function_of_octave_is_realised() {
 
 #[test]
 fn responses_of_octave_numpy_and_python_control_are_those_of_the_text() {
-    // Outputs P, Q, R and three accelerations; inputs LON, LAT, PED, COL.
+    // Outputs: P, Q, R and three accelerations; inputs: LON, LAT, PED, COL.
     for name in [
         "octave/frd_text.txt.gz",
         "numpy/frd.npz",

@@ -1,4 +1,5 @@
-//! Files that are made to harm: no more memory and work than is allowed, one sentence with the limit, an end where it is asked for.
+//! Malicious files: memory and work stay within the limits, the error is a single sentence that
+//! states the limit, and cancellation is prompt.
 
 use std::cell::Cell;
 use std::io::Write;
@@ -10,10 +11,11 @@ use gdcm_io::import::record_files::records_of_bytes;
 use gdcm_io::reading_budget::ReadingBudget;
 use gdcm_io::{FileError, FolderProgress, load_any, load_dataset, read_models};
 
-/// Memory that the variables of a file may take here.
+/// Memory limit \[bytes\] for the variables of a file in these tests.
 const MOST: u64 = 64 << 20;
 
-/// What is said of a file beyond the budget, whether models or records are looked for in it.
+/// Returns the errors for a file that exceeds the budget, read as models and as records; "read" for
+/// a success.
 fn refusals(name: &str, bytes: &[u8]) -> [String; 2] {
     refusals_within(MOST, name, bytes)
 }
@@ -64,7 +66,7 @@ fn json_of_any_shape_takes_no_more_memory_than_it_may() {
 
 #[test]
 fn an_archive_of_many_entries_to_the_same_bytes_is_refused_as_one_that_holds_them_all() {
-    // One file of 4 MiB of blanks, and a directory in which it stands a hundred times.
+    // A file of 4 MiB of spaces, to which the directory of the archive has a hundred entries.
     let mut bytes = Vec::new();
     let mut archive = Vec::new();
     let mut writer = flate2::write::DeflateEncoder::new(&mut bytes, flate2::Compression::best());
@@ -161,7 +163,8 @@ fn every_reader_stops_when_it_is_asked_to() {
         ("array.npy", [head, vec![0; 32_000_000]].concat()),
     ];
     for (name, bytes) in &files {
-        // The flag is set while they read: whatever they are at, they end by it and have found nothing.
+        // The flag is set during the reading, after different amounts of memory: the reader must
+        // stop without a result.
         for most in [0, 1 << 20, 4 << 20] {
             let stop = Arc::new(AtomicBool::new(false));
             let tell = |taken| stop.store(taken >= most, Ordering::Relaxed);
@@ -187,7 +190,7 @@ fn every_reader_stops_when_it_is_asked_to() {
     }
 }
 
-/// Logs of ArduPilot: what its messages are, and so many of one.
+/// Returns an ArduPilot log: message formats, followed by `messages` messages of the same type.
 fn dataflash(messages: u64) -> Vec<u8> {
     let padded =
         |text: &str, length: usize| [text.as_bytes(), &vec![0; length - text.len()]].concat();
@@ -257,7 +260,8 @@ fn the_reader_of_every_format_ends_at_once_wherever_it_is_stopped() {
         .iter()
         .flat_map(|file| readers.map(|read| (file, read)))
     {
-        // How often the reader takes memory, and how often after the flag was set at one of these times.
+        // Reads with the flag set at the given call of the callback; returns the result and the
+        // number of calls.
         let taken = |stopped_at: usize| {
             let stop = Arc::new(AtomicBool::new(false));
             let count = Cell::new(0);
@@ -329,7 +333,7 @@ fn a_named_pipe_is_skipped_with_a_word_in_a_folder_and_refused_before_it_is_read
     let found = read_models(&[folder.path().to_owned()], &Default::default(), &Silent).unwrap();
     assert_eq!(
         (found.files, found.faults[0].as_str()),
-        (1, "p.csv: skipped: this is a named pipe, not a file")
+        (1, "p.csv: skipped, because this is a named pipe, not a file")
     );
     let given = read_models(std::slice::from_ref(&pipe), &Default::default(), &Silent).unwrap_err();
     assert!(

@@ -1,4 +1,5 @@
-//! Made-up aircraft, flights of them in closed loop through gusts, and datasets: for the tests here and for those of the program.
+//! Synthetic aircraft, flights of them in closed loop through gusts, and datasets, for these tests
+//! and those of the program.
 
 use nalgebra::{DMatrix, DVector, dmatrix};
 use serde_json::{Value, json};
@@ -6,8 +7,8 @@ use serde_json::{Value, json};
 use gdcm_model::dataset::StateSpace;
 use gdcm_model::simulation::FlightRecord;
 
-/// How often something is tried: `few` times, or `many` where the environment says `GDCM_THOROUGH`, as it does before a change is
-/// taken in.
+/// Returns a number of test cases: `few`, or `many` if the environment variable `GDCM_THOROUGH` is
+/// set, as before a merge.
 pub fn tries<N>(few: N, many: N) -> N {
     if std::env::var_os("GDCM_THOROUGH").is_some() {
         many
@@ -16,17 +17,17 @@ pub fn tries<N>(few: N, many: N) -> N {
     }
 }
 
-/// What disturbs a flight; by default the air is still and the sensors are exact.
+/// Disturbances of a flight; by default still air and exact sensors.
 #[derive(Clone, Copy, Default)]
 pub struct Gusts {
-    /// Standard deviation of what gusts do to each state.
+    /// Scale of the effect of gusts on each state.
     pub states: f64,
     /// Standard deviation of the noise of each sensor.
     pub sensors: f64,
 }
 
 impl Gusts {
-    /// Light gusts and good sensors.
+    /// Returns light gusts and accurate sensors.
     pub fn light() -> Self {
         Self {
             states: 0.01,
@@ -35,12 +36,10 @@ impl Gusts {
     }
 }
 
-/// How a flight is flown and logged.
+/// Simulation of a flight and of its log.
 #[derive(Clone)]
 pub struct Flight {
-    /// The aircraft.
     pub aircraft: StateSpace,
-    /// What disturbs it.
     pub gusts: Gusts,
     /// Inputs = sweep - feedback outputs.
     pub feedback: DMatrix<f64>,
@@ -51,7 +50,7 @@ pub struct Flight {
 }
 
 impl Flight {
-    /// 40 s at 25 Hz with a light feedback.
+    /// Creates flights of 40 s, logged at 25 Hz, with a light feedback.
     pub fn of(aircraft: StateSpace, gusts: Gusts) -> Self {
         Self {
             aircraft,
@@ -62,12 +61,12 @@ impl Flight {
         }
     }
 
-    /// Records of it, all different, the same ones for the same seed.
+    /// Returns `count` different records of this flight; reproducible for a given seed.
     pub fn records(&self, seed: u64, count: usize) -> Vec<FlightRecord> {
         (0..count).map(|record| self.record(seed, record)).collect()
     }
 
-    /// Steps of a fraction of the sample time; inputs straight within a step.
+    /// Simulates a record in steps of a tenth of the sample time.
     fn record(&self, seed: u64, record: usize) -> FlightRecord {
         const FINER: usize = 10;
         let step_s = self.sample_time_s / FINER as f64;
@@ -82,7 +81,8 @@ impl Flight {
                 .wrapping_add(record as u64 + 1)
                 .wrapping_mul(0x9E37_79B9_7F4A_7C15),
         );
-        // Closed loop: dx/dt = (A - B K C) x + B sweep + gusts; over a step of length h with the midpoint of the sweep.
+        // Closed loop: dx/dt = (A - B K C) x + B sweep + gusts. The sweep is held at its midpoint
+        // over each step.
         let closed = a - b * &self.feedback * c;
         let transition = (&closed * step_s).exp();
         let mut both = DMatrix::zeros(order + inputs, order + inputs);
@@ -95,7 +95,7 @@ impl Flight {
             .map(|_| std::f64::consts::TAU * random.uniform())
             .collect();
         let sweep = |time: f64, input: usize| {
-            // One input of a record moves, the others a little.
+            // One input per record has a large sweep, the others a small one.
             let size = if input == record % inputs { 1.0 } else { 0.3 };
             let lines = (0..40).map(|line| {
                 let omega = 0.25 + 0.2 * line as f64 + 0.01 * (input + inputs * record) as f64;
@@ -120,7 +120,7 @@ impl Flight {
             for fine in 0..FINER {
                 let middle = time + (fine as f64 + 0.5) * step_s;
                 let command = DVector::from_fn(inputs, |input, _| sweep(middle, input));
-                // Gusts of a second.
+                // Gusts with a time constant of 1 s.
                 gust.iter_mut().for_each(|gust| {
                     *gust += step_s * (4.0 * random.normal() / step_s.sqrt() - *gust)
                 });
@@ -138,7 +138,7 @@ impl Flight {
     }
 }
 
-/// Numbers that look random, by xorshift.
+/// Pseudo-random numbers (xorshift).
 struct Random(u64);
 
 impl Random {
@@ -149,13 +149,14 @@ impl Random {
         (self.0 >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// The sum of twelve, less 6: variance one.
+    /// Returns an approximately normal deviate with unit variance: the sum of twelve uniform
+    /// deviates minus 6.
     fn normal(&mut self) -> f64 {
         (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
     }
 }
 
-/// A stable aircraft of two inputs and outputs.
+/// Returns a stable aircraft with two inputs and two outputs.
 pub fn stable_aircraft() -> StateSpace {
     StateSpace::new(
         dmatrix![-0.4, 2.1, 0.0, 0.0; -2.1, -0.4, 0.0, 0.3; 0.0, 0.0, -1.5, 0.8; 0.2, 0.0, -1.1, -0.6],
@@ -166,7 +167,8 @@ pub fn stable_aircraft() -> StateSpace {
     .expect("its matrices fit")
 }
 
-/// Two lags, `c` beside what each output sees of the other's, as one physics and one identified model.
+/// Returns a dataset of two lags (poles -1 and -3 rad/s) with one physics and one identified model,
+/// whose output matrices C are given.
 pub fn two_lags(physics: [[f64; 2]; 2], identified: [[f64; 2]; 2]) -> Value {
     let lags = |c: [[f64; 2]; 2]| {
         json!({"name": "model", "A": [[-1.0, 0.0], [0.0, -3.0]], "B": [[1.0, 0.0], [0.0, 1.0]], "C": c,

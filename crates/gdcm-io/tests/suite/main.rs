@@ -1,4 +1,5 @@
-//! Every test of numbers and files that is not beside the code it tests, as one program: it links no window.
+//! All tests of numbers and files outside the source files, as one program, which does not depend
+//! on the window.
 
 use std::path::PathBuf;
 use std::sync::LazyLock;
@@ -17,12 +18,12 @@ mod identification;
 mod made_up;
 mod optimiser;
 
-/// The folder of the program, where the data of all tests are.
+/// Returns the root folder of the repository, which contains the data of all tests.
 fn program_folder() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
 }
 
-/// The example's flight records as they were packed.
+/// Returns the archive with the flight records of the example.
 fn records_archive() -> Vec<u8> {
     std::fs::read(program_folder().join("assets/example-records.zip"))
         .expect("the archive is there")
@@ -32,14 +33,14 @@ fn records_archive() -> Vec<u8> {
 static EXAMPLE: LazyLock<LoadedDataset> =
     LazyLock::new(|| embedded_example().expect("the embedded example is a dataset"));
 
-/// The dataset that reference figures were computed from by independent code: the example's physics models, and three identified
-/// models a condition that are not the program's.
+/// Dataset for which independent code computed the reference values: the example's physics models,
+/// and three identified models per condition that were not identified by this program.
 static REFERENCE_DATASET: LazyLock<LoadedDataset> = LazyLock::new(|| {
     let path = program_folder().join("tests/data/reference/example-dataset.json.gz");
     load_dataset(&path).expect("it is a dataset")
 });
 
-/// All cores of the machine: what is asked for first is begun first.
+/// Executor on all cores of the machine; tasks are started in their order.
 struct EveryCore;
 
 impl Executor for EveryCore {

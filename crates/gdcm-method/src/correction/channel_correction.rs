@@ -1,5 +1,5 @@
-//! Correction of a model: a gain and a delay or lead for each channel (M10, M15), and its effect on
-//! a response.
+//! Correction of a model, a gain and a delay or lead filter for each channel (M10, M15), and its
+//! effect on a response.
 
 use gdcm_model::dataset::Pair;
 use gdcm_model::response::{GainDelay, LeadFilter};
@@ -7,24 +7,25 @@ use gdcm_model::response::{GainDelay, LeadFilter};
 use super::channels::{Channel, Channels};
 use super::leads::ChannelLeads;
 
-/// The correction `M_O H M_I`, each channel `k e^(-tau s)`, eq. (12), or `k L(s)` (M15).
+/// The correction `M_O H M_I`; each channel contributes `k e^(-tau s)`, eq. (12), or `k L(s)`
+/// (M15).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelCorrection {
-    /// Input channel gains, m values.
+    /// Gains of the m input channels.
     pub input_gains: Vec<f64>,
-    /// Output channel gains, p values.
+    /// Gains of the p output channels.
     pub output_gains: Vec<f64>,
-    /// Input channel delays \[s\], m values.
+    /// Delays \[s\] of the m input channels; not negative.
     pub input_delays_s: Vec<f64>,
-    /// Output channel delays \[s\], p values.
+    /// Delays \[s\] of the p output channels; not negative.
     pub output_delays_s: Vec<f64>,
-    /// Signed delays: their positive parts are the delays above, and negative ones have filters.
-    /// `None` where leads are not requested (M15).
+    /// Signed delays and their lead filters. The positive signed delays equal the delays above;
+    /// each negative one is realised by a filter. `None` if leads are not requested (M15).
     pub leads: Option<ChannelLeads>,
 }
 
 impl ChannelCorrection {
-    /// Creates the correction with these gains and delays \[s\].
+    /// Creates a correction from gains and delays \[s\], without leads.
     pub fn of_delays(gains: Channels<f64>, delays_s: Channels<f64>) -> Self {
         Self {
             input_gains: gains.inputs,
@@ -35,7 +36,7 @@ impl ChannelCorrection {
         }
     }
 
-    /// Creates the correction with these gains and signed delays (M15).
+    /// Creates a correction from gains and signed delays (M15).
     pub fn of_leads(gains: Channels<f64>, leads: ChannelLeads) -> Self {
         let delays_s = leads.delays_s();
         Self {
@@ -44,17 +45,18 @@ impl ChannelCorrection {
         }
     }
 
-    /// Returns a response's net gain, `k_o k_i` (M11).
+    /// Returns the net gain of a response, `k_o k_i` (M11).
     pub fn net_gain(&self, pair: Pair) -> f64 {
         self.output_gains[pair.output] * self.input_gains[pair.input]
     }
 
-    /// Returns a response's net delay, `tau_o + tau_i` \[s\]; a negative net delay is a lead (M15).
+    /// Returns the net delay of a response, `tau_o + tau_i` \[s\]; a negative net delay is a lead
+    /// (M15).
     pub fn net_delay_s(&self, pair: Pair) -> f64 {
         self.delay_s(Channel::Output(pair.output)) + self.delay_s(Channel::Input(pair.input))
     }
 
-    /// Returns a channel's gain.
+    /// Returns the gain of a channel.
     pub fn gain(&self, channel: Channel) -> f64 {
         match channel {
             Channel::Input(input) => self.input_gains[input],
@@ -62,7 +64,7 @@ impl ChannelCorrection {
         }
     }
 
-    /// Returns a channel's delay \[s\]; a negative delay is a lead (M15).
+    /// Returns the delay of a channel \[s\]; a negative delay is a lead (M15).
     pub fn delay_s(&self, channel: Channel) -> f64 {
         match &self.leads {
             Some(leads) => leads.taus_s[channel],
@@ -70,7 +72,7 @@ impl ChannelCorrection {
         }
     }
 
-    /// Returns a channel's delay without its lead \[s\].
+    /// Returns the delay of a channel \[s\], zero instead of a lead.
     pub fn pure_delay_s(&self, channel: Channel) -> f64 {
         match channel {
             Channel::Input(input) => self.input_delays_s[input],
@@ -78,7 +80,7 @@ impl ChannelCorrection {
         }
     }
 
-    /// Returns every channel's delay \[s\]; a negative delay is a lead (M15).
+    /// Returns the delay of every channel \[s\]; a negative delay is a lead (M15).
     pub fn signed_delays_s(&self) -> Channels<f64> {
         self.channels(|channel| self.delay_s(channel))
     }
@@ -88,12 +90,12 @@ impl ChannelCorrection {
         Channels::from_fn(self.input_gains.len(), self.output_gains.len(), value)
     }
 
-    /// Returns a channel's lead filter, if it has a lead (M15).
+    /// Returns the lead filter of a channel; `None` if it has no lead (M15).
     pub fn lead(&self, channel: Channel) -> Option<LeadFilter> {
         self.leads.as_ref()?.filters()[channel]
     }
 
-    /// Returns the correction without its lead filters: its gains and positive delays.
+    /// Returns the correction without its lead filters: its gains and its positive delays.
     pub fn without_leads(self) -> Self {
         Self {
             leads: None,
@@ -101,15 +103,15 @@ impl ChannelCorrection {
         }
     }
 
-    /// Returns the factor that the correction applies to a response; `None` where its net gain is
-    /// not positive (possible where `k` itself is scheduled).
+    /// Returns the correction factor of a response; `None` if its net gain is not positive, which
+    /// is possible if `k` itself is scheduled.
     pub fn on(&self, pair: Pair) -> Option<GainDelay> {
         let leads = Channel::of(pair).map(|channel| self.lead(channel));
         Some(self.without_leads_on(pair)?.led(leads))
     }
 
-    /// Like [`ChannelCorrection::on`], without the lead filters: the remaining factor after the
-    /// filters are applied.
+    /// Returns the factor as [`ChannelCorrection::on`], but without the lead filters; used for a
+    /// response to which the filters have already been applied.
     pub fn without_leads_on(&self, pair: Pair) -> Option<GainDelay> {
         let gain = self.net_gain(pair);
         let delay_s = self.output_delays_s[pair.output] + self.input_delays_s[pair.input];

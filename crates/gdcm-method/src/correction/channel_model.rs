@@ -1,10 +1,10 @@
-//! State-space models of a channel's delay or lead filter.
+//! State-space models of the delay or lead filter of a channel.
 
 use nalgebra::{DMatrix, DVector, RowDVector};
 
 use gdcm_model::response::{LeadFilter, LeadOrder};
 
-/// A channel's delay or lead filter as a state-space model with a single input and output.
+/// The delay or lead filter of a channel as a state-space model with a single input and output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelModel {
     /// System matrix, n x n.
@@ -17,8 +17,8 @@ pub struct ChannelModel {
 }
 
 impl ChannelModel {
-    /// Creates `z^-count`, exactly: a chain with `count` states, each equal to the previous state
-    /// one sample earlier. With `count = 0` it is `y = u`.
+    /// Creates an exact delay by `count` samples, `z^-count`: a chain of `count` states, each equal
+    /// to the previous state one sample earlier. With `count = 0` it is `y = u`.
     pub fn samples(count: usize) -> Self {
         Self {
             a: DMatrix::from_fn(count, count, |row, column| f64::from(row == column + 1)),
@@ -28,7 +28,8 @@ impl ChannelModel {
         }
     }
 
-    /// Creates a lead filter in continuous time, exactly (M15.3). With `w1 = 1 / a`, `w2 = 1 / b`:
+    /// Creates a lead filter in continuous time, which is exact (M15.3). With `w1 = 1 / a`,
+    /// `w2 = 1 / b`:
     ///
     /// ```text
     /// second order   A = [0 1; -w2^2 -sqrt(2) w2],  B = [0; 1],  C = [R (w1^2 - w2^2)  R sqrt(2) (w1 - w2)],  D = R
@@ -55,10 +56,9 @@ impl ChannelModel {
         }
     }
 
-    /// Creates the lead filter in discrete time with this sample time `T` \[s\], by Tustin's rule
+    /// Creates a lead filter in discrete time, for the sample time `T` \[s\], by Tustin's rule
     /// `s = 2 (z - 1) / (T (z + 1))`. With `M = (I - A T/2)^-1` the matrices are `M (I + A T/2)`,
-    /// `T M B`, `C M`, `D + C M B T/2`. `None` where `T` puts a filter pole on the pole of the
-    /// rule.
+    /// `T M B`, `C M`, `D + C M B T/2`. Returns `None` if `I - A T/2` is singular.
     pub fn sampled_lead(filter: LeadFilter, sample_time_s: f64) -> Option<Self> {
         let Self { a, b, c, d } = Self::lead(filter);
         let one = DMatrix::identity(a.nrows(), a.nrows());

@@ -1,10 +1,10 @@
-//! Channels of a correction, their names, and values for each channel.
+//! Channels of a correction, their names, and tables with a value for each channel.
 
 use std::ops::Index;
 
 use gdcm_model::dataset::{Dataset, Pair};
 
-/// An input or an output, each with its own gain and delay.
+/// An input or an output channel, identified by its index; each has a gain and a delay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Channel {
     Input(usize),
@@ -19,17 +19,17 @@ impl Channel {
             .chain((0..outputs).map(Self::Output))
     }
 
-    /// Returns a response's output and input.
+    /// Returns the output and the input of a response.
     pub fn of(pair: Pair) -> [Self; 2] {
         [Self::Output(pair.output), Self::Input(pair.input)]
     }
 
-    /// Whether the channel is the response's input or output.
+    /// Returns whether the channel is the input or the output of the response.
     pub fn is_of(self, pair: Pair) -> bool {
         Self::of(pair).contains(&self)
     }
 
-    /// Returns the channel's name, or its number (from 1) where the name list is too short.
+    /// Returns the name of the channel; if the name list is too short, its index counted from 1.
     pub fn name(self, inputs: &[String], outputs: &[String]) -> String {
         match self {
             Channel::Input(index) => inputs
@@ -43,12 +43,12 @@ impl Channel {
         }
     }
 
-    /// Iterates over a dataset's channels, the inputs first.
+    /// Iterates over the channels of a dataset, the inputs first.
     pub fn all_of(dataset: &Dataset) -> impl Iterator<Item = Self> + use<> {
         Self::all(dataset.inputs().len(), dataset.outputs().len())
     }
 
-    /// Returns the channel's name in a dataset.
+    /// Returns the name of the channel in a dataset.
     pub fn name_in(self, dataset: &Dataset) -> String {
         let (inputs, outputs) = dataset.names_of_channels();
         self.name(&inputs, &outputs)
@@ -75,12 +75,12 @@ pub fn pair_names(pairs: &[Pair], inputs: &[String], outputs: &[String]) -> Stri
     }
 }
 
-/// Values of all channels, by input and by output.
+/// A value for each input and each output channel.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Channels<T> {
-    /// Input values, m.
+    /// Values of the m inputs.
     pub inputs: Vec<T>,
-    /// Output values, p.
+    /// Values of the p outputs.
     pub outputs: Vec<T>,
 }
 
@@ -104,7 +104,7 @@ impl<T> Channels<T> {
         })
     }
 
-    /// Like [`Channels::map`], but stops at the first failure.
+    /// Converts every value as [`Channels::map`] does, but stops at the first error.
     pub fn try_map<U, E>(
         &self,
         mut convert: impl FnMut(Channel, &T) -> Result<U, E>,
@@ -126,7 +126,7 @@ impl<T> Channels<T> {
         Ok(converted)
     }
 
-    /// Returns a channel's value; `None` where there is no such channel.
+    /// Returns the value of a channel; `None` if there is no such channel.
     pub fn get(&self, channel: Channel) -> Option<&T> {
         match channel {
             Channel::Input(input) => self.inputs.get(input),

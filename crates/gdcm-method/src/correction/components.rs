@@ -1,4 +1,4 @@
-//! Channels connected by constrained products, and the feasible targets of constrained entries (M8
+//! Channels connected by constrained products, and feasible targets of the constrained entries (M8
 //! and M9, stage 1).
 
 use gdcm_model::dataset::Pair;
@@ -10,21 +10,22 @@ use super::channels::Channel;
 use super::interval::Interval;
 use super::problem::Problem;
 
-/// Constraints on the channels: prescribed coordinate sums of the constrained entries, and a box.
+/// Constraints on the channels: the prescribed sums of coordinates for the constrained entries, and
+/// a box.
 ///
-/// The channels are *nodes* here, the inputs first: an input's value is its coordinate, an output's
-/// is minus its coordinate, so that a constrained entry prescribes the difference between two
-/// nodes.
+/// The channels are the *nodes* of a graph, the inputs first. The value of an input node is its
+/// coordinate, that of an output node is minus its coordinate, so that a constrained entry
+/// prescribes the difference between two nodes.
 #[derive(Clone, Debug)]
 pub(crate) struct Constraints {
     pub(crate) outputs: usize,
     pub(crate) inputs: usize,
     pub(crate) entries: Vec<ConstrainedSum>,
-    /// Coordinate range, the same for every channel.
+    /// Permitted range of the coordinate, the same for every channel.
     pub(crate) range: Interval,
 }
 
-/// A constrained entry.
+/// A constrained entry and its prescribed sum.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ConstrainedSum {
     pub(crate) pair: Pair,
@@ -32,7 +33,7 @@ pub(crate) struct ConstrainedSum {
     pub(crate) sum: f64,
 }
 
-/// Nodes of a response's two channels.
+/// The nodes of a response's input and output.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PairNodes {
     pub(crate) input: usize,
@@ -57,17 +58,17 @@ impl Constraints {
         }
     }
 
-    /// Returns the same channels with other constraints.
+    /// Returns constraints on the same channels, with other entries.
     pub(crate) fn with_entries(&self, entries: Vec<ConstrainedSum>) -> Self {
         Self { entries, ..*self }
     }
 
-    /// Returns the number of nodes: inputs and outputs.
+    /// Returns the number of nodes, inputs plus outputs.
     pub(crate) fn nodes(&self) -> usize {
         self.inputs + self.outputs
     }
 
-    /// Returns the nodes of an entry's input and output.
+    /// Returns the nodes of an entry's input and output channel.
     pub(crate) fn nodes_of(&self, pair: Pair) -> PairNodes {
         PairNodes {
             input: pair.input,
@@ -75,7 +76,7 @@ impl Constraints {
         }
     }
 
-    /// Returns a node's channel.
+    /// Returns the channel of a node.
     pub(crate) fn channel(&self, node: usize) -> Channel {
         if node < self.inputs {
             Channel::Input(node)
@@ -84,7 +85,7 @@ impl Constraints {
         }
     }
 
-    /// Returns the range of a node's value.
+    /// Returns the permitted range of a node's value.
     pub(crate) fn node_range(&self, node: usize) -> Interval {
         if node < self.inputs {
             self.range
@@ -94,19 +95,21 @@ impl Constraints {
     }
 }
 
-/// A node's position in its component.
+/// The component of a node, and its offset in it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placement {
     pub(crate) component: usize,
-    /// The node's value where the component's scale is 0. Rounding arises in the constrained sums
-    /// between the component's first node and this node, and at both ends of the scale.
+    /// Value of the node if the scale of its component is 0. Its error accumulates over the
+    /// constrained sums between the first node of the component and this node; both ends of the
+    /// scale contribute too.
     pub(crate) offset: Rounded,
 }
 
 impl Placement {
-    /// Returns the position across a constrained entry, at the distance `by`.
+    /// Returns the placement of the node at the other end of a constrained entry, `by` above this
+    /// node.
     fn across(self, by: f64) -> Self {
-        // The conversion of `by` to a logarithm or another time unit has rounded once.
+        // Error: the conversion of `by` to a logarithm or another time unit has rounded once.
         let mut offset = Rounded {
             value: by,
             error: f64::EPSILON * by.abs(),
@@ -116,42 +119,42 @@ impl Placement {
     }
 }
 
-/// Input nodes and output nodes.
+/// Placements of the input nodes and of the output nodes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Nodes<'a> {
     pub(crate) inputs: &'a [Placement],
     pub(crate) outputs: &'a [Placement],
 }
 
-/// Input coordinates and output coordinates.
+/// Coordinates of the inputs and of the outputs.
 #[derive(Clone, Debug)]
 pub(crate) struct ChannelCoordinates {
     pub(crate) inputs: Vec<f64>,
     pub(crate) outputs: Vec<f64>,
 }
 
-/// Connected components in the bipartite graph of constrained entries, each with a free scale (M8,
+/// Connected components of the bipartite graph of constrained entries, each with a free scale (M8,
 /// structure).
 ///
-/// With its component's scale `s` a node has the value `offset + s`, so that a constrained sum does
-/// not depend on `s`: in logarithmic gains, or in delays. A channel without a constrained entry is
-/// a component by itself.
+/// With the scale `s` of its component, a node has the value `offset + s`. A constrained sum, which
+/// is a difference of two nodes, therefore does not depend on `s`. The coordinates are logarithms
+/// of gains, or delays. A channel without a constrained entry is a component by itself.
 #[derive(Clone, Debug)]
 pub(crate) struct Components {
-    /// Positions of the inputs, then of the outputs.
+    /// Placements of the inputs, then of the outputs.
     nodes: Vec<Placement>,
     inputs: usize,
-    /// Minimum scale of each component that keeps its channels inside the box.
+    /// Minimum scale of each component for which all its channels are inside the box.
     pub(crate) lower: Vec<f64>,
-    /// Maximum scale of each component that keeps its channels inside the box.
+    /// Maximum scale of each component for which all its channels are inside the box.
     pub(crate) upper: Vec<f64>,
     /// Infeasibility of each component: the largest inconsistency among constraints that form a
     /// loop, or the amount by which the bounds are too narrow.
     strain: Vec<f64>,
 }
 
-/// Infeasibility below which a component counts as feasible: well below the 1e-8 of M8, so that the
-/// relative error in a product of gains stays below 1e-9.
+/// Infeasibility up to which a component is accepted as feasible: well below the 1e-8 of M8, so
+/// that the relative error of a product of gains stays below 1e-9.
 pub(crate) const STRAIN: f64 = 1e-9;
 
 impl Components {
@@ -183,34 +186,34 @@ impl Components {
         components
     }
 
-    /// Returns the number of components.
     pub(crate) fn count(&self) -> usize {
         self.lower.len()
     }
 
-    /// Returns the nodes on both sides.
+    /// Returns the placements of the input nodes and of the output nodes.
     pub(crate) fn nodes(&self) -> Nodes<'_> {
         let (inputs, outputs) = self.nodes.split_at(self.inputs);
         Nodes { inputs, outputs }
     }
 
-    /// Returns the coordinate sum of two channels in the same component; the scale does not change
-    /// it.
+    /// Returns the sum of the coordinates of two channels in the same component, which does not
+    /// depend on the scale.
     pub(crate) fn sum(&self, pair: Pair) -> f64 {
         self.nodes[pair.input].offset.value - self.nodes[self.inputs + pair.output].offset.value
     }
 
-    /// Whether every entry can be constrained to its delta.
+    /// Returns whether all constraints are feasible together.
     pub(crate) fn are_possible(&self) -> bool {
         self.strain.iter().all(|strain| *strain <= STRAIN)
     }
 
-    /// Whether an entry's component is infeasible.
+    /// Returns whether the component of an entry is infeasible.
     fn is_strained(&self, pair: Pair) -> bool {
         self.strain[self.nodes[pair.input].component] > STRAIN
     }
 
-    /// Returns every channel's logarithm (or delay) at these scales.
+    /// Returns the coordinate of every channel (logarithm of the gain, or delay) at the given
+    /// scales.
     pub(crate) fn channels(&self, scales: &[f64]) -> ChannelCoordinates {
         let nodes = self.nodes();
         ChannelCoordinates {
@@ -219,7 +222,7 @@ impl Components {
                 .iter()
                 .map(|node| node.offset.value + scales[node.component])
                 .collect(),
-            // Subtracted from zero, so that no zero is negative.
+            // `0.0 -` instead of a negation, which would turn zero into -0.
             outputs: nodes
                 .outputs
                 .iter()
@@ -228,11 +231,11 @@ impl Components {
         }
     }
 
-    /// Moves every scale's zero to the middle of its interval, so that no channel is far outside
-    /// the box at scale 0.
+    /// Shifts the offsets so that scale 0 is the middle of each component's interval, and no
+    /// channel is far outside the box there.
     fn centre(&mut self, range: Interval) {
-        // A scale at its end differs from the exact value by two roundings: the range's end, and
-        // the offset subtracted from it.
+        // A scale at its end has two rounding errors: the end of the range, and the subtraction of
+        // the offset.
         let error = 2.0 * f64::EPSILON * range.low.abs().max(range.high.abs());
         for node in &mut self.nodes {
             let middle = 0.5 * (self.lower[node.component] + self.upper[node.component]);
@@ -243,7 +246,8 @@ impl Components {
         }
     }
 
-    /// Sets every scale's interval; an empty interval is replaced by its midpoint.
+    /// Sets the interval of every scale. An empty interval is replaced by its midpoint and recorded
+    /// as infeasibility.
     fn close_box(&mut self, constraints: &Constraints) {
         self.lower.fill(f64::NEG_INFINITY);
         self.upper.fill(f64::INFINITY);
@@ -265,7 +269,7 @@ impl Components {
         }
     }
 
-    /// Raises the infeasibility of every component to the largest inconsistency in its loops.
+    /// Raises the infeasibility of every component to the largest inconsistency of its loops.
     fn strain_loops(&mut self, constraints: &Constraints) {
         for entry in &constraints.entries {
             let miss = (self.sum(entry.pair) - entry.sum).abs();
@@ -275,7 +279,7 @@ impl Components {
     }
 }
 
-/// Places every node that constrained entries tie to a placed node, along a spanning tree.
+/// Places every node that constrained entries connect with a placed node, along a spanning tree.
 fn place_tied_nodes(placed: &mut [Option<Placement>], constraints: &Constraints) {
     let mut grown = true;
     while grown {
@@ -292,23 +296,24 @@ fn place_tied_nodes(placed: &mut [Option<Placement>], constraints: &Constraints)
     }
 }
 
-/// Feasible sums nearest to the prescribed sums, subject to the box and the loops.
+/// Result of stage 1: the feasible sums nearest to the prescribed sums, subject to the box and the
+/// loops.
 #[derive(Clone, Debug)]
 pub(crate) struct Reached {
-    /// The constrained entries with their targets, ordered like [`Constraints::entries`].
+    /// The constrained entries with their targets, in the order of [`Constraints::entries`].
     pub(crate) targets: Vec<ConstrainedSum>,
-    /// Components with the constrained entries at their targets.
+    /// Components for the constrained entries at their targets.
     pub(crate) components: Components,
-    /// A point in the box that reaches the targets, a value for each node; `None` where every entry
-    /// is feasible.
+    /// A point in the box that attains the targets, one value per node; `None` if every entry is
+    /// feasible.
     pub(crate) point: Option<Vec<f64>>,
 }
 
-/// Finds the targets: `min sum (x_o + y_i - delta)^2` over the constrained entries, in the box (M8,
-/// reachability; M9).
+/// Finds the targets: `min sum (x_o + y_i - delta)^2` over the constrained entries, subject to the
+/// box (M8, reachability; M9).
 ///
-/// Feasible components keep the prescribed sums exactly. `minimise` returns the minimum of a sum of
-/// squares over a box; it is only called where an entry is infeasible.
+/// Feasible components keep their prescribed sums exactly. `minimise` returns the minimum of a sum
+/// of squares over a box; it is called only if an entry is infeasible.
 pub(crate) fn reach<E>(
     constraints: &Constraints,
     minimise: impl FnOnce(&Objective) -> Result<Vec<f64>, E>,
@@ -337,7 +342,7 @@ pub(crate) fn reach<E>(
     })
 }
 
-/// Builds the least squares problem of stage 1 over the infeasible components: a scale for each
+/// Builds the least-squares problem of stage 1 for the infeasible components: one scale for each
 /// node, and the ground.
 fn nearest_sums(constraints: &Constraints, asked: &Components) -> Objective {
     let mut lower = Vec::new();

@@ -6,66 +6,65 @@ use super::channels::Channel;
 use super::problem::Bounds;
 use super::quantity::Quantity;
 
-/// A minimal infeasible set of constrained entries and bounds: if any single member is released,
-/// the others are feasible.
+/// A minimal infeasible set of constrained entries and bounds: releasing any of its members makes
+/// the others feasible.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Conflict {
-    /// Constrained quantity: gains, or delays or signed delays in seconds.
+    /// Constrained quantity: gains, delays \[s\], or signed delays \[s\].
     pub quantity: Quantity,
-    /// The constrained entries: releasing any single entry resolves the conflict.
+    /// Constrained entries; releasing any of them resolves the conflict.
     pub entries: Vec<Pair>,
-    /// Bounds of the problem.
+    /// Bounds on the channels.
     pub bounds: Bounds,
     pub kind: ConflictKind,
 }
 
 /// Kind of conflict between constrained entries and bounds. Suggested bounds are rounded to three
-/// digits so that they still suffice.
+/// digits in the sufficient direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ConflictKind {
-    /// The entries prescribe a net value for two channels above the maximum that the upper bound
-    /// allows.
+    /// The net value prescribed for two channels exceeds the maximum that the upper bound permits.
     AboveUpper {
         channels: (Channel, Channel),
-        /// Product of gains or sum of delays prescribed by the entries.
+        /// Product of gains, or sum of delays \[s\], prescribed by the entries.
         asked: f64,
         /// Minimum sufficient upper bound.
         upper: f64,
     },
-    /// The entries prescribe a net value for two channels below the minimum that the lower bound
-    /// allows: for delays, phase lead.
+    /// The net value prescribed for two channels is below the minimum that the lower bound permits;
+    /// for delays, it is a phase lead.
     BelowLower {
         channels: (Channel, Channel),
-        /// Product of gains or (negative) sum of delays prescribed by the entries.
+        /// Product of gains, or (negative) sum of delays \[s\], prescribed by the entries.
         asked: f64,
-        /// Maximum sufficient lower bound; `None` for delays.
+        /// Maximum sufficient lower bound; `None` for delays, whose lower bound is fixed.
         lower: Option<f64>,
     },
-    /// The entries prescribe a ratio between two gains, or a difference between two delays, above
-    /// the range that the bounds allow.
+    /// The ratio of two gains, or difference of two delays, prescribed by the entries exceeds the
+    /// range between the bounds.
     TooFarApart {
-        /// The channel with the greater value.
+        /// Channel with the larger value.
         greater: Channel,
-        /// The channel with the smaller value.
+        /// Channel with the smaller value.
         lesser: Channel,
-        /// Ratio or difference prescribed by the entries.
+        /// Ratio, or difference \[s\], prescribed by the entries.
         asked: f64,
-        /// Minimum sufficient upper bound if the lower bound stays.
+        /// Minimum sufficient upper bound if the lower bound is unchanged.
         upper: f64,
-        /// Maximum sufficient lower bound if the upper bound stays; `None` for delays.
+        /// Maximum sufficient lower bound if the upper bound is unchanged; `None` for delays.
         lower: Option<f64>,
     },
-    /// The entries form a loop with contradictory targets: no bound helps.
+    /// The entries form a loop with contradictory targets, which no change of the bounds resolves.
     Loop {
-        /// The loop's deviation: its product from 1 in dB, or its sum from 0 in seconds.
+        /// Deviation of the loop's product from 1 \[dB\], or of its sum from 0 \[s\].
         mismatch: f64,
     },
-    /// The entries are infeasible together; rounding hides the cause.
+    /// The entries are infeasible together, but rounding obscures the cause.
     Unclear,
 }
 
 impl Conflict {
-    /// Lists the channels whose bounds take part in the conflict; none for a loop.
+    /// Lists the channels whose bounds take part in the conflict; empty for a loop.
     pub fn channels(&self) -> Vec<Channel> {
         match self.kind {
             ConflictKind::AboveUpper { channels, .. }
@@ -79,19 +78,20 @@ impl Conflict {
         }
     }
 
-    /// Whether the conflict is a loop, which no bound resolves.
+    /// Returns whether the conflict is a loop, which no change of the bounds resolves.
     pub(crate) fn is_loop(&self) -> bool {
         matches!(self.kind, ConflictKind::Loop { .. })
     }
 
-    /// Whether the conflict is a single entry that asks for phase lead.
+    /// Returns whether the conflict is a single entry that requires phase lead although only delays
+    /// are permitted.
     pub fn is_lone_lead(&self) -> bool {
         self.quantity == Quantity::Delay
             && self.entries.len() == 1
             && matches!(self.kind, ConflictKind::BelowLower { .. })
     }
 
-    /// Whether the conflict is a loop that disagrees by no more than `tolerance`, in dB or in
+    /// Returns whether the conflict is a loop whose deviation is at most `tolerance`, in dB or in
     /// seconds.
     pub(crate) fn agrees_within(&self, tolerance: f64) -> bool {
         match self.kind {
@@ -100,7 +100,7 @@ impl Conflict {
         }
     }
 
-    /// Whether two conflicts have the same entries, in any order.
+    /// Returns whether both conflicts have the same entries, in any order.
     pub(crate) fn has_entries_of(&self, other: &Self) -> bool {
         self.entries.len() == other.entries.len()
             && self.entries.iter().all(|pair| other.entries.contains(pair))

@@ -1,4 +1,4 @@
-//! Search for the conflict behind each constrained entry that stage 1 could not match.
+//! Search for the conflict behind each constrained entry whose target could not be met in stage 1.
 
 use std::collections::VecDeque;
 
@@ -11,7 +11,7 @@ use super::conflict::{Conflict, ConflictKind};
 use super::problem::Problem;
 use super::rounding::three_digits;
 
-/// An entry that stage 1 missed, with the smallest conflict that explains the miss.
+/// An entry that stage 1 could not meet, with the smallest conflict that explains it.
 #[derive(Clone, Debug)]
 pub(crate) struct EntryConflict {
     pub(crate) missed: Pair,
@@ -19,20 +19,20 @@ pub(crate) struct EntryConflict {
 }
 
 /// Finds the smallest conflict behind each entry that stage 1 missed by more than `tolerance` (in
-/// coordinates), with duplicates.
+/// coordinates); the same conflict can appear several times.
 ///
-/// Stage 1 is a least squares problem, so the misses are a flow: the pull on a channel is passed on
-/// by another missed entry or is stopped by an active bound. Every path in the flow from bound to
-/// bound, and every loop, is an infeasible set, and every missed entry is on such a path or loop
-/// (Farkas). Where a part is infeasible by itself, that part is the conflict, and the entry's own
-/// miss is the compromise with it.
+/// Stage 1 is a least-squares problem, so that its residuals form a flow: the pull of a missed
+/// entry on a channel is balanced by another missed entry or by an active bound. Every path in this
+/// flow from bound to bound, and every loop, is an infeasible set, and every missed entry lies on
+/// such a path or loop (Farkas). If a part of the path or loop is infeasible by itself, that part
+/// is the conflict, and the residual of the entry is a compromise with it.
 ///
 /// ```text
 /// for each missed entry
-///     1  loop <- shortest way along the flow from the entry's end back to its start
+///     1  loop <- shortest way along the flow from the end of the entry back to its start
 ///     2  path <- shortest way from a lower bound to its start, the entry, shortest way from its end to an upper bound
-///     3  the shorter of both, where each bound counts like an entry
-///     4  its shortest part that the bounds at both ends do not allow, if any
+///     3  the shorter of both, where each bound counts as one entry
+///     4  its shortest part that the bounds at both ends do not permit, if any
 /// ```
 pub(crate) fn entry_conflicts(
     problem: &Problem,
@@ -49,7 +49,7 @@ pub(crate) fn entry_conflicts(
     for pull in &flow.pulls {
         let missing = pull.weight - (point[pull.to] - point[pull.from]);
         if missing > tolerance {
-            // Three breadth-first searches, each over every pull at every channel.
+            // Three breadth-first searches; each examines every pull at every channel.
             effort.spend((flow.pulls.len() * constraints.nodes()) as u64 / 8);
             effort.check()?;
             if let Some(conflict) = flow.smallest_through(pull) {
@@ -63,7 +63,7 @@ pub(crate) fn entry_conflicts(
     Ok(found)
 }
 
-/// A constrained entry that stage 1 missed: it requires `s_to - s_from >= weight`, but the
+/// A constrained entry that stage 1 missed: it requires `s_to - s_from >= weight`, but the actual
 /// difference is smaller.
 #[derive(Clone, Copy)]
 struct Pull {
@@ -74,7 +74,8 @@ struct Pull {
 }
 
 impl Pull {
-    /// Returns the same entry in the opposite direction: the constraint is an equality.
+    /// Returns the entry in the opposite direction, which is equivalent because the constraint is
+    /// an equality.
     fn reversed(&self) -> Self {
         Self {
             from: self.to,
@@ -85,33 +86,33 @@ impl Pull {
     }
 }
 
-/// Shape of a pull sequence.
+/// Shape of a sequence of pulls.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Shape {
     Path,
     Loop,
 }
 
-/// Walking direction relative to the pulls.
+/// Direction of a walk relative to the pulls.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Direction {
     Along,
     Against,
 }
 
-/// The missed entries as a directed graph.
+/// The missed entries, as a directed graph of pulls between nodes.
 struct Flow<'a> {
     problem: &'a Problem,
     constraints: &'a Constraints,
     pulls: Vec<Pull>,
-    /// For each node, whether its lower bound stops the pulls.
+    /// For each node, whether its lower bound balances the pulls.
     at_lower: Vec<bool>,
-    /// For each node, whether its upper bound stops the pulls.
+    /// For each node, whether its upper bound balances the pulls.
     at_upper: Vec<bool>,
 }
 
 impl<'a> Flow<'a> {
-    /// Collects the entries missed at the `point` from stage 1.
+    /// Collects the entries missed at `point`, the result of stage 1.
     fn new(
         problem: &'a Problem,
         constraints: &'a Constraints,
@@ -123,7 +124,7 @@ impl<'a> Flow<'a> {
         let mut net = vec![0.0; constraints.nodes()];
         for (asked, target) in constraints.entries.iter().zip(&reached.targets) {
             let missing = asked.sum - target.sum;
-            // A smaller miss is a rounding error of stage 1.
+            // Skip smaller residuals, which are rounding errors of stage 1.
             if missing.abs() <= 1e-11 * (1.0 + asked.sum.abs()) {
                 continue;
             }
@@ -160,7 +161,7 @@ impl<'a> Flow<'a> {
     }
 
     /// Returns the smaller conflict: the shortest loop through `pull`, or the shortest path through
-    /// it from bound to bound; a bound counts like an entry.
+    /// it from bound to bound; each bound counts as one entry.
     fn smallest_through(&self, pull: &Pull) -> Option<Conflict> {
         let around = self.shortest_walk(pull.to, Direction::Along, |node| node == pull.from);
         let path = self.path_through(pull);
@@ -188,7 +189,8 @@ impl<'a> Flow<'a> {
         Some(path)
     }
 
-    /// Returns the conflict in the loop that `pull` and the way back `around` it form.
+    /// Returns the conflict in the loop formed by `pull` and the path `around`, which leads back to
+    /// its start.
     fn loop_conflict(&self, pull: &Pull, around: Vec<Pull>) -> Conflict {
         let mut pulls = vec![*pull];
         pulls.extend(around);
@@ -204,8 +206,9 @@ impl<'a> Flow<'a> {
         self.conflict(entries, ConflictKind::Loop { mismatch })
     }
 
-    /// Returns the conflict in the shortest proper run of pulls that the bounds at its two ends do
-    /// not allow. In a loop, runs continue past the last pull into the first again.
+    /// Returns the conflict in the shortest proper part of a sequence that the bounds at its two
+    /// ends do not permit; `None` if there is none. In a loop, a part may continue from the last
+    /// pull to the first.
     fn smallest_part(&self, pulls: &[Pull], shape: Shape) -> Option<Conflict> {
         let count = pulls.len();
         for length in 1..count {
@@ -229,8 +232,8 @@ impl<'a> Flow<'a> {
         None
     }
 
-    /// Whether the run needs more than the span from the minimum of its first node to the maximum
-    /// of its last node.
+    /// Returns whether the sequence requires more than the difference between the maximum of its
+    /// last node and the minimum of its first node.
     fn is_impossible(&self, run: &[Pull]) -> bool {
         let (Some(first), Some(last)) = (run.first(), run.last()) else {
             return false;
@@ -241,7 +244,7 @@ impl<'a> Flow<'a> {
         needed - (most - least) > STRAIN
     }
 
-    /// Returns the conflict in a path from a node at its minimum to a node at its maximum.
+    /// Returns the conflict of a path from a node at its minimum to a node at its maximum.
     fn path_conflict(&self, path: &[Pull]) -> Conflict {
         let needed: f64 = path.iter().map(|pull| pull.weight).sum();
         let start = path.first().map_or(0, |pull| pull.from);
@@ -249,8 +252,8 @@ impl<'a> Flow<'a> {
         let coordinate = self.problem.coordinate();
         let start = self.constraints.channel(start);
         let end = self.constraints.channel(end);
-        // An output's node is minus its coordinate: at the node's minimum the output is at its
-        // upper bound.
+        // The value of an output node is minus its coordinate: at the minimum of the node, the
+        // output is at its upper bound.
         let kind = match (start, end) {
             (Channel::Output(_), Channel::Input(_)) => ConflictKind::AboveUpper {
                 channels: (end, start),
@@ -274,8 +277,8 @@ impl<'a> Flow<'a> {
         self.conflict(entries, kind)
     }
 
-    /// Returns the conflict between two channels on the same side whose ratio or difference is
-    /// `asked`.
+    /// Returns the conflict between two inputs, or two outputs, whose prescribed ratio or
+    /// difference is `asked`.
     fn too_far_apart(&self, greater: Channel, lesser: Channel, asked: f64) -> ConflictKind {
         let quantity = self.problem.quantity;
         let bounds = self.problem.bounds;
@@ -288,7 +291,7 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// Rounds a lower bound down to three digits; `None` where the lower bound is not adjustable.
+    /// Rounds a lower bound down to three digits; `None` if the lower bound is fixed.
     fn sufficient_lower(&self, lower: f64) -> Option<f64> {
         if self.problem.quantity.has_lower_bound() {
             Some(three_digits(lower, f64::floor))
@@ -306,8 +309,8 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// Finds the shortest walk from `start` to a node that satisfies `is_end`, by breadth-first
-    /// search; the pulls are in the order walked.
+    /// Finds the shortest walk from `start` to a node for which `is_end` holds, by breadth-first
+    /// search. Returns its pulls in the order of the walk; `None` if there is no such walk.
     fn shortest_walk(
         &self,
         start: usize,
@@ -335,7 +338,8 @@ impl<'a> Flow<'a> {
     }
 }
 
-/// Collects the pulls from `start` to `end`, given the pull by which each node was reached.
+/// Collects the pulls from `start` to `end`; `came_by` holds the pull by which each node was
+/// reached.
 fn walk_back(
     came_by: &[Option<Pull>],
     start: usize,

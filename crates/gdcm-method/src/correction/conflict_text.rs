@@ -1,5 +1,5 @@
-//! Conflicts and remedies in words. All sentences about them are here; the facts are
-//! [`ConflictKind`] and [`Remedy`].
+//! Descriptions of conflicts and remedies. This module contains all sentences about them; the facts
+//! are in [`ConflictKind`] and [`Remedy`].
 
 use gdcm_model::units::{s_to_ms, telling, told_apart};
 
@@ -9,7 +9,7 @@ use super::quantity::Quantity;
 use super::remedy::Remedy;
 
 impl Conflict {
-    /// Describes the conflict and its possible resolutions, with these channel names.
+    /// Describes the conflict and its possible resolutions, with the given channel names.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         ConflictText {
             conflict: self,
@@ -19,13 +19,14 @@ impl Conflict {
         .sentence()
     }
 
-    /// Describes a loop that agrees within the tolerance; empty for any other conflict.
+    /// Describes a loop whose deviation is within the tolerance; empty for any other conflict.
     pub fn agreement_words(&self, inputs: &[String], outputs: &[String]) -> String {
         let ConflictKind::Loop { mismatch } = self.kind else {
             return String::new();
         };
         format!(
-            "{} form a loop: their {} agree to {}, and count as agreeing; each is held at its nearest consistent value.",
+            "{} form a loop: their {} agree to {}, which is accepted; each is held at its nearest \
+            consistent value.",
             pair_names(&self.entries, inputs, outputs),
             loop_values(self.quantity),
             mismatch_size(self.quantity, mismatch)
@@ -34,7 +35,7 @@ impl Conflict {
 }
 
 impl Remedy {
-    /// Describes the remedies; empty where there is none.
+    /// Describes the remedies; empty if there are none.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         let unit = if self.quantity.is_gain() { "" } else { " s" };
         let mut ways = Vec::new();
@@ -45,17 +46,20 @@ impl Remedy {
             ways.push(format!("a lower bound of {lower}{unit}"));
         }
         for &pair in &self.free {
-            ways.push(format!("freeing {}", pair_name(pair, inputs, outputs)));
+            ways.push(format!("releasing {}", pair_name(pair, inputs, outputs)));
         }
         if ways.is_empty() {
             String::new()
         } else {
-            format!("Any one of these lets all be held: {}.", ways.join("; "))
+            format!(
+                "Any one of these changes allows all responses to be held: {}.",
+                ways.join("; ")
+            )
         }
     }
 }
 
-/// Names the values compared around a loop.
+/// Returns the name of the values that are compared around a loop.
 fn loop_values(quantity: Quantity) -> &'static str {
     if quantity.is_gain() {
         "ratios"
@@ -64,7 +68,7 @@ fn loop_values(quantity: Quantity) -> &'static str {
     }
 }
 
-/// Formats a loop's mismatch, given in dB or in seconds.
+/// Formats the deviation of a loop, which is in dB or in seconds; seconds are displayed in ms.
 fn mismatch_size(quantity: Quantity, mismatch: f64) -> String {
     if quantity.is_gain() {
         format!("{} dB", telling(mismatch.abs(), 1))
@@ -73,17 +77,17 @@ fn mismatch_size(quantity: Quantity, mismatch: f64) -> String {
     }
 }
 
-/// Formats a time \[s\] in milliseconds.
 fn milliseconds(time_s: f64) -> String {
     telling(s_to_ms(time_s), 1)
 }
 
-/// Formats a limit and an asked value \[s\] in milliseconds, with enough digits to differ.
+/// Formats a limit and a prescribed value, both in s, in milliseconds, with enough digits to
+/// distinguish them.
 fn limit_and_asked_ms(limit_s: f64, asked_s: f64) -> (String, String) {
     told_apart(s_to_ms(limit_s), s_to_ms(asked_s), 1)
 }
 
-/// A conflict with the channel names.
+/// A conflict and the channel names for its description.
 struct ConflictText<'a> {
     conflict: &'a Conflict,
     inputs: &'a [String],
@@ -91,10 +95,10 @@ struct ConflictText<'a> {
 }
 
 impl ConflictText<'_> {
-    /// Remedies for insufficient lead, besides another bound.
-    const MORE_LEAD: &'static str = "a larger R_max or a smaller n gives more";
+    /// Remedies for insufficient lead other than a change of the bounds.
+    const MORE_LEAD: &'static str = "increase R_max or reduce n";
 
-    /// Composes "entries cannot be held: limit; remedies".
+    /// Composes the sentence "ENTRIES cannot be held: LIMIT; REMEDIES."
     fn sentence(&self) -> String {
         let conflict = self.conflict;
         let entries = pair_names(&conflict.entries, self.inputs, self.outputs);
@@ -119,7 +123,7 @@ impl ConflictText<'_> {
             ConflictKind::Unclear => return format!("{entries} {cannot}; {release}."),
             ConflictKind::BelowLower { asked, .. } if conflict.is_lone_lead() => {
                 return format!(
-                    "{entries} needs {} ms of lead: a delay cannot give it; {release}.",
+                    "{entries} needs {} ms of lead, which a delay cannot provide; {release}.",
                     milliseconds(-asked)
                 );
             }
@@ -157,7 +161,7 @@ impl ConflictText<'_> {
         format!("{entries} {cannot}: {limit} {release}.")
     }
 
-    /// Describes a net value above the upper bound, doubled or squared.
+    /// Describes a net value above its maximum: twice the upper bound, or its square for gains.
     fn above_upper(&self, channels: (Channel, Channel), asked: f64, upper: f64) -> String {
         let first = self.symbol(channels.0);
         let second = self.symbol(channels.1);
@@ -165,8 +169,8 @@ impl ConflictText<'_> {
         if self.conflict.quantity.is_gain() {
             let (most, asked) = told_apart(bound.powi(2), asked, 3);
             return format!(
-                "with gains <= {bound:.3} the product {first} {second} is at most {most}, not {asked}; set the upper bound to \
-                 {upper} or"
+                "with gains <= {bound:.3} the product {first} {second} is at most {most}, but \
+                {asked} is required; set the upper bound to {upper} or"
             );
         }
         let (most, asked) = limit_and_asked_ms(2.0 * bound, asked);
@@ -176,11 +180,12 @@ impl ConflictText<'_> {
             ""
         };
         format!(
-            "{first} and {second} give at most {most} ms{kind} together, not {asked}; set the upper bound to {upper} s or"
+            "{first} and {second} together give at most {most} ms{kind}, but {asked} ms are \
+            required; set the upper bound to {upper} s or"
         )
     }
 
-    /// Describes a net value below the lower bound, doubled or squared.
+    /// Describes a net value below its minimum: twice the lower bound, or its square for gains.
     fn below_lower(&self, channels: (Channel, Channel), asked: f64, lower: Option<f64>) -> String {
         let first = self.symbol(channels.0);
         let second = self.symbol(channels.1);
@@ -190,25 +195,27 @@ impl ConflictText<'_> {
                 let (least, asked) = told_apart(bound.powi(2), asked, 3);
                 let lower = lower.unwrap_or(bound);
                 format!(
-                    "with gains >= {bound:.3} the product {first} {second} is at least {least}, not {asked}; set the lower bound \
-                     to {lower} or"
+                    "with gains >= {bound:.3} the product {first} {second} is at least {least}, \
+                    but {asked} is required; set the lower bound to {lower} or"
                 )
             }
             Quantity::Delay => format!(
-                "{first} and {second} would have to give {} ms of lead together, and a delay cannot;",
+                "{first} and {second} together would have to give {} ms of lead, which a delay \
+                cannot provide;",
                 milliseconds(-asked)
             ),
             Quantity::SignedDelay => {
                 let (most, asked) = limit_and_asked_ms(-2.0 * bound, -asked);
                 format!(
-                    "R_max lets {first} and {second} give {most} ms of lead together, not {asked}: {}, or",
+                    "R_max limits {first} and {second} to {most} ms of lead together, but {asked} \
+                    ms are required; {}, or",
                     Self::MORE_LEAD
                 )
             }
         }
     }
 
-    /// Describes a gain ratio above the ratio between the bounds.
+    /// Describes a ratio of gains above the ratio of the bounds.
     fn ratio_too_great(&self, greater: Channel, lesser: Channel, asked: f64) -> String {
         let greater = self.symbol(greater);
         let lesser = self.symbol(lesser);
@@ -216,11 +223,12 @@ impl ConflictText<'_> {
         let high = self.conflict.bounds.upper;
         let (most, asked) = told_apart(high / low, asked, 3);
         format!(
-            "with {greater} <= {high:.3} and {lesser} >= {low:.3} their ratio is at most {most}, not {asked}"
+            "with {greater} <= {high:.3} and {lesser} >= {low:.3} their ratio is at most {most}, \
+            but {asked} is required"
         )
     }
 
-    /// Describes a delay difference above the difference between the bounds.
+    /// Describes a difference of delays above the difference of the bounds.
     fn difference_too_great(
         &self,
         greater: Channel,
@@ -235,8 +243,9 @@ impl ConflictText<'_> {
         if self.conflict.quantity == Quantity::SignedDelay {
             let (most, asked) = limit_and_asked_ms(high - low, asked);
             return format!(
-                "{greater} cannot be {asked} ms above {lesser}: with at most {} ms of lead and {} ms of delay a channel the \
-                 difference is at most {most} ms; set the upper bound to {upper} s; {}, or",
+                "{greater} cannot exceed {lesser} by {asked} ms: with at most {} ms of lead and \
+                {} ms of delay in each channel, the difference is at most {most} ms; set the \
+                upper bound to {upper} s, {}, or",
                 milliseconds(-low),
                 milliseconds(high),
                 Self::MORE_LEAD
@@ -244,11 +253,12 @@ impl ConflictText<'_> {
         }
         let (most, asked) = limit_and_asked_ms(high, asked);
         format!(
-            "{greater} cannot be {asked} ms above {lesser} with delays <= {most} ms; set the upper bound to {upper} s or"
+            "{greater} cannot exceed {lesser} by {asked} ms with delays <= {most} ms; set the \
+            upper bound to {upper} s or"
         )
     }
 
-    /// Symbol of a channel's value: "k_LON", "tau_P".
+    /// Returns the symbol of a channel's value: "k_LON", "tau_P".
     fn symbol(&self, channel: Channel) -> String {
         let symbol = if self.conflict.quantity.is_gain() {
             "k"

@@ -1,5 +1,5 @@
-//! A corrected model as matrices (M10), with delays replaced by rational functions where states are
-//! required.
+//! A corrected model given by matrices (M10); its delays are approximated by rational functions if
+//! they require states.
 
 use nalgebra::DMatrix;
 
@@ -14,31 +14,32 @@ use super::channel_model::ChannelModel;
 use super::channels::{Channel, Channels};
 use super::pade::Pade;
 
-/// Tolerance, in samples, between a delay and a whole sample count. Computed delays are rounded.
+/// Maximum deviation of a delay from a whole number of samples, in samples: computed delays have
+/// rounding errors.
 const SAMPLE_TOLERANCE: f64 = 1e-6;
 
-/// Delay \[s\] below which a delay counts as zero: rounding residues would give states with
+/// Delay \[s\] below which a delay is set to zero, because rounding errors would give states with
 /// enormous entries. At 12 rad/s such a delay changes the phase by less than a millionth of a
 /// degree.
 const LEAST_DELAY_S: f64 = 1e-9;
 
-/// `M_O H M_I` without delays: those in the correction and in the model itself have become states
-/// (M10, M2a).
+/// The corrected model `M_O H M_I`. It has no delays: the delays of the correction and of the model
+/// itself have been converted to states (M10, M2a).
 ///
-/// In continuous time each delayed channel has the states of a Pade approximant; in discrete time
+/// In continuous time each delayed channel has the states of a Padé approximant; in discrete time
 /// the delay is exact, with one state for each sample. Gains are exact, and so are lead filters in
-/// continuous time (M15.3); in discrete time these follow Tustin's rule. A channel without delay
-/// and lead adds no state. The states follow the signal: input leads, input delays, the model's own
-/// states, output delays, output leads.
+/// continuous time (M15.3); in discrete time lead filters are approximated by Tustin's rule. A
+/// channel without delay and lead adds no state. The states are ordered along the signal: input
+/// leads, input delays, states of the model, output delays, output leads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CorrectedModel {
     /// State-space matrices, without delays.
     pub model: StateSpace,
-    /// Number of delay states of each channel: input states precede the model's own, output states
-    /// follow them.
+    /// Number of delay states of each channel; those of inputs precede the states of the model,
+    /// those of outputs follow them.
     pub delay_states: Channels<usize>,
-    /// Number of lead filter states of each channel: input states precede all others, output states
-    /// follow all others.
+    /// Number of lead filter states of each channel; those of inputs precede all other states,
+    /// those of outputs follow all others.
     pub lead_states: Channels<usize>,
     leads: Channels<Option<LeadFilter>>,
     sample_time_s: Option<f64>,
@@ -46,36 +47,36 @@ pub struct CorrectedModel {
     pade: Pade,
 }
 
-/// Reason why a corrected model has no matrices.
+/// Reason why a corrected model cannot be represented by matrices.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}", self.words(&[], &[]))]
 pub enum CorrectedModelError {
-    /// A discrete-time model's delay is not a whole sample count.
+    /// A delay of a discrete-time model is not a whole number of samples.
     PartOfSample {
         channel: Channel,
-        /// The model's delay \[s\].
+        /// Delay \[s\], of correction and model together.
         delay_s: f64,
-        /// The sample time \[s\].
+        /// Sample time \[s\].
         sample_time_s: f64,
     },
     /// A lead filter is too fast for the sample time.
     SlowSamples {
-        /// Sample time \[s\].
+        /// Sample time of the model \[s\].
         sample_time_s: f64,
         /// Maximum admissible sample time \[s\].
         longest_s: f64,
     },
     /// The delays need more states than a model may have.
     TooManyStates {
-        /// States needed.
+        /// Number of states needed.
         states: usize,
     },
-    /// A matrix product is not finite.
+    /// A matrix of the corrected model is not finite.
     Matrices(#[from] StateSpaceError),
 }
 
 impl CorrectedModelError {
-    /// Describes the error with these channel names.
+    /// Describes the error, with the given channel names.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         match self {
             Self::PartOfSample {
@@ -83,10 +84,11 @@ impl CorrectedModelError {
                 delay_s,
                 sample_time_s,
             } => format!(
-                "the delay of {}, {} s, is {} samples of {} s; in discrete time only whole samples are exact",
+                "the delay of {}, {} s, is {} samples of {} s; in discrete time it must be a \
+                whole number of samples",
                 channel.name(inputs, outputs),
                 number(*delay_s),
-                // Enough digits to distinguish it from a whole number, none from rounding.
+                // Round to 1e-6 samples: shows the fraction of a sample, but no rounding error.
                 number((delay_s / sample_time_s * 1e6).round() / 1e6),
                 number(*sample_time_s)
             ),
@@ -94,12 +96,14 @@ impl CorrectedModelError {
                 sample_time_s,
                 longest_s,
             } => format!(
-                "the sample time of {} s is too long for the lead filters; at most {} s, half of their lag, is allowed",
+                "the sample time of {} s is too long for the lead filters; the maximum is {} s, \
+                half of their lag time constant",
                 number(*sample_time_s),
                 number(*longest_s)
             ),
             Self::TooManyStates { states } => format!(
-                "the model with its delays as states needs {states} states; at most {MOST_STATES} are written"
+                "the model with its delays as states needs {states} states; at most {MOST_STATES} \
+                are supported"
             ),
             Self::Matrices(error) => error.to_string(),
         }
@@ -107,17 +111,18 @@ impl CorrectedModelError {
 }
 
 impl CorrectedModel {
-    /// Applies a correction to the model, with continuous-time delays approximated by `pade`.
+    /// Applies a correction to the model; delays in continuous time are approximated by `pade`.
     ///
     /// ```text
-    /// 1  state-space models for each channel's delay and lead filter
-    /// 2  gains on the rows and columns in the model's own matrices
+    /// 1  state-space models for the delay and lead filter of each channel
+    /// 2  gains on the rows and columns of the model's own matrices
     /// 3  series connection: input leads, input delays, model, output delays, output leads
     /// ```
     ///
     /// # Errors
-    /// [`CorrectedModelError`] where a discrete-time delay is not a whole sample count, a model
-    /// would have too many states, or a matrix entry is not finite.
+    /// [`CorrectedModelError`] if a discrete-time delay is not a whole number of samples, a lead
+    /// filter is too fast for the sample time, the model would have too many states, or a matrix
+    /// entry is not finite.
     pub fn new(
         model: &StateSpace,
         correction: &ChannelCorrection,
@@ -159,20 +164,21 @@ impl CorrectedModel {
         })
     }
 
-    /// Computes the maximum phase error \[rad\] over the model's responses at `omega` \[rad/s\]:
-    /// the lag that the approximated delays lack, or the phase that Tustin's rule removes from lead
-    /// filters in a discrete-time model.
+    /// Computes the maximum phase error \[rad\] over the responses of the model at `omega`
+    /// \[rad/s\]: the lag missing from the approximated delays, or the phase lost in lead filters
+    /// by Tustin's rule in discrete time.
     ///
-    /// A response's error is the sum over its two channels.
+    /// The error of a response is the sum over its two channels.
     pub fn phase_error(&self, omega: f64) -> f64 {
         match self.sample_time_s {
             Some(sample_time_s) => {
-                // Frequency warped by Tustin's rule.
+                // `warped`: frequency as mapped by Tustin's rule.
                 let warped = (0.5 * omega * sample_time_s).tan() * 2.0 / sample_time_s;
                 greatest_warping_error(&self.leads.inputs, omega, warped)
                     + greatest_warping_error(&self.leads.outputs, omega, warped)
             }
-            // The error grows with the delay.
+            // The phase error increases with the delay, so that the longest delay determines the
+            // maximum.
             None => {
                 self.pade
                     .phase_error(omega * longest(&self.delays_s.inputs))
@@ -184,12 +190,13 @@ impl CorrectedModel {
     }
 }
 
-/// Returns the total number of states over all channels.
+/// Returns the number of states of all channels together.
 fn total(states: &Channels<usize>) -> usize {
     states.iter().map(|(_, states)| states).sum()
 }
 
-/// Returns the maximum phase error \[rad\] of the filters at a warped frequency \[rad/s\].
+/// Returns the maximum phase error \[rad\] of the filters at `omega`, given the warped frequency;
+/// both in rad/s.
 fn greatest_warping_error(filters: &[Option<LeadFilter>], omega: f64, warped: f64) -> f64 {
     filters
         .iter()
@@ -198,12 +205,12 @@ fn greatest_warping_error(filters: &[Option<LeadFilter>], omega: f64, warped: f6
         .fold(0.0, f64::max)
 }
 
-/// Returns the longest delay \[s\].
+/// Returns the longest delay \[s\]; 0 for no delays.
 fn longest(delays_s: &[f64]) -> f64 {
     delays_s.iter().copied().fold(0.0, f64::max)
 }
 
-/// Returns a channel's delay \[s\]: the correction's plus the model's own.
+/// Returns the delay of a channel \[s\], the sum of the correction's and the model's own delay.
 fn delay_s(channel: Channel, correction: &ChannelCorrection, timing: &Timing) -> f64 {
     let (own_delays_s, index) = match channel {
         Channel::Input(index) => (&timing.input_delays_s, index),
@@ -222,6 +229,9 @@ fn delay_s(channel: Channel, correction: &ChannelCorrection, timing: &Timing) ->
 }
 
 /// Creates the state-space model of a channel's delay.
+///
+/// # Errors
+/// A discrete-time delay that is not a whole number of samples, or too many states.
 fn delay_model(
     channel: Channel,
     delay_s: f64,
@@ -243,7 +253,7 @@ fn delay_model(
             sample_time_s,
         });
     }
-    // A model too large is rejected before memory is allocated.
+    // Reject a model that is too large before its memory is allocated.
     if samples > MOST_STATES as f64 {
         return Err(CorrectedModelError::TooManyStates {
             states: samples as usize,
@@ -252,7 +262,7 @@ fn delay_model(
     Ok(ChannelModel::samples(samples as usize))
 }
 
-/// Creates the state-space model of a channel's lead filter.
+/// Creates the state-space model of a channel's lead filter; without a filter, the model `y = u`.
 fn lead_model(
     filter: Option<LeadFilter>,
     sample_time_s: Option<f64>,
@@ -273,7 +283,7 @@ fn lead_model(
     }
 }
 
-/// Four matrices, in continuous or discrete time.
+/// The matrices A, B, C and D, in continuous or discrete time.
 struct Blocks {
     a: DMatrix<f64>,
     b: DMatrix<f64>,
@@ -282,7 +292,7 @@ struct Blocks {
 }
 
 impl Blocks {
-    /// Creates the model with the channels' gains, without any delay.
+    /// Returns the matrices of the model with the gains of the channels, without delays.
     fn with_gains(model: &StateSpace, correction: &ChannelCorrection) -> Self {
         let mut blocks = Self {
             a: model.a().clone(),
@@ -301,7 +311,7 @@ impl Blocks {
         blocks
     }
 
-    /// Combines parallel channels to one block-diagonal system.
+    /// Combines the models of parallel channels into a block-diagonal system.
     fn block_diagonal(channels: &[ChannelModel]) -> Self {
         let states = channels.iter().map(ChannelModel::order).sum();
         let count = channels.len();
@@ -332,14 +342,15 @@ impl Blocks {
         blocks
     }
 
-    /// Connects the input channels before this system and the output channels after it.
+    /// Connects the input channels before this system, and the output channels after it.
     fn between(&self, channels: &Channels<ChannelModel>) -> Self {
         Self::block_diagonal(&channels.inputs)
             .then(self)
             .then(&Self::block_diagonal(&channels.outputs))
     }
 
-    /// Series connection: this system's outputs drive `next`. Its states come first.
+    /// Connects two systems in series: the outputs of this system drive `next`. The states of this
+    /// system come first.
     fn then(&self, next: &Self) -> Self {
         let first = self.a.nrows();
         let second = next.a.nrows();
@@ -375,7 +386,7 @@ mod tests {
     use super::super::leads::{ChannelLeads, LeadDesign, LeadSettings};
     use super::*;
 
-    /// Two inputs, two outputs, three states; poles from 1 to 5 rad/s.
+    /// Returns a model with two inputs, two outputs and three states; poles from 1 to 5 rad/s.
     fn plant() -> StateSpace {
         let a = DMatrix::from_row_slice(3, 3, &[-0.8, 2.0, 0.1, -1.5, -1.0, 0.3, 0.2, -0.4, -5.0]);
         let b = DMatrix::from_row_slice(3, 2, &[1.0, 0.2, 0.0, 1.0, 0.5, -0.3]);
@@ -399,8 +410,8 @@ mod tests {
         }
     }
 
-    /// Compares the matrices with a product: the gains, the model's response and each channel's
-    /// delay factor.
+    /// Compares the response of the matrices with the product of the gains, the response of the
+    /// model, and the delay factor of each channel.
     fn assert_response(
         corrected: &CorrectedModel,
         plant: &StateSpace,
@@ -436,7 +447,7 @@ mod tests {
             );
             assert_eq!(states, ([order, 0].as_slice(), [0, order].as_slice()));
             assert_eq!(corrected.model.order(), 3 + 2 * order);
-            // Magnitude 1; the lag is the delay's less the error.
+            // Magnitude 1; the lag is that of the delay less the error of the approximant.
             let delay = |omega: f64, delay_s: f64| {
                 let angle = omega * delay_s;
                 Complex::new(0.0, pade.phase_error(angle) - angle).exp()
@@ -518,7 +529,8 @@ mod tests {
         );
     }
 
-    /// The plant's correction with 30 ms lead on the first input and 50 ms on the second output.
+    /// Returns the correction of the plant with 30 ms lead on the first input and 50 ms on the
+    /// second output.
     fn led(order: LeadOrder) -> ChannelCorrection {
         let grid = FrequencyGrid::logarithmic(Band::new(0.5, 12.0).unwrap(), 50);
         let design = LeadDesign::new(
@@ -597,7 +609,8 @@ mod tests {
         };
         let correction = led(LeadOrder::Second);
         let corrected = CorrectedModel::new(&sampled(0.01), &correction, Pade::default()).unwrap();
-        // 36 rad/s and 10 ms steps: less than 0.25 degrees for each channel at 12 rad/s.
+        // Servo bandwidth 36 rad/s, sample time 10 ms: less than 0.25 degrees for each channel at
+        // 12 rad/s.
         assert!(
             (0.01..0.5).contains(&corrected.phase_error(12.0).to_degrees()),
             "{}",

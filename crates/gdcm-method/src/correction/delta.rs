@@ -1,5 +1,5 @@
-//! Delta gain and delta delay, the single gain and delay that a response needs, eq. (5), (9); and
-//! the channel bounds from their spread over the band (M7).
+//! Delta gain and delta delay: the gain and delay by which a single response would have to be
+//! corrected, eq. (5), (9); and the channel bounds, from their spread over the band (M7).
 
 use serde::{Deserialize, Serialize};
 
@@ -11,20 +11,20 @@ use gdcm_model::units::db_to_ratio;
 use super::GainBounds;
 use crate::fidelity::{CoherenceWeights, Mismatch};
 
-/// Source models of G; D always comes from the representatives.
+/// Models from which G is computed; D is always computed from the representatives.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum GainSource {
-    /// The two representatives (eq. (5)).
+    /// The two representatives, eq. (5).
     #[default]
     #[serde(rename = "representatives")]
     Representatives,
-    /// Every pair of a kept physics model and a kept identified model: `G = exp(mean(ln G))`.
+    /// All pairs of a kept physics model and a kept identified model: `G = exp(mean(ln G))`.
     #[serde(rename = "mean")]
     MeanOfPairs,
 }
 
 impl GainSource {
-    /// Describes the source: "the representatives".
+    /// Returns the text for the source, such as "the representatives".
     pub fn words(self) -> &'static str {
         match self {
             Self::Representatives => "the representatives",
@@ -33,26 +33,26 @@ impl GainSource {
     }
 }
 
-/// `G = median |H_ref| / |H_sim|` and `D = median Delta phi(H_sim, H_ref) / omega` for every
-/// response (M6), and its band delay (M15.2).
+/// Delta gain `G = median |H_ref| / |H_sim|`, delta delay
+/// `D = median Delta phi(H_sim, H_ref) / omega` (M6), and band delay (M15.2) of every response.
 ///
-/// `None` where the ratio is zero or not finite at some frequency, or where no frequency counts.
-/// The medians are weighted where the reference is measured with coherence (M4a).
+/// `None` if the ratio is zero or not finite at any frequency, or if no frequency counts. The
+/// medians are weighted if the reference is measured with coherence (M4a).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Delta {
-    /// G, `[output, input]`, dimensionless.
+    /// G, `[output, input]`; a ratio, not in dB.
     pub gain: PairTable<Option<f64>>,
-    /// D, `[output, input]` \[s\]; positive where the physics model leads, so that delay must be
+    /// D, `[output, input]` \[s\]; positive if the physics model leads, so that a delay must be
     /// added.
     pub delay_s: PairTable<Option<f64>>,
-    /// Band delay, `[output, input]` \[s\]: least squares straight line through the missing phase
-    /// (M15.2).
+    /// Band delay, `[output, input]` \[s\]: least-squares line through the origin, fitted to the
+    /// missing phase (M15.2).
     pub band_delay_s: PairTable<Option<f64>>,
 }
 
 impl Delta {
-    /// Computes G and D from the mismatch between two representatives at the frequencies `omega`
-    /// \[rad/s\].
+    /// Computes G, D and the band delay from the mismatch between two representatives at the
+    /// frequencies `omega` \[rad/s\].
     pub fn new(mismatch: &PairTable<Option<Mismatch>>, omega: &[f64]) -> Self {
         let phases = mismatch.map(|pair, _| {
             let entry = mismatch[pair].as_ref()?;
@@ -70,7 +70,7 @@ impl Delta {
     }
 }
 
-/// `Delta phi(H_sim, H_ref)` for a single response.
+/// Phase difference `Delta phi(H_sim, H_ref)` of a single response.
 struct MissingPhase<'a> {
     mismatch: &'a Mismatch,
     /// Phase \[rad\] at each frequency.
@@ -80,12 +80,12 @@ struct MissingPhase<'a> {
 }
 
 impl MissingPhase<'_> {
-    /// Computes D, eq. (9).
+    /// Computes D \[s\], eq. (9).
     fn median_delay_s(&self) -> f64 {
         self.mismatch.median(&mut delays(&self.phase, self.omega))
     }
 
-    /// Computes the band delay (M15.2).
+    /// Computes the band delay \[s\] (M15.2).
     fn band_delay_s(&self) -> f64 {
         let phase = self.phase.iter().copied();
         band_delay_s(phase, self.omega, self.mismatch.weights())
@@ -100,9 +100,9 @@ pub fn delta_gains(mismatch: &PairTable<Option<Mismatch>>) -> PairTable<Option<f
     })
 }
 
-/// Computes `sum W omega phase / sum W omega^2` \[s\] for a phase \[rad\] at each frequency
-/// \[rad/s\]: the delay that minimises the remaining mean square phase (M15.2). Linear in the
-/// phase; W = 1 without weights.
+/// Computes `sum W omega phase / sum W omega^2` \[s\] from the phase \[rad\] at each frequency
+/// \[rad/s\]: the delay that minimises the mean square of the remaining phase (M15.2). It is linear
+/// in the phase; W = 1 without weights.
 pub(crate) fn band_delay_s(
     phase: impl Iterator<Item = f64>,
     omega: &[f64],
@@ -121,12 +121,13 @@ pub(crate) fn band_delay_s(
     moment / square
 }
 
-/// Ratios beyond this (1e50 and 1e-50), whose squares the objective cannot represent, count as
-/// infinite or zero (M6).
+/// Magnitude \[dB\] beyond which a ratio (above 1e50 or below 1e-50) is regarded as infinite or
+/// zero, because the objective cannot represent its square (M6).
 pub const LARGEST_GAIN_DB: f64 = 1000.0;
 
-/// Computes the mismatch of every response that both models have and whose ratio is finite and not
-/// zero, at the frequencies that count: all where `coherence_weights` is `None` (M4a).
+/// Computes the mismatch of every response that both models contain and whose ratio is finite and
+/// not zero, at the frequencies that count; `coherence_weights` selects and weights them, otherwise
+/// all count (M4a).
 pub fn mismatch_table(
     simulated: &PolarResponse,
     reference: &PolarResponse,
@@ -144,7 +145,7 @@ pub fn mismatch_table(
     })
 }
 
-/// Computes `|H_ref| / |H_sim|` at each frequency.
+/// Returns `|H_ref| / |H_sim|` at each frequency.
 fn ratios(mismatch: &Mismatch) -> Vec<f64> {
     mismatch
         .magnitude_db
@@ -153,7 +154,7 @@ fn ratios(mismatch: &Mismatch) -> Vec<f64> {
         .collect()
 }
 
-/// Computes `Delta phi(H_sim, H_ref) / omega` \[s\] at each frequency.
+/// Returns `Delta phi(H_sim, H_ref) / omega` \[s\] at each frequency.
 fn delays(phase: &[f64], omega: &[f64]) -> Vec<f64> {
     phase
         .iter()
@@ -162,8 +163,8 @@ fn delays(phase: &[f64], omega: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Selects the mismatches to pool: those marked in `measuring`, or all where no marked mismatch is
-/// defined.
+/// Selects the mismatches to be pooled: those of the responses in `measuring`, or all if none of
+/// these is defined.
 fn pooled<'a>(
     mismatch: &'a PairTable<Option<Mismatch>>,
     measuring: &PairTable<bool>,
@@ -180,8 +181,8 @@ fn pooled<'a>(
     pairs.into_iter().filter_map(|pair| mismatch[pair].as_ref())
 }
 
-/// Computes `LB = min(1, q-quantile)` and `UB = max(1, (1-q)-quantile)` for `|H_ref| / |H_sim|`
-/// pooled over frequency and pairs (M7).
+/// Computes the gain bounds `LB = min(1, q-quantile)` and `UB = max(1, (1-q)-quantile)` of
+/// `|H_ref| / |H_sim|`, pooled over frequencies and responses (M7).
 pub fn gain_bounds(
     mismatch: &PairTable<Option<Mismatch>>,
     measuring: &PairTable<bool>,
@@ -193,8 +194,8 @@ pub fn gain_bounds(
     GainBounds { lower, upper }
 }
 
-/// Computes `UB = max(0, (1-q)-quantile)` \[s\] for `Delta phi / omega` pooled over frequency and
-/// pairs (M7).
+/// Computes the upper delay bound `UB = max(0, (1-q)-quantile)` \[s\] of `Delta phi / omega`,
+/// pooled over frequencies and responses (M7).
 pub fn delay_upper_s(
     mismatch: &PairTable<Option<Mismatch>>,
     measuring: &PairTable<bool>,

@@ -1,4 +1,5 @@
-//! Minimum of a least squares objective over its box, by clarabel's interior point method.
+//! Minimum of a least-squares objective over its box, found by the interior-point method of
+//! Clarabel.
 
 use gdcm_numerics::{CscMatrix, DefaultSettings, convex_program};
 
@@ -8,8 +9,8 @@ use super::problem::ProblemError;
 /// Returns a point within about 1e-9 of the minimum over the box.
 ///
 /// # Errors
-/// [`ProblemError::Program`] where clarabel does not report the problem as solved ("almost solved"
-/// is not).
+/// [`ProblemError::Program`] unless Clarabel reports the problem as solved ("almost solved" is an
+/// error, too).
 pub(crate) fn interior_point(objective: &Objective) -> Result<Vec<f64>, ProblemError> {
     let mut scales = objective.lower.clone();
     let free: Vec<usize> = (0..objective.scales())
@@ -25,11 +26,12 @@ pub(crate) fn interior_point(objective: &Objective) -> Result<Vec<f64>, ProblemE
     Ok(scales)
 }
 
-/// Solves `min s' P s / 2 + q' s` over `lower <= s <= upper` in the free scales; the others stay on
-/// their bound.
+/// Solves `min s' P s / 2 + q' s` subject to `lower <= s <= upper` in the free scales; the other
+/// scales are fixed.
 fn solve_program(objective: &Objective, free: &[usize]) -> Result<Vec<f64>, ProblemError> {
     let scales = objective.scales();
-    // Slope and curvature where the free scales are 0: the objective is a sum of squares.
+    // Expand where the free scales are 0: the objective is quadratic, so that slope and Hessian
+    // there are `q` and `P`.
     let mut origin = objective.lower.clone();
     for &scale in free {
         origin[scale] = 0.0;
@@ -54,7 +56,7 @@ fn solve_program(objective: &Objective, free: &[usize]) -> Result<Vec<f64>, Prob
         .map_err(|reason| ProblemError::Program { reason })
 }
 
-/// Returns the box constraint matrix `[I; -I]`, 2 size x size.
+/// Returns the matrix of the box constraints, `[I; -I]`, 2 size x size.
 fn box_sides(size: usize) -> CscMatrix<f64> {
     let columns = (0..=size).map(|column| 2 * column).collect();
     let mut rows = Vec::with_capacity(2 * size);

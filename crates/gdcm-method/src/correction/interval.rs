@@ -1,4 +1,4 @@
-//! Intervals of one variable.
+//! Intervals of a single variable.
 
 /// Interval `low <= u <= high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,7 +16,7 @@ impl Interval {
         }
     }
 
-    /// Raises the upper end to the lower end where rounding has made the interval empty.
+    /// Raises the upper end to the lower end if rounding has made the interval empty.
     pub(crate) fn not_empty(self) -> Self {
         Self {
             low: self.low,
@@ -24,7 +24,7 @@ impl Interval {
         }
     }
 
-    /// Returns the nearest point to `u` in the interval.
+    /// Returns the point of the interval nearest to `u`.
     pub(crate) fn nearest(self, u: f64) -> f64 {
         u.clamp(self.low, self.high)
     }

@@ -1,5 +1,5 @@
-//! Price of lead filters: the frequency above which a corrected model is not valid, and the gain
-//! that the filters add above it (M15.6).
+//! Price of lead filters: the frequency up to which a corrected model is valid, and the gain that
+//! the filters add above it (M15.6).
 
 use gdcm_model::dataset::Pair;
 use gdcm_model::units::{number, signed};
@@ -7,16 +7,16 @@ use gdcm_model::units::{number, signed};
 use super::channels::Channels;
 use super::leads::ChannelLeads;
 
-/// Multiple of the band's top at which the gain above the band is reported (M15.6).
+/// Multiple of the upper end of the band at which the gain above the band is computed (M15.6).
 pub const ABOVE_BAND: f64 = 10.0;
 /// Gain \[dB\] below which the displayed value, rounded to 0.1 dB, is zero.
 const NOTHING_DB: f64 = 0.05;
 
-/// Validity limit of a model with leads, and the gain that the filters add at ten times that
+/// Frequency limit of a model with leads, and the gain that the filters add at ten times this
 /// frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeadPrice {
-    /// Band top \[rad/s\]: above it the corrected model is not valid.
+    /// Upper end of the band \[rad/s\]; above it the corrected model is not valid.
     pub limit_rad_s: f64,
     /// `20 log10 |L|` at [`LeadPrice::above_rad_s`] for each channel \[dB\]; 0 for a channel
     /// without a filter.
@@ -24,7 +24,7 @@ pub struct LeadPrice {
 }
 
 impl LeadPrice {
-    /// Computes the price of these leads; `None` where no channel has a filter.
+    /// Computes the price of leads; `None` if no channel has a filter.
     pub fn of(leads: &ChannelLeads) -> Option<Self> {
         let filters = leads.filters();
         if filters.iter().all(|(_, filter)| filter.is_none()) {
@@ -41,7 +41,7 @@ impl LeadPrice {
         })
     }
 
-    /// Returns the larger of both gains for each channel, for a schedule whose leads depend on
+    /// Returns the larger of both gains for each channel; used for a schedule whose leads depend on
     /// airspeed.
     #[must_use]
     pub fn or_more(self, other: &Self) -> Self {
@@ -51,25 +51,25 @@ impl LeadPrice {
         Self { gains_db, ..self }
     }
 
-    /// Returns ten times the band's top \[rad/s\].
+    /// Returns ten times the upper end of the band \[rad/s\].
     pub fn above_rad_s(&self) -> f64 {
         ABOVE_BAND * self.limit_rad_s
     }
 
-    /// Returns the gain \[dB\] that the filters of a response's two channels add at
+    /// Returns the gain \[dB\] that the filters on the input and output of a response add at
     /// [`LeadPrice::above_rad_s`].
     pub fn of_pair_db(&self, pair: Pair) -> f64 {
         self.gains_db.outputs[pair.output] + self.gains_db.inputs[pair.input]
     }
 
-    /// Describes the limit: "not valid above 12 rad/s".
+    /// Describes the frequency limit: "not valid above 12 rad/s".
     pub fn limit_words(&self) -> String {
         format!("not valid above {} rad/s", number(self.limit_rad_s))
     }
 
-    /// Describes the limit and the gain on each channel with a filter: "not valid above 12 rad/s:
-    /// at 120 rad/s the leads add +9.1 dB on LON, +11.3 dB on Q; a response gets the gains of its
-    /// input and its output" (the sum in dB).
+    /// Describes the frequency limit, and the gain of each channel with a filter: "not valid above
+    /// 12 rad/s: at 120 rad/s the leads add +9.1 dB on LON, +11.3 dB on Q; the gain of a response
+    /// increases by the sum for its input and output".
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         let mut gains = Vec::new();
         for (channel, &gain_db) in self.gains_db.iter() {
@@ -82,15 +82,16 @@ impl LeadPrice {
             return self.limit_words();
         }
         format!(
-            "{}: at {} rad/s the leads add {}; a response gets the gains of its input and its output",
+            "{}: at {} rad/s the leads add {}; the gain of a response increases by the sum for \
+            its input and output",
             self.limit_words(),
             number(self.above_rad_s()),
             gains.join(", ")
         )
     }
 
-    /// Describes a response's added gain: "+18.9 dB at 120 rad/s"; `None` where its channels add
-    /// nothing.
+    /// Describes the added gain of a response: "+18.9 dB at 120 rad/s"; `None` if it rounds to
+    /// zero.
     pub fn pair_words(&self, pair: Pair) -> Option<String> {
         let gain_db = self.of_pair_db(pair);
         if gain_db > NOTHING_DB {
@@ -135,7 +136,7 @@ mod tests {
         let [input, output] = [Channel::Input(0), Channel::Output(0)]
             .map(|channel| leads.filters()[channel].expect("a lead").at(120.0).norm());
         let expected = 20.0 * (input * output).log10();
-        // Rounding in a response against the closed form for its magnitude.
+        // Tolerance: rounding of a response compared with the closed form of its magnitude.
         assert!(
             (price.of_pair_db(pair) - expected).abs() < 1e-9,
             "{price:?}"

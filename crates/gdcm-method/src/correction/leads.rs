@@ -1,4 +1,5 @@
-//! Lead filters: from signed delays to filters (M15.3), and the filters on all channels (M15.5).
+//! Lead filters: design of the filter for a signed delay (M15.3), and the filters of all channels
+//! (M15.5).
 
 use std::sync::{Arc, OnceLock};
 
@@ -14,16 +15,17 @@ use super::delta::band_delay_s;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LeadSettings {
     pub order: LeadOrder,
-    /// `n`: the lag time constant is `b = 1 / (n omega_B)`, `omega_B` the band's top.
+    /// `n`: the lag time constant is `b = 1 / (n omega_B)`, where `omega_B` is the upper end of the
+    /// band.
     #[serde(rename = "n")]
     pub pole: f64,
-    /// `R_max`: maximum high-frequency gain (ratio) of a channel's filter.
+    /// `R_max`: maximum gain of a filter at high frequency (ratio, not dB).
     #[serde(rename = "r_max")]
     pub limit: f64,
 }
 
 impl Default for LeadSettings {
-    /// Second order, n = 3, R_max = 10 (20 dB).
+    /// Returns second order, n = 3, R_max = 10 (20 dB).
     fn default() -> Self {
         Self {
             order: LeadOrder::Second,
@@ -33,7 +35,8 @@ impl Default for LeadSettings {
     }
 }
 
-/// The lead filters that a band allows: exactly one for each signed delay below zero (M15.3).
+/// Design of the lead filters for a band; it assigns exactly one filter to each negative signed
+/// delay (M15.3).
 ///
 /// With `b = 1 / (n omega_B)` and the lead time `l >= 0`:
 ///
@@ -44,14 +47,15 @@ impl Default for LeadSettings {
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeadDesign {
     settings: LeadSettings,
-    /// Band frequencies \[rad/s\].
+    /// Frequencies of the band \[rad/s\].
     omega: Arc<[f64]>,
-    /// `LB_tau` \[s\].
+    /// `LB_tau`, lower bound on a signed delay \[s\].
     lower_s: f64,
 }
 
 impl LeadDesign {
-    /// Creates the design over these frequencies \[rad/s\]: rising, positive, not empty.
+    /// Creates the design for the frequencies of a band \[rad/s\], which must be rising, positive
+    /// and not empty.
     pub fn new(settings: LeadSettings, omega: Arc<[f64]>) -> Self {
         let mut design = Self {
             settings,
@@ -72,7 +76,7 @@ impl LeadDesign {
         &self.omega
     }
 
-    /// Returns `omega_B` \[rad/s\], the band's top.
+    /// Returns `omega_B` \[rad/s\], the upper end of the band.
     pub fn band_top_rad_s(&self) -> f64 {
         self.omega.last().copied().unwrap_or(1.0)
     }
@@ -82,7 +86,7 @@ impl LeadDesign {
         1.0 / (self.settings.pole * self.band_top_rad_s())
     }
 
-    /// Returns `l_max` \[s\], the lead time at which `R = R_max`.
+    /// Returns the maximum lead time `l_max` \[s\], for which `R = R_max`.
     pub fn longest_lead_s(&self) -> f64 {
         let LeadSettings { order, limit, .. } = self.settings;
         match order {
@@ -91,18 +95,19 @@ impl LeadDesign {
         }
     }
 
-    /// Returns `LB_tau = d(l_max)` \[s\], the lower bound on a channel's signed delay.
+    /// Returns `LB_tau = d(l_max)` \[s\], the lower bound on the signed delay of a channel.
     pub fn lower_s(&self) -> f64 {
         self.lower_s
     }
 
-    /// Creates the filter with this lead time \[s\].
+    /// Creates the filter with the lead time `lead_s` \[s\].
     pub fn filter_of(&self, lead_s: f64) -> LeadFilter {
         LeadFilter::new(self.settings.order, lead_s, self.lag_s())
     }
 
-    /// Computes `d(l) = - sum omega arg L / sum omega^2` \[s\], the band delay of the filter with
-    /// lead time `l` (M15.2): 0 at `l = 0`, strictly falling.
+    /// Computes the band delay of the filter with lead time `l`,
+    /// `d(l) = - sum omega arg L / sum omega^2` \[s\] (M15.2): 0 at `l = 0`, and strictly
+    /// decreasing.
     pub fn band_delay_s(&self, lead_s: f64) -> f64 {
         let filter = self.filter_of(lead_s);
         -band_delay_s(
@@ -112,8 +117,8 @@ impl LeadDesign {
         )
     }
 
-    /// Computes `-d d(l) / d l`, dimensionless: with `x = a omega` the weighted mean of `(1 + x^2)
-    /// / (1 + x^4)`, or of `1 / (1 + x^2)` for the first order.
+    /// Computes `-d d(l) / d l`, dimensionless. With `x = a omega` it is the weighted mean of
+    /// `(1 + x^2) / (1 + x^4)`, or of `1 / (1 + x^2)` for first order.
     fn falling(&self, lead_s: f64) -> f64 {
         let zero_s = self.filter_of(lead_s).zero_s;
         let slopes = self.omega.iter().map(|&omega| {
@@ -126,8 +131,8 @@ impl LeadDesign {
         band_delay_s(slopes, &self.omega, None)
     }
 
-    /// Returns the filter for a negative signed delay, otherwise `None`. A signed delay below the
-    /// bound gets the filter with gain `R_max`.
+    /// Returns the filter for a negative signed delay \[s\]; `None` for others. A signed delay
+    /// below the lower bound is given the filter with the gain `R_max`.
     pub fn filter(&self, tau_s: f64) -> Option<LeadFilter> {
         if tau_s < 0.0 {
             Some(self.filter_of(self.lead_s(tau_s)))
@@ -136,18 +141,17 @@ impl LeadDesign {
         }
     }
 
-    /// Finds the lead time `l` with `d(l) = tau` \[s\], to 1e-14 relative; `l_max` for a `tau`
-    /// below the bound.
+    /// Finds the lead time `l` \[s\] with `d(l) = tau`, to a relative accuracy of 1e-14. Returns
+    /// `l_max` for a `tau` below the lower bound, and 0 for one that is not negative.
     ///
     /// ```text
     /// 1  low, high = 0, l_max;  l = tau / d'(0), at most l_max
-    /// 2  miss = d(l) - tau;  low or high = l, by the sign of the miss: d falls
-    /// 3  l' = l - miss / d'(l);  the midpoint where l' is not between low and high
-    /// 4  l = l', again from 2, until l changes by less than a relative 1e-9: the error is then about the square
+    /// 2  miss = d(l) - tau;  replace low or high by l according to the sign of the miss (d decreases)
+    /// 3  l' = l - miss / d'(l);  if l' is not between low and high, use the midpoint
+    /// 4  l = l', repeat from 2, until l changes by less than a relative 1e-9 (the error is then about its square)
     /// ```
     ///
-    /// Newton's method kept inside a bracket (Press et al., "Numerical Recipes", 3rd ed. 2007,
-    /// 9.4).
+    /// Newton's method within a bracket (Press et al., "Numerical Recipes", 3rd ed. 2007, 9.4).
     pub fn lead_s(&self, tau_s: f64) -> f64 {
         const STEPS: usize = 100;
         const RELATIVE_CHANGE: f64 = 1e-9;
@@ -183,13 +187,13 @@ impl LeadDesign {
     }
 }
 
-/// One signed delay for each channel: a pure delay where positive, a lead filter where negative
-/// (M15.5).
+/// A signed delay for each channel: a pure delay if positive, a lead filter if negative (M15.5).
 ///
-/// Filters, and their curves over the band, are computed on first use, once for all clones.
+/// The filters, and their curves over the band, are computed at first use, and shared by all
+/// clones.
 #[derive(Clone, Debug)]
 pub struct ChannelLeads {
-    /// Design that gives the filter for a signed delay.
+    /// Design that converts a signed delay to a filter.
     pub design: Arc<LeadDesign>,
     /// Signed delay of each channel \[s\].
     pub taus_s: Channels<f64>,
@@ -198,14 +202,14 @@ pub struct ChannelLeads {
 }
 
 impl PartialEq for ChannelLeads {
-    /// Cached filters follow from these two fields.
+    /// Compares the signed delays and the design, which determine the cached filters.
     fn eq(&self, other: &Self) -> bool {
         (&self.taus_s, &self.design) == (&other.taus_s, &other.design)
     }
 }
 
 impl ChannelLeads {
-    /// Creates the signed delays \[s\] with filters by `design`.
+    /// Creates the leads for signed delays \[s\], with filters according to `design`.
     pub fn new(design: Arc<LeadDesign>, taus_s: Channels<f64>) -> Self {
         Self {
             design,
@@ -215,19 +219,20 @@ impl ChannelLeads {
         }
     }
 
-    /// Returns every channel's lead filter; `None` where its signed delay is not negative.
+    /// Returns the lead filter of every channel; `None` if the signed delay is not negative.
     pub fn filters(&self) -> &Channels<Option<LeadFilter>> {
         self.filters
             .get_or_init(|| self.taus_s.map(|_, &tau_s| self.design.filter(tau_s)))
     }
 
-    /// Returns every channel's pure delay \[s\], the positive part of its signed delay.
+    /// Returns the pure delay of every channel \[s\], which is the positive part of its signed
+    /// delay.
     pub fn delays_s(&self) -> Channels<f64> {
         self.taus_s.map(|_, tau_s| tau_s.max(0.0))
     }
 
-    /// Returns the effect that the filters on a response's two channels have at each frequency in
-    /// the design's band; `None` where neither has a filter.
+    /// Returns magnitude and phase of the filters on the input and output of a response, at each
+    /// frequency of the design's band; `None` if neither has a filter.
     pub fn curve(&self, pair: Pair) -> Option<LeadCurve> {
         let curves = self.curves.get_or_init(|| {
             self.filters().map(|_, filter| {
@@ -243,7 +248,7 @@ impl ChannelLeads {
     }
 }
 
-/// Magnitude \[dB\] and phase \[rad\] of a filter, or of two in series.
+/// Magnitude \[dB\] and phase \[rad\] of a filter, or of two filters in series.
 #[derive(Clone, Debug)]
 pub struct LeadCurve {
     /// `20 log10 |L|` at each frequency.
@@ -264,7 +269,7 @@ impl LeadCurve {
         }
     }
 
-    /// Returns the curve of two filters in series.
+    /// Returns the curve of both filters in series.
     fn in_series(&self, other: &Self) -> Self {
         Self {
             magnitude_db: sums(&self.magnitude_db, &other.magnitude_db),
@@ -273,7 +278,7 @@ impl LeadCurve {
     }
 }
 
-/// Adds two curves frequency by frequency.
+/// Adds two curves, frequency by frequency.
 fn sums(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a + b).collect()
 }
@@ -301,7 +306,7 @@ mod tests {
 
     #[test]
     fn the_least_signed_delay_is_that_of_the_filter_at_the_limit_of_its_gain() {
-        // From independent numpy code: second order, n = 3, 0.5 to 12 rad/s.
+        // Reference: independent numpy code; second order, n = 3, 0.5 to 12 rad/s.
         let design = design(LeadOrder::Second, 3.0);
         assert!((design.lower_s() + 0.095_616_050_448_4).abs() < 1e-12);
         assert!((design.longest_lead_s() - 0.084_942_288_684_1).abs() < 1e-12);
@@ -320,9 +325,10 @@ mod tests {
             let design = design(if second { LeadOrder::Second } else { LeadOrder::First }, pole);
             let tau_s = share * design.lower_s();
             let lead_s = design.lead_s(tau_s);
-            // Rounding of a sum of 200 phases, whose errors may all have the same sign: 200 times
-            // 2.2e-16, and as much again for the divisor. For a lead far below the filter's lag b
-            // the difference a - b has lost digits: 2.2e-16 b, against a lead near share times b.
+            // Tolerance: rounding of a sum of 200 phases, whose errors may all have the same sign:
+            // 200 times 2.2e-16, and as much for the divisor. For a lead far below the filter's lag
+            // b, the difference a - b loses digits: 2.2e-16 b, compared with a lead of about share
+            // times b.
             let tolerance = 1e-13 + 1e-15 / share;
             prop_assert!((design.band_delay_s(lead_s) / tau_s - 1.0).abs() < tolerance, "{tau_s}");
         }

@@ -1,12 +1,12 @@
-//! Computes one gain and one delay or lead for each channel from two models (M6 to M10, M15).
+//! Computation of a gain and a delay or lead for each channel from two models (M6 to M10, M15).
 //!
-//! [`Delta`](delta::Delta) gives the gain and delay that each response needs; [`solve`] minimises
+//! [`Delta`](delta::Delta) holds the gain and delay needed by each response; [`solve`] minimises
 //! eq. (7) or the convex eq. (11), in logarithms of gains or in seconds, and proves the global
-//! minimum. The signed delays of M15 solve a convex program in the form of eq. (11);
-//! [`LeadDesign`](leads::LeadDesign) turns negative delays into filters. `solve` also explains
-//! infeasible constraints and their remedies; [`sensitivities`](sensitivity::sensitivities) and
-//! [`toggles`](sensitivity::toggles) give the cost of each constrained entry. Tables are `[output,
-//! input]`, gains are ratios, delays are seconds.
+//! minimum. The signed delays of M15 are the solution of a convex program in the form of eq. (11);
+//! [`LeadDesign`](leads::LeadDesign) converts negative delays to filters. `solve` also explains
+//! infeasible constraints and finds remedies; [`sensitivities`](sensitivity::sensitivities) and
+//! [`toggles`](sensitivity::toggles) compute the cost of each constrained entry. Tables are
+//! `[output, input]`, gains are ratios, delays are in seconds.
 
 pub mod branch_and_bound;
 pub mod channel_correction;

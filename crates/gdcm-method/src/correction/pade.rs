@@ -1,21 +1,21 @@
-//! Pade approximants of a delay.
+//! Padé approximants of a delay.
 
 use nalgebra::{Complex, DMatrix, DVector, RowDVector};
 
 use super::channel_model::ChannelModel;
 
-/// Maximum order of an approximant.
+/// Maximum order of a Padé approximant.
 pub const HIGHEST_PADE_ORDER: usize = 8;
 
-/// Pade approximant `[N/N]` to `e^(-tau s)`: among all rational functions of this order it agrees
-/// in the most derivatives at `s = 0`. Its magnitude is 1 at every frequency; its error is in the
-/// phase only.
+/// Padé approximant `[N/N]` of `e^(-tau s)`: among all rational functions of this order it agrees
+/// in the most derivatives at `s = 0`. Its magnitude is 1 at every frequency, so that only its
+/// phase has an error.
 ///
 /// With `z = tau s / 2` it is `(1 - t) / (1 + t)`, where `t` is the N-th convergent in Lambert's
-/// continued fraction `tanh z = z / (1 + z^2 / (3 + z^2 / (5 + ...)))`. The fraction, read as an
-/// integrator ladder, is a state-space model whose controllability and observability Gramians are
-/// both the identity, whatever the order and the delay, so the entries of its matrices are similar
-/// in magnitude.
+/// continued fraction `tanh z = z / (1 + z^2 / (3 + z^2 / (5 + ...)))`. The fraction is realised as
+/// an integrator ladder, a state-space model whose controllability and observability Gramians are
+/// both the identity for any order and delay. The entries of its matrices are therefore similar in
+/// magnitude.
 ///
 /// Source: NIST Digital Library of Mathematical Functions, 4.39.1 (Lambert's fraction).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,14 +24,15 @@ pub struct Pade {
 }
 
 impl Default for Pade {
-    /// Second order: at `omega tau = 1` the phase error is below 0.1 degrees.
+    /// Returns the second order, whose phase error at `omega tau = 1` is below 0.1 degrees.
     fn default() -> Self {
         Self { order: 2 }
     }
 }
 
 impl Pade {
-    /// Returns the approximant of this order, if it is from 1 to [`HIGHEST_PADE_ORDER`].
+    /// Returns the approximant of an order from 1 to [`HIGHEST_PADE_ORDER`]; `None` for any other
+    /// order.
     pub fn new(order: usize) -> Option<Self> {
         if (1..=HIGHEST_PADE_ORDER).contains(&order) {
             Some(Self { order })
@@ -45,11 +46,12 @@ impl Pade {
         self.order
     }
 
-    /// Creates the approximant's state-space model for a positive delay \[s\].
+    /// Creates the state-space model of the approximant for a positive delay \[s\].
     ///
     /// The ladder is `t = e_1' (L/z + S)^-1 e_1` with `L = diag(1, 3, 5, ...)` and `S` with 1 above
-    /// and -1 below the diagonal. With `R = S + e_1 e_1'` and `K = L^(-1/2) R L^(-1/2)` this gives
-    /// `A = -(2/tau) K^-1`, `B = 2/sqrt(tau) K^-1 e_1`, `C = 2/sqrt(tau) e_1' K^-1`, `D = (-1)^N`.
+    /// and -1 below the diagonal. With `R = S + e_1 e_1'` and `K = L^(-1/2) R L^(-1/2)`, the
+    /// matrices are `A = -(2/tau) K^-1`, `B = 2/sqrt(tau) K^-1 e_1`, `C = 2/sqrt(tau) e_1' K^-1`,
+    /// `D = (-1)^N`.
     pub fn model(self, delay_s: f64) -> ChannelModel {
         let gain = 2.0 / delay_s.sqrt();
         ChannelModel {
@@ -73,7 +75,8 @@ impl Pade {
         ladder_root(row) * ladder_root(column) * self.ladder_inverse(row, column)
     }
 
-    /// Returns an entry of `R^-1`, which is 1, 0 or -1: R is solved from its ends inwards.
+    /// Returns an entry of `R^-1`, which is 1, 0 or -1 (found by solving with R from its ends
+    /// inwards).
     fn ladder_inverse(self, row: usize, column: usize) -> f64 {
         match (self.has_parity(row), self.has_parity(column)) {
             (true, true) => 1.0,
@@ -83,17 +86,19 @@ impl Pade {
         }
     }
 
-    /// Whether an index, counted from 1, is odd or even like the order.
+    /// Returns whether `place + 1`, the index counted from 1, has the same parity as the order.
+    /// (`place` is counted from 0.)
     fn has_parity(self, place: usize) -> bool {
         (place + 1) % 2 == self.order % 2
     }
 
-    /// Computes the missing lag \[rad\] of the approximant at `angle = omega tau`: `angle - 2 arg
-    /// theta_N(j angle / 2)`.
+    /// Computes the lag missing from the approximant \[rad\] at `angle = omega tau`:
+    /// `angle - 2 arg theta_N(j angle / 2)`.
     ///
-    /// The denominators are the reverse Bessel polynomials, `theta_n = (2n - 1) theta_(n-1) + z^2
-    /// theta_(n-2)`. The ratio between consecutive polynomials lies above the real axis, so that
-    /// their angles add up without an extra turn.
+    /// The denominators are the reverse Bessel polynomials,
+    /// `theta_n = (2n - 1) theta_(n-1) + z^2 theta_(n-2)`. The ratio of consecutive polynomials
+    /// lies above the real axis, so that the sum of the angles of these ratios is continuous,
+    /// without extra turns.
     pub fn phase_error(self, angle: f64) -> f64 {
         let z = Complex::new(0.0, 0.5 * angle);
         let mut ratio = 1.0 + z;
@@ -119,7 +124,7 @@ mod tests {
         (1..=n).map(|k| k as f64).product()
     }
 
-    /// `P(x) = sum (2N - k)! / (k! (N - k)!) x^k`.
+    /// Evaluates `P(x) = sum (2N - k)! / (k! (N - k)!) x^k`.
     fn polynomial(order: usize, x: Complex<f64>) -> Complex<f64> {
         let mut sum = Complex::from(0.0);
         for k in (0..=order).rev() {
@@ -129,7 +134,7 @@ mod tests {
         sum
     }
 
-    /// The approximant by its polynomials, `P(-x) / P(x)`.
+    /// Evaluates the approximant as a quotient of polynomials, `P(-x) / P(x)`.
     fn by_polynomials(order: usize, x: Complex<f64>) -> Complex<f64> {
         polynomial(order, -x) / polynomial(order, x)
     }
@@ -185,8 +190,8 @@ mod tests {
             let pade = Pade::new(order).unwrap();
             let mut followed = 0.0;
             let mut before = Complex::from(1.0);
-            // Steps far below half a turn, up to angles at which the lag of the approximant no
-            // longer grows.
+            // Steps far below half a turn, up to angles at which the lag of the approximant has
+            // stopped growing.
             for step in 1..=4000 {
                 let angle = f64::from(step) * 0.01;
                 let error = by_polynomials(order, Complex::new(0.0, angle))

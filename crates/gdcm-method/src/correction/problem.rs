@@ -1,5 +1,4 @@
-//! The problem of the channel values: eq. (7) for gains, eq. (11) for delays, M15.4 for signed
-//! delays.
+//! Problem for the channel values: eq. (7) for gains, eq. (11) for delays, M15.4 for signed delays.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,8 +8,8 @@ use super::branch_and_bound::effort::SearchStopped;
 use super::interval::Interval;
 use super::quantity::{Coordinate, GainObjective, Quantity};
 
-/// Minimum and maximum value of every channel (M7): gains `0 < lower <= upper`, delays \[s\] with
-/// `lower` zero, signed delays \[s\] `lower <= 0 <= upper` (M15.4).
+/// Minimum and maximum value of every channel (M7): gains `0 < lower <= upper`; delays \[s\], with
+/// `lower` zero; signed delays \[s\], `lower <= 0 <= upper` (M15.4).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(from = "[f64; 2]", into = "[f64; 2]")]
 pub struct Bounds {
@@ -30,11 +29,11 @@ impl From<Bounds> for [f64; 2] {
     }
 }
 
-/// Mismatch \[s\] up to which a loop of constrained delays counts as agreeing: half a unit in the
-/// last displayed digit.
+/// Deviation \[s\] up to which a loop of constrained delays is accepted as consistent: half a unit
+/// of the last displayed digit.
 pub const DELAY_AGREEMENT_S: f64 = 5e-5;
 
-/// Problem for the gains (M8), the delays \[s\] (M9) or the signed delays \[s\] (M15.4) in a
+/// Problem for the gains (M8), the delays \[s\] (M9) or the signed delays \[s\] (M15.4) of a
 /// condition's correction.
 ///
 /// ```text
@@ -47,26 +46,27 @@ pub const DELAY_AGREEMENT_S: f64 = 5e-5;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
     pub quantity: Quantity,
-    /// Delta gain `G` or delta delay `D` for each response, p x m; the objective ignores an entry
-    /// with `None`.
+    /// Delta gain `G` or delta delay `D` \[s\] of each response, p x m; `None` is ignored in the
+    /// objective.
     pub delta: PairTable<Option<f64>>,
-    /// Entries whose net value is constrained to their delta, p x m.
+    /// Entries whose net value is constrained to equal their delta, p x m.
     pub constrained: PairTable<bool>,
     /// Entries that count in the objective (`w = 1`), p x m.
     pub fitted: PairTable<bool>,
     /// Bounds on every channel.
     pub bounds: Bounds,
-    /// Weight of the departures of output gains from 1, of output delays from 0, or of all signed
+    /// Weight of the deviations of output gains from 1, of output delays from 0, or of all signed
     /// delays from 0; `alpha = 0` means the limit `alpha -> 0+`.
     pub alpha: f64,
-    /// Mismatch, in dB or seconds, up to which a loop of constrained entries counts as agreeing.
+    /// Deviation, in dB or seconds, up to which a loop of constrained entries is accepted as
+    /// consistent.
     pub agreement: f64,
 }
 
 /// Reason why gains or delays cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ProblemError {
-    /// A table and the deltas differ in shape.
+    /// A table differs in shape from the table of deltas.
     #[error(
         "the table of {table} entries has {} outputs and {} inputs, but the {quantity}s have {} and {}",
         found.0,
@@ -77,9 +77,9 @@ pub enum ProblemError {
     Shape {
         quantity: Quantity,
         table: &'static str,
-        /// Outputs and inputs in the table.
+        /// Number of outputs and inputs in the table.
         found: (usize, usize),
-        /// Outputs and inputs in the deltas.
+        /// Number of outputs and inputs in the table of deltas.
         expected: (usize, usize),
     },
     /// A constrained entry has no delta.
@@ -89,34 +89,34 @@ pub enum ProblemError {
     #[error("the delta gain of output {} and input {} is {gain}; it must be from 1e-50 to 1e50", pair.output + 1, pair.input + 1)]
     Gain {
         pair: Pair,
-        /// Delta gain (ratio).
+        /// Delta gain; a ratio, not in dB.
         gain: f64,
     },
-    /// A delta delay is not a valid time.
+    /// A delta delay is not finite, or too large.
     #[error("the delta delay of output {} and input {} is {delay_s} s; it must be a number below 1e50 s", pair.output + 1, pair.input + 1)]
     Delay {
         pair: Pair,
         /// Delta delay \[s\].
         delay_s: f64,
     },
-    /// The bounds are not valid for the quantity ([`Bounds`]).
+    /// The bounds are invalid for the quantity, see [`Bounds`].
     #[error("{}", bounds_error(*quantity, *bounds))]
     Bounds { quantity: Quantity, bounds: Bounds },
-    /// `alpha` is negative or not a number.
+    /// `alpha` is negative, too large or not a number.
     #[error("alpha is {alpha}; it must be a number from 0 to 1e12")]
     Alpha { alpha: f64 },
     /// The quadratic program for the delays was not solved.
-    #[error("the quadratic program of the delays was not solved: {reason}")]
+    #[error("the quadratic program for the delays was not solved: {reason}")]
     Program {
         /// Status reported by the solver.
         reason: String,
     },
-    /// The search was stopped from outside.
-    #[error("search for the optimum stopped")]
+    /// The search was stopped by its caller.
+    #[error("the search for the optimum was stopped")]
     Stopped,
 }
 
-/// Message on bounds that are not valid.
+/// Returns the message about invalid bounds.
 fn bounds_error(quantity: Quantity, bounds: Bounds) -> String {
     let Bounds { lower, upper } = bounds;
     match quantity {
@@ -139,17 +139,17 @@ impl From<SearchStopped> for ProblemError {
     }
 }
 
-/// Valid delta gains; outside this range they overflow or underflow when squared and summed.
+/// Valid delta gains; outside this range, their squares overflow or underflow.
 const GAINS: std::ops::RangeInclusive<f64> = 1e-50..=1e50;
 
-/// Valid gain bounds (-180 to 180 dB); outside this range products overflow during the search for a
-/// proof.
+/// Valid gain bounds (-180 to 180 dB); outside this range, products overflow during the search for
+/// a proof.
 const GAIN_BOUNDS: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 
-/// Delta delays and bounds beyond this \[s\] overflow when squared.
+/// Maximum magnitude of a delta delay or bound \[s\]; beyond it, its square overflows.
 const MOST_DELAY_S: f64 = 1e50;
 
-/// A response with its delta gain or delta delay.
+/// A response and its delta gain or delta delay.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Entry {
     pub(crate) pair: Pair,
@@ -157,8 +157,8 @@ pub(crate) struct Entry {
 }
 
 impl Problem {
-    /// Creates the problem of eq. (7) that fits every entry: `alpha = 1`, gains compared as ratios,
-    /// no tolerance on loops.
+    /// Creates the problem of eq. (7) in which every entry is fitted: `alpha = 1`, gains compared
+    /// as ratios, no tolerance for loops.
     pub fn gains(
         delta: PairTable<Option<f64>>,
         constrained: PairTable<bool>,
@@ -177,8 +177,8 @@ impl Problem {
         }
     }
 
-    /// Creates the problem of eq. (11) that fits every entry, with `alpha = 1`; all times in
-    /// seconds.
+    /// Creates the problem of eq. (11) in which every entry is fitted, with `alpha = 1`; all times
+    /// are in seconds.
     pub fn delays(
         delta_s: PairTable<Option<f64>>,
         constrained: PairTable<bool>,
@@ -194,8 +194,8 @@ impl Problem {
         }
     }
 
-    /// Creates the convex program of M15.4 that fits every entry, with `alpha = 1`; all times in
-    /// seconds.
+    /// Creates the convex program of M15.4 in which every entry is fitted, with `alpha = 1`; all
+    /// times are in seconds.
     pub fn signed_delays(
         delta_s: PairTable<Option<f64>>,
         constrained: PairTable<bool>,
@@ -225,7 +225,7 @@ impl Problem {
         }
     }
 
-    /// Checks that a table and the deltas have the same shape.
+    /// Checks that a table has the same shape as the table of deltas.
     fn check_shape(
         &self,
         table: &'static str,
@@ -281,8 +281,8 @@ impl Problem {
         })
     }
 
-    /// Computes the objective at these channel values (inputs m, outputs p): in squared ratios, in
-    /// squared dB, or in s².
+    /// Computes the objective for the given channel values (m inputs, p outputs): in squared
+    /// ratios, squared dB or s².
     pub fn objective_at(&self, inputs: &[f64], outputs: &[f64]) -> f64 {
         let fit: f64 = self
             .fit_entries()
@@ -292,7 +292,7 @@ impl Problem {
                     .powi(2)
             })
             .sum();
-        // Skipped at alpha = 0, where it would only add rounding.
+        // Without the regularisation if alpha is 0: it would only add rounding errors.
         if self.alpha == 0.0 {
             return fit;
         }
@@ -310,7 +310,7 @@ impl Problem {
         fit + self.alpha * departures
     }
 
-    /// Iterates over the entries that count in the objective (`w = 1`).
+    /// Iterates over the entries that count in the objective (`w = 1`), each with its delta.
     pub(crate) fn fit_entries(&self) -> impl Iterator<Item = Entry> + '_ {
         self.delta.iter().filter_map(|(pair, delta)| {
             if self.fitted[pair] {
@@ -321,15 +321,16 @@ impl Problem {
         })
     }
 
-    /// Iterates over the constrained entries.
+    /// Iterates over the constrained entries, each with its delta.
     pub(crate) fn constrained_entries(&self) -> impl Iterator<Item = Entry> + '_ {
         self.constrained
             .marked()
             .filter_map(|pair| self.delta[pair].map(|delta| Entry { pair, delta }))
     }
 
-    /// Returns the coordinate in which the constrained entries are sums. Delays are homogeneous: in
-    /// units of the problem's longest time (1 s where every time is 0) the values are of order 1.
+    /// Returns the coordinate in which a constrained entry is a sum. Times are divided by the
+    /// longest time of the problem (1 s if every time is 0), so that the values are of order 1;
+    /// this scaling does not change the solution.
     pub(crate) fn coordinate(&self) -> Coordinate {
         if self.quantity.is_gain() {
             return Coordinate::Logarithm;
@@ -339,8 +340,8 @@ impl Problem {
             .iter()
             .filter_map(|(_, delay_s)| *delay_s)
             .fold(0.0_f64, |most, delay_s| most.max(delay_s.abs()));
-        // A bound far above any channel's possible target does not indicate the size of the
-        // solution.
+        // Use the deltas rather than a bound, which may be far above any possible value of a
+        // channel.
         let unit_s = if asked_s > 0.0 {
             asked_s
         } else {
@@ -351,15 +352,15 @@ impl Problem {
         }
     }
 
-    /// Returns the coordinate range, the same for every channel.
+    /// Returns the permitted range of the coordinate, the same for every channel.
     pub(crate) fn range(&self) -> Interval {
         let coordinate = self.coordinate();
         let low = coordinate.coordinate(self.bounds.lower);
         let high = coordinate.coordinate(self.bounds.upper);
         match coordinate {
             Coordinate::Logarithm => Interval { low, high },
-            // A path along constrained entries requires at most one unit of a channel for each
-            // entry: an upper bound beyond that sum is never active.
+            // Limit the range: along a path of constrained entries, a channel differs by at most
+            // one unit per entry, so that an upper bound beyond this sum is never active.
             Coordinate::Time { .. } => {
                 let most = (self.delta.outputs() + self.delta.inputs()) as f64;
                 Interval {

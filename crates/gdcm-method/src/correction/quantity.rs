@@ -1,11 +1,11 @@
-//! The channels' quantity (a gain, a delay or a signed delay), its residuals, and the coordinate in
+//! Quantity of the channels (gain, delay or signed delay), its residuals, and the coordinate in
 //! which the net value is a sum.
 
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// Distance measure between `k_o k_i` and G.
+/// Measure of the deviation of `k_o k_i` from G.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum GainObjective {
     /// `sum w (G - k_o k_i)^2 + alpha sum (k_o - 1)^2`, eq. (7), with the weight `w` 1 for a fitted
@@ -13,22 +13,22 @@ pub enum GainObjective {
     #[default]
     #[serde(rename = "ratio")]
     Ratio,
-    /// `sum w (20 log10 G - 20 log10 k_o k_i)^2 + alpha sum (20 log10 k_o)^2`: gains too high and
-    /// too low by the same factor count alike, and an entry with a large `G` counts no more than
-    /// another. Convex.
+    /// `sum w (20 log10 G - 20 log10 k_o k_i)^2 + alpha sum (20 log10 k_o)^2`. Gains that are too
+    /// high or too low by the same factor have the same weight, and entries with large `G` do not
+    /// dominate. Convex.
     #[serde(rename = "dB")]
     Decibel,
 }
 
-/// Quantity of the channels. Gains of two channels multiply, delays add.
+/// Quantity of the channels. The gains of two channels multiply; their delays add.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
-    /// Gains, dimensionless, compared by the given objective (eq. (7), M8).
+    /// Gains, dimensionless, compared as given by the objective (eq. (7), M8).
     Gain(GainObjective),
-    /// Delays in seconds (eq. (11), M9).
+    /// Delays \[s\] (eq. (11), M9).
     Delay,
-    /// Signed delays in seconds; a negative delay is a lead. Inputs and outputs are both
-    /// regularised (M15.4).
+    /// Signed delays \[s\]; a negative delay is a lead. Both inputs and outputs are regularised
+    /// (M15.4).
     SignedDelay,
 }
 
@@ -39,7 +39,7 @@ const DECIBEL: f64 = 20.0 / std::f64::consts::LN_10;
 pub(crate) const SQUARED_DECIBEL: f64 = DECIBEL * DECIBEL;
 
 impl Quantity {
-    /// Whether the quantity is a gain.
+    /// Returns whether the quantity is a gain.
     pub fn is_gain(self) -> bool {
         matches!(self, Self::Gain(_))
     }
@@ -49,12 +49,13 @@ impl Quantity {
         if self.is_gain() { 1.0 } else { 0.0 }
     }
 
-    /// Whether departures on the inputs are regularised besides those on the outputs.
+    /// Returns whether the deviations of the inputs are regularised, in addition to those of the
+    /// outputs.
     pub(crate) fn regularises_inputs(self) -> bool {
         self == Quantity::SignedDelay
     }
 
-    /// Whether the lower bound is adjustable: for delays it is fixed at 0.
+    /// Returns whether the lower bound can be changed; for delays it is fixed at 0.
     pub(crate) fn has_lower_bound(self) -> bool {
         self != Quantity::Delay
     }
@@ -68,7 +69,7 @@ impl Quantity {
         }
     }
 
-    /// Computes a channel's value from the net value and the other channel.
+    /// Computes the value of a channel from the net value and the value of the other channel.
     pub(crate) fn without(self, net: f64, other: f64) -> f64 {
         if self.is_gain() {
             net / other
@@ -77,7 +78,8 @@ impl Quantity {
         }
     }
 
-    /// Computes an entry's residual, whose square the objective sums: a ratio, dB or seconds.
+    /// Computes the residual of an entry, whose square is summed in the objective: a difference of
+    /// ratios, dB or seconds.
     pub(crate) fn miss(self, delta: f64, output: f64, input: f64) -> f64 {
         match self {
             Quantity::Gain(GainObjective::Ratio) => delta - output * input,
@@ -86,8 +88,8 @@ impl Quantity {
         }
     }
 
-    /// Computes the derivative of the squared residual with respect to a logarithmic gain or a
-    /// delay.
+    /// Computes the derivative of an entry's squared residual with respect to the logarithm of a
+    /// gain, or to a delay.
     pub(crate) fn slope(self, delta: f64, output: f64, input: f64) -> f64 {
         let net = self.net(output, input);
         match self {
@@ -97,7 +99,7 @@ impl Quantity {
         }
     }
 
-    /// Converts a coordinate difference to dB or seconds.
+    /// Converts a difference of coordinates to dB or seconds.
     pub(crate) fn difference(self, difference: f64, coordinate: Coordinate) -> f64 {
         if self.is_gain() {
             difference * DECIBEL
@@ -106,7 +108,8 @@ impl Quantity {
         }
     }
 
-    /// Converts a slope per unit logarithm to a slope per dB, or per second to per millisecond.
+    /// Converts a slope per unit of natural logarithm to a slope per dB, or a slope per second to a
+    /// slope per millisecond.
     pub(crate) fn per_unit(self, slope: f64) -> f64 {
         if self.is_gain() {
             slope / DECIBEL
@@ -126,12 +129,12 @@ impl fmt::Display for Quantity {
     }
 }
 
-/// Coordinate in which the net value is a sum over two channels.
+/// Coordinate in which the net value is the sum over two channels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Coordinate {
-    /// Natural logarithm.
+    /// Natural logarithm of a gain.
     Logarithm,
-    /// Delay in this unit.
+    /// Delay divided by this time \[s\].
     Time { unit_s: f64 },
 }
 
@@ -152,7 +155,7 @@ impl Coordinate {
         }
     }
 
-    /// Converts an objective in this coordinate to the unit of the gains' objective, or to s².
+    /// Converts an objective in this coordinate to the unit of the gain objective, or to s².
     pub(crate) fn objective(self, objective: f64) -> f64 {
         match self {
             Coordinate::Logarithm => objective,

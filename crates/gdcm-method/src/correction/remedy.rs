@@ -12,24 +12,24 @@ use super::problem::Problem;
 use super::quantity::Quantity;
 use super::rounding::three_digits;
 
-/// Single changes that each make all constrained entries feasible at their delta; empty where
+/// Single changes, each of which makes all constrained entries feasible at their delta; empty if
 /// several changes are needed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Remedy {
-    /// Constrained quantity: gains, or delays in seconds.
+    /// Constrained quantity: gains, delays \[s\] or signed delays \[s\].
     pub quantity: Quantity,
-    /// Minimum sufficient upper bound if the lower bound stays, rounded up to three digits.
+    /// Minimum sufficient upper bound if the lower bound is unchanged, rounded up to three digits.
     pub upper: Option<f64>,
-    /// Maximum sufficient lower bound if the upper bound stays, rounded down to three digits;
-    /// `None` for delays.
+    /// Maximum sufficient lower bound if the upper bound is unchanged, rounded down to three
+    /// digits; `None` for delays, whose lower bound is fixed.
     pub lower: Option<f64>,
-    /// Each constrained entry whose release alone suffices.
+    /// Constrained entries whose release alone is sufficient.
     pub free: Vec<Pair>,
 }
 
 impl Remedy {
-    /// Finds the remedy of these conflicts between the `constraints` of `problem`; `None` where
-    /// there is no conflict.
+    /// Finds the remedy for conflicts between the `constraints` of `problem`; `None` without
+    /// conflicts.
     pub(crate) fn new(
         problem: &Problem,
         constraints: &Constraints,
@@ -42,7 +42,7 @@ impl Remedy {
         let free = sufficient_releases(constraints, conflicts, effort)?;
         let coordinate = problem.coordinate();
         let sufficient = SufficientRange::new(constraints);
-        // A bound that is not the obstacle stays unchanged.
+        // `max`, `min`: leave a bound unchanged if it is already sufficient.
         let upper = sufficient
             .high
             .map(|high| three_digits(coordinate.value(high), f64::ceil).max(problem.bounds.upper));
@@ -62,7 +62,7 @@ impl Remedy {
     }
 }
 
-/// Finds the conflicting entries whose release alone makes all others feasible.
+/// Finds the conflicting entries whose release alone makes all other entries feasible.
 fn sufficient_releases(
     constraints: &Constraints,
     conflicts: &[Conflict],
@@ -74,7 +74,7 @@ fn sufficient_releases(
         .collect();
     let mut sufficient = Vec::new();
     for pair in suspects {
-        // Each channel is placed by a walk along the constrained entries.
+        // Work: each channel is placed by a walk along the constrained entries.
         effort.spend((constraints.nodes() * constraints.entries.len()) as u64 / 8);
         effort.check()?;
         let mut others = constraints.entries.clone();
@@ -86,7 +86,7 @@ fn sufficient_releases(
     Ok(sufficient)
 }
 
-/// Sufficient ends of the channels' coordinate range, each with the other end unchanged.
+/// Sufficient ends of the channels' coordinate range, each for an unchanged other end.
 #[derive(Default)]
 struct SufficientRange {
     /// Maximum sufficient lower end.
@@ -96,7 +96,8 @@ struct SufficientRange {
 }
 
 impl SufficientRange {
-    /// Finds both ends; both are `None` where a loop is inconsistent.
+    /// Finds both ends; both are `None` if a loop is inconsistent, which no change of the bounds
+    /// resolves.
     fn new(constraints: &Constraints) -> Self {
         let components = Components::new(constraints);
         for entry in &constraints.entries {
@@ -106,13 +107,14 @@ impl SufficientRange {
             }
         }
         let nodes = components.nodes();
-        // Maximum width that a component needs, and the sums that its channel pairs need at each
-        // end.
+        // `widest`: maximum width required by a component. `lowest`, `highest`: ends required by
+        // the sums of channel pairs.
         let mut widest = 0.0_f64;
         let mut lowest = f64::INFINITY;
         let mut highest = f64::NEG_INFINITY;
         for component in 0..components.count() {
-            // A component without inputs or outputs is a single channel, which is always feasible.
+            // Skip a component without inputs or outputs: it is a single channel, which is always
+            // feasible.
             let Some(inputs) = offset_range(nodes.inputs, component) else {
                 continue;
             };
@@ -136,7 +138,8 @@ impl SufficientRange {
     }
 }
 
-/// Returns the offset range over a component's nodes; `None` where it has no such nodes.
+/// Returns the range of offsets over the nodes of a component; `None` if none of the nodes belongs
+/// to it.
 fn offset_range(nodes: &[Placement], component: usize) -> Option<Interval> {
     let mut range: Option<Interval> = None;
     for node in nodes {

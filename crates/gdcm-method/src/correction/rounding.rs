@@ -1,13 +1,13 @@
-//! Rounding of suggested bounds.
+//! Rounding of suggested bounds to three digits.
 
-/// Rounds `value` to three significant digits in the direction of `round` (`f64::ceil` or
-/// `f64::floor`). A value with three digits up to rounding errors is not changed.
+/// Rounds `value` to three significant digits with `round` (`f64::ceil` or `f64::floor`). A value
+/// that already has three digits, apart from rounding errors, is not changed.
 pub(super) fn three_digits(value: f64, round: fn(f64) -> f64) -> f64 {
     if value == 0.0 || !value.is_finite() {
         return value;
     }
     let exponent = value.abs().log10().floor() as i32 - 2;
-    // Negative powers are applied by division: 187 / 100 is 1.87 exactly.
+    // Divide instead of multiplying by a negative power: 187 / 100 is 1.87 exactly.
     let digits = if exponent < 0 {
         value * 10f64.powi(-exponent)
     } else {

@@ -1,4 +1,4 @@
-//! A problem's objective as a function of the scales that its constrained entries leave free (M8,
+//! Objective of a problem as a function of the scales that its constrained entries leave free (M8,
 //! structure).
 
 use super::branch_and_bound::exponential::{CombinedEntries, ProductEntry};
@@ -10,7 +10,8 @@ use super::components::Components;
 use super::problem::{Entry, Problem};
 use super::quantity::{Coordinate, GainObjective, Quantity, SQUARED_DECIBEL};
 
-/// Builds the objective for `problem` over the scales of `components`, in the problem's coordinate.
+/// Builds the objective of `problem` over the scales of `components`, in the coordinate of the
+/// problem.
 pub(crate) fn scaled_objective(problem: &Problem, components: &Components) -> Objective {
     let mut entries = fit_entries(problem, components);
     if problem.alpha > 0.0 {
@@ -30,7 +31,7 @@ pub(crate) fn scaled_objective(problem: &Problem, components: &Components) -> Ob
     };
     let mut lower = components.lower.clone();
     let mut upper = components.upper.clone();
-    // The ground.
+    // Last scale: the ground.
     lower.push(0.0);
     upper.push(0.0);
     Objective {
@@ -41,7 +42,7 @@ pub(crate) fn scaled_objective(problem: &Problem, components: &Components) -> Ob
     }
 }
 
-/// Lists the fitted entries.
+/// Lists the fitted entries, each with the scales of its two components.
 fn fit_entries(problem: &Problem, components: &Components) -> Vec<SquareEntry> {
     let nodes = components.nodes();
     let mut entries = Vec::new();
@@ -61,8 +62,8 @@ fn fit_entries(problem: &Problem, components: &Components) -> Vec<SquareEntry> {
     entries
 }
 
-/// Lists the channels' regularised departures from their neutral value: each is an entry with the
-/// ground as its other scale.
+/// Lists the regularised deviations of the channels from their neutral value, each as an entry with
+/// the ground as its other scale.
 fn departures(problem: &Problem, components: &Components) -> Vec<SquareEntry> {
     let ground = components.count();
     let delta = problem.quantity.neutral();
@@ -91,7 +92,7 @@ fn departures(problem: &Problem, components: &Components) -> Vec<SquareEntry> {
     entries
 }
 
-/// Converts the targets to coordinates and multiplies the weights by `factor`.
+/// Converts the targets to coordinates, and multiplies the weights by `factor`.
 fn in_coordinate(entries: &[SquareEntry], coordinate: Coordinate, factor: f64) -> Vec<SquareEntry> {
     entries
         .iter()
@@ -103,8 +104,8 @@ fn in_coordinate(entries: &[SquareEntry], coordinate: Coordinate, factor: f64) -
         .collect()
 }
 
-/// Combines entries compared as ratios to one term for each pair of scales that share an entry:
-/// `forward` contains the entries whose input has the greater index.
+/// Combines entries compared as ratios into one term for each pair of scales that share an entry;
+/// `forward` contains the entries whose input scale has the larger index.
 fn ratio_terms(entries: &[SquareEntry], scales: usize) -> TermSum {
     let mut groups: Vec<Vec<ProductEntry>> = vec![Vec::new(); scales * scales];
     let mut constant = Rounded::default();
@@ -135,10 +136,10 @@ fn ratio_terms(entries: &[SquareEntry], scales: usize) -> TermSum {
     TermSum { terms, constant }
 }
 
-/// Returns the rounding level of the objective, in the problem's coordinate.
+/// Returns the rounding level of the objective, in the coordinate of the problem.
 ///
-/// This is 1e-9 times the objective without any correction (rounding in a sum of squares grows with
-/// the magnitude of the summed values), plus `1e-20 alpha` for each output, the square of a
+/// It is 1e-9 times the objective without correction (rounding in a sum of squares is proportional
+/// to the magnitude of the summed values), plus `1e-20 alpha` for each output, the square of a
 /// rounding error.
 pub(crate) fn rounding_floor(problem: &Problem) -> f64 {
     let coordinate = problem.coordinate();
@@ -149,7 +150,7 @@ pub(crate) fn rounding_floor(problem: &Problem) -> f64 {
     (1e-9 * energy + 1e-20 * problem.alpha * problem.delta.outputs() as f64).max(f64::MIN_POSITIVE)
 }
 
-/// Returns an entry's squared residual without any correction.
+/// Returns the squared residual of an entry without correction.
 fn uncorrected_square(quantity: Quantity, coordinate: Coordinate, delta: f64) -> f64 {
     match quantity {
         Quantity::Gain(GainObjective::Ratio) => delta * delta,

@@ -1,5 +1,5 @@
 //! Cost of each constrained entry and each active bound at the solution: its multiplier, and the
-//! change from constraining or releasing it.
+//! change of the objective if an entry is constrained or released.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -14,34 +14,35 @@ use super::quantity::Quantity;
 use super::solution::{Outcome, Solution};
 use super::solve::solve;
 
-/// A constraint that keeps the channels from a lower objective.
+/// A constraint that prevents a lower objective.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ActiveConstraint {
-    /// An entry constrained to its target.
+    /// An entry that is constrained to its target.
     Held(Pair),
-    /// A channel on its lower bound; a delay at zero that would have to be negative.
+    /// A channel on its lower bound, such as a delay at zero that would otherwise be negative.
     LowerBound(Channel),
     UpperBound(Channel),
 }
 
-/// Multiplier of an active constraint.
+/// Sensitivity of the minimum objective to an active constraint, from its multiplier.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensitivity {
     pub quantity: Quantity,
     pub restraint: ActiveConstraint,
-    /// Change in the minimum objective for each dB or ms by which the constrained value or the
-    /// bound is raised (to first order).
+    /// Change of the minimum objective per dB or ms by which the constrained value or the bound is
+    /// raised (to first order).
     pub per_unit: f64,
-    /// `per_unit` as a share of the objective; 0 where the objective is 0.
+    /// `per_unit` divided by the objective; 0 if the objective is 0.
     pub share_per_unit: f64,
 }
 
 impl Sensitivity {
-    /// Chooses the step for the description \[dB or ms\]: 1, 0.1, 0.01, …, so that the slope is
-    /// extrapolated to at most half the objective, which cannot fall below zero.
+    /// Returns the step for the description \[dB or ms\]: the largest of 1, 0.1, 0.01, … for which
+    /// the linear extrapolation changes the objective by at most half; the objective cannot fall
+    /// below zero.
     pub fn step(&self) -> f64 {
         const MOST_SHARE: f64 = 0.5;
-        /// The minimum step is a nanosecond or 1e-6 dB.
+        /// Maximum number of powers of ten: the minimum step is a nanosecond, or 1e-6 dB.
         const MOST_POWERS: i32 = 6;
         let share = self.share_per_unit.abs();
         for power in 0..MOST_POWERS {
@@ -53,7 +54,8 @@ impl Sensitivity {
         10_f64.powi(-MOST_POWERS)
     }
 
-    /// Describes the sensitivity.
+    /// Describes the sensitivity: the constraint, and the change that would lower the objective by
+    /// how much.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         let name = match self.restraint {
             ActiveConstraint::Held(pair) => pair_name(pair, inputs, outputs),
@@ -63,7 +65,7 @@ impl Sensitivity {
             }
         };
         let step = self.step();
-        // An objective close to zero would reach zero within the minimum step.
+        // `min(100.0)`: an objective close to zero would become negative even for the minimum step.
         let percent = (100.0 * step * self.share_per_unit.abs()).min(100.0);
         let change = if self.quantity.is_gain() {
             self.gain_change_words(&number(step))
@@ -73,7 +75,7 @@ impl Sensitivity {
         format!("{name} is {change} would lower the objective by about {percent:.2} %.")
     }
 
-    /// Describes a gain's state and the change by `step` dB that lowers the objective.
+    /// Describes the constraint on a gain, and the change by `step` dB that lowers the objective.
     fn gain_change_words(&self, step: &str) -> String {
         let change = if self.per_unit > 0.0 {
             "lowering"
@@ -91,7 +93,7 @@ impl Sensitivity {
         }
     }
 
-    /// Describes a delay's state and the change by `step` ms that lowers the objective.
+    /// Describes the constraint on a delay, and the change by `step` ms that lowers the objective.
     fn delay_change_words(&self, step: &str) -> String {
         match self.restraint {
             ActiveConstraint::Held(_) if self.per_unit > 0.0 => {
@@ -101,7 +103,7 @@ impl Sensitivity {
             ActiveConstraint::LowerBound(_) if self.quantity == Quantity::Delay => {
                 format!("0: {step} ms of lead")
             }
-            ActiveConstraint::LowerBound(_) => format!("at its greatest lead: {step} ms more"),
+            ActiveConstraint::LowerBound(_) => format!("at its maximum lead: {step} ms more"),
             ActiveConstraint::UpperBound(_) => {
                 format!("on its upper bound: raising the bound by {step} ms")
             }
@@ -109,10 +111,10 @@ impl Sensitivity {
     }
 }
 
-/// Computes the sensitivity to every constrained entry and every active bound, the most expensive
-/// first.
+/// Computes the sensitivity to every constrained entry and every active bound, in descending order
+/// of magnitude.
 ///
-/// `solution` solves `problem` ([`super::solve`]).
+/// `solution` is the solution of `problem` by [`super::solve`].
 pub fn sensitivities(problem: &Problem, solution: &Solution) -> Vec<Sensitivity> {
     let minimum = ConstrainedMinimum::new(problem, solution);
     let multipliers = Multipliers::new(&minimum);
@@ -123,7 +125,8 @@ pub fn sensitivities(problem: &Problem, solution: &Solution) -> Vec<Sensitivity>
     }
     let channels = Channel::all(minimum.inputs, solution.outputs.len());
     for (channel, &slope) in channels.zip(&multipliers.channels) {
-        // The objective decreases if the upper bound is raised, or the lower bound lowered.
+        // The objective decreases if an upper bound is raised (negative slope) or a lower bound is
+        // lowered.
         let bound = if slope < 0.0 {
             ActiveConstraint::UpperBound(channel)
         } else if slope != 0.0 {
@@ -137,7 +140,7 @@ pub fn sensitivities(problem: &Problem, solution: &Solution) -> Vec<Sensitivity>
     sensitivities
 }
 
-/// Converts a multiplier to dB or ms.
+/// Converts a multiplier to a sensitivity per dB or per ms.
 fn sensitivity(
     problem: &Problem,
     solution: &Solution,
@@ -158,7 +161,8 @@ fn sensitivity(
     }
 }
 
-/// Computes the objective's slope in each logarithmic channel gain, or in each delay; inputs first.
+/// Computes the slope of the objective in the logarithm of each gain, or in each delay; inputs
+/// first.
 fn slopes(problem: &Problem, solution: &Solution) -> Vec<f64> {
     let quantity = problem.quantity;
     let inputs = solution.inputs.len();
@@ -185,12 +189,12 @@ fn slopes(problem: &Problem, solution: &Solution) -> Vec<f64> {
     slopes
 }
 
-/// Computes a solution's Karush-Kuhn-Tucker residual: the maximum objective slope along which
-/// channels could still move together, inside the bounds and with the entries constrained. For a
-/// convex problem zero is a proof.
+/// Computes the Karush-Kuhn-Tucker residual of a solution: the maximum slope of the objective along
+/// a direction in which channels could still move within the bounds and with the entries
+/// constrained. For a convex problem, a residual of zero proves the minimum.
 ///
-/// In the objective's unit per channel unit: for delays s² / s. `solution` solves `problem`
-/// ([`super::solve`]).
+/// The unit is that of the objective per channel unit; for delays, s² / s. `solution` is the
+/// solution of `problem` by [`super::solve`].
 pub fn kkt_residual(problem: &Problem, solution: &Solution) -> f64 {
     let minimum = ConstrainedMinimum::new(problem, solution);
     let mut residual = 0.0_f64;
@@ -203,27 +207,27 @@ pub fn kkt_residual(problem: &Problem, solution: &Solution) -> f64 {
     residual
 }
 
-/// Whether a channel is on its bounds.
+/// Whether the value of a channel equals its lower and its upper bound.
 #[derive(Clone, Copy)]
 struct AtBounds {
     lower: bool,
     upper: bool,
 }
 
-/// Slope along the common movement in a piece of tied channels.
+/// Slope of the objective along the common movement of a group of connected channels.
 struct Push {
     slope: f64,
     /// Channels whose active bounds stop the movement.
     stopping: Vec<usize>,
 }
 
-/// A minimum as a function of the channels: inputs first, then outputs.
+/// The minimum, with the channels as variables: inputs first, then outputs.
 struct ConstrainedMinimum {
     inputs: usize,
-    /// The objective's slope in each channel's value.
+    /// Slope of the objective in the value of each channel.
     slopes: Vec<f64>,
     at_bounds: Vec<AtBounds>,
-    /// The constrained entries: each fixes the sum over an input and an output.
+    /// Constrained entries; each fixes the sum of an input and an output.
     held: Vec<Pair>,
 }
 
@@ -250,7 +254,7 @@ impl ConstrainedMinimum {
         }
     }
 
-    /// Groups the channels that constrained entries tie together.
+    /// Groups the channels that are connected by constrained entries.
     fn pieces(&self) -> Vec<Vec<usize>> {
         let ties = self
             .held
@@ -259,12 +263,14 @@ impl ConstrainedMinimum {
         connected_pieces(self.slopes.len(), ties)
     }
 
-    /// Returns 1 for an input, -1 for an output: an output falls where the inputs tied to it rise.
+    /// Returns 1 for an input and -1 for an output: an output decreases when the inputs connected
+    /// with it increase.
     fn sign(&self, channel: usize) -> f64 {
         if channel < self.inputs { 1.0 } else { -1.0 }
     }
 
-    /// Computes the objective's slope along the common movement in a piece of tied channels.
+    /// Computes the slope of the objective along the common movement of a group of connected
+    /// channels.
     fn push(&self, piece: &[usize]) -> Push {
         let slope: f64 = piece
             .iter()
@@ -272,8 +278,8 @@ impl ConstrainedMinimum {
             .sum();
         let mut stopping = Vec::new();
         for &channel in piece {
-            // The piece would move against the slope: an input on its upper bound stops a rise, and
-            // so does an output on its lower bound.
+            // The group would move downhill: an input on its upper bound prevents a rise, and so
+            // does an output on its lower bound.
             let rises = self.sign(channel) * slope < 0.0;
             let at = self.at_bounds[channel];
             if (rises && at.upper) || (!rises && at.lower) {
@@ -284,8 +290,8 @@ impl ConstrainedMinimum {
     }
 }
 
-/// Derivatives of the minimum objective with respect to each constrained entry's target and each
-/// channel's active bound (0 where none is active).
+/// Derivatives of the minimum objective with respect to the target of each constrained entry, and
+/// to the active bound of each channel (0 if none is active).
 struct Multipliers {
     entries: Vec<f64>,
     /// By channel, inputs first.
@@ -295,9 +301,9 @@ struct Multipliers {
 impl Multipliers {
     /// Solves `slopes + sum(multipliers) = 0`.
     ///
-    /// The slope that pushes a piece of tied channels against a bound is divided equally among the
-    /// channels on that bound; the multipliers of the constrained entries balance the rest, in a
-    /// loop with the minimum sum of squares.
+    /// The slope that pushes a group of connected channels against a bound is divided equally among
+    /// the channels on that bound. The multipliers of the constrained entries balance the
+    /// remainder; in a loop, where they are not unique, their sum of squares is minimal.
     fn new(minimum: &ConstrainedMinimum) -> Self {
         let mut channels = vec![0.0; minimum.slopes.len()];
         for piece in minimum.pieces() {
@@ -313,7 +319,7 @@ impl Multipliers {
     }
 }
 
-/// Solves for the constrained entries' multipliers, given those on the bounds.
+/// Solves for the multipliers of the constrained entries, given the multipliers of the bounds.
 fn entry_multipliers(minimum: &ConstrainedMinimum, bounds: &[f64]) -> Vec<f64> {
     if minimum.held.is_empty() {
         return Vec::new();
@@ -330,36 +336,38 @@ fn entry_multipliers(minimum: &ConstrainedMinimum, bounds: &[f64]) -> Vec<f64> {
             0.0
         }
     });
-    // The squared singular values are the Laplacian eigenvalues of a bipartite graph on n channels:
-    // 0, or at least 4 / n^2 (Mohar, "Eigenvalues, diameter and mean distance in graphs", 1991).
-    // The tolerance is half of `2 / n`, the lower bound on nonzero singular values.
+    // Tolerance of the singular values: their squares are the Laplacian eigenvalues of a bipartite
+    // graph with n channels: 0, or at least 4 / n^2 (Mohar, "Eigenvalues, diameter and mean
+    // distance in graphs", 1991). Half of `2 / n`, the lower bound on nonzero singular values,
+    // separates them.
     match ties.svd(true, true).solve(&left, 1.0 / channels as f64) {
         Ok(multipliers) => multipliers.iter().copied().collect(),
         Err(_) => Vec::new(),
     }
 }
 
-/// Effect on the solution if one free entry is constrained, or one constrained entry is released.
+/// Effect on the solution if one entry is toggled: a free entry constrained, or a constrained entry
+/// released.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Toggle {
     pub pair: Pair,
-    /// Whether the entry is constrained now.
+    /// Whether the entry is constrained before the toggle.
     pub held_now: bool,
-    /// Minimum objective without the toggle.
+    /// Minimum objective before the toggle.
     pub before: f64,
-    /// Minimum objective with the toggle.
+    /// Minimum objective after the toggle.
     pub after: f64,
-    /// Number of infeasible constrained entries with the toggle.
+    /// Number of infeasible constrained entries after the toggle.
     pub unmatched_after: usize,
-    /// Whether the entry itself is feasible, if the toggle constrains it.
+    /// Whether the toggled entry itself is feasible, if it is now constrained.
     pub matched_after: bool,
     /// Whether the objective after the toggle is proven.
     pub outcome: Outcome,
 }
 
 impl Toggle {
-    /// Returns the objective's change as a share of its present value; infinite where that is 0 and
-    /// something changes.
+    /// Returns the change of the objective as a share of its value before the toggle; infinite if
+    /// that value is 0 and the objective changes.
     pub fn share(&self) -> f64 {
         let change = self.after - self.before;
         if change == 0.0 {
@@ -369,11 +377,11 @@ impl Toggle {
         }
     }
 
-    /// Describes the cost: the present cost of a constrained entry, or the cost of constraining a
-    /// free entry.
+    /// Describes the cost of constraining the entry: the present cost if it is constrained,
+    /// otherwise the cost that would result.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         let pair = pair_name(self.pair, inputs, outputs);
-        // Without the added zero, no change would read -0.0.
+        // `+ 0.0`: no change would otherwise be formatted as -0.0.
         let percent = 100.0 * self.share() + 0.0;
         if self.held_now {
             if self.after <= self.before {
@@ -381,27 +389,29 @@ impl Toggle {
                 format!("holding {pair} costs {saved:.1} % of the objective")
             } else {
                 format!(
-                    "freeing {pair} would raise the objective by {percent:.1} %: others are then held better"
+                    "releasing {pair} would raise the objective by {percent:.1} %, because other \
+                    responses could then be held more closely"
                 )
             }
         } else if self.matched_after {
             format!("holding {pair} would change the objective by {percent:+.1} %")
         } else {
             format!(
-                "{pair} cannot be held besides the held responses; trying changes the objective by {percent:+.1} %"
+                "{pair} cannot be held in addition to the held responses; the attempt would \
+                change the objective by {percent:+.1} %"
             )
         }
     }
 }
 
-/// Solves `problem` with every entry that has a delta toggled in turn, row by row, until `stop`
+/// Solves `problem` with each entry that has a delta toggled in turn, row by row, until `stop`
 /// returns true.
 ///
-/// The result is a list of toggles for the entry matrix, to be computed in the background while
-/// `solution` is displayed. A list shorter than the entries means that it was stopped.
+/// This is meant to run in the background while `solution` is displayed. If it is stopped, the list
+/// is shorter than the number of entries.
 ///
 /// # Errors
-/// See [`solve`].
+/// [`ProblemError`], as in [`solve`].
 pub fn toggles(
     problem: &Problem,
     solution: &Solution,

@@ -1,5 +1,5 @@
-//! Solution to a problem: the channel values, the proof that they are optimal, and the constrained
-//! entries that could not be matched.
+//! Solution of a problem: the channel values, the proof that they are optimal, and the constrained
+//! entries whose delta is infeasible.
 
 use gdcm_model::dataset::{Pair, PairTable};
 use gdcm_model::units::{s_to_ms, telling, told_apart};
@@ -15,13 +15,13 @@ use super::remedy::Remedy;
 pub enum Outcome {
     /// No feasible channel values are better by more than the relative gap, which is at most 1e-9.
     Proven {
-        /// `(objective - lower bound) / objective`.
+        /// Relative gap, `(objective - lower bound) / objective`.
         gap: f64,
     },
-    /// The search ended before a proof: better solutions may exist, but none better by more than
-    /// the relative gap.
+    /// The search ended before a proof: better solutions may exist, but none that is better by more
+    /// than the relative gap.
     NotProven {
-        /// `(objective - lower bound) / objective`.
+        /// Relative gap, `(objective - lower bound) / objective`.
         gap: f64,
         /// Limit that ended the search.
         limit: Limit,
@@ -29,25 +29,25 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// Returns `(objective - lower bound) / objective`.
+    /// Returns the relative gap, `(objective - lower bound) / objective`.
     pub fn gap(self) -> f64 {
         match self {
             Outcome::Proven { gap } | Outcome::NotProven { gap, .. } => gap,
         }
     }
 
-    /// Describes the outcome.
+    /// Describes the outcome in a sentence.
     pub fn words(self) -> String {
         match self {
             Outcome::Proven { .. } => {
-                "Proven: no gains within the bounds that hold the held responses are better."
+                "Proven: no gains within the bounds that satisfy the held responses are better."
                     .to_owned()
             }
             Outcome::NotProven { gap, limit } => {
                 let ended = match limit {
-                    Limit::Work => "at its budget of work",
-                    Limit::Memory => "at its budget of memory",
-                    Limit::Rounding => "where rounding decides",
+                    Limit::Work => "because its work budget was exhausted",
+                    Limit::Memory => "because its memory budget was exhausted",
+                    Limit::Rounding => "because of rounding errors",
                 };
                 let percent = 100.0 * gap;
                 format!(
@@ -58,7 +58,7 @@ impl Outcome {
     }
 }
 
-/// A local minimum.
+/// Channel values at a local minimum of the objective.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LocalMinimum {
     pub inputs: Vec<f64>,
@@ -67,48 +67,51 @@ pub struct LocalMinimum {
     pub objective: f64,
 }
 
-/// Proof of the minimum objective.
+/// Result of the search for a proof that the objective is minimal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Proof {
-    /// Lower bound on the objective over all channels inside the bounds that meet the targets.
+    /// Lower bound on the objective over all channel values that are within the bounds and meet the
+    /// targets.
     pub lower_bound: f64,
-    /// Whether the bound is a proof. The gap is relative to the objective, or to 1e-9 `sum w G^2`
-    /// where the objective is smaller: below that, rounding decides.
+    /// Whether the minimum is proven. The gap is relative to the objective, or to 1e-9 `sum w G^2`
+    /// if the objective is smaller, because rounding errors then dominate.
     pub outcome: Outcome,
     pub nodes: usize,
     /// Distinct local minima within 1 % of the objective, best first; the first is the solution.
     pub local_minima: Vec<LocalMinimum>,
-    /// Whether the search has excluded any other local minimum within 1 %.
+    /// Whether the search has excluded any further local minimum within 1 %.
     pub all_minima: bool,
 }
 
-/// A constrained entry made infeasible by the bounds or by the other constrained entries.
+/// A constrained entry whose delta is infeasible because of the bounds or the other constrained
+/// entries.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unmatched {
-    /// Constrained quantity: a gain, or a delay or a signed delay in seconds.
+    /// Constrained quantity: gains, delays \[s\] or signed delays \[s\].
     pub quantity: Quantity,
     pub pair: Pair,
-    /// Delta gain `G` or delta delay `D`; a negative `D` asks for phase lead.
+    /// Delta gain `G` or delta delay `D` \[s\]; a negative `D` requires phase lead.
     pub delta: f64,
-    /// Product or sum to which the entry is constrained instead.
+    /// Product of gains, or sum of delays \[s\], to which the entry is constrained instead.
     pub target: f64,
-    /// Excess over the delta: `20 log10 (target / delta)` dB, negative where the correction is too
-    /// weak; or `target - delta` seconds, the additional lead that would be needed.
+    /// Excess of the target over the delta. For gains it is `20 log10 (target / delta)` dB,
+    /// negative if the correction is too weak; for delays it is `target - delta` in seconds, the
+    /// additional lead that would be needed.
     pub excess: f64,
-    /// The conflict; where it does not contain the entry, the entry is missed as a compromise with
-    /// the conflicting entries.
+    /// Conflict that makes the delta infeasible. If it does not contain the entry, the entry
+    /// deviates as a compromise with the entries in the conflict.
     pub why: Conflict,
 }
 
 impl Unmatched {
-    /// Computes the phase error in degrees that a missed delay leaves at `omega` rad/s: the
-    /// reference less the corrected model.
+    /// Computes the phase error \[deg\] that remains at `omega` \[rad/s\] because of an infeasible
+    /// delay: reference minus corrected model.
     pub fn phase_left_deg(&self, omega: f64) -> f64 {
         (self.delta - self.target).to_degrees() * -omega
     }
 
-    /// Describes the miss; for a delay with the remaining phase at `omega_top`, the band's top in
-    /// rad/s.
+    /// Describes the deviation; for a delay including the phase error that remains at `omega_top`
+    /// \[rad/s\], the upper end of the band.
     pub fn words(&self, omega_top: f64, inputs: &[String], outputs: &[String]) -> String {
         let pair = pair_name(self.pair, inputs, outputs);
         match self.quantity {
@@ -129,7 +132,8 @@ impl Unmatched {
         let (target, delta) = told_apart(s_to_ms(-self.target), s_to_ms(-self.delta), 1);
         let left = telling(self.phase_left_deg(omega_top).abs(), 0);
         format!(
-            "{pair} gets {target} of the {delta} ms of lead it wants; {left}° of phase error remain at {omega_top} rad/s."
+            "{pair} gets {target} of the {delta} ms of lead that it needs; a phase error of \
+            {left}° remains at {omega_top} rad/s."
         )
     }
 
@@ -138,50 +142,51 @@ impl Unmatched {
         let size_ms = telling(excess_ms.abs(), 1);
         let why = if self.why.is_lone_lead() && self.why.entries == [self.pair] {
             let lead_ms = telling(excess_ms, 1);
-            format!("{pair} needs {lead_ms} ms of lead: a delay cannot give it")
+            format!("{pair} needs {lead_ms} ms of lead, which a delay cannot provide")
         } else if excess_ms > 0.0 {
             format!("{pair} gets {size_ms} ms more delay than it needs")
         } else {
             format!("{pair} lacks {size_ms} ms of delay")
         };
         let left = telling(self.phase_left_deg(omega_top).abs(), 0);
-        format!("{why}; {left}° of phase error remain at {omega_top} rad/s.")
+        format!("{why}; a phase error of {left}° remains at {omega_top} rad/s.")
     }
 }
 
-/// The channel gains (eq. (7)), the channel delays (eq. (11)) or the signed delays (M15.4) in
-/// seconds, with the proof.
+/// Channel gains (eq. (7)), channel delays (eq. (11)) or signed delays (M15.4), both in seconds,
+/// with the proof that they are optimal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
     pub quantity: Quantity,
-    /// Input channel values, m.
+    /// Values of the m input channels.
     pub inputs: Vec<f64>,
-    /// Output channel values, p.
+    /// Values of the p output channels.
     pub outputs: Vec<f64>,
-    /// The objective: in squared ratios, in squared dB, or in s².
+    /// Minimum objective: in squared ratios, squared dB or s².
     pub objective: f64,
     pub proof: Proof,
-    /// Product or sum to which each entry is constrained, p x m: its delta where that is feasible
-    /// (M8 and M9, stage 1).
+    /// Product or sum to which each entry is constrained, p x m: its delta, if that is feasible (M8
+    /// and M9, stage 1). `None` if the entry is not constrained.
     pub targets: PairTable<Option<f64>>,
-    /// Whether every constrained entry meets its delta, within 1e-8 of its logarithm, or within
-    /// 1e-8 times the problem's longest delay (at least a nanosecond); or within the tolerance
-    /// [`Problem::agreement`](super::problem::Problem::agreement) where a loop requires it.
+    /// Whether every constrained entry meets its delta. The tolerance is 1e-8 in the logarithm of a
+    /// gain, and 1e-8 times the problem's longest delay (at least a nanosecond) for a delay; in a
+    /// loop it is [`Problem::agreement`](super::problem::Problem::agreement).
     pub matched: bool,
-    /// The constrained entries that miss their delta.
+    /// Constrained entries that do not meet their delta.
     pub unmatched: Vec<Unmatched>,
-    /// The loops that disagree by no more than the tolerance: each is constrained to the nearest
+    /// Loops whose deviation is within the tolerance; their entries are constrained to the nearest
     /// consistent values.
     pub agreeing: Vec<Conflict>,
-    /// Each infeasible set (constrained entries and bounds), without duplicates; loops first, then
-    /// by number of entries.
+    /// Infeasible sets of constrained entries and bounds, without duplicates; loops first, then by
+    /// number of entries.
     pub conflicts: Vec<Conflict>,
-    /// Single changes that would make every constrained entry feasible, where some are not.
+    /// Single changes that would make every constrained entry feasible; `None` if every entry is
+    /// feasible.
     pub remedy: Option<Remedy>,
 }
 
 impl Solution {
-    /// Returns every channel's gain, delay or signed delay.
+    /// Returns the gain, delay \[s\] or signed delay \[s\] of every channel.
     pub fn channels(&self) -> Channels<f64> {
         Channels {
             inputs: self.inputs.clone(),

@@ -1,5 +1,5 @@
-//! Solver for eq. (7) and (11), and for signed delays (M15.4): the gains or delays with the minimum
-//! objective, and the proof that they are optimal.
+//! Solver for eq. (7) and (11), and for signed delays (M15.4): finds the gains or delays with the
+//! minimum objective, and proves that they are optimal.
 
 use gdcm_model::dataset::PairTable;
 use gdcm_model::statistics::mean;
@@ -20,28 +20,29 @@ use super::remedy::Remedy;
 use super::scaled_objective::{rounding_floor, scaled_objective};
 use super::solution::{LocalMinimum, Outcome, Proof, Solution, Unmatched};
 
-/// Residual in natural logarithms, or as a fraction of the problem's longest delay, below which a
-/// constrained entry counts as matched (M8).
+/// Residual in natural logarithms, or as a fraction of the problem's longest delay, up to which a
+/// constrained entry meets its delta (M8).
 const MATCHED: f64 = 1e-8;
 
-/// Residual \[s\] below which a constrained delay counts as matched, however small the problem's
-/// delays are: the rounding difference between equal phases is not a delay. At the highest band
+/// Residual \[s\] up to which a constrained delay meets its delta, however short the delays of the
+/// problem are: the difference between equal phases has rounding errors. At the highest band
 /// frequency, 1e5 rad/s, it is 0.006 degrees.
 const MATCHED_DELAY_S: f64 = 1e-9;
 
 /// Finds the channel gains (eq. (7), M8), delays (eq. (11), M9) or signed delays (M15.4) with the
-/// minimum objective, and the proof that no others are better.
+/// minimum objective, and proves that no others are better.
 ///
 /// ```text
-/// 1  targets: the sums nearest to the deltas that the box and the loops allow (stage 1)
+/// 1  targets: the sums nearest to the deltas that the box and the loops permit (stage 1)
 /// 2  objective over the scales that the constrained sums leave free (M8, structure)
 /// 3  global minimum by branch and bound, from a start near it (stage 2)
-/// 4  limit alpha -> 0+ where a common scale is free
-/// 5  misses from stage 1: each with its conflict, and the single changes that would resolve all
+/// 4  limit alpha -> 0+ if a common scale is free
+/// 5  for each infeasible delta of stage 1: its conflict, and the single changes that would resolve all conflicts
 /// ```
 ///
-/// Entries that the bounds or their own loops make infeasible are constrained to the nearest
-/// feasible products or sums (least squares in logarithms, or in seconds), and reported.
+/// Entries that are infeasible because of the bounds or of their own loops are constrained to the
+/// nearest feasible products or sums (least squares in logarithms, or in seconds), and listed in
+/// the solution.
 ///
 /// ```
 /// use gdcm_method::correction::solve::solve;
@@ -59,8 +60,9 @@ const MATCHED_DELAY_S: f64 = 1e-9;
 /// ```
 ///
 /// # Errors
-/// [`ProblemError`] where the problem is not well posed ([`Problem::check`]), and
-/// [`ProblemError::Stopped`] as soon as `stop`, polled about every half millisecond, returns true.
+/// [`ProblemError`] if the problem is not well posed ([`Problem::check`]), and
+/// [`ProblemError::Stopped`] as soon as `stop`, which is polled about every half millisecond,
+/// returns true.
 pub fn solve(
     problem: &Problem,
     budget: ProofBudget,
@@ -114,8 +116,8 @@ pub fn solve(
     })
 }
 
-/// Start of Newton's method: for delays next to the minimum, which it then reaches exactly, with
-/// the active bounds.
+/// Returns the start of Newton's method. For delays it is so close to the minimum that Newton's
+/// method converges to it exactly, with the correct active bounds.
 fn newton_start(objective: &Objective, quantity: Quantity) -> Result<Vec<f64>, ProblemError> {
     if quantity.is_gain() {
         Ok(objective.nearest_to_zero())
@@ -124,7 +126,7 @@ fn newton_start(objective: &Objective, quantity: Quantity) -> Result<Vec<f64>, P
     }
 }
 
-/// Minimises a least squares objective over its box.
+/// Minimises a least-squares objective over its box, by Newton's method.
 fn minimise(
     objective: &Objective,
     quantity: Quantity,
@@ -141,8 +143,8 @@ fn minimise(
     Ok(scales)
 }
 
-/// Takes the limit `alpha -> 0+`: sets a free common scale to the value with the minimum
-/// regularised departures.
+/// Takes the limit `alpha -> 0+`: sets each free common scale to the value that minimises the
+/// regularised deviations from neutral.
 fn take_alpha_limit(
     quantity: Quantity,
     components: &Components,
@@ -160,7 +162,7 @@ fn take_alpha_limit(
     });
 }
 
-/// Selects the node values in a piece of components.
+/// Selects the values of the nodes that belong to a group of components.
 fn select_piece(piece: &[usize], nodes: &[Placement], values: &[f64]) -> Vec<f64> {
     let mut selected = Vec::new();
     for (node, &value) in nodes.iter().zip(values) {
@@ -171,9 +173,9 @@ fn select_piece(piece: &[usize], nodes: &[Placement], values: &[f64]) -> Vec<f64
     selected
 }
 
-/// Returns the shift of a piece's scales (inputs rise, outputs fall) that minimises the regularised
-/// departures: those of the outputs from gain 1 or zero delay (of the inputs, where there is no
-/// output); for signed delays the sum of all their squares.
+/// Returns the shift of a group's scales that minimises the regularised deviations from neutral; it
+/// raises the inputs and lowers the outputs. Regularised are the outputs (the inputs, if the group
+/// has no output); for signed delays, the inputs and the outputs.
 fn least_departure_shift(quantity: Quantity, channels: &ChannelCoordinates) -> f64 {
     let ChannelCoordinates { inputs, outputs } = channels;
     if quantity.regularises_inputs() {
@@ -200,7 +202,7 @@ fn least_departure_shift(quantity: Quantity, channels: &ChannelCoordinates) -> f
     (square / sum).ln()
 }
 
-/// Converts a minimum's scales to gains or delays, and evaluates the objective.
+/// Converts the scales at a minimum to gains or delays, and evaluates the objective.
 fn local_minimum(problem: &Problem, components: &Components, scales: &[f64]) -> LocalMinimum {
     let channels = components.channels(scales);
     let inputs = channel_values(problem, &channels.inputs);
@@ -213,13 +215,13 @@ fn local_minimum(problem: &Problem, components: &Components, scales: &[f64]) -> 
     }
 }
 
-/// Converts coordinates to gains or delays, exactly on the bounds they reach.
+/// Converts coordinates to gains or delays; a value on a bound is set to exactly that bound.
 fn channel_values(problem: &Problem, coordinates: &[f64]) -> Vec<f64> {
     let bounds = problem.bounds;
     let coordinate = problem.coordinate();
     let low = coordinate.coordinate(bounds.lower);
     let high = coordinate.coordinate(bounds.upper);
-    // A few roundings at the magnitude of the range.
+    // Tolerance: a few roundings at the magnitude of the range.
     let rounding = 16.0 * f64::EPSILON * (1.0 + low.abs().max(high.abs()));
     let mut values = Vec::with_capacity(coordinates.len());
     for &at in coordinates {
@@ -234,7 +236,7 @@ fn channel_values(problem: &Problem, coordinates: &[f64]) -> Vec<f64> {
     values
 }
 
-/// Converts the search result to gains or delays.
+/// Converts the result of the search to gains or delays.
 fn proof(problem: &Problem, components: &Components, found: Minima) -> Proof {
     let local_minima: Vec<LocalMinimum> = found
         .minima
@@ -261,14 +263,14 @@ fn proof(problem: &Problem, components: &Components, found: Minima) -> Proof {
     }
 }
 
-/// The constrained entries that stage 1 could not match.
+/// The constrained entries whose delta is infeasible.
 struct Misses {
-    /// Entries in loops that agree within the problem's tolerance.
+    /// Entries in loops whose deviation is within the tolerance of the problem.
     agreeing: Vec<Unmatched>,
     unmatched: Vec<Unmatched>,
 }
 
-/// Finds the constrained entries that stage 1 could not match, each with its conflict.
+/// Finds the constrained entries whose delta was infeasible in stage 1, each with its conflict.
 fn misses(
     problem: &Problem,
     constraints: &Constraints,
@@ -299,8 +301,8 @@ fn misses(
     Ok(misses)
 }
 
-/// Returns the residual, in the problem's coordinate, below which a constrained entry counts as
-/// matched.
+/// Returns the residual, in the coordinate of the problem, up to which a constrained entry meets
+/// its delta.
 fn matching_tolerance(coordinate: Coordinate) -> f64 {
     match coordinate {
         Coordinate::Logarithm => MATCHED,
@@ -308,7 +310,8 @@ fn matching_tolerance(coordinate: Coordinate) -> f64 {
     }
 }
 
-/// Returns the conflict between all constrained entries, used where no smaller conflict is found.
+/// Returns the conflict that contains all constrained entries; used if no smaller conflict is
+/// found.
 fn unclear_conflict(problem: &Problem, constraints: &Constraints) -> Conflict {
     Conflict {
         quantity: problem.quantity,
@@ -318,7 +321,7 @@ fn unclear_conflict(problem: &Problem, constraints: &Constraints) -> Conflict {
     }
 }
 
-/// Converts a miss to gains or delays.
+/// Converts an infeasible entry from coordinates to gains or delays.
 fn unmatched(
     problem: &Problem,
     asked: &ConstrainedSum,
@@ -344,7 +347,7 @@ fn unmatched(
     }
 }
 
-/// Returns the constraints after the entries in agreeing loops are set to their targets.
+/// Returns the constraints, in which the entries of accepted loops are replaced by their targets.
 fn settled_loops(
     constraints: &Constraints,
     reached: &Reached,
@@ -359,7 +362,8 @@ fn settled_loops(
     constraints.with_entries(entries)
 }
 
-/// Collects the distinct conflicts behind the misses: loops first, then by number of entries.
+/// Collects the distinct conflicts of the infeasible entries: loops first, then by number of
+/// entries.
 fn distinct_conflicts(misses: &[Unmatched]) -> Vec<Conflict> {
     let mut conflicts: Vec<Conflict> = Vec::new();
     for miss in misses {

@@ -1,12 +1,12 @@
-//! Solves normal equations whose matrix is an arrow (M16.2).
+//! Solution of normal equations with an arrow matrix (M16.2).
 //!
-//! An `M_ji` has a column only in the equations for input i, a `K_jo` in those for every input. The
-//! normal matrix therefore has a block for each input and a border for K, whose part is summed over
-//! inputs before anything is substituted:
+//! An `M_ji` has a column only in the equations of input i, a `K_jo` in the equations of every
+//! input. The normal matrix therefore has a block for each input, and a border for K. The
+//! contributions to K are summed over the inputs before the substitution:
 //!
 //! ```text
 //! [ A_1            B_1 ]   [ M_1 ]   [ b_1 ]        1  A_i = L_i L_i^T,  W_i = L_i^-1 B_i,  y_i = L_i^-1 b_i  for every input i
-//! [      ...       ... ] . [ ... ] = [ ... ]        2  (C - sum W_i^T W_i) K = b_K - sum W_i^T y_i,  by Cholesky's factors
+//! [      ...       ... ] . [ ... ] = [ ... ]        2  (C - sum W_i^T W_i) K = b_K - sum W_i^T y_i,  by Cholesky factors
 //! [            A_m B_m ]   [ M_m ]   [ b_m ]        3  M_i = L_i^-T (y_i - W_i K)
 //! [ B_1^T ... B_m^T C  ]   [ K   ]   [ b_K ]
 //! ```
@@ -15,46 +15,46 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// The normal equations as an arrow.
+/// Normal equations with an arrow matrix.
 pub(super) struct ArrowSystem {
-    /// Equations by input column.
+    /// Block rows, one for each input.
     pub(super) columns: Vec<ArrowColumn>,
-    /// `C`.
+    /// Corner block `C`.
     pub(super) corner: DMatrix<f64>,
-    /// `b_K`.
+    /// Right-hand side `b_K`.
     pub(super) right: DVector<f64>,
 }
 
-/// The rows for the unknowns in M in an input column.
+/// Block row for the unknowns of M in one input column.
 pub(super) struct ArrowColumn {
-    /// `A_i`.
+    /// Diagonal block `A_i`.
     pub(super) block: DMatrix<f64>,
-    /// `B_i`.
+    /// Border block `B_i`.
     pub(super) border: DMatrix<f64>,
-    /// `b_i`.
+    /// Right-hand side `b_i`.
     pub(super) right: DVector<f64>,
 }
 
-/// The unknowns.
+/// Solution of the normal equations.
 pub(super) struct ArrowSolution {
-    /// The unknowns in M by input column.
+    /// Unknowns of M, for each input column.
     pub(super) mixing: Vec<DVector<f64>>,
-    /// The unknowns in K.
+    /// Unknowns of K.
     pub(super) feedback: DVector<f64>,
 }
 
-/// An input column eliminated from the equations for K (step 1).
+/// An input column after its elimination from the equations for K (step 1).
 struct EliminatedColumn {
-    /// `L_i`.
+    /// Cholesky factor `L_i`.
     factors: Cholesky<f64, Dyn>,
-    /// `W_i`.
+    /// `W_i = L_i^-1 B_i`.
     border: DMatrix<f64>,
-    /// `y_i`.
+    /// `y_i = L_i^-1 b_i`.
     right: DVector<f64>,
 }
 
 impl ArrowSystem {
-    /// Solves the equations (steps 1 to 3); `None` without Cholesky factors.
+    /// Solves the equations (steps 1 to 3); `None` if a Cholesky factorisation fails.
     pub(super) fn solve(&self) -> Option<ArrowSolution> {
         let mut corner = self.corner.clone();
         let mut right = self.right.clone();
@@ -79,7 +79,7 @@ impl ArrowSystem {
         Some(ArrowSolution { mixing, feedback })
     }
 
-    /// Returns the maximum residual relative to the maximum right side.
+    /// Returns the maximum residual divided by the maximum entry of the right-hand side.
     pub(super) fn residual(&self, solution: &ArrowSolution) -> f64 {
         let mut largest_residual = 0.0_f64;
         let mut largest_right = self.right.amax();
@@ -108,7 +108,7 @@ impl EliminatedColumn {
         })
     }
 
-    /// Solves for the unknowns in M, given those in K (step 3).
+    /// Solves for the unknowns of M in this column, given the unknowns of K (step 3).
     fn substitute(&self, feedback: &DVector<f64>) -> Option<DVector<f64>> {
         let right = &self.right - &self.border * feedback;
         self.factors.l_dirty().tr_solve_lower_triangular(&right)

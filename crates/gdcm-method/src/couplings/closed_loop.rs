@@ -1,21 +1,21 @@
-//! The output-to-input loop, closed around a response frequency by frequency (M16.3).
+//! Closing of the output-to-input loop around a response, frequency by frequency (M16.3).
 //!
 //! ```text
 //! F = (I - H K)^-1 H = H (I - K H)^-1: the m x m inverse is used
 //! 1  T <- I - K H
-//! 2  for each row j of T: the column with the largest |T_jk|, k >= j, is swapped with column j; the columns k > j lose the multiple
-//!       of column j that makes T_jk zero; the columns of H are swapped and reduced alike
-//! 3  for each column j from the last: divided by T_jj; the columns k < j lose T_jk times it
+//! 2  for each row j of T: swap the column k >= j with the largest |T_jk| with column j; from the columns k > j subtract the multiple
+//!       of column j that makes T_jk zero; swap and reduce the columns of H in the same way
+//! 3  for each column j of H from the last: divide it by T_jj; from the columns k < j subtract T_jk times column j
 //! ```
 //!
-//! Gaussian elimination with partial pivoting, on columns: Golub & Van Loan, "Matrix Computations",
+//! Gaussian elimination with partial pivoting, by columns: Golub & Van Loan, "Matrix Computations",
 //! 4th ed. 2013, 3.4.
 
 use nalgebra::{Complex, DMatrix};
 
-/// Closes `u = u' + K y` around p x m responses; reuses its work memory.
+/// Closes the loop `u = u' + K y` around p x m responses; its work memory is reused.
 pub(super) struct ClosedLoop<'a> {
-    /// `K`, m x p.
+    /// Feedback `K`, m x p.
     feedback: &'a DMatrix<f64>,
     is_open: bool,
     /// `T`, m x m, column by column.
@@ -34,8 +34,8 @@ impl<'a> ClosedLoop<'a> {
         }
     }
 
-    /// Replaces `H` (p x m, column by column) by `F = (I - H K)^-1 H`; returns false if the result
-    /// is not finite.
+    /// Replaces `H` (p x m, column by column) by `F = (I - H K)^-1 H`; returns `false` if the
+    /// result is not finite.
     pub(super) fn close(&mut self, response: &mut [Complex<f64>]) -> bool {
         if self.is_open {
             return response.iter().all(|value| value.is_finite());
@@ -66,8 +66,8 @@ impl<'a> ClosedLoop<'a> {
         }
     }
 
-    /// Eliminates row `at` from the columns after column `at` (step 2); returns false without a
-    /// pivot.
+    /// Eliminates row `at` from the columns after column `at` (step 2); returns `false` if there is
+    /// no usable pivot.
     fn eliminate(&mut self, at: usize, response: &mut [Complex<f64>]) -> bool {
         let (inputs, outputs) = self.feedback.shape();
         let pivot = self.pivot(at);
@@ -93,8 +93,8 @@ impl<'a> ClosedLoop<'a> {
         is_usable
     }
 
-    /// Returns the column, from `at` on, with the entry of maximum modulus in row `at`; the last
-    /// among equals.
+    /// Returns the column, from `at` on, whose entry in row `at` has the maximum modulus; the last
+    /// of equal entries.
     fn pivot(&self, at: usize) -> usize {
         let inputs = self.feedback.nrows();
         let mut pivot = at;
@@ -109,7 +109,8 @@ impl<'a> ClosedLoop<'a> {
         pivot
     }
 
-    /// Reduces the triangular `T` to the identity (step 3); returns false if a value is not finite.
+    /// Reduces the triangular `T` to the identity (step 3); returns `false` if a value is not
+    /// finite.
     fn substitute_back(&mut self, response: &mut [Complex<f64>]) -> bool {
         let (inputs, outputs) = self.feedback.shape();
         for column in (0..inputs).rev() {
@@ -130,7 +131,7 @@ impl<'a> ClosedLoop<'a> {
     }
 }
 
-/// Subtracts `factor` times column `subtracted` from column `from`.
+/// Subtraction of `factor` times column `subtracted` from column `from`.
 struct ColumnStep {
     from: usize,
     subtracted: usize,
@@ -162,7 +163,7 @@ mod tests {
         assert!(ClosedLoop::new(&k).close(&mut f));
         let loop_gain = &h * k.map(Complex::from);
         let expected = (DMatrix::identity(3, 3) - loop_gain).try_inverse().unwrap() * &h;
-        // Two eliminations with condition numbers below ten.
+        // Tolerance: two eliminations with condition numbers below ten.
         assert!(
             f.iter()
                 .zip(&expected)

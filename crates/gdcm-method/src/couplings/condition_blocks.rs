@@ -1,7 +1,7 @@
-//! A condition's contribution to the normal equations in a pass, assembled from small blocks
+//! A condition's contribution to the normal equations in one pass, assembled from small blocks
 //! (M16.2).
 //!
-//! In input column i every unknown has the column `F[:,j]` times a factor: `v^k` for `M_ji`,
+//! In input column i, every unknown has the column `F[:,j]` times a factor: `v^k` for `M_ji`,
 //! `R'_oi` for `K_jo`. With `t = (1, R'_oi ...)` and `P = F^H q^2 F`, m x m, the blocks are
 //!
 //! ```text
@@ -9,8 +9,8 @@
 //! b[(a, j)] = Re conj(t_a) z_j,    z = F^H q^2 (S R')[:,i],
 //! ```
 //!
-//! summed over the frequencies. No design row is kept. The airspeed `v` is the same at all
-//! frequencies of a condition and enters in `normal_equations`.
+//! summed over the frequencies. Rows of the design matrix are not stored. The airspeed `v` is the
+//! same at all frequencies of a condition, and is applied in `normal_equations`.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -22,49 +22,49 @@ use super::error::CouplingError;
 use super::pair_products::{CHUNK, PairProducts, ProductChunk, RowParts, pair_count};
 use super::weighted_condition::WeightedCondition;
 
-/// The couplings from the last pass, evaluated at a condition.
+/// The couplings of the previous pass, evaluated at a condition.
 struct LastPass<'a> {
-    /// `M(V)`, m x m.
+    /// Mixing `M(V)`, m x m.
     mixing: DMatrix<f64>,
-    /// `K`, m x p.
+    /// Feedback `K`, m x p.
     feedback: &'a DMatrix<f64>,
-    /// The outputs with a column in `K`.
+    /// Outputs with a column in `K`.
     fed_back: &'a [usize],
 }
 
 /// A condition's contribution to the normal equations.
 pub(super) struct ConditionBlocks {
-    /// The blocks with unknowns in M, by input column.
+    /// Blocks that involve unknowns of M, for each input column.
     pub(super) columns: Vec<ColumnBlocks>,
-    /// The pairs of two unknowns in K, summed over the input columns.
+    /// Products of two unknowns of K, summed over the input columns.
     pub(super) feedback: PairProducts,
-    /// Right side for the unknowns in K: rows by fed-back output, columns by input.
+    /// Right-hand side for the unknowns of K: one row per fed-back output, one column per input.
     pub(super) right: DMatrix<f64>,
 }
 
-/// The unknowns in M for an input column, among themselves and with those in K.
+/// Products of the unknowns of M in one input column with one another and with the unknowns of K.
 #[derive(Clone)]
 pub(super) struct ColumnBlocks {
-    /// Rows by factor `t_b`, each paired with `t_0 = 1`.
+    /// One row for each product `t_0 t_b`, where `t_0 = 1`.
     pub(super) products: PairProducts,
     pub(super) right: DVector<f64>,
 }
 
-/// Work memory for a frequency.
+/// Work memory for one frequency.
 struct Scratch {
-    /// A column of `H_c = F M`.
+    /// One column of `H_c = F M`.
     coupled: Vec<Complex<f64>>,
-    /// A column of `S R'`.
+    /// One column of `S R'`.
     target: Vec<Complex<f64>>,
-    /// `q^2` by output.
+    /// `q^2` for each output.
     squared_weights: Vec<f64>,
     z: Vec<Complex<f64>>,
     t: Vec<Complex<f64>>,
 }
 
-/// `F = S H` at a frequency.
+/// Closed-loop response `F = S H` at one frequency.
 struct ClosedResponse {
-    /// Frequency index.
+    /// Index of the frequency.
     k: usize,
     /// `F`, column by column.
     f: Vec<Complex<f64>>,
@@ -72,11 +72,11 @@ struct ClosedResponse {
 }
 
 impl ConditionBlocks {
-    /// Computes a condition's blocks for the last pass's couplings; `fed_back` are the outputs with
-    /// a column in `K`.
+    /// Computes the blocks of a condition for the couplings `last` of the previous pass; `fed_back`
+    /// lists the outputs with a column in `K`.
     ///
     /// # Errors
-    /// [`CouplingError::SingularLoop`] if `I - K H` has no inverse at a frequency that counts,
+    /// [`CouplingError::SingularLoop`] if `I - K H` is singular at a frequency that counts,
     /// [`CouplingError::Cancelled`] if `progress` is cancelled.
     pub(super) fn new(
         condition: &WeightedCondition<'_>,
@@ -135,7 +135,7 @@ impl ConditionBlocks {
         }
     }
 
-    /// Adds the right sides in an input column at a frequency.
+    /// Adds the right-hand sides of an input column at one frequency.
     fn add_right(&mut self, scratch: &Scratch, input: usize) {
         for (j, z) in scratch.z.iter().enumerate() {
             self.columns[input].right[j] += z.re;
@@ -145,7 +145,7 @@ impl ConditionBlocks {
         }
     }
 
-    /// Returns the memory for a condition's blocks \[bytes\].
+    /// Returns the memory needed for the blocks of a condition \[bytes\].
     pub(super) fn bytes(inputs: usize, fed_back: usize) -> usize {
         let rows = inputs * (fed_back + 1) + pair_count(fed_back);
         2 * std::mem::size_of::<f64>() * rows * pair_count(inputs)
@@ -196,7 +196,7 @@ impl Scratch {
         }
     }
 
-    /// Computes the input column of `H_c = F M`.
+    /// Computes column `input` of `H_c = F M`.
     fn mix(&mut self, f: &[Complex<f64>], last: &LastPass<'_>, input: usize) {
         self.coupled.fill(Complex::new(0.0, 0.0));
         for (column, factor) in f
@@ -209,12 +209,12 @@ impl Scratch {
         }
     }
 
-    /// Computes `q^2` in an input column; returns false if every weight is zero.
+    /// Computes `q^2` in column `input`; returns `false` if every weight is zero.
     fn weigh(&mut self, condition: &WeightedCondition<'_>, k: usize, input: usize) -> bool {
         condition.squared_weights(k, input, &self.coupled, &mut self.squared_weights)
     }
 
-    /// Computes `t` and `z` for an input column `flight` of `R'`. Since `S = I + F K`, the product
+    /// Computes `t` and `z` for the column `flight` of `R'`. Since `S = I + F K`, the product
     /// `S R'` is `R' + F K R'`.
     fn project(&mut self, f: &[Complex<f64>], flight: &[Complex<f64>], last: &LastPass<'_>) {
         self.t[0] = Complex::new(1.0, 0.0);

@@ -1,6 +1,6 @@
-//! Effects of mixing and feedback (M16.4): their entries in pilot units (percent stick, degrees
-//! swashplate phase), the distance of the loop from ringing, its action above the band, and the
-//! shifted poles.
+//! Effects of mixing and feedback (M16.4): their entries in pilot units (percent of stick, degrees
+//! of swashplate phase), the stability margin of the loop, its effect above the band, and the
+//! shifts of the poles.
 
 use nalgebra::{Complex, DMatrix};
 
@@ -14,26 +14,27 @@ use super::problem::CouplingProblem;
 use crate::correction::Pade;
 use crate::fidelity::mode_tracks;
 
-/// Peak share of the stick that an entry of `K` uses.
+/// Peak share of the stick that is used by an entry of `K`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FeedbackShare {
-    /// The input that receives the feedback.
+    /// Index of the input that receives the feedback.
     pub input: usize,
-    /// The output that is fed back.
+    /// Index of the output that is fed back.
     pub output: usize,
     /// `K_input,output`, in input units per output unit.
     pub entry: f64,
-    /// `|K_ij| |R'_jl|` \[-\]: units of this input per unit of the input `moved`.
+    /// `|K_ij| |R'_jl|` \[-\]: movement of input i per unit of movement of the input `moved`.
     pub share: f64,
-    /// The moved input `l` at the peak.
+    /// Index `l` of the moved input at the peak.
     pub moved: usize,
-    /// The condition at the peak.
+    /// Condition at the peak.
     pub condition: ConditionId,
-    /// The frequency at the peak \[rad/s\].
+    /// Frequency at the peak \[rad/s\].
     pub omega_rad_s: f64,
 }
 
-/// Returns the shares of all entries of `K`, largest first; an output without flight data has none.
+/// Returns the shares of all entries of `K` in descending order; entries for an output without
+/// flight data are omitted.
 pub fn feedback_shares(
     problem: &CouplingProblem,
     couplings: &CouplingMatrices,
@@ -62,18 +63,18 @@ pub fn feedback_shares(
     shares
 }
 
-/// Maximum of `|R'_jl|` for an output j.
+/// Maximum of `|R'_jl|` for an output j, over all inputs, conditions and frequencies.
 struct PeakResponse {
     magnitude: f64,
-    /// The input `l`.
+    /// Index `l` of the input.
     moved: usize,
     condition: ConditionId,
     omega_rad_s: f64,
 }
 
 impl PeakResponse {
-    /// Searches all inputs, conditions and frequencies; among equal peaks the first is returned,
-    /// `None` without usable responses.
+    /// Searches all inputs, conditions and frequencies. Returns the first of equal peaks; `None` if
+    /// there is no usable response.
     fn find(problem: &CouplingProblem, output: usize) -> Option<Self> {
         let mut peak: Option<Self> = None;
         for condition in &problem.conditions {
@@ -101,21 +102,21 @@ impl PeakResponse {
     }
 }
 
-/// An off-diagonal entry of `M~`.
+/// An off-diagonal entry of the normalised mixing `M~`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MixingShare {
-    /// The input that receives the share.
+    /// Index of the input to which the share is added.
     pub to: usize,
-    /// The input that the share comes from.
+    /// Index of the input from which the share is taken.
     pub from: usize,
     /// `M~_to,from` \[-\].
     pub share: f64,
-    /// `atan M~_to,from` \[deg\] if both inputs are cyclic.
+    /// `atan M~_to,from` \[deg\]; `None` unless both inputs are cyclic.
     pub swashplate_phase_deg: Option<f64>,
 }
 
-/// Returns a normalised mixing's off-diagonal entries, largest first; `cyclic` are the two cyclic
-/// inputs.
+/// Returns the off-diagonal entries of a normalised mixing, largest magnitude first; `cyclic` holds
+/// the indices of the two cyclic inputs.
 pub fn mixing_shares(
     normalised_mixing: &DMatrix<f64>,
     cyclic: Option<[usize; 2]>,
@@ -143,8 +144,9 @@ pub fn mixing_shares(
     shares
 }
 
-/// Returns the two cyclic inputs: those whose only on-axis response is a rate. `None` unless exactly
-/// two qualify: a pedal has an on-axis lateral acceleration besides its rate, or would be the third.
+/// Returns the indices of the two cyclic inputs: those whose only on-axis response is a rate.
+/// `None` unless exactly two inputs qualify; a pedal, for example, does not qualify if it also has
+/// an on-axis lateral acceleration.
 pub fn cyclic_inputs(
     on_axis: &PairTable<bool>,
     is_rate: impl Fn(usize) -> bool,
@@ -165,19 +167,21 @@ pub fn cyclic_inputs(
     cyclic.try_into().ok()
 }
 
-/// Minimum over several frequencies of the smallest singular value of `I - K H`.
+/// Stability margin of the loop: the minimum over several frequencies of the smallest singular
+/// value of `I - K H`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopMargin {
-    /// Minimum over the frequencies: 1 without feedback, 0 if a closed-loop pole is at `j omega`.
+    /// Minimum singular value: 1 without feedback, 0 if a closed-loop pole is at `j omega`.
     pub least: f64,
     pub omega_rad_s: f64,
 }
 
 impl LoopMargin {
-    /// Threshold below which the loop is close to ringing.
+    /// Margin below which the loop is reported as close to ringing.
     pub const CAUTION: f64 = 0.5;
 
-    /// Returns the minimum of singular values at `omega` \[rad/s\]; `None` if no value is finite.
+    /// Returns the minimum of singular values, given at `omega` \[rad/s\]; `None` if none is
+    /// finite.
     pub fn of(singular_values: &[f64], omega: &[f64]) -> Option<Self> {
         let mut margin: Option<Self> = None;
         for (&least, &omega_rad_s) in singular_values.iter().zip(omega) {
@@ -189,15 +193,16 @@ impl LoopMargin {
         margin
     }
 
-    /// Whether the margin deserves a caution.
+    /// Returns whether the margin is below [`Self::CAUTION`].
     pub fn is_close_to_ringing(&self) -> bool {
         self.least < Self::CAUTION
     }
 }
 
 impl CouplingMatrices {
-    /// Returns the smallest singular value of `I - K H` (m x m, at the inputs, where all channels
-    /// have the same unit) at each frequency; NaN where `H` lacks a fed-back response.
+    /// Returns the smallest singular value of `I - K H` at each frequency; NaN if `H` lacks a
+    /// fed-back response. The matrix is m x m, at the inputs, where all channels have the same
+    /// unit.
     pub fn least_singular_values(&self, physics: &FrequencyResponse) -> Vec<f64> {
         let points = physics.curve(Pair::new(0, 0)).len();
         (0..points)
@@ -205,11 +210,11 @@ impl CouplingMatrices {
             .collect()
     }
 
-    /// Returns the smallest singular value at frequency `k`.
+    /// Returns the smallest singular value of `I - K H` at frequency index `k`.
     fn least_singular_value(&self, physics: &FrequencyResponse, k: usize) -> f64 {
         let (inputs, outputs) = self.feedback().shape();
         let difference = DMatrix::from_fn(inputs, inputs, |to, from| {
-            // A response that is not fed back may be missing.
+            // Skip responses that are not fed back, since they may be missing.
             let fed: Complex<f64> = (0..outputs)
                 .filter(|&output| self.feedback()[(to, output)] != 0.0)
                 .map(|output| {
@@ -226,8 +231,8 @@ impl CouplingMatrices {
     }
 }
 
-/// Returns `20 log10 |H~ - H| / |H|` by response at frequency `k`, p x m; `None` if a value is not
-/// finite or `H` is zero, minus infinity if nothing changes.
+/// Returns `20 log10 |H~ - H| / |H|` of every response at frequency index `k`, p x m; `None` if a
+/// value is not finite or `H` is zero, minus infinity if nothing changes.
 pub fn relative_change_db(
     physics: &FrequencyResponse,
     coupled: &FrequencyResponse,
@@ -245,16 +250,17 @@ pub fn relative_change_db(
     })
 }
 
-/// A coupled model's pole and its match in the physics model; conjugate pairs count once.
+/// A pole of a coupled model and its counterpart in the physics model; conjugate pairs are counted
+/// once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoleShift {
-    /// Pole without coupling \[rad/s\]; `None` for additional states (delays inside the loop).
+    /// Pole without coupling \[rad/s\]; `None` for an additional state (delays inside the loop).
     pub before: Option<Complex<f64>>,
     /// Pole with coupling \[rad/s\].
     pub after: Complex<f64>,
 }
 
-/// Reasons why a coupled model's poles are unavailable.
+/// Reasons why the poles of a coupled model are unavailable.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PoleShiftError {
     #[error(transparent)]
@@ -264,12 +270,12 @@ pub enum PoleShiftError {
 }
 
 impl PoleShift {
-    /// Returns the distance between the two poles \[rad/s\].
+    /// Returns the distance between both poles \[rad/s\]; `None` for an additional state.
     pub fn distance_rad_s(&self) -> Option<f64> {
         Some((self.after - self.before?).norm())
     }
 
-    /// Whether coupling moved the pole into the right half-plane.
+    /// Returns whether coupling moved the pole into the right half-plane.
     pub fn is_newly_unstable(&self) -> bool {
         let was_unstable = self.before.is_some_and(|before| before.re > 0.0);
         self.after.re > 0.0 && !was_unstable
@@ -277,12 +283,12 @@ impl PoleShift {
 }
 
 impl CouplingMatrices {
-    /// Returns a physics model's poles with mixing and feedback, in ascending `|lambda|`, matched
-    /// to the poles without coupling so that the sum of distances is minimal. Discrete-time poles
-    /// are converted by `s = ln z / T`.
+    /// Returns the poles of a physics model with mixing and feedback, in ascending `|lambda|`. They
+    /// are matched to the poles without coupling so that the sum of distances is minimal.
+    /// Discrete-time poles are converted by `s = ln z / T`.
     ///
     /// # Errors
-    /// [`PoleShiftError`] if there is no coupled model or no eigenvalues.
+    /// [`PoleShiftError`] if the coupled model or its eigenvalues are unavailable.
     pub fn pole_shifts(
         &self,
         physics: &StateSpace,

@@ -1,4 +1,5 @@
-//! Input mixing and output feedback, applied to a frequency response and to a model (M16.3).
+//! Input mixing and output feedback, and their application to a frequency response and to a model
+//! (M16.3).
 
 use nalgebra::{Complex, DMatrix, Dyn, LU};
 
@@ -14,17 +15,17 @@ use crate::correction::corrected_model::{CorrectedModel, CorrectedModelError};
 use crate::correction::{ChannelCorrection, Pade};
 use crate::schedule::{Airspeeds, Regression};
 
-/// `M(V)`, m x m, and `K`, m x p: `y = H (u' + K y)`, `u' = M~(V) u`.
+/// Input mixing `M(V)`, m x m, and output feedback `K`, m x p: `y = H (u' + K y)`, `u' = M~(V) u`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CouplingMatrices {
     airspeeds: Airspeeds,
-    /// `M`, row by row: polynomials in the scaled airspeed.
+    /// Entries of `M`, row by row: polynomials in the scaled airspeed.
     mixing: Vec<Regression>,
     feedback: DMatrix<f64>,
 }
 
 impl CouplingMatrices {
-    /// Returns `M = I`, `K = 0` for m inputs and p outputs.
+    /// Returns `M = I` and `K = 0` for m inputs and p outputs.
     pub fn none(airspeeds: Airspeeds, inputs: usize, outputs: usize) -> Self {
         let mut mixing = Vec::with_capacity(inputs * inputs);
         for to in 0..inputs {
@@ -41,8 +42,9 @@ impl CouplingMatrices {
         }
     }
 
-    /// Returns a copy with these values for the unknowns, which list the airspeed powers in each
-    /// entry of `M` from 0 up. Entries that are not among the unknowns are 0.
+    /// Returns a copy with new values of the unknowns. For each entry of `M`, the unknowns list the
+    /// powers of the airspeed in ascending order from 0. Entries that are not among the unknowns
+    /// are 0.
     #[must_use]
     pub fn with(&self, unknowns: &[Unknown], values: &[f64]) -> Self {
         let (inputs, outputs) = self.feedback.shape();
@@ -64,10 +66,10 @@ impl CouplingMatrices {
         }
     }
 
-    /// Checks that the mixing keeps the sign of every input at the conditions' airspeeds.
+    /// Checks that the mixing preserves the sign of every input at the airspeeds of the conditions.
     ///
     /// # Errors
-    /// [`CouplingError::ReversedInput`] for the first input that is reversed.
+    /// [`CouplingError::ReversedInput`] for the first input whose sign is reversed.
     pub(super) fn check(&self) -> Result<(), CouplingError> {
         for &airspeed_kt in &self.airspeeds.values_kt {
             let diagonal = self.mixing(airspeed_kt).diagonal();
@@ -84,17 +86,18 @@ impl CouplingMatrices {
         Ok(())
     }
 
-    /// Returns the fitted conditions' airspeeds.
+    /// Returns the airspeeds of the conditions used in the fit.
     pub fn airspeeds(&self) -> &Airspeeds {
         &self.airspeeds
     }
 
-    /// Returns `M_to,from` over the scaled airspeed, see [`CouplingMatrices::airspeeds`].
+    /// Returns `M_to,from` as a function of the scaled airspeed, see
+    /// [`CouplingMatrices::airspeeds`].
     pub fn mixing_curve(&self, to: usize, from: usize) -> &Regression {
         &self.mixing[to * self.feedback.nrows() + from]
     }
 
-    /// Returns `M(V)`, m x m, `[to, from]`, constant beyond the conditions' range.
+    /// Returns `M(V)`, m x m, `[to, from]`; constant outside the airspeed range of the conditions.
     pub fn mixing(&self, airspeed_kt: f64) -> DMatrix<f64> {
         let inputs = self.feedback.nrows();
         DMatrix::from_fn(inputs, inputs, |to, from| {
@@ -102,8 +105,8 @@ impl CouplingMatrices {
         })
     }
 
-    /// Returns `M~(V) = M(V) diag(M(V))^-1`, m x m: ones on the diagonal, since the gain level
-    /// belongs to the channels.
+    /// Returns `M~(V) = M(V) diag(M(V))^-1`, m x m. Its diagonal entries are 1, because the gain of
+    /// each input is part of the channel correction.
     pub fn normalised_mixing(&self, airspeed_kt: f64) -> DMatrix<f64> {
         let mixing = self.mixing(airspeed_kt);
         DMatrix::from_fn(mixing.nrows(), mixing.ncols(), |to, from| {
@@ -122,8 +125,9 @@ impl CouplingMatrices {
 
     /// Computes `H~ = (I - H K)^-1 H M~(V)` at every frequency, p x m.
     ///
-    /// Not finite where `I - H K` is singular or `H` lacks a fed-back response. An output that is
-    /// not fed back stays without a response where it lacks one.
+    /// Not finite if `I - H K` is singular, or if `H` lacks a fed-back response. If `H` lacks a
+    /// response of an output that is not fed back, only the responses of this output are not
+    /// finite.
     #[must_use]
     pub fn response(&self, physics: &FrequencyResponse, airspeed_kt: f64) -> FrequencyResponse {
         let inputs = physics.inputs();
@@ -148,8 +152,8 @@ impl CouplingMatrices {
         FrequencyResponse::new(coupled)
     }
 
-    /// Writes `H` at frequency `k` to `columns`; returns the outputs that lack a response and are
-    /// not fed back. Their values become zeros, which do not affect the other outputs.
+    /// Writes `H` at frequency index `k` to `columns`. Returns the outputs that lack a response and
+    /// are not fed back; their values are set to zero, which does not affect the other outputs.
     fn read_columns(
         &self,
         physics: &FrequencyResponse,
@@ -182,42 +186,43 @@ impl CouplingMatrices {
     }
 }
 
-/// Condition number of `I - D K` above which the loop through the feed-through is rejected.
+/// Condition number of `I - D K` above which the algebraic loop through the feed-through is
+/// rejected.
 const WORST_CONDITION: f64 = 1e6;
 
-/// Reasons why mixing and feedback cannot be applied to a model as matrices.
+/// Reasons why mixing and feedback cannot be applied to the matrices of a model.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CoupledModelError {
-    /// The algebraic loop through the feed-through cannot be closed.
+    /// The algebraic loop through the feed-through is singular or nearly so.
     #[error(
-        "the feedback cannot be closed through its feed-through: the condition number of I − D K is {}, and at most \
-         {WORST_CONDITION:e} is allowed",
+        "the loop through the feed-through cannot be closed: the condition number of I − D K is \
+        {}, and at most {WORST_CONDITION:e} is allowed",
         number(*condition_number)
     )]
     AlgebraicLoop {
         /// Condition number of `I - D K`; infinite if singular.
         condition_number: f64,
     },
-    /// Model and couplings have different channels.
+    /// The model and the couplings have different numbers of channels.
     #[error(
-        "it has {} outputs and {} inputs, and the couplings have {} and {}", found[0], found[1], expected[0], expected[1]
+        "the model has {} outputs and {} inputs, but the couplings have {} and {}", found[0], found[1], expected[0], expected[1]
     )]
     Channels {
-        /// Numbers of outputs and inputs of the model.
+        /// Number of outputs and inputs of the model.
         found: [usize; 2],
-        /// Numbers of outputs and inputs of the couplings.
+        /// Number of outputs and inputs of the couplings.
         expected: [usize; 2],
     },
-    /// The channel delays inside the loop cannot become states.
+    /// The channel delays, which lie inside the loop, cannot be converted to states.
     #[error(transparent)]
     Delays(#[from] CorrectedModelError),
-    /// A product is not finite.
+    /// A matrix of the coupled model is not finite.
     #[error(transparent)]
     Matrices(#[from] StateSpaceError),
 }
 
 impl CoupledModelError {
-    /// Returns the reason, with channel names.
+    /// Returns the reason in words, with channel names.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         match self {
             Self::Delays(error) => error.words(inputs, outputs),
@@ -228,8 +233,8 @@ impl CoupledModelError {
 
 impl CouplingMatrices {
     /// Builds the physics model with mixing and feedback, in continuous or discrete time. Channel
-    /// delays, which lie inside the loop, become states first: Padé approximants `pade`, or whole
-    /// samples.
+    /// delays, which lie inside the loop, are first converted to states: by the Padé approximant
+    /// `pade`, or to whole samples.
     ///
     /// ```text
     /// K~ = K (I - D K)^-1
@@ -238,8 +243,8 @@ impl CouplingMatrices {
     /// ```
     ///
     /// # Errors
-    /// [`CoupledModelError`] if the condition number of `I - D K` exceeds 1e6, the channels differ,
-    /// the delays cannot become states, or a product is not finite.
+    /// [`CoupledModelError`] if the condition number of `I - D K` exceeds 1e6, the numbers of
+    /// channels differ, the delays cannot be converted to states, or a matrix is not finite.
     pub fn model(
         &self,
         physics: &StateSpace,
@@ -266,7 +271,7 @@ impl CouplingMatrices {
         let (Some(c_closed), Some(d_closed)) = (algebraic.solve(c), algebraic.solve(d)) else {
             return Err(singular);
         };
-        // K~ C = K (I - D K)^-1 C, and likewise with D.
+        // `c_closed`, `d_closed`: K~ C = K (I - D K)^-1 C, and likewise for D.
         let a_closed = a + b * (k * &c_closed);
         let b_closed = (b + b * (k * &d_closed)) * &mixing;
         let model = StateSpace::new(a_closed, b_closed, c_closed, d_closed * mixing)?;
@@ -285,17 +290,18 @@ fn algebraic_loop(
     let difference = DMatrix::identity(d.nrows(), d.nrows()) - d * k;
     let singular_values = difference.clone().svd(false, false).singular_values;
     let condition_number = singular_values.max() / singular_values.min();
-    // True for NaN as well, where D K overflows.
+    // `!condition_number.le(...)` is also true for NaN, which results if D K overflows.
     if !condition_number.le(&WORST_CONDITION) {
         return Err(CoupledModelError::AlgebraicLoop { condition_number });
     }
     Ok(difference.lu())
 }
 
-/// Returns the model with its channel delays as states.
+/// Returns the model with its channel delays converted to states.
 ///
 /// # Errors
-/// [`CorrectedModelError`] if the delays need more states than a model may have.
+/// [`CorrectedModelError`] if the delays need more states than a model may have, or if a
+/// discrete-time delay is not a whole number of samples.
 pub fn without_delays(physics: &StateSpace, pade: Pade) -> Result<StateSpace, CorrectedModelError> {
     let timing = Timing {
         sample_time_s: physics.timing().sample_time_s,

@@ -7,19 +7,16 @@ use gdcm_model::units::{number, telling};
 /// Reasons why no couplings can be fitted (M16.2).
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CouplingError {
-    /// There is no condition, or no response is available in both representatives of a condition.
+    /// No condition has a response that both of its representatives contain.
     #[error(
-        "no response of the {conditions} conditions is known for both the physics model and flight"
+        "no coupling fit: none of the {conditions} conditions has a response that is available in \
+        both its physics and its identified representative"
     )]
     NothingToFit { conditions: usize },
-    /// Too few conditions for the request.
+    /// Fewer conditions than error bars need.
     #[error("error bars need at least {needed} conditions, found {found}")]
-    TooFewConditions {
-        /// Minimum number of conditions.
-        needed: usize,
-        found: usize,
-    },
-    /// A condition's table has another shape than expected.
+    TooFewConditions { needed: usize, found: usize },
+    /// The table of a condition does not have the expected shape.
     #[error(
         "condition {condition}: expected {} x {} responses at {} frequencies in every table, found {} x {} at {}",
         expected[0],
@@ -51,10 +48,10 @@ pub enum CouplingError {
     /// The mixing removes an input or reverses its sign.
     #[error("{}", reversed_input(&input.to_string(), *factor, *airspeed_kt))]
     ReversedInput {
-        /// The input, counted from 1.
+        /// Index of the input, counted from 1.
         input: usize,
         airspeed_kt: f64,
-        /// `M_ii` at that airspeed.
+        /// `M_ii` at `airspeed_kt`.
         factor: f64,
     },
     #[error(transparent)]
@@ -62,7 +59,7 @@ pub enum CouplingError {
 }
 
 impl CouplingError {
-    /// Returns the reason, with the input's name.
+    /// Describes the error, with the name of a reversed input instead of its index.
     pub fn words(&self, inputs: &[String]) -> String {
         match self {
             Self::ReversedInput {
@@ -78,7 +75,7 @@ impl CouplingError {
     }
 }
 
-/// Describes a reversed input, given by its name or number.
+/// Describes the error of a reversed input, which is given by its name or index.
 fn reversed_input(input: &str, factor: f64, airspeed_kt: f64) -> String {
     format!(
         "the mixing multiplies input {input} by {} at {} kt; expected a positive factor",

@@ -23,16 +23,15 @@ use super::unknown_layout::UnknownLayout;
 use super::weighted_condition::WeightedCondition;
 use crate::uncertainty::student_quantile;
 
-/// The fitted couplings, with a record of the fit.
+/// The fitted couplings, and the course and quality of the fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CouplingFit {
     pub matrices: CouplingMatrices,
-    /// The fitted unknowns.
     pub unknowns: Vec<Unknown>,
-    /// Values of the unknowns after each solve.
+    /// Values of the unknowns after each solve, in the order of `unknowns`.
     pub coefficients: Vec<Vec<f64>>,
-    /// Optimality check for the last solve, a convex problem with a single optimum: the maximum
-    /// residual of the normal equations relative to the maximum right side.
+    /// Optimality check for the last solve, a convex problem with a single optimum: the largest
+    /// residual of the normal equations relative to their largest right-hand side.
     pub residual: f64,
     /// Outputs that cannot be fed back, because their response to some input is missing in every
     /// condition.
@@ -75,7 +74,7 @@ pub fn fit_couplings(
         fed_back: &fed_back,
         layout: UnknownLayout::new(&unknowns, problem.inputs(), &fed_back),
         shares: Shares::new(progress),
-        // Solving a pass counts like a condition.
+        // Each pass has one step for each condition, and one for the solution.
         share: 1.0 / (solves * (conditions.len() + 1)) as f64,
     };
     let mut matrices = CouplingMatrices::none(airspeeds, problem.inputs(), problem.outputs());
@@ -164,17 +163,16 @@ impl Fitting<'_> {
 /// Minimum number of conditions for error bars.
 pub const LEAST_CONDITIONS: usize = 3;
 
-/// A fit without a condition.
+/// A fit to all conditions but one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeftOutFit {
     /// The omitted condition.
     pub condition: ConditionId,
-    /// The fit to all other conditions.
     pub fit: CouplingFit,
 }
 
-/// Fits the couplings without each condition in turn, in their order; the fits are independent
-/// tasks.
+/// Fits the couplings once for each condition, without it, in the order of the conditions. The fits
+/// run as independent tasks.
 ///
 /// # Errors
 /// [`CouplingError::TooFewConditions`] for fewer than three conditions, and all errors from
@@ -192,7 +190,7 @@ pub fn left_out_fits(
         let portion = Portion::new(
             &shares,
             1.0 / count as f64,
-            "mixing and feedback without each condition",
+            "leave-one-out fits of mixing and feedback",
         );
         let fit = fit_couplings(&problem.without(index), &Sequential, &portion)?;
         portion.finish()?;
@@ -224,10 +222,10 @@ pub struct CouplingBars {
 
 impl CouplingBars {
     /// Computes the error bars at a confidence level: Student's quantile with `n - 1` degrees of
-    /// freedom times the jackknife standard deviation; the mixing is evaluated at `airspeed_kt`.
+    /// freedom times the jackknife standard deviation. The mixing is evaluated at `airspeed_kt`.
     ///
     /// # Errors
-    /// [`CouplingError::TooFewConditions`] for fewer than three.
+    /// [`CouplingError::TooFewConditions`] for fewer than three fits.
     pub fn of(fits: &[LeftOutFit], airspeed_kt: f64, level: f64) -> Result<Self, CouplingError> {
         check_count(fits.len())?;
         let quantile = student_quantile(level, fits.len() as f64 - 1.0);
@@ -245,8 +243,8 @@ impl CouplingBars {
     }
 }
 
-/// Computes the jackknife standard deviation by entry from the leave-one-out matrices; at least one
-/// is needed.
+/// Computes the jackknife standard deviation of each matrix entry from the leave-one-out matrices;
+/// needs at least one matrix.
 fn jackknife(without: &[DMatrix<f64>]) -> DMatrix<f64> {
     let count = without.len() as f64;
     let (rows, columns) = without[0].shape();

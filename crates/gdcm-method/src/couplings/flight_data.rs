@@ -14,7 +14,8 @@ use crate::correction::Channels;
 use crate::correction::leads::LeadDesign;
 use crate::uncertainty::spread::Measurement;
 
-/// Returns the mean signed delay by channel \[s\] over the conditions; `None` without conditions.
+/// Returns the mean signed delay of each channel \[s\] over the conditions; `None` without
+/// conditions.
 pub fn mean_delays_s(conditions: &[Channels<f64>]) -> Option<Channels<f64>> {
     let count = conditions.len() as f64;
     let first = conditions.first()?;
@@ -31,7 +32,7 @@ pub fn mean_delays_s(conditions: &[Channels<f64>]) -> Option<Channels<f64>> {
 /// feedback have to reproduce.
 ///
 /// `L = e^(-j omega tau)` for a signed delay `tau` \[s\], or the lead filter that `design` provides
-/// for a negative delay (M15); without a design the exponential for any delay.
+/// for a negative delay (M15). Without a design, the exponential is used for every delay.
 #[must_use]
 pub fn without_channels(
     flight: &FrequencyResponse,
@@ -80,7 +81,8 @@ pub fn response_deviation(bands: &ModelBands, omega: &[f64]) -> PairTable<Vec<f6
 }
 
 /// Returns the standard deviation of `ln H` from the coherence `gamma^2`, p x m curves (M13.2): `C
-/// sqrt(1 - gamma^2) / (|gamma| sqrt(2 n_d))`.
+/// sqrt(1 - gamma^2) / (|gamma| sqrt(2 n_d))`, with the constant `C` and the number of averages
+/// `n_d` of `measurement`.
 pub fn coherence_deviation(
     coherence: &PairTable<Vec<f64>>,
     measurement: &Measurement,

@@ -9,7 +9,7 @@
 //!  3  repeat five times:
 //!  4     S <- (I - H K)^-1,  F <- S H,  H_c <- F M at each condition and frequency
 //!  5     q <- s w / max(|R'|, |H_c| / 2) / (1 + (e s / 10)^2)^(1/4) for each response, e^2 the summand of J
-//!  6     G, b <- normal matrix and right side for  sum q^2 |S R' - F M - F K R'|^2  in the entries theta of M and K
+//!  6     G, b <- normal matrix and right-hand side for  sum q^2 |S R' - F M - F K R'|^2  in the entries theta of M and K
 //!  7     theta <- solution of  (G + rho diag G) theta = b + rho diag G theta_0,  theta_0: M = I, K = 0, by Cholesky's factors
 //!  8  M~(V) <- M(V) diag(M(V))^-1: the level stays with the channels
 //!  9  bars: theta again without each condition;  sd^2 <- (n - 1) / n sum (theta_(-c) - mean)^2,  Student's t(n - 1)

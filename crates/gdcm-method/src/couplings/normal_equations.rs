@@ -19,17 +19,17 @@ use super::unknown_layout::{FeedbackUnknown, MixingUnknown, UnknownLayout};
 pub(super) struct NormalEquations<'a> {
     layout: &'a UnknownLayout,
     columns: Vec<ArrowColumn>,
-    /// The pairs of two unknowns in K.
+    /// Normal matrix entries of pairs of unknowns in K.
     feedback: PairProducts,
-    /// Right side for the unknowns in K: rows by fed-back output, columns by input.
+    /// Right-hand side for the unknowns in K: rows by fed-back output, columns by input.
     right: DMatrix<f64>,
 }
 
-/// The optimum of a pass.
+/// Solution of the normal equations of a pass.
 pub(super) struct PassOptimum {
     /// `theta`, by unknown.
     pub(super) coefficients: DVector<f64>,
-    /// Maximum residual of the scaled normal equations relative to their maximum right side.
+    /// Largest residual of the scaled normal equations relative to their largest right-hand side.
     pub(super) residual: f64,
     /// Indices of the unknowns that no response determines; they keep their uncoupled values.
     pub(super) undetermined: Vec<usize>,
@@ -81,10 +81,10 @@ impl<'a> NormalEquations<'a> {
         }
     }
 
-    /// Returns the optimum, regularised towards no couplings by `ridge` (steps 2 and 3).
+    /// Returns the solution, regularised towards no couplings by `ridge` (steps 2 and 3).
     ///
     /// # Errors
-    /// [`CouplingError::SingularNormalMatrix`] without Cholesky factors.
+    /// [`CouplingError::SingularNormalMatrix`] if the normal matrix has no Cholesky factors.
     pub(super) fn solve(
         &self,
         unknowns: &[Unknown],
@@ -254,7 +254,7 @@ impl<'a> Scaling<'a> {
         }
     }
 
-    /// Returns the right side `b`, scaled and regularised.
+    /// Returns an entry of the right-hand side `b`, scaled and regularised.
     fn right(&self, index: usize, right: f64) -> f64 {
         let scale = self.scale[index];
         scale * right + self.regularisation(index) * self.unknowns[index].uncoupled() / scale

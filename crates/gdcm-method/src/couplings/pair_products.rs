@@ -45,7 +45,8 @@ impl PairProducts {
         }
     }
 
-    /// Returns the sum in this row for the inputs j, l in any order.
+    /// Returns the sum for the factor pair `row` and the inputs `j` and `l`, which may be in either
+    /// order.
     pub(super) fn entry(&self, row: usize, j: usize, l: usize) -> f64 {
         if j <= l {
             let column = pair_index(j, l, self.inputs);
@@ -56,7 +57,7 @@ impl PairProducts {
         }
     }
 
-    /// Adds the products at the frequencies of a chunk, from its factor pair `first` on.
+    /// Adds the products of a chunk; `first` is the chunk's row of the first factor pair.
     pub(super) fn add_chunk(&mut self, chunk: &ProductChunk, first: usize) {
         let (rows, columns) = self.real.shape();
         if rows == 0 || chunk.filled == 0 {
@@ -79,7 +80,7 @@ impl PairProducts {
         }
     }
 
-    /// Adds the sums of other frequencies.
+    /// Adds the sums over other frequencies.
     pub(super) fn add(&mut self, other: &Self) {
         self.real += &other.real;
         self.imaginary += &other.imaginary;
@@ -123,7 +124,7 @@ impl ProductChunk {
         self.filled = 0;
     }
 
-    /// Appends a frequency: the factors `t`, and `F` with the weights `q^2` by row.
+    /// Appends a frequency: the factors `t`, the matrix `F`, and the weights `q^2` of its rows.
     pub(super) fn push(&mut self, t: &[Complex<f64>], f: &RowParts, squared_weights: &[f64]) {
         self.push_factors(t);
         self.push_weighted(f, squared_weights);

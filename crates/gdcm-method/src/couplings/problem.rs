@@ -24,7 +24,7 @@ pub enum CouplingKind {
 }
 
 impl CouplingKind {
-    /// Whether outputs are fed back.
+    /// Returns whether outputs are fed back.
     pub fn feeds_back(self) -> bool {
         self == Self::MixingAndFeedback
     }
@@ -143,13 +143,13 @@ impl CouplingProblem {
             .collect()
     }
 
-    /// Whether flight data exist for an input.
+    /// Returns whether flight data exist for an input.
     fn has_data(&self, input: usize) -> bool {
         (0..self.outputs()).any(|output| self.is_known(Pair::new(output, input)))
     }
 
-    /// Whether a flight response is available at a frequency at which the physics model has all
-    /// responses of the same output.
+    /// Returns whether a flight response is available at a frequency at which the physics model has
+    /// all responses of the same output.
     fn is_known(&self, pair: Pair) -> bool {
         self.conditions.iter().any(|condition| {
             let flight = condition.flight.curve(pair);
@@ -180,14 +180,14 @@ impl CouplingProblem {
 }
 
 impl CouplingCondition {
-    /// Whether the physics model has an output's responses to all inputs at frequency `k`.
+    /// Returns whether the physics model has an output's responses to all inputs at frequency `k`.
     pub(super) fn has_physics_row(&self, output: usize, k: usize) -> bool {
         (0..self.physics.inputs())
             .all(|input| self.physics.curve(Pair::new(output, input))[k].is_finite())
     }
 
-    /// Returns the numbers of outputs, inputs and frequencies by table; tables without frequencies
-    /// count as having `points`.
+    /// Returns the numbers of outputs, inputs and frequencies of each table; tables without
+    /// frequencies count as having `points`.
     fn table_shapes(&self, points: usize) -> Vec<[usize; 3]> {
         let mut shapes = vec![
             table_shape(self.physics.curves(), points),

@@ -23,7 +23,7 @@ use super::{
 };
 use crate::schedule::Airspeeds;
 
-/// Reference results from independent numpy code.
+/// Reference results, computed independently with numpy.
 static REFERENCE: LazyLock<Value> = LazyLock::new(|| {
     serde_json::from_str(include_str!("../../../../tests/data/reference/mixing.json")).unwrap()
 });
@@ -199,7 +199,8 @@ fn fits_of_many_channels_and_conditions_solve_their_equations() {
         println!(
             "{channels} x {channels}, {conditions} conditions, one core: {took_s:.2} s; residual {residual:.1e}"
         );
-        // A few hundred roundings of the maximum right side; the time is only printed.
+        // Tolerance: a few hundred rounding errors of the largest right-hand side. The time is
+        // printed, not compared.
         assert!(residual < 1e-12, "{residual:e}");
     }
 }

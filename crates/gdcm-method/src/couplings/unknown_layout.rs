@@ -2,7 +2,8 @@
 
 use super::unknown::Unknown;
 
-/// The unknowns in the order of the equations: those in `M` by input column, then those in `K`.
+/// The unknowns in the order of the equations: first the unknowns in `M`, by input column, then the
+/// unknowns in `K`.
 pub(super) struct UnknownLayout {
     /// The unknowns `M_ji` by input column i.
     pub(super) mixing: Vec<Vec<MixingUnknown>>,

@@ -28,7 +28,7 @@ struct FixedWeight {
     coherence: f64,
 }
 
-/// A condition; at each frequency its values are stored input column by input column.
+/// Data of a condition, frequency by frequency; within a frequency, input column by input column.
 pub(super) struct WeightedCondition<'a> {
     pub(super) id: ConditionId,
     /// True airspeed \[kt\].
@@ -79,12 +79,12 @@ impl<'a> WeightedCondition<'a> {
         self.inputs
     }
 
-    /// Whether any response has a weight.
+    /// Returns whether any response has a nonzero weight.
     pub(super) fn counts(&self) -> bool {
         self.weights.iter().any(|weight| weight.s > 0.0)
     }
 
-    /// Whether any response has a weight at frequency `k`.
+    /// Returns whether any response has a nonzero weight at frequency `k`.
     pub(super) fn counts_at(&self, k: usize) -> bool {
         let size = self.inputs * self.outputs;
         self.weights[k * size..][..size]
@@ -103,8 +103,8 @@ impl<'a> WeightedCondition<'a> {
         &self.flight[(k * self.inputs + input) * self.outputs..][..self.outputs]
     }
 
-    /// Computes `q^2` by output in an input column at frequency `k`, given `H_c = coupled` from the
-    /// last pass; returns false if every weight is zero.
+    /// Computes `q^2` for each output of an input column at frequency `k`, given `H_c = coupled`
+    /// from the last pass; returns false if every weight is zero.
     pub(super) fn squared_weights(
         &self,
         k: usize,
@@ -129,7 +129,7 @@ impl<'a> WeightedCondition<'a> {
 }
 
 impl FixedWeight {
-    /// Returns `q^2`.
+    /// Returns `q^2`, or 0 where the formula yields no finite value.
     fn squared(self, coupled: Complex<f64>, flight: Complex<f64>) -> f64 {
         let coupled_square = coupled.norm_sqr();
         let flight_square = flight.norm_sqr();
@@ -138,7 +138,7 @@ impl FixedWeight {
         let robust = (1.0 + summand(error_db, error_deg) * (self.s / OUTLIER).powi(2)).sqrt();
         let scale = flight_square.max(0.25 * coupled_square);
         let squared = self.s * self.s * self.coherence / scale / robust;
-        // A zero value has no value in dB, and an overflow cannot be compared.
+        // Not finite if a response is zero, which has no value in dB, or if the scale overflows.
         if squared.is_finite() { squared } else { 0.0 }
     }
 }
@@ -217,7 +217,7 @@ fn fixed_weights(
     weights
 }
 
-/// Whether a flight response is available at frequency `k`.
+/// Returns whether a flight response is available at frequency `k`.
 fn has_flight(condition: &CouplingCondition, pair: Pair, k: usize) -> bool {
     condition.flight.curve(pair)[k].is_finite()
 }

@@ -7,16 +7,13 @@ use nalgebra::{DMatrix, DVector};
 
 use gdcm_numerics::{CscMatrix, DefaultSettings, convex_program};
 
-/// Reasons for a missing fit.
+/// Reasons why a fit is unavailable.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FitError {
     /// The linear program did not reach its optimum.
-    #[error("least absolute deviations fit not solved: {status}")]
-    NotSolved {
-        /// Status reported by the solver.
-        status: String,
-    },
-    #[error("least absolute deviations fit cancelled")]
+    #[error("the least-absolute-deviations fit failed ({status})")]
+    NotSolved { status: String },
+    #[error("the least-absolute-deviations fit was cancelled")]
     Cancelled,
 }
 
@@ -134,7 +131,8 @@ fn solve_linear_program(x: &[Vec<f64>], y: &[f64], unknowns: usize) -> Result<Ve
     b.extend(vec![0.0; unknowns]);
     let mut q = vec![0.0; unknowns];
     q.extend(vec![1.0; rows]);
-    // Tight enough that the nearest vertex is optimal or one edge from an optimal vertex.
+    // These tolerances ensure that the nearest vertex is optimal, or one edge from an optimal
+    // vertex.
     let settings = DefaultSettings {
         verbose: false,
         tol_gap_abs: 1e-11,
@@ -212,7 +210,6 @@ impl<'a> Fit<'a> {
         self.y.len() + self.unknowns
     }
 
-    /// Returns `x_i`.
     fn row(&self, row: usize) -> &[f64] {
         &self.x[row * self.unknowns..(row + 1) * self.unknowns]
     }
@@ -234,12 +231,13 @@ impl<'a> Fit<'a> {
         self.left(constraint, w) - self.right(constraint)
     }
 
-    /// Whether a constraint is `w_k = 0`.
+    /// Returns whether a constraint is `w_k = 0`.
     fn is_weight(&self, constraint: usize) -> bool {
         constraint >= self.y.len()
     }
 
-    /// Returns the left-hand sides of these constraints, a row each: from `x` or the identity.
+    /// Returns the coefficients of these constraints, a row each: from `x` for a row, from the
+    /// identity for a weight.
     fn matrix(&self, constraints: &[usize]) -> DMatrix<f64> {
         DMatrix::from_fn(
             constraints.len(),
@@ -308,7 +306,7 @@ struct Crossing {
 }
 
 impl Crossing {
-    /// Orders crossings along the edge; equal ones by constraint.
+    /// Orders crossings along the edge; ties by constraint index.
     fn compare(&self, other: &Self) -> Ordering {
         self.step
             .total_cmp(&other.step)
@@ -316,8 +314,8 @@ impl Crossing {
     }
 }
 
-/// Returns the constraint at the first crossing where the doubled accumulated changes reach `rise`:
-/// a weighted median, found by bisection rather than by sorting.
+/// Returns the constraint at the first crossing where twice the accumulated changes reach `rise`: a
+/// weighted median, found by bisection rather than by sorting.
 fn crossing_at(mut crossings: Vec<Crossing>, rise: f64) -> Option<usize> {
     let mut left = crossings.as_mut_slice();
     let mut risen = 0.0;
@@ -392,7 +390,7 @@ impl Vertex {
         }
     }
 
-    /// Whether two vertices coincide.
+    /// Returns whether two vertices coincide.
     fn is_at(&self, other: &Self) -> bool {
         self.weights
             .iter()
@@ -420,8 +418,8 @@ impl Vertex {
         Neighbours::Equal(equal)
     }
 
-    /// Returns this vertex's edges: a constraint is released, in either direction; a weight only
-    /// upwards.
+    /// Returns the edges of this vertex. Each releases a constraint of the basis: a row in either
+    /// direction, a weight only upwards.
     fn edges(&self, fit: &Fit<'_>, deviations: &[f64]) -> Vec<Edge> {
         let Some(inverse) = fit.matrix(&self.basis).try_inverse() else {
             return Vec::new();
@@ -449,7 +447,8 @@ impl Vertex {
         edges
     }
 
-    /// Returns every constraint's deviation, exactly zero for those that define the vertex.
+    /// Returns every constraint's deviation, exactly zero for the constraints that define the
+    /// vertex.
     fn deviations(&self, fit: &Fit<'_>) -> Vec<f64> {
         let mut deviations: Vec<f64> = (0..fit.count())
             .map(|constraint| fit.deviation(constraint, &self.weights))
@@ -472,7 +471,7 @@ impl Vertex {
             }
             let slope = fit.left(constraint, &edge.direction);
             let step = -deviation / slope;
-            // A weight ends the edge, whatever the rate.
+            // A weight that reaches zero ends the edge, whatever the rate.
             let change = if fit.is_weight(constraint) {
                 f64::INFINITY
             } else {
@@ -492,8 +491,8 @@ impl Vertex {
         Self::from_basis(fit, basis)
     }
 
-    /// Whether more constraints meet in this vertex than it needs; its edges may then miss a
-    /// descent direction.
+    /// Returns whether more constraints meet in this vertex than it needs; its edges may then miss
+    /// a descent direction.
     fn is_degenerate(&self, fit: &Fit<'_>) -> bool {
         let meeting = (0..fit.count())
             .filter(|&constraint| fit.deviation(constraint, &self.weights).abs() <= ZERO)
@@ -512,7 +511,7 @@ struct EdgeRates {
 
 impl EdgeRates {
     fn new(fit: &Fit<'_>, deviations: &[f64], direction: &[f64]) -> Self {
-        // A zero deviation grows in either direction.
+        // `growing`: a zero deviation grows in either direction.
         let mut growing = 0.0;
         let mut signed = 0.0;
         let mut scale = 0.0;
@@ -546,7 +545,8 @@ mod tests {
         let mut y: Vec<f64> = x.iter().map(|x| 2.0 * x[0] + 3.0 * x[1]).collect();
         y[8] = 100.0;
         let weights = least_absolute_deviations(&x, &y, &|| false).unwrap();
-        // A vertex is solved for directly: a few rounding errors of numbers up to 100.
+        // A vertex is the direct solution of a linear system: a few rounding errors of numbers up
+        // to 100.
         assert!((weights[0] - 2.0).abs() < 1e-12 && (weights[1] - 3.0).abs() < 1e-12);
     }
 
@@ -582,7 +582,7 @@ mod tests {
             let scaled_weights: Vec<f64> = weights.iter().map(|weight| weight / largest).collect();
             let found = fit.deviations(&scaled_weights);
             let program = fit.deviations(&solve_linear_program(&x, &scaled, 3).unwrap());
-            // The program is solved to 1e-11 relative; the search is exact.
+            // The linear program is solved to a relative tolerance of 1e-11; the search is exact.
             proptest::prop_assert!(found <= program * (1.0 + 1e-9) + 1e-12, "{found} {program}");
         }
     }
@@ -605,9 +605,10 @@ mod tests {
 
     #[test]
     fn equally_good_vertices_are_compared_in_square_roots() {
-        // Every w from 4 to 9 is a median of these. Square roots 0, 2, 3, 4: from 2 the squares add
-        // to 9, from 3 to 11; square roots 1, 2, 3, 5: from 2 they add to 11, from 3 to 9. (The
-        // tolerance covers a few rounding errors.)
+        // Every w from 4 to 9 is a median of these values; the squared differences of the square
+        // roots decide. Square roots 0, 2, 3, 4: they sum to 9 from 2, and to 11 from 3. Square
+        // roots 1, 2, 3, 5: they sum to 11 from 2, and to 9 from 3. The tolerance covers a few
+        // rounding errors.
         let x = [vec![1.0], vec![1.0], vec![1.0], vec![1.0]];
         for (y, expected) in [([0.0, 4.0, 9.0, 16.0], 4.0), ([1.0, 4.0, 9.0, 25.0], 9.0)] {
             let weights = least_absolute_deviations(&x, &y, &|| false).unwrap();

@@ -6,7 +6,7 @@ use gdcm_model::response::curve_values::coherence_at;
 /// The frequencies of a response with sufficient coherence, each with its weight.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoherenceWeights {
-    /// Indices on the grid, ascending.
+    /// Indices of these frequencies on the grid, ascending.
     places: Vec<usize>,
     /// The weighted frequencies \[rad/s\].
     pub omega: Vec<f64>,

@@ -25,7 +25,7 @@ pub fn summand(error_db: f64, error_deg: f64) -> f64 {
     COST_SCALE * (MAGNITUDE_WEIGHT * error_db * error_db + PHASE_WEIGHT * error_deg * error_deg)
 }
 
-/// Average of the squared errors over all frequencies.
+/// Kind of average of the squared errors over frequency.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CostAverage {
@@ -36,7 +36,7 @@ pub enum CostAverage {
 }
 
 impl CostAverage {
-    /// Averages the squares, which are overwritten; with weights by M4a.
+    /// Averages the squared errors, weighted by M4a if `weights` is given; overwrites `squares`.
     fn average(self, squares: &mut [f64], weights: Option<&[f64]>) -> f64 {
         match (self, weights) {
             (CostAverage::Median, None) => median(squares),
@@ -80,7 +80,7 @@ impl Cost {
         Self { magnitude, phase }
     }
 
-    /// Returns the factors on the averaged squared errors, `20 W_g` and `20 W_p`, as text.
+    /// Returns the factors of the averaged squared errors, `20 W_g` and `20 W_p`, as text.
     pub fn factors() -> [String; 2] {
         [MAGNITUDE_WEIGHT, PHASE_WEIGHT].map(|weight| format!("{COST_SCALE} · {weight}"))
     }
@@ -177,7 +177,8 @@ mod tests {
         let phase = [0.1; 5].into_iter();
         let cost = Cost::from_errors(magnitude, phase, None, CostAverage::Median);
         assert_eq!(cost.magnitude, 80.0);
-        // 20 * 0.0175 * (18 / pi)^2, by hand: 11.48966...; a few rounding errors.
+        // By hand: 20 * 0.0175 * (18 / pi)^2 = 11.48966...; the tolerance covers a few rounding
+        // errors.
         assert!((cost.phase - 0.35 * (18.0 / std::f64::consts::PI).powi(2)).abs() < 1e-12);
     }
 
@@ -233,7 +234,7 @@ mod mean_cost_tests {
                 .cost(&[0.0; 53], GainDelay::NONE, CostAverage::Mean)
                 .total();
             let found = mean_cost(&a, &b);
-            // The same sums of 53 squares in another order.
+            // The 53 squares are summed in another order.
             assert!(
                 (found - expected).abs() <= 1e-13 * expected,
                 "{found} {expected}"

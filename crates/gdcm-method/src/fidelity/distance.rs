@@ -14,7 +14,8 @@ use super::coherence_weights::CoherenceWeights;
 use super::cost::{Cost, CostAverage, mean_cost};
 use super::mismatch::Mismatch;
 
-/// The responses that measure distances in a bundle, and the responses that each model lacks (M5b).
+/// The responses compared to compute distances in a bundle, and the responses that each model lacks
+/// (M5b).
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredPairs {
     /// The marked responses available in at least one model.
@@ -53,14 +54,14 @@ impl MeasuredPairs {
             .collect()
     }
 
-    /// Whether a model is set aside.
+    /// Returns whether a model is set aside.
     pub fn is_set_aside(&self, model: usize) -> bool {
         !self.lacks[model].is_empty()
     }
 }
 
-/// Distances between all pairs of models in a bundle (M5): `d(a, b) = sqrt(mean over the measuring
-/// pairs of J(a against b))`, J with the mean over frequency.
+/// Distances between all pairs of models in a bundle (M5): `d(a, b) = sqrt(mean over the compared
+/// responses of J(a against b))`, J with the mean over frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BundleDistance {
     measured: MeasuredPairs,
@@ -108,7 +109,7 @@ impl BundleDistance {
     }
 }
 
-/// A model to be compared by distance.
+/// A model whose distances from other models are computed.
 #[derive(Clone, Copy, Debug)]
 pub struct ComparedModel<'a> {
     pub responses: &'a PolarResponse,
@@ -117,8 +118,8 @@ pub struct ComparedModel<'a> {
 }
 
 impl ComparedModel<'_> {
-    /// Computes J with this model as the reference, with the mean over frequency: weighted by its
-    /// coherence, or over all frequencies where no frequency has a weight.
+    /// Computes J, as the mean over frequency, with this model as the reference: weighted by its
+    /// coherence, or over all frequencies if none has a weight.
     fn cost_as_reference(&self, a: &PolarCurve, b: &PolarCurve, pair: Pair) -> f64 {
         let Some(weights) = self.coherence_weights else {
             return mean_cost(a, b);
@@ -230,7 +231,7 @@ pub struct Discontinuity {
 pub struct CoordinateWeight {
     /// Coordinate name ("airspeed_kt").
     pub name: String,
-    /// Maximum magnitude of the coordinate in the bundle, by which the coordinate is divided.
+    /// Maximum magnitude of the coordinate in the bundle; the coordinate is divided by this value.
     pub largest: f64,
     /// Fitted weight `w_k`.
     pub weight: f64,
@@ -241,20 +242,21 @@ pub struct CoordinateWeight {
 pub enum DiscontinuityError {
     /// The bundle is too small for a fit.
     #[error(
-        "outliers are suggested in bundles of at least {LEAST_MODELS} physics models; this bundle has {found}"
+        "outliers are suggested only in bundles of at least {LEAST_MODELS} physics models; this \
+        bundle has {found}"
     )]
     TooFewModels {
-        /// Models in the bundle.
+        /// Number of models in the bundle.
         found: usize,
     },
     /// A model has no perturbation data.
-    #[error("outliers cannot be suggested: model \"{model}\" gives no perturbation")]
-    NoPerturbation {
-        /// Model name.
-        model: String,
-    },
+    #[error("outliers cannot be suggested: model \"{model}\" has no perturbation data")]
+    NoPerturbation { model: String },
     /// Every perturbation coordinate is zero: all models were linearised at the same trim.
-    #[error("outliers cannot be suggested: every perturbation is zero")]
+    #[error(
+        "outliers cannot be suggested: every perturbation is zero, so all models have the \
+        same trim"
+    )]
     AllZero,
     #[error("outliers cannot be suggested: {0}")]
     Fit(#[from] FitError),
@@ -435,7 +437,8 @@ mod tests {
     use super::super::coherence_weights::coherence_weight;
     use super::*;
 
-    /// A response equal to 1, except in the band's upper half: `upper`, with this coherence.
+    /// A measured response equal to 1 with coherence 1 in the band's lower half, and equal to
+    /// `upper` with the given coherence in the upper half.
     fn measured(upper: f64, coherence: f64) -> Dynamics {
         let omega = vec![1.0, 2.99, 3.01, 9.0];
         let magnitude = PairTable::filled(1, 1, vec![1.0, 1.0, upper, upper]);

@@ -123,8 +123,8 @@ impl Mismatch {
         }
     }
 
-    /// Whether the unwrapped `Delta phi` (M3) exceeds half a turn somewhere, so that M6b chooses
-    /// the turns.
+    /// Returns whether the unwrapped `Delta phi` (M3) exceeds half a turn somewhere; then M6b
+    /// chooses the turns.
     pub fn leaves_half_a_turn(&self) -> bool {
         self.unwrapped().iter().any(|phase| phase.abs() > PI)
     }
@@ -190,7 +190,7 @@ mod tests {
         assert!(uncorrected.total() > 100.0);
         let correction = GainDelay::new(db_to_ratio(2.0), 0.4);
         let corrected = mismatch.cost(&omega, correction, CostAverage::Mean);
-        // Squared rounding errors in angles up to 12 * 0.4 rad.
+        // Squared rounding errors of angles up to 12 * 0.4 rad.
         assert!(corrected.total() < 1e-20);
     }
 
@@ -209,7 +209,7 @@ mod tests {
 
     #[test]
     fn a_zero_passed_on_the_other_side_costs_no_turn_and_leaves_the_delay_of_the_others() {
-        // 70 ms lag, and from 2 rad/s a turn in the other direction within a few frequencies.
+        // A lag of 70 ms, and an additional whole turn within a few frequencies around 2 rad/s.
         let omega: Vec<f64> = (1..=120).map(|k| 0.1 * f64::from(k)).collect();
         let phase = omega
             .iter()
@@ -225,7 +225,7 @@ mod tests {
             turn: 0.0,
         };
         let cost = mismatch.cost(&omega, GainDelay::new(1.0, -0.07), CostAverage::Median);
-        // The turn's remainder at 6 rad/s, squared: e^-160.
+        // At the median frequency, 6 rad/s, the phase misses a whole turn by e^-160 turns.
         assert!(cost.phase < 1e-20, "{cost:?}");
         let delays = mismatch
             .phase_difference(&omega)

@@ -18,7 +18,7 @@ use gdcm_model::response::Mode;
 use gdcm_model::statistics::median;
 
 /// Minimum distance of a jump from the centre, in track spreads: a smooth track over perturbations
-/// to both sides ends at two to three spreads.
+/// in both directions ends at two to three spreads.
 const JUMP_SPREADS: f64 = 5.0;
 /// Minimum distance \[rad/s\] that counts as a jump: a smaller shift of a helicopter's slowest mode
 /// does not change the response within any band.
@@ -42,8 +42,8 @@ pub struct ModeTrack {
 /// Returns the track of each mode of `models[reference]`, in its order; a conjugate pair has one
 /// track, unless a model matches it with two poles that are not a pair.
 ///
-/// The poles of each model are matched to those of the reference with the minimum sum of s-plane
-/// distances (an assignment problem). No tracks if the reference has no modes.
+/// The poles of each model are matched to the poles of the reference with the minimum sum of
+/// s-plane distances (an assignment problem). No tracks if the reference has no modes.
 pub fn mode_tracks(models: &[&[Mode]], reference: usize) -> Vec<ModeTrack> {
     let Some(reference_modes) = models.get(reference).copied() else {
         return Vec::new();
@@ -333,7 +333,7 @@ mod assignment_tests {
 
     #[test]
     fn the_nearest_is_not_taken_where_the_total_suffers() {
-        // Both rows are nearest to column 0, and row 1 has no other column nearby.
+        // Column 0 is the cheapest for both rows, and the only cheap column for row 1.
         let costs = [[1.0, 2.0, 9.0], [1.0, 9.0, 9.0]];
         assert_eq!(least_total(2, 3, |row, column| costs[row][column]), [1, 0]);
         assert_eq!(least_total(0, 3, |_, _| 0.0), [0; 0]);

@@ -183,7 +183,7 @@ mod tests {
         let ranges = leaves(&omega, &[2.0; 201], &[0.0; 201]);
         assert_eq!(ranges.len(), 1);
         for end in [ranges[0].0, ranges[0].1] {
-            // The envelope deviates by about 1e-4 dB from linear between two frequencies.
+            // Between two frequencies the envelope deviates from a straight line by about 1e-4 dB.
             assert!(
                 (Muad::at(end).magnitude_db[1] - 2.0).abs() < 1e-3,
                 "{ranges:?}"

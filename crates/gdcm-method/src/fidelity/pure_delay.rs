@@ -21,7 +21,8 @@ struct DelayGrid {
 ///
 /// ```text
 /// 1  L at every 16th delay
-/// 2  |dL / d delay| <= sum omega: only near coarse delays from which L could rise to the greatest in step 1, L at every delay
+/// 2  |dL / d delay| <= sum omega bounds the rise of L between coarse delays: evaluate L at every delay near those
+///    coarse delays from which it could rise to the maximum of step 1
 /// ```
 pub(super) fn nearest_pure_delay_s(phase: &[f64], omega: &[f64]) -> f64 {
     let coarse_steps: Vec<i32> = (-STEPS..=STEPS + COARSE / 2)
@@ -34,7 +35,8 @@ pub(super) fn nearest_pure_delay_s(phase: &[f64], omega: &[f64]) -> f64 {
     };
     let coarse = likenesses(phase, omega, &coarse_grid);
     let greatest = coarse.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    // Half a coarse step away; a relative 1e-9 exceeds the rounding error of the sums.
+    // Maximum rise of L within half a coarse step; the added 1e-9 for each term exceeds the
+    // rounding error of the sums.
     let rise = delay_s(COARSE / 2) * omega.iter().map(|omega| omega.abs()).sum::<f64>()
         + 1e-9 * phase.len() as f64;
     let mut best_likeness = f64::NEG_INFINITY;
@@ -68,7 +70,8 @@ fn delay_s(step: i32) -> f64 {
 
 /// Computes `sum cos(phase - omega delay)` for each delay in a grid.
 fn likenesses(phase: &[f64], omega: &[f64], grid: &DelayGrid) -> Vec<f64> {
-    // Rotated from each delay to the next: summing cosines takes a dozen times as long.
+    // The terms are rotated from each delay to the next: computing every cosine takes a dozen times
+    // as long.
     let mut left = Vec::with_capacity(phase.len());
     for (phase, omega) in phase.iter().zip(omega) {
         left.push(Complex::from_polar(1.0, phase - omega * grid.first_s));
@@ -113,7 +116,7 @@ mod tests {
                     .map(|step| likeness(&phase, &omega, 1e-3 * f64::from(step)))
                     .fold(f64::NEG_INFINITY, f64::max);
                 let found = nearest_pure_delay_s(&phase, &omega);
-                // Sums over at most 60 cosines with angles in the hundreds differ in the last
+                // Two sums of at most 60 cosines, of angles in the hundreds, differ in their last
                 // digits.
                 proptest::prop_assert!(likeness(&phase, &omega, found) >= greatest - 1e-10, "{} s", found);
             }

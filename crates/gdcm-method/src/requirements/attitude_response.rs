@@ -20,7 +20,7 @@ const SEARCH_POINTS: usize = 400;
 /// this factor.
 const SEARCH_BEYOND_BAND: f64 = 4.0;
 
-/// Meaning of an output: an attitude or its rate.
+/// Quantity that an output represents: an attitude or its rate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum AttitudeOutput {
     /// Angular rate: deg/s, rad/s.
@@ -38,11 +38,7 @@ pub enum AttitudeResponseError {
         quoted(output),
         quoted(unit)
     )]
-    NotAnAttitude {
-        /// Output name.
-        output: String,
-        unit: String,
-    },
+    NotAnAttitude { output: String, unit: String },
     /// No two neighbouring frequencies have a finite nonzero response.
     #[error("there is no response between {} and {} rad/s", number(*from), number(*to))]
     NoResponse {
@@ -78,7 +74,7 @@ impl AttitudeOutput {
     }
 }
 
-/// A response evaluated at any frequencies \[rad/s\]; NaN where the response is unknown.
+/// A response evaluated at any frequencies \[rad/s\]; NaN where no response is available.
 pub type ResponseAt<'a> = dyn Fn(&[f64]) -> Vec<Complex<f64>> + 'a;
 
 /// Returns the frequencies \[rad/s\] searched for crossings of a model: 400, logarithmic, from
@@ -98,7 +94,7 @@ pub fn search_frequencies(band: Band) -> Vec<f64> {
 /// unstable modes turn a physics model's phase by whole turns.
 pub struct AttitudeResponse<'a> {
     response: &'a ResponseAt<'a>,
-    /// Source of long frequency sequences; may interpolate, for speed.
+    /// Response for long sequences of frequencies; may interpolate, for speed.
     samples: &'a ResponseAt<'a>,
     output: AttitudeOutput,
     /// Grid frequencies \[rad/s\] with a finite nonzero response, ascending; at least two.
@@ -112,10 +108,10 @@ pub struct AttitudeResponse<'a> {
 }
 
 impl<'a> AttitudeResponse<'a> {
-    /// Creates an output's attitude response from `response`, searched on the ascending frequencies
-    /// `omega` \[rad/s\]: [`search_frequencies`] for a model, its own frequencies for a measured
-    /// response. The attitude response ends at the first missing value. The phase branch is chosen
-    /// at the first frequency in `band`.
+    /// Creates an output's attitude response from `response`, evaluated at the ascending
+    /// frequencies `omega` \[rad/s\]: [`search_frequencies`] for a model, the measured frequencies
+    /// for a measured response. The attitude response ends at the first missing value. The phase
+    /// branch is chosen at the first frequency in `band`.
     ///
     /// # Errors
     /// [`AttitudeResponseError::NoResponse`] if no two neighbouring frequencies have a value.
@@ -165,15 +161,16 @@ impl<'a> AttitudeResponse<'a> {
         })
     }
 
-    /// Reads long frequency sequences from `samples` of the response.
+    /// Evaluates long sequences of frequencies by `samples`, which may interpolate, instead of
+    /// `response`.
     #[must_use]
     pub fn sampled_by(self, samples: &'a ResponseAt<'a>) -> Self {
         Self { samples, ..self }
     }
 
     /// Returns the phase \[deg\] at the lowest frequency of the band if it indicates an input or an
-    /// output with reversed sign: +90 deg within 45 deg, where an attitude that follows its input
-    /// has 0 to -90 deg. The bandwidths are then wrong.
+    /// output with reversed sign: a phase of 45 to 135 deg, where an attitude that follows its
+    /// input has 0 to -90 deg. The bandwidths are then wrong.
     pub fn reversed_phase_deg(&self) -> Option<f64> {
         let phase_deg = self.phase[self.lowest_of_band].to_degrees();
         if (-225.0..=45.0).contains(&phase_deg) {
@@ -198,8 +195,8 @@ impl<'a> AttitudeResponse<'a> {
 
     /// Returns the phases \[rad\] at the ascending frequencies `omega` \[rad/s\], unwrapped from
     /// `first`, the phase at the first frequency; `None` if a response is missing. The frequencies
-    /// may extend beyond the grid. The last phase is read from the response itself, the others from
-    /// its samples, if any.
+    /// may extend beyond the grid. The last phase is evaluated exactly, the others from the
+    /// samples set by [`Self::sampled_by`], if any.
     pub fn phases_from(&self, first: f64, omega: &[f64]) -> Option<Vec<f64>> {
         let (last, before) = omega.split_last()?;
         let mut found = polar(self.samples, self.output, before);
@@ -256,8 +253,8 @@ fn first_run(polar: &[Option<Polar>]) -> Range<usize> {
     start..start + length
 }
 
-/// A model with its response on the search frequencies and, at equal ratios, up to twice the
-/// highest search frequency: a phase delay needs `2 omega_180`.
+/// A model with its response on the search frequencies, which are continued in equal ratios up to
+/// twice the highest search frequency: a phase delay needs `2 omega_180`.
 pub struct SampledModel {
     prepared: PreparedModel,
     omega: Vec<f64>,
@@ -275,7 +272,7 @@ impl SampledModel {
         let highest = omega[omega.len() - 1];
         let ratio = omega[1] / omega[0];
         let beyond = std::iter::successors(Some(highest * ratio), |omega| Some(omega * ratio));
-        // One more sample serves the interpolation.
+        // `1 +`: the interpolation needs a sample beyond the highest frequency.
         omega.extend(beyond.take(1 + (2f64.ln() / ratio.ln()).ceil() as usize));
         let values = prepared.at(&omega);
         Self {

@@ -52,7 +52,6 @@ pub struct BandwidthSettings {
     pub command: CommandType,
     /// The identified or measured band \[rad/s\].
     pub band: Band,
-    /// Treatment of values above the band.
     pub above_band: AboveBand,
 }
 
@@ -62,9 +61,10 @@ pub struct BandwidthSettings {
 pub enum BandwidthRule {
     /// The 45 deg phase margin.
     Phase,
-    /// The 6 dB gain margin, which occurs at the lower frequency.
+    /// The 6 dB gain margin, if it occurs at a lower frequency than the phase margin.
     Gain,
-    /// The phase margin, with an unknown gain margin: an upper bound of the bandwidth.
+    /// The phase margin, because there is no gain margin without `omega_180`: an upper bound of
+    /// the bandwidth.
     PhaseGainUnknown,
 }
 
@@ -81,15 +81,14 @@ pub struct Bandwidth {
     pub omega_bw: Result<Metric, NoMetric>,
     /// The margin that sets the bandwidth; `None` without a bandwidth.
     pub rule: Option<BandwidthRule>,
-    /// Phase delay \[s\].
     pub phase_delay_s: Result<Metric, NoMetric>,
     /// Phase data from which the phase delay is computed; `None` without a phase delay.
     pub phase_line: Option<PhaseLine>,
 }
 
 impl Bandwidth {
-    /// Computes bandwidth and phase delay of `attitude`, with standard deviations where its
-    /// uncertainty band is known.
+    /// Computes bandwidth and phase delay of `attitude`, with standard deviations if an uncertainty
+    /// band is available.
     pub fn of(
         attitude: &AttitudeResponse<'_>,
         settings: &BandwidthSettings,
@@ -116,8 +115,8 @@ impl Bandwidth {
         }
     }
 
-    /// Whether the gain margin occurs at a lower frequency than the phase margin: the standard
-    /// warns of this for every response type.
+    /// Returns whether the gain margin occurs at a lower frequency than the phase margin: the
+    /// standard warns of this for every response type.
     pub fn is_gain_limited(&self) -> bool {
         match (&self.omega_gain, &self.omega_phase) {
             (Ok(gain), Ok(phase)) => gain.value < phase.value,
@@ -149,7 +148,7 @@ struct PhaseDelay {
 
 impl Reading<'_> {
     /// Returns the value read from these frequencies, or the reason why it is unavailable. A
-    /// deviation that is not finite is dropped.
+    /// deviation that is not finite becomes `None`.
     fn metric(
         &self,
         value: f64,
@@ -223,7 +222,7 @@ impl Reading<'_> {
         }
     }
 
-    /// Returns the highest frequency below `omega_180` at which the magnitude exceeds that at
+    /// Returns the highest frequency below `omega_180` at which the magnitude exceeds its value at
     /// `omega_180` by 6 dB.
     fn gain_crossing(&self, omega_180: Metric) -> Result<Metric, NoMetric> {
         let grid = &self.attitude.omega;
@@ -308,7 +307,7 @@ impl Reading<'_> {
     }
 }
 
-/// Whether the phase falls through `level` \[rad\] between grid points `k` and `k + 1`.
+/// Returns whether the phase falls through `level` \[rad\] between grid points `k` and `k + 1`.
 fn falls_at(phase: &[f64], k: usize, level: f64) -> bool {
     phase[k] > level && phase[k + 1] <= level
 }

@@ -33,25 +33,25 @@ pub struct Metric {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum NoMetric {
     /// The phase never falls through the level.
-    #[error("no crossing of {} deg up to {} rad/s", number(*level_deg), number(*up_to))]
+    #[error("the phase does not fall through {} deg up to {} rad/s", number(*level_deg), number(*up_to))]
     NoCrossing {
-        /// Phase level \[deg\].
         level_deg: f64,
         /// Highest frequency searched \[rad/s\].
         up_to: f64,
     },
     /// The phase is below the level at the lowest band frequency, and never falls through the level
     /// below the band.
-    #[error("no crossing of {} deg: the phase is below it from {from:.3} rad/s on", number(*level_deg))]
+    #[error("the phase does not fall through {} deg: it is already below this level at {from:.3} \
+        rad/s", number(*level_deg))]
     BelowFromStart {
-        /// Phase level \[deg\].
         level_deg: f64,
         /// Lowest band frequency \[rad/s\].
         from: f64,
     },
     /// At no frequency below `omega_180` does the magnitude exceed its value at `omega_180` by 6
     /// dB.
-    #[error("no crossing of 6 dB above the magnitude at {omega_180:.3} rad/s down to {} rad/s", number(*down_to))]
+    #[error("the magnitude does not exceed its value at {omega_180:.3} rad/s by 6 dB at any lower \
+        frequency, down to {} rad/s", number(*down_to))]
     NoGainCrossing {
         /// Frequency at -180 deg \[rad/s\].
         omega_180: f64,
@@ -59,13 +59,17 @@ pub enum NoMetric {
         down_to: f64,
     },
     /// The response ends before a frequency that the value needs.
-    #[error("the response has no value at {needed:.3} rad/s, twice the frequency of -180 deg")]
+    #[error(
+        "the response ends below {needed:.3} rad/s, twice the frequency at which the phase is \
+        -180 deg"
+    )]
     ResponseEnds {
         /// `2 omega_180` \[rad/s\].
         needed: f64,
     },
     /// The value depends on lead filters above the band.
-    #[error("rests on the leads above the band: {needed:.3} rad/s, beyond {} rad/s", number(*top))]
+    #[error("the value depends on lead filters above the band: it needs {needed:.3} rad/s, and \
+        the band ends at {} rad/s", number(*top))]
     AboveBand {
         /// Highest frequency that the value needs \[rad/s\].
         needed: f64,

@@ -188,7 +188,7 @@ fn a_phase_that_never_falls_through_a_level_has_no_crossing() {
     assert_eq!(found.omega_180, Err(no_crossing));
     assert_eq!(
         no_crossing.to_string(),
-        "no crossing of -180 deg up to 48 rad/s"
+        "the phase does not fall through -180 deg up to 48 rad/s"
     );
     assert!(found.phase_delay_s.is_err() && found.omega_gain.is_err());
     assert_eq!(found.phase_line, None);
@@ -224,7 +224,8 @@ fn slow_modes_below_the_band_move_neither_branch_nor_crossings() {
     );
     assert!((value(turned.omega_180) / value(plain.omega_180) - 1.0).abs() < 0.1);
     assert!((value(turned.omega_bw) / value(plain.omega_bw) - 1.0).abs() < 0.2);
-    // A phase that dips through -135 deg only below the band has its crossing within the band.
+    // A phase that falls through -135 deg below the band but rises above it again has its crossing
+    // within the band.
     let dipping = rate_bandwidth(
         |s| short(s) * (s * s + 0.001 * s + 0.04) / (s * s + 0.001 * s + 0.0225),
         &rate,
@@ -277,7 +278,7 @@ fn a_flat_magnitude_has_no_gain_margin_and_no_bandwidth() {
         ));
     }
     let commanded = rate_bandwidth(delay, &settings(CommandType::Attitude));
-    // -135 deg with a 0.2 s delay.
+    // Frequency at which a delay of 0.2 s has a phase of -135 deg.
     assert!((value(commanded.omega_bw) - 0.75 * PI / 0.2).abs() < 1e-9);
 }
 
@@ -317,7 +318,7 @@ fn values_above_the_band_are_marked_or_with_leads_refused() {
     );
 }
 
-/// Evaluates the last known answer, measured at 60 frequencies up to `top` \[rad/s\].
+/// Evaluates the last reference case, measured at 60 frequencies up to `top` \[rad/s\].
 fn measured_bandwidth(top: f64) -> Bandwidth {
     let [.., short] = attitudes();
     let omega = log_spaced(0.5, top, 60);
@@ -377,7 +378,7 @@ fn a_zero_response_is_refused() {
 
 #[test]
 fn a_model_and_its_correction_are_evaluated_exactly() {
-    // 5 / (s + 3) is the rate of the third known answer without its servo; the 60 ms delay comes
+    // 5 / (s + 3) is the rate of the third reference case without its servo; the 60 ms delay comes
     // from the correction and the model.
     let lag = StateSpace::new(dmatrix![-3.0], dmatrix![5.0], dmatrix![1.0], dmatrix![0.0]).unwrap();
     let timing = Timing {
@@ -413,8 +414,8 @@ fn a_model_and_its_correction_are_evaluated_exactly() {
         (interpolated.omega_gain, exact.omega_gain),
         (interpolated.phase_delay_s, exact.phase_delay_s),
     ] {
-        // Cubic through four points 1.5 % apart: the error is the fourth power of the spacing times
-        // the phase of the delay.
+        // Cubic interpolation through four points 1.5 % apart: the error is of the order of the
+        // fourth power of the spacing, times the phase of the delay.
         let difference = (value(interpolated) / value(exact) - 1.0).abs();
         assert!(difference > 0.0 && difference < 1e-7, "{difference}");
     }
@@ -427,7 +428,7 @@ fn uniform_bands(omega: Vec<f64>, sd_db: f64, sd_deg: f64) -> ModelBands {
     ModelBands::new(omega, sd_db, sd_deg).unwrap()
 }
 
-/// Evaluates the last known answer with its phase turned by `turn_deg`, and an uncertainty band.
+/// Evaluates the last reference case with its phase shifted by `turn_deg`, and an uncertainty band.
 fn turned_bandwidth(turn_deg: f64, bands: &ModelBands) -> Bandwidth {
     let [.., short] = attitudes();
     let turn = Complex::from_polar(1.0, turn_deg.to_radians());
@@ -472,7 +473,7 @@ fn magnitude_deviations_move_the_gain_crossing_only() {
     let bands = uniform_bands(log_spaced(0.1, 48.0, 400), 0.05, 0.0);
     let found = turned_bandwidth(0.0, &bands);
     assert_eq!(found.omega_180.unwrap().deviation, Some(0.0));
-    // At 2.4 rad/s |Theta| falls by about 20 dB a decade and more: 0.05 sqrt(2) dB move the
+    // At 2.4 rad/s |Theta| falls by at least about 20 dB per decade: 0.05 sqrt(2) dB move the
     // frequency by less than 1 %.
     let deviation = found.omega_gain.unwrap().deviation.unwrap();
     assert!(

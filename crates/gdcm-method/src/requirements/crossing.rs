@@ -60,7 +60,7 @@ pub(super) fn root_between([low, high]: [f64; 2], value: impl Fn(f64) -> Option<
     }
 }
 
-/// Whether the inverse quadratic through three points is monotonic over the bracket
+/// Returns whether the inverse quadratic through three points is monotonic over the bracket
 /// (Chandrupatla's criterion).
 fn is_monotonic(a: Sample, b: Sample, c: Sample) -> bool {
     let xi = (a.omega - b.omega) / (c.omega - b.omega);

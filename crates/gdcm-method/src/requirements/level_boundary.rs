@@ -26,12 +26,12 @@ pub struct LevelBoundary {
 #[serde(try_from = "Vec<LevelBoundary>")]
 pub struct LevelBoundaries(Vec<LevelBoundary>);
 
-/// Reasons why boundaries cannot be drawn.
+/// Reasons why a level boundary is invalid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LevelBoundaryError {
     #[error("boundary {entry}: expected a name, found none")]
     NoName {
-        /// Counted from 1.
+        /// Index of the entry, counted from 1.
         entry: usize,
     },
     #[error(
@@ -39,7 +39,7 @@ pub enum LevelBoundaryError {
         quoted(name)
     )]
     NoAxis {
-        /// Counted from 1.
+        /// Index of the entry, counted from 1.
         entry: usize,
         name: String,
     },
@@ -48,21 +48,21 @@ pub enum LevelBoundaryError {
         quoted(name)
     )]
     TooFewPoints {
-        /// Counted from 1.
+        /// Index of the entry, counted from 1.
         entry: usize,
         name: String,
         found: usize,
     },
-    /// A point is not finite, or negative.
+    /// A coordinate of a point is negative or not finite.
     #[error(
         "boundary {entry}, {}, point {point}: expected a bandwidth (rad/s) and a phase delay (s) not below zero, found {} and {}",
         quoted(name), number(found[0]), number(found[1])
     )]
     Point {
-        /// Counted from 1.
+        /// Index of the entry, counted from 1.
         entry: usize,
         name: String,
-        /// Counted from 1.
+        /// Index of the point, counted from 1.
         point: usize,
         found: [f64; 2],
     },

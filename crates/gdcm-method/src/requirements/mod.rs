@@ -6,7 +6,7 @@
 //! frequencies in rad/s, internal angles in rad. A response is evaluated exactly (models) or
 //! interpolated inside its frequencies (measured), never extrapolated.
 //!
-//! | file | answers | standard |
+//! | file | content | standard |
 //! |---|---|---|
 //! | `attitude_response` | response from which bandwidths are read | |
 //! | `bandwidth`, `phase_delay`, `response_deviation`, `level_boundary` | bandwidth, phase delay, their uncertainty and levels | ADS-33E-PRF 3.3.2, 3.4.1; MIL-DTL-32742 |

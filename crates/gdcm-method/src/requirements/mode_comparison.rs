@@ -22,15 +22,15 @@ pub use super::mode_values::ModeValues;
 use super::mode_name::{ModeName, NamedBy};
 use super::mode_pairing::{ModePair, mode_pairs, single_modes};
 
-/// Maximum relative distance between a pole and its estimate, which come from the same model in
-/// different notation.
+/// Maximum relative distance between a pole and its estimate. Both come from the same model; only
+/// rounding separates them.
 const SAME_POLE: f64 = 1e-3;
 
 /// A model's modes, with its state names if available.
 #[derive(Clone, Copy, Debug)]
 pub struct ModelModes<'a> {
     pub modes: &'a [Mode],
-    /// Empty without names.
+    /// State names; empty if unavailable.
     pub states: &'a [String],
 }
 
@@ -38,9 +38,7 @@ pub struct ModelModes<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ModeVerdict {
-    /// Within the tolerance.
     Within,
-    /// Outside the tolerance.
     Outside,
     /// Flight does not determine the mode to within the tolerance.
     NotDetermined,
@@ -70,13 +68,12 @@ impl ComparedMode {
     }
 }
 
-/// A flown mode and its counterparts in the models.
+/// A mode identified from flight (the flown mode), and its counterparts in the models.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModeRow {
     /// Name of the mode; `None` if neither states nor frequency determine a name.
     pub name: Option<ModeName>,
     pub named_by: NamedBy,
-    /// The identified mode.
     pub flown: ComparedMode,
     /// Standard deviations of `flown`; `None` if the identification result is unavailable.
     pub deviation: Option<ModeValues>,
@@ -87,7 +84,6 @@ pub struct ModeRow {
     pub tolerance: Option<ModeTolerance>,
     /// The counterpart in each model; `None` for an unpaired mode.
     pub models: Vec<Option<ComparedMode>>,
-    /// The verdict on each model.
     pub verdicts: Vec<ModeVerdict>,
 }
 
@@ -97,7 +93,7 @@ pub struct ModeRow {
 /// measured response).
 ///
 /// A row takes its name from the first model with named states and a counterpart. No two rows have
-/// the same name: of two rows, that with the lower pairing cost keeps the name.
+/// the same name: of two such rows, only the row with the lower pairing cost keeps the name.
 pub fn compare_modes(
     flown: ModelModes<'_>,
     models: &[ModelModes<'_>],
@@ -147,7 +143,7 @@ pub fn compare_modes(
     rows
 }
 
-/// A model with its partners of the flown modes.
+/// A model, and the partner of each flown mode among its modes.
 struct PairedModel<'a> {
     model: ModelModes<'a>,
     /// Partner of the flown mode in each row; `None` if unpaired.

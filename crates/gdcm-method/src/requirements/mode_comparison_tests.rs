@@ -38,7 +38,7 @@ fn unnamed(modes: &[Mode]) -> ModelModes<'_> {
     ModelModes { modes, states: &[] }
 }
 
-/// The verdict on a Dutch roll against a flown one at -0.4 + 2j.
+/// Verdict on a Dutch roll with pole `re + j im`, compared with a flown Dutch roll at -0.4 + 2j.
 fn verdict(re: f64, im: f64, estimates: &[PoleEstimate]) -> ModeVerdict {
     let flown = pair(-0.4, 2.0);
     let model = pair(re, im);
@@ -101,8 +101,8 @@ fn a_mode_less_certain_than_the_tolerance_is_not_determined() {
         verdict(-0.4, 2.0, &[estimate(0.01, 0.01)]),
         ModeVerdict::Within
     );
-    // The period's standard deviation, 0.31 s, is within 0.5 s; time to half to 25 %, damping to
-    // 0.045.
+    // The standard deviations are 0.31 s for the period (tolerance 0.5 s), 25 % for the time to
+    // half amplitude, and 0.045 for the damping ratio.
     assert_eq!(
         verdict(-0.4, 2.0, &[estimate(0.1, 0.2)]),
         ModeVerdict::NotDetermined
@@ -130,7 +130,7 @@ fn all_values(values: ModeValues) -> [f64; 3] {
     [values.period_s, values.time_to_half_s, values.damping_ratio].map(Option::unwrap)
 }
 
-/// Half the value changes between poles moved by plus and minus `re`, `im`.
+/// Half the changes of the mode's values between poles moved by plus and by minus (`re`, `im`).
 fn half_changes(re: f64, im: f64) -> [f64; 3] {
     let high = all_values(ModeValues::new(&pair(-0.4 + re, 2.0 + im)[0]));
     let low = all_values(ModeValues::new(&pair(-0.4 - re, 2.0 - im)[0]));
@@ -279,7 +279,7 @@ fn a_table_of_modes_comes_back_as_it_was_and_a_wrong_row_is_refused() {
         .to_string();
     assert!(
         words.starts_with(
-            "tolerance of modes 1, \"long term\": expected damping_ratio above zero, found 0"
+            "mode tolerance 1, \"long term\": expected damping_ratio above zero, found 0"
         ),
         "{words}"
     );

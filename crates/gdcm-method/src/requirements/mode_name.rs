@@ -109,7 +109,6 @@ fn state_kind(name: &str) -> Option<&'static str> {
 struct KindShares<'a> {
     /// Index and participation of each participating state.
     shares: &'a [(usize, f64)],
-    /// State names.
     states: &'a [String],
 }
 
@@ -155,7 +154,7 @@ impl ModeName {
             return None;
         }
         match (longitudinal > lateral, mode.oscillates()) {
-            // Also for two real poles, into which the oscillation can split.
+            // `_`: also for two real poles, into which the oscillation can split.
             (true, _) if shares.sum(&["u", "theta"]) > shares.sum(&["w", "q"]) => {
                 Some(Self::Phugoid)
             }
@@ -247,7 +246,7 @@ mod tests {
             named(pair.clone(), &["act_lon", "act_lon_dot"])[0],
             (None, NamedBy::States)
         );
-        // Two identical actuators cannot be separated; frequency is not used if states are known.
+        // Two identical actuators cannot be separated; frequency is not used if states are named.
         let twice = dmatrix![-6.0, 5.0, 1.0, 0.0; -5.0, -6.0, 0.0, 1.0; 0.0, 0.0, -6.0, 5.0; 0.0, 0.0, -5.0, -6.0];
         assert_eq!(
             named(twice, &["act_lon", "act_lon_dot", "act_lat", "act_lat_dot"])[0],

@@ -23,11 +23,11 @@ use crate::fidelity::mode_tracks::least_total;
 
 /// Maximum s-plane distance within a pair, relative to the larger modulus.
 pub const LARGEST_PAIR_DISTANCE: f64 = 0.5;
-/// Minimum likeness within a pair.
+/// Minimum likeness `c` of the shapes within a pair.
 pub const LEAST_PAIR_LIKENESS: f64 = 0.5;
-/// Cost of a flown mode without a partner: that of the worst admissible pair.
+/// Cost of a flown mode without a partner: equal to the cost of the worst admissible pair.
 const UNPAIRED_COST: f64 = LARGEST_PAIR_DISTANCE + 1.0 - LEAST_PAIR_LIKENESS;
-/// Cost of an inadmissible pair: more than that of leaving all modes unpaired.
+/// Cost of an inadmissible pair: exceeds the cost of leaving all modes unpaired.
 const BARRED_COST: f64 = 1e9;
 
 /// A model's counterpart of a flown mode.
@@ -84,7 +84,7 @@ fn pair_cost(flown: &Mode, model: &Mode, scales: &[f64], least_rad_s: f64) -> Op
         .max(model.frequency_rad_s)
         .max(least_rad_s);
     let distance = (flown.pole - model.pole).norm() / largest;
-    // If a shape is unknown, only the distance counts.
+    // If a shape is unavailable, only the distance counts.
     let likeness = likeness(flown, model, scales).unwrap_or(LEAST_PAIR_LIKENESS);
     let is_pair = distance <= LARGEST_PAIR_DISTANCE && likeness >= LEAST_PAIR_LIKENESS;
     if is_pair {
@@ -94,7 +94,7 @@ fn pair_cost(flown: &Mode, model: &Mode, scales: &[f64], least_rad_s: f64) -> Op
     }
 }
 
-/// Returns `s_i` by output; zero if no flown mode has a residue in the output.
+/// Returns `s_i` for each output; zero if no flown mode has a residue in the output.
 fn output_scales(flown: &[Mode], least_rad_s: f64) -> Vec<f64> {
     let mut squares: Vec<f64> = Vec::new();
     for mode in flown {
@@ -107,8 +107,8 @@ fn output_scales(flown: &[Mode], least_rad_s: f64) -> Vec<f64> {
     squares.into_iter().map(f64::sqrt).collect()
 }
 
-/// Returns `c` of two modes; `None` if one shape is unknown, or no flown mode has a residue in any
-/// output.
+/// Returns `c` of two modes; `None` if a shape is unavailable, or no flown mode has a residue in
+/// any output.
 fn likeness(flown: &Mode, model: &Mode, scales: &[f64]) -> Option<f64> {
     let flown = mode_shape(flown)?;
     let model = mode_shape(model)?;

@@ -40,9 +40,9 @@ pub struct ModeToleranceTable(Vec<ModeTolerance>);
 
 /// A tolerance that is not above zero.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("tolerance of modes {row}, {}: expected {name} above zero, found {}", quoted(response), number(*found))]
+#[error("mode tolerance {row}, {}: expected {name} above zero, found {}", quoted(response), number(*found))]
 pub struct ModeToleranceError {
-    /// Counted from 1.
+    /// Index of the row, counted from 1.
     pub row: usize,
     pub response: String,
     /// `period`, `period_s`, `amplitude_time` or `damping_ratio`.
@@ -56,8 +56,8 @@ impl ModeTolerance {
         (self.period * period_s).max(self.period_s.unwrap_or(0.0))
     }
 
-    /// Whether `model` is within the tolerance around `flown`: the period, and either the time to
-    /// half or double amplitude or the damping ratio.
+    /// Returns whether `model` is within the tolerance around `flown`: the period, and either the
+    /// time to half or double amplitude or the damping ratio.
     pub fn holds(&self, flown: &ModeValues, model: &ModeValues) -> bool {
         self.holds_period(flown.period_s, model.period_s)
             && (self.holds_amplitude(flown.time_to_half_s, model.time_to_half_s)
@@ -89,9 +89,9 @@ impl ModeTolerance {
         }
     }
 
-    /// Whether the standard deviations of the flown mode are within the tolerance: that of its
-    /// period, and that of its time to half amplitude or of its damping ratio. A value that the
-    /// flown mode lacks has the tolerance zero.
+    /// Returns whether flight determines the mode to within the tolerance: the standard deviation
+    /// of the period is within its tolerance, and so is the standard deviation of the time to half
+    /// amplitude or of the damping ratio. A value that the flown mode lacks has the tolerance zero.
     pub fn is_known(&self, flown: &ModeValues, deviation: &ModeValues) -> bool {
         let period_s = match flown.period_s {
             Some(period_s) => self.period_tolerance_s(period_s),

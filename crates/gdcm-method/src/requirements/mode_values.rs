@@ -40,7 +40,8 @@ impl ModeValues {
         }
     }
 
-    /// Computes the standard deviations from those of the pole, to first order (M14.5).
+    /// Computes the standard deviations from the standard deviations of the pole, to first order
+    /// (M14.5).
     pub fn deviation(mode: &Mode, pole: &PoleEstimate) -> Self {
         let values = Self::new(mode);
         let re = mode.pole.re.abs();

@@ -25,7 +25,7 @@ pub struct PhaseLine {
 
 impl PhaseLine {
     /// Reads the phase from `omega_180` \[rad/s\] to twice that frequency; `None` if the response
-    /// ends below that.
+    /// ends below twice that frequency.
     pub(super) fn read(attitude: &AttitudeResponse<'_>, omega_180: f64) -> Option<Self> {
         let from = omega_180;
         let to = 2.0 * omega_180;
@@ -38,7 +38,7 @@ impl PhaseLine {
         })
     }
 
-    /// Whether the two points suffice: the departure is at most 10 deg.
+    /// Returns whether the two points suffice: the departure is at most 10 deg.
     pub fn is_straight(&self) -> bool {
         self.departure_deg <= STRAIGHT_DEG
     }

@@ -61,8 +61,8 @@ impl PairBand<'_> {
         Some(self.phase(omega)? / slope.abs())
     }
 
-    /// Returns the standard deviation \[rad/s\] of the frequency at which the magnitude exceeds
-    /// that at `omega_180` by 6 dB.
+    /// Returns the standard deviation \[rad/s\] of the frequency at which the magnitude exceeds its
+    /// value at `omega_180` by 6 dB.
     pub(super) fn gain_crossing(
         &self,
         attitude: &AttitudeResponse<'_>,
@@ -106,9 +106,10 @@ fn difference_quotient(omega: f64, value: impl Fn(f64) -> Option<f64>) -> Option
     Some(slope)
 }
 
-/// Computes the representatives' error bar for `value` from the values with each other physics or
-/// identified model substituted (M13.1, M13.3). A `None` entry is a substitution for which the
-/// value does not exist; the bar counts these entries as left out. The value is never negative.
+/// Computes the error bar of `value`, a non-negative metric of the two representatives (M13.1,
+/// M13.3). The entries of `physics` and `identified` are the metric with that representative
+/// replaced by another model of its bundle; `None` if the metric does not exist, which the bar
+/// counts as left out.
 pub fn substitution_bar(value: f64, physics: &[Option<f64>], identified: &[Option<f64>]) -> Bar {
     let left_out = physics
         .iter()

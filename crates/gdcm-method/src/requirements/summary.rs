@@ -99,7 +99,6 @@ impl RmsCost {
 
 /// An output that counts in `J_rms`.
 struct WeightedOutput {
-    /// Output index.
     output: usize,
     /// Factor from the output's unit to deg, deg/s, ft/s or ft/s^2.
     factor: f64,
@@ -142,15 +141,15 @@ pub fn muad_share(mismatch: &Mismatch, omega: &[f64], correction: GainDelay) -> 
 /// A model in a condition, compared with flight.
 #[derive(Clone, Copy)]
 pub struct SummarySource<'a> {
-    /// Difference between the model's responses and the identified representative's; `None` where
-    /// no comparison exists.
+    /// Difference between each response of the model and of the identified representative; `None`
+    /// where no comparison exists.
     pub mismatch: &'a PairTable<Option<Mismatch>>,
     /// Correction of each response; `None` without a positive net gain.
     pub correction: &'a dyn Fn(Pair) -> Option<GainDelay>,
     pub on_axis: &'a PairTable<bool>,
     /// Band frequencies \[rad/s\], ascending.
     pub omega: &'a [f64],
-    /// Average over frequency in J.
+    /// Kind of average over frequency in J.
     pub average: CostAverage,
     /// Comparison of the model with a record of flight, if any.
     pub validation: Option<&'a Validation>,
@@ -347,7 +346,7 @@ mod tests {
             outputs: &outputs(),
         };
         let summary = Summary::of(&source);
-        // 20 W_g 2^2, by M4.
+        // 20 W_g 2^2 = 80, by M4.
         assert_eq!((summary.cost.on_axis, summary.muad.on_axis), (None, None));
         assert!((summary.cost.all.unwrap() - 80.0).abs() < 1e-12);
     }

@@ -7,7 +7,7 @@ use gdcm_model::dataset::StateSpace;
 use gdcm_model::simulation::FirstOrderHold;
 use gdcm_model::units::number;
 
-/// Time history of a test input.
+/// Shape of a test input over time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum TestInputShape {
@@ -31,10 +31,11 @@ pub struct TestInput {
 /// Reasons why a model has no response to a test.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TestInputError {
-    #[error("the model has {inputs} inputs, found no input {}", input + 1)]
+    #[error("there is no input {}: the model has {inputs} inputs", input + 1)]
     NoInput { input: usize, inputs: usize },
     /// The size is not finite, or the duration is not above zero and at most 600 s.
-    #[error("test input: expected a size, and a duration above 0 s up to {LONGEST_S} s; found {} and {} s", number(*size), number(*duration_s))]
+    #[error("test input: expected a finite size and a duration greater than 0 s and at most \
+        {LONGEST_S} s, found {} and {} s", number(*size), number(*duration_s))]
     Numbers { size: f64, duration_s: f64 },
     /// The model is in discrete time, or has channel delays that are not states.
     #[error(
@@ -59,7 +60,7 @@ impl Default for TestInput {
     }
 }
 
-/// A test as written in files.
+/// A test as written in a file, before its numbers are checked.
 #[derive(Deserialize)]
 struct TestInputText {
     shape: TestInputShape,
@@ -84,7 +85,7 @@ impl TestInput {
     /// Returns the test if its size and duration are valid.
     ///
     /// # Errors
-    /// [`TestInputError::Numbers`].
+    /// [`TestInputError::Numbers`] otherwise.
     pub fn checked(self) -> Result<Self, TestInputError> {
         let duration_s = self.duration_s;
         let is_duration = duration_s.is_finite() && duration_s > 0.0 && duration_s <= LONGEST_S;
@@ -264,7 +265,7 @@ mod tests {
             .unwrap_err()
             .to_string();
         assert!(
-            endless.contains("a duration above 0 s up to 600 s"),
+            endless.contains("a duration greater than 0 s and at most 600 s"),
             "{endless}"
         );
     }

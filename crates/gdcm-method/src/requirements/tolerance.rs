@@ -24,13 +24,8 @@ pub use super::tolerance_table::{ChannelTolerance, Tolerance, ToleranceError, To
 pub enum ToleranceCheckError {
     #[error("there are no samples to compare")]
     NoSamples,
-    #[error("expected {flown} simulated samples, as many as flown, found {simulated}")]
-    Lengths {
-        /// Flown sample count.
-        flown: usize,
-        /// Simulated sample count.
-        simulated: usize,
-    },
+    #[error("expected as many simulated samples as flown samples ({flown}), found {simulated}")]
+    Lengths { flown: usize, simulated: usize },
     /// A sample is missing or not finite.
     #[error("the {origin} sample at {time_s:.2} s is missing or not finite")]
     NotFinite {
@@ -39,10 +34,7 @@ pub enum ToleranceCheckError {
         time_s: f64,
     },
     #[error("the record has no output {}", output + 1)]
-    NoOutput {
-        /// Output index.
-        output: usize,
-    },
+    NoOutput { output: usize },
 }
 
 /// An output over a manoeuvre, compared with its tolerance.
@@ -50,7 +42,6 @@ pub enum ToleranceCheckError {
 pub struct ToleranceCheck {
     /// Time at the first sample \[s\].
     pub start_s: f64,
-    /// Sample time \[s\].
     pub sample_time_s: f64,
     /// Flown samples as compared: integrated if the tolerance applies to an attitude.
     pub flown: Vec<f64>,
@@ -67,8 +58,8 @@ pub struct ToleranceCheck {
     trend: Moments,
 }
 
-/// Sums over flown and simulated samples, each less its mean: flown squared, simulated squared,
-/// flown times simulated.
+/// Sums over the samples, after subtraction of the means: flown squared, simulated squared, flown
+/// times simulated.
 type Moments = Vector3<f64>;
 
 fn moments(flown: &[f64], simulated: &[f64]) -> Moments {

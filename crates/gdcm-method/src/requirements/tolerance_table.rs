@@ -63,14 +63,14 @@ pub enum ToleranceError {
         quoted(quantity)
     )]
     NoChannelName {
-        /// Counted from 1.
+        /// Index of the row, counted from 1.
         row: usize,
         quantity: String,
     },
     /// A tolerance is not finite, or not above zero.
     #[error("tolerance {row}, {}: expected {name} above zero, found {}", quoted(quantity), number(*found))]
     NotPositive {
-        /// Counted from 1.
+        /// Index of the row, counted from 1.
         row: usize,
         quantity: String,
         /// `absolute` or `relative`.
@@ -83,34 +83,32 @@ pub enum ToleranceError {
         quoted(channel)
     )]
     NoChannel {
-        /// Quantity in the table.
         quantity: String,
         /// The output that the dataset lacks.
         channel: String,
     },
     /// An output to be integrated is not a rate.
     #[error(
-        "{} is not compared: it integrates a rate (deg/s, rad/s), and the unit of {} is {}",
+        "{} is not compared: it is the integral of a rate in deg/s or rad/s, but the unit of {} \
+        is {}",
         quoted(quantity),
         quoted(channel),
         quoted(unit)
     )]
     NotARate {
-        /// Quantity in the table.
         quantity: String,
         channel: String,
         unit: String,
     },
-    /// The tolerance's unit does not fit the output.
+    /// The unit of the tolerance cannot be converted to the output's unit.
     #[error(
-        "{} is not compared: the tolerance is in {}, and {} is in {}",
+        "{} is not compared: the tolerance is in {}, but {} is in {}",
         quoted(quantity),
         quoted(unit),
         quoted(channel),
         quoted(compared_unit)
     )]
     Unit {
-        /// Quantity in the table.
         quantity: String,
         channel: String,
         unit: String,
@@ -122,7 +120,6 @@ pub enum ToleranceError {
 /// A tolerance in its output's units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelTolerance {
-    /// Output index.
     pub output: usize,
     /// Whether the integral of the output is compared.
     pub integrated: bool,
@@ -156,7 +153,7 @@ impl Tolerance {
         }
     }
 
-    /// Returns text such as "±10 % or ±3 deg/s".
+    /// Describes the tolerance, for example "±10 % or ±3 deg/s".
     pub fn words(&self) -> String {
         let absolute = format!("±{} {}", number(self.absolute), self.unit);
         match self.relative {
@@ -168,8 +165,8 @@ impl Tolerance {
     /// Converts the tolerance to its output's units.
     ///
     /// # Errors
-    /// [`ToleranceError`] if there is no such output, an integrated output is not a rate, or units
-    /// do not fit.
+    /// [`ToleranceError`] if there is no such output, an integrated output is not a rate, or the
+    /// units cannot be converted.
     pub fn of_outputs(&self, outputs: &[Channel]) -> Result<ChannelTolerance, ToleranceError> {
         let quantity = self.quantity.clone();
         let channel = self.channel.clone();

@@ -189,7 +189,7 @@ fn lag(gain: f64) -> StateSpace {
     StateSpace::new(dmatrix![-2.0], dmatrix![gain], dmatrix![1.0], dmatrix![0.0]).unwrap()
 }
 
-/// Checks the lag of this gain against a flown window.
+/// Simulates a lag with this gain, and checks it against a flown window.
 fn check_lag(gain: f64, flown: &Segment) -> RecordCheck {
     let validation = validate(
         &lag(gain),
@@ -305,7 +305,7 @@ fn a_tolerance_that_fits_no_channel_is_refused() {
     };
     assert_eq!(
         in_g.of_outputs(&outputs()).unwrap_err().to_string(),
-        "\"bank angle\" is not compared: the tolerance is in \"g\", and \"P\" is in \"deg/s\""
+        "\"bank angle\" is not compared: the tolerance is in \"g\", but \"P\" is in \"deg/s\""
     );
 }
 

@@ -5,13 +5,10 @@
 pub struct Airspeeds {
     /// Airspeed by condition \[kt\].
     pub values_kt: Vec<f64>,
-    /// Mean \[kt\].
     pub mean_kt: f64,
     /// Half the range \[kt\]; zero if all conditions have the same airspeed.
     pub half_range_kt: f64,
-    /// Minimum airspeed \[kt\].
     pub min_kt: f64,
-    /// Maximum airspeed \[kt\].
     pub max_kt: f64,
     /// Conditions, by index, grouped by airspeed in rising order: the airspeeds in a cluster lie
     /// within the tolerance from neighbour to neighbour (M11b).
@@ -63,7 +60,8 @@ impl Airspeeds {
             .map(|cluster| {
                 let first = values[cluster[0]];
                 if cluster.iter().all(|&condition| values[condition] == first) {
-                    // A sum of equal values would be rounded.
+                    // Equal values are returned as they are: their computed mean would have a
+                    // rounding error.
                     return first;
                 }
                 let sum = cluster
@@ -80,8 +78,8 @@ impl Airspeeds {
         degree.min(self.clusters.len().saturating_sub(1))
     }
 
-    /// Returns a row by condition and a column by cluster: 1 if the condition is in the cluster,
-    /// otherwise 0.
+    /// Returns the cluster indicators, a row for each condition and a column for each cluster: 1 if
+    /// the condition is in the cluster, otherwise 0.
     pub(super) fn indicators(&self) -> Vec<Vec<f64>> {
         let mut rows = vec![vec![0.0; self.clusters.len()]; self.values_kt.len()];
         for (column, cluster) in self.clusters.iter().enumerate() {
@@ -93,8 +91,8 @@ impl Airspeeds {
     }
 }
 
-/// Clusters airspeeds \[kt\] like [`Airspeeds::new`], and returns cluster indicators, a row by
-/// condition.
+/// Clusters airspeeds \[kt\] like [`Airspeeds::new`], and returns the cluster indicators, a row for
+/// each condition.
 pub fn airspeed_indicators(airspeeds_kt: Vec<f64>, tolerance_kt: f64) -> Vec<Vec<f64>> {
     match Airspeeds::new(airspeeds_kt, tolerance_kt) {
         Some(airspeeds) => airspeeds.indicators(),

@@ -8,9 +8,7 @@ use crate::fidelity::{Cost, CostAverage, Mismatch};
 /// J for a response before and after a correction; a negative change is an improvement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CostChange {
-    /// J without correction.
     pub uncorrected: Cost,
-    /// J with correction.
     pub corrected: Cost,
 }
 

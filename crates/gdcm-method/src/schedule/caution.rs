@@ -15,8 +15,8 @@ pub enum ScheduleCaution {
         /// Number of clusters.
         clusters: usize,
     },
-    /// A gain leaves the conditions' range by more than half its width, between two clusters
-    /// (M11b).
+    /// Between two clusters, a gain leaves the range of the conditions' gains by more than half the
+    /// width of that range (M11b).
     Overshoot {
         channel: Channel,
         /// Mean airspeeds \[kt\] in the neighbouring clusters.
@@ -27,7 +27,8 @@ pub enum ScheduleCaution {
         /// Minimum and maximum gain over the conditions.
         range: [f64; 2],
     },
-    /// A channel's signed delay in a condition is far from the others, or has another sign (M15.6).
+    /// A channel's signed delay in a condition is far from its mean in the other conditions, or has
+    /// the opposite sign (M15.6).
     SignedDelayApart {
         channel: Channel,
         condition: ConditionId,
@@ -39,7 +40,7 @@ pub enum ScheduleCaution {
     /// A gain is not positive at an intermediate airspeed, possible only if `k` itself is
     /// regressed.
     NotPositive,
-    /// J of a condition under the schedule is more than twice that under the condition's own
+    /// J of a condition under the schedule is more than twice J under the condition's own
     /// correction (M12).
     CostsMore(ScheduledCost),
 }
@@ -57,19 +58,20 @@ pub struct ScheduledCost {
 }
 
 impl ScheduledCost {
-    /// Ratio between scheduled and own J above which a caution is raised.
+    /// Ratio of `scheduled` to `own` above which a caution is raised.
     const NOTABLE_RATIO: f64 = 2.0;
-    /// Scheduled J below which no caution is raised: 1 corresponds to an error of 0.2 dB.
+    /// `scheduled` below which no caution is raised: 1 corresponds to an error of 0.2 dB.
     const LEAST_NOTABLE: f64 = 1.0;
 
-    /// Whether the scheduled J is above 1 and more than twice the condition's own J.
+    /// Returns whether the scheduled J is above 1 and more than twice the condition's own J.
     pub fn is_notable(&self) -> bool {
         self.scheduled > Self::LEAST_NOTABLE && self.scheduled > Self::NOTABLE_RATIO * self.own
     }
 }
 
 impl ScheduleCaution {
-    /// Whether the caution applies to a condition: a scheduled cost concerns its own condition only.
+    /// Returns whether the caution applies to a condition: a scheduled cost concerns its own
+    /// condition only.
     pub fn concerns(&self, condition: ConditionId) -> bool {
         match self {
             ScheduleCaution::CostsMore(cost) => cost.condition == condition,
@@ -77,7 +79,7 @@ impl ScheduleCaution {
         }
     }
 
-    /// Returns the code for files.
+    /// Returns the stable code used in files.
     pub fn code(&self) -> &'static str {
         match self {
             ScheduleCaution::DegreeLowered { .. } => "degree-lowered",
@@ -92,7 +94,8 @@ impl ScheduleCaution {
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         match self {
             ScheduleCaution::DegreeLowered { asked, clusters } => format!(
-                "degree {asked} takes {} distinct airspeeds, the conditions have {clusters}: the degree is lowered to {}",
+                "degree {asked} needs {} distinct airspeeds, but the conditions have only \
+                {clusters}: the degree is lowered to {}",
                 asked + 1,
                 clusters - 1
             ),
@@ -115,7 +118,8 @@ impl ScheduleCaution {
                 tau_s,
                 elsewhere_s,
             } => format!(
-                "{}: {} ms in condition {condition} against {} ms elsewhere: not schedulable over airspeed",
+                "{}: the signed delay is {} ms in condition {condition}, but on average {} ms in \
+                the other conditions; it cannot be scheduled over airspeed",
                 channel.name(inputs, outputs),
                 signed(s_to_ms(*tau_s), 0),
                 signed(s_to_ms(*elsewhere_s), 0)

@@ -27,7 +27,6 @@ pub(super) const STEPS: u32 = 100;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Schedule {
     pub settings: ScheduleSettings,
-    /// The conditions' airspeeds.
     pub airspeeds: Airspeeds,
     /// Each channel's gain, or its logarithm.
     pub gains: Channels<Regression>,
@@ -54,7 +53,7 @@ impl Schedule {
     ///
     /// # Errors
     /// [`ScheduleError`] without conditions, if a condition lacks the second variable, or if its
-    /// effect cannot be separated from that of airspeed.
+    /// effect cannot be separated from the effect of airspeed.
     pub(super) fn fit(
         points: &[ScheduledPoint<'_>],
         settings: ScheduleSettings,
@@ -95,7 +94,7 @@ impl Schedule {
         })
     }
 
-    /// Whether delays, or delays and leads, are scheduled.
+    /// Returns whether delays or signed delays are scheduled.
     pub fn has_delays(&self) -> bool {
         self.delays.is_some() || self.leads.is_some()
     }
@@ -175,8 +174,8 @@ impl Schedule {
         ChannelCorrection::of_delays(gains, delays_s)
     }
 
-    /// Returns the regression's design matrix `X`: a row by condition, with the second variable in
-    /// the last column.
+    /// Returns the regression's design matrix `X`: a row for each condition, with the second
+    /// variable in the last column.
     pub fn design(&self) -> Vec<Vec<f64>> {
         let mut rows = self.airspeed_design();
         if let Some(term) = &self.second {
@@ -223,7 +222,8 @@ impl DelaySchedule {
         }
     }
 
-    /// Returns the delays \[s\] at an airspeed \[kt\], limited to zero and the upper bound.
+    /// Returns the delays \[s\] at an airspeed \[kt\], limited to the range from zero to the upper
+    /// bound.
     fn at(&self, airspeeds: &Airspeeds, airspeed_kt: f64) -> Channels<f64> {
         let upper_s = self.upper_s.at(airspeeds, airspeed_kt);
         self.taus_s
@@ -268,7 +268,7 @@ fn fit_second_term(
     SecondTerm::fit(variable, second, &columns, values).map(Some)
 }
 
-/// Fits a function of airspeed to a value by condition (step 4).
+/// Fits a function of airspeed to one value for each condition (step 4).
 fn fit_regression(airspeeds: &Airspeeds, values: &[f64], kind: ScheduleKind) -> Regression {
     match kind {
         ScheduleKind::Polynomial { degree } => Regression::polynomial(airspeeds, values, degree),
@@ -296,7 +296,7 @@ mod tests {
         let direct = Regression::polynomial(&schedule.airspeeds, &products, 2);
         for airspeed in [40.0, 88.0, 140.0] {
             let product = schedule.at(airspeed).net_gain(Pair::new(0, 0));
-            // The same least squares problem, rounded in another order.
+            // The same least-squares problem, rounded in another order.
             assert!((product / direct.at(&schedule.airspeeds, airspeed).exp() - 1.0).abs() < 1e-13);
         }
     }

@@ -1,4 +1,4 @@
-//! Coefficients or values as a table.
+//! A schedule's coefficients or lookup values as a table.
 
 use super::channel_schedule::Schedule;
 use super::lead_schedule::LeadSchedule;
@@ -15,7 +15,7 @@ pub struct CoefficientRow {
     pub channel: Channel,
     /// Scheduled quantity with its channel: "ln k_LON", "k_Q", "τ_PED \[s\]".
     pub name: String,
-    /// Coefficients or values by column.
+    /// Coefficients or values, one for each column.
     pub figures: Vec<f64>,
 }
 
@@ -146,7 +146,7 @@ mod tests {
             (table.columns.join(" ").as_str(), table.scale.as_str()),
             ("1 v v²", "v = (V − 90.00 kt) / 30.00 kt")
         );
-        // The parabola goes through its three points, at v = 0 the middle point.
+        // The parabola passes through its three points, of which the middle one is at v = 0.
         assert!((table.rows[0].figures[0] - 1.1_f64.ln()).abs() < 1e-15);
         let lookup_table = ScheduleSettings {
             kind: ScheduleKind::Table,

@@ -5,14 +5,15 @@ use super::second_variable::SecondVariable;
 /// Reason why there is no schedule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ScheduleError {
-    /// No condition was chosen, or none could be solved.
-    #[error("no schedule: no condition that could be solved is chosen for it")]
+    /// No condition was chosen, or no chosen condition has a correction.
+    #[error("no schedule: none of the conditions chosen for it has a correction")]
     NoCondition,
     #[error("no schedule with {0}: a condition chosen for it has no {0}")]
     NoSecondValue(SecondVariable),
     /// In these conditions the second variable is constant, or a function of airspeed.
     #[error(
-        "no schedule with {0}: its effect cannot be separated from that of airspeed in these conditions"
+        "no schedule with {0}: its effect cannot be separated from the effect of airspeed in \
+        these conditions"
     )]
     NotToldApart(SecondVariable),
 }

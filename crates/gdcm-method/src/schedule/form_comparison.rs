@@ -17,7 +17,7 @@ pub const SCHEDULE_KINDS: [ScheduleKind; 5] = [
     ScheduleKind::Table,
 ];
 
-/// Distance between a condition's own gain and the scheduled gain.
+/// Difference between a condition's own gain and the scheduled gain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Residual {
     /// `ln k - ln k_scheduled`.
@@ -44,7 +44,7 @@ impl Residual {
 /// A gain's residuals under a form of the schedule, by condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FitResiduals {
-    /// `None` if the scheduled gain is not positive.
+    /// Residual of each condition; `None` if the scheduled gain is not positive.
     pub residuals: Vec<Option<Residual>>,
     /// Residual of each condition against the schedule fitted without that condition; `None` for
     /// the only condition.
@@ -104,7 +104,7 @@ impl FormFit {
     }
 }
 
-/// Fits of all forms.
+/// Fits of all forms of the schedule.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FormComparison {
     /// Airspeed by condition \[kt\], in the order of the residuals.
@@ -114,7 +114,7 @@ pub struct FormComparison {
 }
 
 impl FormComparison {
-    /// Returns the fit of a form.
+    /// Returns the fit of a form; `None` if the form was not fitted.
     pub fn form(&self, kind: ScheduleKind) -> Option<&FormFit> {
         self.kinds.iter().find(|form| form.kind == kind)
     }
@@ -123,11 +123,11 @@ impl FormComparison {
 /// Computes residuals and leave-one-condition-out errors (M11) for every form of the schedule;
 /// `settings` gives the regressed quantity and the cluster tolerance.
 ///
-/// Each condition is left out in turn: the schedule of the others, evaluated at the omitted
-/// airspeed (beyond their range the end value), is compared with the condition's own gain.
+/// Each condition is left out in turn. The schedule of the others, evaluated at the omitted
+/// airspeed (beyond their range, its end value), is compared with the condition's own gain.
 ///
 /// # Errors
-/// [`ScheduleError`] if the schedule of all conditions does not exist.
+/// [`ScheduleError`] if no schedule can be fitted to all conditions.
 pub fn compare_forms(
     points: &[ScheduledPoint<'_>],
     settings: ScheduleSettings,
@@ -161,9 +161,10 @@ fn pair_table<T>(points: &[ScheduledPoint<'_>], value: impl FnMut(Pair) -> T) ->
 /// Scheduled corrections at the conditions.
 struct Predictions {
     degree: Option<usize>,
-    /// From the schedule of all conditions.
+    /// Corrections by the schedule of all conditions.
     scheduled: Vec<ChannelCorrection>,
-    /// From the schedule of the other conditions; `None` if that schedule does not exist.
+    /// Correction of each condition by the schedule of the other conditions; `None` if that
+    /// schedule does not exist.
     unseen: Vec<Option<ChannelCorrection>>,
 }
 
@@ -222,8 +223,8 @@ impl Predictions {
     }
 }
 
-/// Returns the root mean square distance \[s\] between the conditions' own net signed delays and
-/// the predicted ones.
+/// Returns the root mean square difference \[s\] between the conditions' own net signed delays and
+/// the predicted delays.
 fn delay_rms_s<'a>(
     points: &[ScheduledPoint<'_>],
     predictions: impl IntoIterator<Item = &'a ChannelCorrection>,
@@ -240,20 +241,21 @@ fn delay_rms_s<'a>(
     (sum / points.len() as f64).sqrt()
 }
 
-/// Distance between scheduled signed delays and the conditions' own: root mean squares \[s\].
+/// Root mean square differences \[s\] between the conditions' own signed delays and the scheduled
+/// ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeadFit {
-    /// Over all conditions.
+    /// With the schedule of all conditions.
     pub rms_s: f64,
-    /// Over predictions from the schedule of the other conditions; `None` for the only condition.
+    /// With predictions from the schedule of the other conditions; `None` for the only condition.
     pub left_out_rms_s: Option<f64>,
 }
 
-/// Fit of the signed delays by polynomials of a degree.
+/// Fit of the signed delays by polynomials of one degree.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeadDegreeFit {
     pub degree: usize,
-    /// Fit by response, for its net signed delay.
+    /// Fit of each response's net signed delay.
     pub pairs: PairTable<LeadFit>,
 }
 
@@ -295,7 +297,7 @@ mod tests {
     use crate::correction::leads::{ChannelLeads, LeadDesign, LeadSettings};
     use crate::schedule::test_points::{correction, points};
 
-    /// Corrections with an input gain, and two output gains: its reciprocal times 2, and 1.
+    /// Corrections with these input gains and two output gains: 2 divided by the input gain, and 1.
     fn corrections(gains: &[f64]) -> Vec<ChannelCorrection> {
         gains
             .iter()
@@ -323,11 +325,12 @@ mod tests {
         .unwrap();
         let [mean, line, parabola, cubic, table] =
             SCHEDULE_KINDS.map(|kind| &found.form(kind).unwrap().pairs[Pair::new(1, 0)]);
-        // Least squares over five points, condition number below 5.
+        // Least squares over five points with a condition number below 5.
         assert!(parabola.rms_ln().unwrap() < 1e-14 && cubic.rms_ln().unwrap() < 1e-14);
         assert!(line.rms_ln().unwrap() > 0.01);
         assert!(mean.rms_ln().unwrap() > line.rms_ln().unwrap());
-        // Inside the range; beyond the others' range the end value applies with any degree.
+        // Condition 2 is inside the range of the others. Beyond that range the end value applies,
+        // with any degree.
         assert!(parabola.left_out[2].unwrap().ln.abs() < 1e-14);
         let step = gains[4] / gains[3];
         let last = parabola.left_out[4].unwrap();
@@ -405,7 +408,7 @@ mod tests {
         let points = points(&[60.0, 90.0, 120.0], &corrections, 0.02);
         let found = compare_lead_degrees(&points, ScheduleSettings::default());
         assert_eq!(found.len(), 1 + HIGHEST_DEGREE);
-        // Distance from the others' mean: 3/2 times the distance from the mean of all.
+        // The distance from the mean of the others is 3/2 times the distance from the mean of all.
         let mean = &found[0].pairs[Pair::new(0, 0)];
         assert!((mean.left_out_rms_s.unwrap() / mean.rms_s - 1.5).abs() < 1e-12);
         // The output's signed delay is constant, so the sum has the input's residuals:

@@ -12,7 +12,7 @@ impl Schedule {
     ///
     /// # Errors
     /// [`ScheduleError`] without conditions, if a condition lacks the second variable, or if its
-    /// effect cannot be separated from that of airspeed.
+    /// effect cannot be separated from the effect of airspeed.
     pub fn of(
         points: &[ScheduledPoint<'_>],
         settings: ScheduleSettings,
@@ -22,8 +22,8 @@ impl Schedule {
         Ok(schedule)
     }
 
-    /// Whether interpolation between the conditions is unreliable: a gain overshoots there, or is
-    /// not positive.
+    /// Returns whether interpolation between the conditions is unreliable: a gain overshoots there,
+    /// or is not positive.
     pub fn interpolation_fails(&self) -> bool {
         self.cautions.iter().any(|caution| {
             matches!(
@@ -50,7 +50,7 @@ impl Schedule {
         cautions
     }
 
-    /// Whether all gains are positive over the airspeed range.
+    /// Returns whether all gains are positive over the airspeed range.
     fn is_positive(&self) -> bool {
         (0..=STEPS).all(|step| {
             let correction = self.at(self.step_kt(step));

@@ -23,8 +23,8 @@ pub struct LeadSchedule {
 }
 
 impl LeadSchedule {
-    /// Fits polynomials of this degree to the conditions' signed delays; `None` if a condition has
-    /// none, or without conditions.
+    /// Fits polynomials of this degree to the conditions' signed delays; `None` without conditions,
+    /// or if a condition has no signed delays.
     pub(super) fn fit(
         points: &[ScheduledPoint<'_>],
         airspeeds: &Airspeeds,
@@ -139,7 +139,7 @@ mod tests {
                 .collect();
             let direct = Regression::polynomial(&airspeeds, &sums, degree);
             let at = schedule.at(&airspeeds, 93.0);
-            // The same least squares problem, rounded in another order.
+            // The same least-squares problem, rounded in another order.
             assert!(
                 (at.taus_s.inputs[0] + at.taus_s.outputs[0] - direct.at(&airspeeds, 93.0)).abs()
                     < 1e-15

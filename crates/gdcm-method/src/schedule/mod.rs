@@ -1,7 +1,7 @@
 //! A correction for all airspeeds, signed delays included, its assessment, and its benefit (M11, M12,
 //! M15.5).
 //!
-//! | file | holds |
+//! | file | content |
 //! |---|---|
 //! | `settings` | form, degree, regressed quantity, delays |
 //! | `airspeeds`, `regression` | clusters of airspeeds; polynomial and lookup table |

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use super::airspeeds::Airspeeds;
 use super::settings::ScheduleKind;
 
-/// A function of airspeed, fitted to a value by condition.
+/// A function of airspeed, fitted to one value for each condition.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Regression {
     /// `c_0 + c_1 v + c_2 v^2 + ...` in the scaled airspeed, lowest power first.
@@ -79,8 +79,8 @@ impl Regression {
     }
 }
 
-/// Returns the design matrix: a row by condition, with powers of `v` for a polynomial and cluster
-/// indicators for a table.
+/// Returns the design matrix: a row for each condition, with powers of `v` for a polynomial and
+/// cluster indicators for a table.
 pub(super) fn design(airspeeds: &Airspeeds, kind: ScheduleKind) -> Vec<Vec<f64>> {
     match kind {
         ScheduleKind::Polynomial { degree } => {
@@ -167,7 +167,7 @@ mod tests {
             .map(|&airspeed_kt| parabola(airspeed_kt))
             .collect();
         let regression = Regression::polynomial(&airspeeds, &figures, 2);
-        // Least squares, condition number about 5.
+        // Least squares with a condition number of about 5.
         assert!((regression.at(&airspeeds, 120.0) - parabola(120.0)).abs() < 1e-13);
         assert!(
             (regression.at(&airspeeds, 200.0) - parabola(140.0)).abs() < 1e-13,

@@ -1,4 +1,4 @@
-//! Input to a schedule.
+//! Data to which a schedule is fitted.
 
 use crate::correction::ChannelCorrection;
 
@@ -11,6 +11,6 @@ pub struct ScheduledPoint<'a> {
     pub correction: &'a ChannelCorrection,
     /// The condition's upper delay bound \[s\].
     pub delay_upper_s: f64,
-    /// The condition's second variable, if known.
+    /// The condition's second variable, if available.
     pub second: Option<f64>,
 }

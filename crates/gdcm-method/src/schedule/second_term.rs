@@ -10,8 +10,8 @@ use crate::correction::Channels;
 /// this fraction of its norm.
 const DEPENDENT: f64 = 1e-9;
 
-/// A second variable's contribution, `z`, scaled to -1 to 1 over its range, to each channel's
-/// value: `gamma z`.
+/// Contribution `gamma z` of a second variable to each channel's value; `z` is the variable scaled
+/// to -1 to 1 over its range.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SecondTerm {
     pub variable: SecondVariable,
@@ -26,13 +26,13 @@ pub struct SecondTerm {
 impl SecondTerm {
     /// Fits `gamma` by least squares.
     ///
-    /// `values` are the second variable by condition, `airspeed_design` the other design columns (a
-    /// row by condition), `regressed` the values by channel and condition. By the
+    /// `values` has the second variable of each condition, `airspeed_design` the other design
+    /// columns (a row for each condition), `regressed` the values by channel and condition. By the
     /// Frisch-Waugh-Lovell theorem `gamma = z_r' y / z_r' z_r`, where `z_r` is the residual of `z`
     /// after projection on the other columns.
     ///
     /// # Errors
-    /// [`ScheduleError::NotToldApart`] if the values depend linearly on those columns.
+    /// [`ScheduleError::NotToldApart`] if the second variable depends linearly on those columns.
     pub(super) fn fit(
         variable: SecondVariable,
         values: Vec<f64>,
@@ -82,7 +82,7 @@ impl SecondTerm {
     }
 }
 
-/// Scales the range to -1 to 1.
+/// Maps `value` linearly, so that the range becomes -1 to 1.
 fn scaled(value: f64, [least, greatest]: [f64; 2]) -> f64 {
     (2.0 * value - least - greatest) / (greatest - least)
 }
@@ -142,7 +142,7 @@ mod tests {
             let schedule = schedule(kind, &FLOWN, exponential).unwrap();
             for (kt, feet) in [(60.0, 8e3), (75.0, 5e3), (120.0, 2e3)] {
                 let found = schedule.evaluate(kt, Some(feet)).input_gains[0];
-                // Least squares, condition number about 5.
+                // Least squares with a condition number of about 5.
                 assert!(
                     (found / exponential(kt, feet) - 1.0).abs() < 1e-13,
                     "{kind:?} at {kt} kt, {feet} ft: {found}"

@@ -17,7 +17,7 @@ pub enum SecondVariable {
 }
 
 impl SecondVariable {
-    /// Both, in display order.
+    /// Both variables, in display order.
     pub const BOTH: [Self; 2] = [Self::Altitude, Self::Mass];
 
     /// Returns "altitude" or "mass".
@@ -65,7 +65,7 @@ impl SecondVariable {
 }
 
 /// Returns -1 for the first and 1 for the second of two different labels, in alphabetical order;
-/// `None` for any other count.
+/// `None` unless there are exactly two different labels.
 fn signs_of_labels(labels: &[&str]) -> Option<Vec<f64>> {
     let mut distinct = labels.to_vec();
     distinct.sort_unstable();

@@ -40,7 +40,7 @@ pub enum ScheduledQuantity {
 /// Net delay \[s\] in a constrained response above which delays are scheduled automatically (M11).
 pub const NOTABLE_DELAY_S: f64 = 5e-4;
 
-/// Whether the schedule has delays besides gains (M11).
+/// Choice whether the schedule includes delays besides gains (M11).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DelayScheduling {
@@ -48,14 +48,12 @@ pub enum DelayScheduling {
     /// a scheduled condition.
     #[default]
     Automatic,
-    /// Delays are always scheduled.
     Always,
-    /// Delays are never scheduled.
     Never,
 }
 
 impl From<bool> for DelayScheduling {
-    /// Converts the flag from older program versions.
+    /// Converts the flag that older program versions wrote.
     fn from(flag: bool) -> Self {
         if flag { Self::Always } else { Self::Never }
     }
@@ -67,7 +65,7 @@ impl<'de> Deserialize<'de> for DelayScheduling {
     }
 }
 
-/// Reads a word, or the flag from older program versions.
+/// Reads a word, or the flag that older program versions wrote.
 struct DelaySchedulingVisitor;
 
 impl Visitor<'_> for DelaySchedulingVisitor {
@@ -91,15 +89,15 @@ impl Visitor<'_> for DelaySchedulingVisitor {
     }
 }
 
-/// Settings of a schedule.
+/// Form, degree and variables of a gain schedule (M11, M13.7).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "ScheduleEntry", into = "ScheduleEntry")]
 pub struct ScheduleSettings {
     pub kind: ScheduleKind,
     pub quantity: ScheduledQuantity,
-    /// Whether this schedule has delays too, as decided by [`DelayScheduling`] for its conditions.
-    /// Older program versions read this field from study settings; it is `true` there if delays are
-    /// always scheduled.
+    /// Whether this schedule includes delays, as determined by [`DelayScheduling`] for its
+    /// conditions. Older program versions read this field from study settings; there it is `true`
+    /// only if delays are always scheduled.
     pub delays: bool,
     /// Polynomial degree of signed delays, 0 to [`HIGHEST_DEGREE`]; 0 by default, because servo,
     /// sensor and computing lags do not depend on airspeed (M15.5).
@@ -158,7 +156,7 @@ impl TryFrom<ScheduleEntry> for ScheduleSettings {
 }
 
 impl ScheduleEntry {
-    /// Joins form and degree.
+    /// Combines form and degree into a schedule kind.
     fn schedule_kind(&self) -> Result<ScheduleKind, String> {
         match (&self.kind, self.degree) {
             (FormEntry::Table, _) => Ok(ScheduleKind::Table),

@@ -8,7 +8,7 @@ use super::variance_component::{VarianceComponent, satterthwaite};
 pub enum IdentificationSource {
     /// Spread among the identified models, pooled with the other conditions (M13.2).
     Spread,
-    /// Coherence of the measured response, where its error exceeds the spread.
+    /// Coherence of the measured response, where the resulting standard error exceeds the spread.
     Coherence,
     /// Confidence band of the identified model, where it exceeds the spread.
     ModelBand,
@@ -19,10 +19,10 @@ pub enum IdentificationSource {
 pub struct Bar {
     /// Value with both representatives, `q_0`.
     pub value: f64,
-    /// Variance from the unknown trim, `s_phys^2`; `None` if no other physics model is kept.
+    /// Variance due to the unknown trim, `s_phys^2`; `None` if no other physics model is kept.
     pub trim: Option<VarianceComponent>,
-    /// Variance from the identification, `s_id^2`; `None` without a second identified model in any
-    /// condition and without a reported error.
+    /// Variance from the identification, `s_id^2`; `None` if no condition has a second identified
+    /// model and no standard error is available from coherence or a model's band.
     pub identification: Option<VarianceComponent>,
     pub source: IdentificationSource,
     /// Number of substitutions for which the value does not exist.
@@ -94,23 +94,26 @@ impl Bar {
         }
     }
 
-    /// Describes missing parts, a missing spread, and a source other than the models' spread.
+    /// Returns remarks on missing parts, a missing spread, and a source other than the models'
+    /// spread.
     pub fn remarks(&self) -> Vec<&'static str> {
         let mut remarks = Vec::new();
         if self.trim.is_none() {
-            remarks.push("trim not included");
+            remarks.push("uncertainty of the trim not included");
         }
         if self.identification.is_none() {
-            remarks.push("identification not included");
+            remarks.push("uncertainty of the identification not included");
         }
         if self.parts().next().is_some() && self.variance() == 0.0 {
             remarks.push("the bundle has no spread");
         }
         match self.source {
             IdentificationSource::Spread => {}
-            IdentificationSource::Coherence => remarks.push("identification from the coherence"),
+            IdentificationSource::Coherence => {
+                remarks.push("identification part from the coherence");
+            }
             IdentificationSource::ModelBand => {
-                remarks.push("identification from the model's own band")
+                remarks.push("identification part from the model's confidence band")
             }
         }
         remarks
@@ -167,7 +170,10 @@ mod tests {
         };
         assert_eq!(
             alone.remarks(),
-            ["trim not included", "identification not included"]
+            [
+                "uncertainty of the trim not included",
+                "uncertainty of the identification not included"
+            ]
         );
         assert_eq!(alone.interval(0.9), None);
     }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use gdcm_model::statistics::median;
 
-/// Measurement data that determine a response's error.
+/// Data of a measurement that determine the standard error of its response.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measurement {
     /// Number of independent averages, `n_d`.
@@ -30,8 +30,8 @@ impl Measurement {
         2.0 * self.averages
     }
 
-    /// Computes the standard deviation of `ln |H|`, equal to that of `arg H` \[rad\], `epsilon = C
-    /// sqrt(1 - gamma^2) / (|gamma| sqrt(2 n_d))`.
+    /// Computes the standard deviation of `ln |H|`, which is also the standard deviation of `arg H`
+    /// \[rad\]: `epsilon = C sqrt(1 - gamma^2) / (|gamma| sqrt(2 n_d))`.
     ///
     /// J. S. Bendat and A. G. Piersol, *Random Data*, 4th ed. 2010, chapter 9.
     pub fn deviation(&self, coherence: f64) -> f64 {
@@ -59,9 +59,9 @@ impl Measurement {
         (0.5 * PI * sum).min(1.0).sqrt()
     }
 
-    /// Computes the error over a band from the coherence at ascending frequencies `omega` \[rad/s\].
-    /// Frequencies with zero coherence, or coherence below `threshold`, are left out; `None` if no
-    /// frequency remains.
+    /// Computes the standard errors of `ln G` and `D` over a band from the coherence at ascending
+    /// frequencies `omega` \[rad/s\]. Frequencies with zero coherence, or coherence below
+    /// `threshold`, are left out; `None` if no frequency remains.
     pub fn error(
         &self,
         omega: &[f64],

@@ -40,7 +40,7 @@ impl Difference {
     }
 }
 
-/// Applies Holm's correction for multiple tests; the order is kept.
+/// Returns the probabilities after Holm's correction for multiple tests, in the given order.
 ///
 /// S. Holm, "A simple sequentially rejective multiple test procedure", *Scandinavian Journal of
 /// Statistics* 6, 1979.

@@ -11,11 +11,11 @@ const NORMAL_FROM: f64 = 1e8;
 /// for some larger values.
 const EXPANDED_FROM: f64 = 1e3;
 
-/// Computes Student's quantile `t(nu)` at `(1 + level) / 2` for any real `nu`, at least 1; the normal
-/// quantile for infinite `nu`.
+/// Computes Student's quantile `t(nu)` at `(1 + level) / 2` for any real `nu`, at least 1; the
+/// normal quantile for infinite `nu`.
 ///
-/// Above a thousand degrees by M. Abramowitz, I. A. Stegun, *Handbook of Mathematical Functions*,
-/// 1964, 26.7.5.
+/// Above a thousand degrees of freedom the expansion 26.7.5 in M. Abramowitz, I. A. Stegun,
+/// *Handbook of Mathematical Functions*, 1964, is used.
 pub fn student_quantile(level: f64, degrees: f64) -> f64 {
     let p = 0.5 * (1.0 + level);
     match StudentsT::new(0.0, 1.0, degrees.max(1.0)) {
@@ -50,13 +50,13 @@ pub fn student_two_sided(ratio: f64, degrees: f64) -> f64 {
 }
 
 /// Computes the upper tail of Fisher's distribution, `1 - F_(above, below)(ratio)`: the probability
-/// that two estimates of the same variance have this ratio or more, with `above` and `below` degrees
-/// of freedom.
+/// that two estimates of the same variance have this ratio or more, with `above` and `below`
+/// degrees of freedom. `None` if the degrees of freedom are not positive.
 pub fn fisher_upper(ratio: f64, above: f64, below: f64) -> Option<f64> {
     Some(FisherSnedecor::new(above, below).ok()?.sf(ratio))
 }
 
-/// Computes the chi-squared quantile at `p`.
+/// Computes the chi-squared quantile at `p`; `None` if the degrees of freedom are not positive.
 pub fn chi_squared_quantile(p: f64, degrees: f64) -> Option<f64> {
     Some(ChiSquared::new(degrees).ok()?.inverse_cdf(p))
 }
@@ -65,7 +65,7 @@ pub fn chi_squared_quantile(p: f64, degrees: f64) -> Option<f64> {
 mod tests {
     use super::*;
 
-    /// Quantiles by SciPy (independent numpy code).
+    /// Reference quantiles from SciPy, computed independently.
     #[test]
     fn quantiles_and_probabilities_are_known() {
         let t_95 = [
@@ -85,7 +85,7 @@ mod tests {
             (1e12, 1.64485362695),
         ];
         for (degrees, expected) in t_95 {
-            // The reference has twelve digits.
+            // The reference values have twelve digits.
             assert!(
                 (student_quantile(0.9, degrees) - expected).abs() < 1e-9,
                 "t of {degrees}"

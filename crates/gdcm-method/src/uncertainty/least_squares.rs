@@ -16,8 +16,8 @@ use super::variance_component::{VarianceComponent, satterthwaite};
 /// before it.
 const DEPENDENT: f64 = 1e-9;
 
-/// Maximum number of columns in a design; a lookup table over more airspeeds has neither a split
-/// nor bands.
+/// Maximum number of columns in a design; a lookup table over more airspeeds has neither a variance
+/// split nor bands.
 pub const MOST_COLUMNS: usize = 200;
 
 /// Design matrix `X` with full column rank, n conditions by r columns, stored as `Q R`.
@@ -27,7 +27,7 @@ pub struct Design {
     r: DMatrix<f64>,
 }
 
-/// Least-squares fit to a value by condition.
+/// Least-squares fit to one value for each condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
     /// Coefficient of each column.
@@ -37,8 +37,8 @@ pub struct Fit {
 }
 
 impl Design {
-    /// Factorises the design, with a row by condition. `None` if the columns are linearly dependent,
-    /// outnumber the rows, are missing, or are more than [`MOST_COLUMNS`].
+    /// Factorises the design, with a row for each condition. `None` if there are no columns, more
+    /// columns than rows or than [`MOST_COLUMNS`], or linearly dependent columns.
     pub fn new(rows: &[Vec<f64>]) -> Option<Self> {
         let columns = rows.first()?.len();
         if rows.len() < columns || columns == 0 || columns > MOST_COLUMNS {
@@ -96,7 +96,7 @@ impl Design {
         self.leverage(&last)
     }
 
-    /// Fits a value by condition.
+    /// Fits the columns to one value for each condition.
     pub fn fit(&self, values: &[f64]) -> Fit {
         let values = DVector::from_column_slice(values);
         let projected = self.q.transpose() * &values;
@@ -268,7 +268,8 @@ fn sum_of_squares(values: &[f64]) -> f64 {
 pub struct SecondVariableEffect {
     /// Change between the variable's lowest and highest value, `2 gamma`.
     pub effect: f64,
-    /// Half-width of its interval, `2 t se`; smaller effects are not detectable.
+    /// Half-width of the confidence interval of `effect`, `2 t se`; smaller effects are not
+    /// detectable.
     pub visible: f64,
     /// Probability that an effect this large arises without a true effect.
     pub p: f64,
@@ -282,13 +283,13 @@ pub struct SecondVariableEffect {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SecondVariableError {
     /// A condition lacks the variable, or all values are equal.
-    #[error("the conditions do not have two values of it")]
+    #[error("the conditions must have at least two different values")]
     NotVaried,
     /// The variable is a function of airspeed in these conditions.
-    #[error("its effect and that of airspeed cannot be separated")]
+    #[error("its effect cannot be separated from the effect of airspeed")]
     NotToldApart,
     /// The fit has too few degrees of freedom.
-    #[error("there are too few conditions to separate it from airspeed")]
+    #[error("there are too few conditions to separate its effect from the effect of airspeed")]
     TooFewConditions,
 }
 
@@ -315,7 +316,7 @@ pub struct SecondVariableDesign {
 }
 
 impl SecondVariableDesign {
-    /// Appends the variable's values by condition to the columns of `rows`.
+    /// Appends the variable's value in each condition to `rows` as the last column.
     ///
     /// # Errors
     /// [`SecondVariableError`] if the effect cannot be estimated.
@@ -333,7 +334,7 @@ impl SecondVariableDesign {
         Ok(Self { without, with })
     }
 
-    /// Estimates the effect on a value by condition.
+    /// Estimates the effect on `values`, which has one value for each condition.
     pub fn effect(&self, values: &[f64], level: f64) -> SecondVariableEffect {
         let Self { without, with } = self;
         let fit = with.fit(values);
@@ -378,8 +379,8 @@ fn rms(values: &[f64]) -> Option<f64> {
     Some((sum_of_squares(values) / values.len() as f64).sqrt())
 }
 
-/// Maximum ratio of the leave-one-out error with a variable to that without it, for the variable to
-/// count as needed.
+/// Maximum ratio of the leave-one-out errors with and without a variable at which the variable
+/// counts as needed.
 const NOTABLE_RATIO: f64 = 0.9;
 
 impl SecondVariableEffect {
@@ -412,7 +413,7 @@ mod tests {
             .fit(&figures[..3])
             .coefficients;
         let predicted = without_last[0] + 4.0 * without_last[1];
-        // The same small problem solved twice.
+        // The same small problem, solved in two ways: a few rounding errors.
         assert!((design.left_out_errors(&figures)[3].unwrap() - (3.5 - predicted)).abs() < 1e-13);
     }
 

@@ -28,7 +28,7 @@ pub enum Scalar {
 }
 
 impl Scalar {
-    /// Whether the scalar is a time \[s\]; otherwise it is a gain's natural logarithm.
+    /// Returns whether the scalar is a time \[s\]; otherwise it is a gain's natural logarithm.
     pub fn is_delay(self) -> bool {
         matches!(
             self,
@@ -75,7 +75,7 @@ impl<T> Index<Scalar> for ScalarTable<T> {
     }
 }
 
-/// Returns all scalars: those for responses, then those for channels.
+/// Returns all scalars: first of the responses, then of the channels.
 fn scalars(outputs: usize, inputs: usize) -> Vec<Scalar> {
     let of_response = [
         Scalar::Gain,

@@ -7,11 +7,11 @@ pub use super::scalar::{Figures, Scalar, ScalarTable};
 use super::bar::{Bar, IdentificationSource};
 use super::variance_component::{VarianceComponent, pooled};
 
-/// Error that an identified model or a measured response reports about itself.
+/// Standard error of an identified representative, from its confidence band or its coherence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReportedUncertainty {
     pub part: VarianceComponent,
-    /// Coherence, or confidence band.
+    /// Source of the standard error: coherence or confidence band.
     pub source: IdentificationSource,
 }
 
@@ -56,7 +56,7 @@ impl ConditionSpread {
     }
 }
 
-/// Returns a scalar's changes in the substitutions where it exists.
+/// Returns the changes of a scalar from `base` in the substitutions for which it exists.
 fn changes_from(base: f64, scalar: Scalar, swaps: &[Option<&Figures>]) -> Vec<f64> {
     let mut changes = Vec::new();
     for figures in swaps.iter().flatten() {
@@ -67,14 +67,14 @@ fn changes_from(base: f64, scalar: Scalar, swaps: &[Option<&Figures>]) -> Vec<f6
     changes
 }
 
-/// Input for a condition's bars.
+/// Data of a condition from which its bars are computed.
 #[derive(Clone, Debug)]
 pub struct BarSource<'a> {
     /// Scalars with both representatives.
     pub figures: Figures,
     /// Changes of the scalars if other models are substituted.
     pub spread: &'a ConditionSpread,
-    /// Errors reported by the identified representative itself.
+    /// Standard errors of the identified representative; `None` where unavailable.
     pub reported: ScalarTable<Option<ReportedUncertainty>>,
     /// Lower and upper bound on a channel delay \[s\].
     pub delay_bounds_s: [f64; 2],
@@ -127,10 +127,10 @@ impl BarSource<'_> {
 }
 
 impl ReportedUncertainty {
-    /// Whether the reported error replaces the spread, because it is larger. The spread of models
-    /// that each leave a record out is smaller than the error of each model, by a factor of about
-    /// the square root of the number of records (Efron's jackknife); their bands do not have this
-    /// defect.
+    /// Returns whether the standard error replaces the spread: if it is larger, or if there is no
+    /// spread. The spread of leave-one-record-out models underestimates the error of a single model
+    /// by a factor of about the square root of the number of records (Efron's jackknife); the
+    /// standard error does not.
     fn replaces(&self, spread: Option<VarianceComponent>) -> bool {
         spread.is_none_or(|spread| self.part.variance > spread.variance)
     }

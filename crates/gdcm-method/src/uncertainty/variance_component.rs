@@ -6,7 +6,7 @@
 pub struct VarianceComponent {
     /// The mean square.
     pub variance: f64,
-    /// Degrees of freedom, at least 1; infinite for a variance without uncertainty of its own.
+    /// Degrees of freedom, at least 1; infinite for an exactly known variance.
     pub degrees_of_freedom: f64,
 }
 
@@ -48,7 +48,7 @@ impl VarianceComponent {
     }
 }
 
-/// Computes the degrees of freedom in a sum of variances, `u^4 / sum(s^4 / nu)`; `None` if all are
+/// Computes the degrees of freedom of a sum of variances, `u^4 / sum(s^4 / nu)`; `None` if all are
 /// zero.
 ///
 /// F. E. Satterthwaite, "An approximate distribution of estimates of variance components",
@@ -61,7 +61,7 @@ pub fn satterthwaite(parts: impl IntoIterator<Item = VarianceComponent>) -> Opti
     if parts.is_empty() {
         return None;
     }
-    // Relative to the largest, because squares of small variances underflow.
+    // Scaled by the largest variance, because squares of small variances underflow.
     let greatest = parts.iter().map(|part| part.variance).fold(0.0, f64::max);
     let mut sum = 0.0;
     let mut spread = 0.0;
@@ -73,12 +73,12 @@ pub fn satterthwaite(parts: impl IntoIterator<Item = VarianceComponent>) -> Opti
     Some(sum * sum / spread)
 }
 
-/// Computes the pooled identification part by condition (M13.2): `(n s_own^2 + d_0 s_pooled^2) / (n +
-/// d_0)` with `d_0 = min(prior, sum of the others' n)`. `None` if no condition has two identified
-/// models.
+/// Computes the pooled identification part of each condition (M13.2): `(n s_own^2 + d_0 s_pooled^2)
+/// / (n + d_0)` with `d_0 = min(prior, sum of the others' n)`. `None` if no condition has two
+/// identified models.
 ///
-/// `own` holds the mean square by condition. A condition with a single identified model has `None`
-/// and takes the pooled variance.
+/// `own` holds the mean square of each condition. A condition with a single identified model has
+/// `None` and takes the pooled variance.
 pub fn pooled(
     own: &[Option<VarianceComponent>],
     prior_degrees: f64,
@@ -132,7 +132,7 @@ mod tests {
             .collect()
     }
 
-    /// Reference case E (independent numpy code).
+    /// Reference case E, from independent numpy code.
     #[test]
     fn few_identified_models_borrow_from_the_other_conditions() {
         let five = pooled(
@@ -151,7 +151,7 @@ mod tests {
         ];
         for (part, (variance, degrees)) in five.iter().zip(expected) {
             let part = part.unwrap();
-            // The reference has twelve digits.
+            // The reference values have twelve digits.
             assert!(
                 (part.variance - variance).abs() < 1e-14 && part.degrees_of_freedom == degrees,
                 "{part:?}"

@@ -17,17 +17,18 @@ use crate::dataset::channel::ChannelSide;
 use crate::dataset::unchecked_dataset::DatasetDraft;
 use crate::names::RowRole;
 
-/// Models whose channels were matched by position, because their files do not name them.
+/// Caution about models whose channels were matched by position, because their files do not name
+/// them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssemblyCaution {
     /// Inputs, outputs or both.
     pub sides: Vec<ChannelSide>,
-    /// Model indices.
+    /// Indices of the models in [`Assembly::parts`].
     pub parts: Vec<usize>,
 }
 
 impl AssemblyCaution {
-    /// Returns a stable code.
+    /// Returns a stable code for scripts and tests.
     pub fn code(&self) -> &'static str {
         "channels-by-position"
     }
@@ -41,7 +42,7 @@ pub struct ProblemLine {
     pub text: String,
 }
 
-/// Models found in files, with the rules applied to them.
+/// Models found in files, each with its place in the dataset, and the open problems.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Assembly {
     rules: Rules,
@@ -76,13 +77,13 @@ impl Assembly {
         }
     }
 
-    /// Applies other rules to the same models.
+    /// Returns the assembly of the same models under other rules.
     pub fn with_rules(&self, rules: Rules) -> Self {
         let models = self.parts.iter().map(|part| part.found.clone()).collect();
         Self::new(models, rules)
     }
 
-    /// Returns the rules.
+    /// Returns the rules that were applied.
     pub fn rules(&self) -> &Rules {
         &self.rules
     }
@@ -92,12 +93,13 @@ impl Assembly {
         &self.parts
     }
 
-    /// Returns the open problems; empty where the dataset can be built.
+    /// Returns the open problems; empty if the dataset can be built.
     pub fn problems(&self) -> &[Problem] {
         &self.problems
     }
 
-    /// Describes a problem: its model, the problem, and the command-line option that answers it.
+    /// Describes a problem: the model, the missing or contradictory fact, and the command-line
+    /// option that settles it, if there is one.
     pub fn words(&self, problem: &Problem) -> String {
         let mut words = String::new();
         if let Some(part) = problem.part {
@@ -170,7 +172,8 @@ impl Assembly {
         without
     }
 
-    /// Returns points to review although the dataset can be built.
+    /// Returns points for the engineer to review; unlike problems, they do not keep the dataset
+    /// from being built.
     pub fn cautions(&self) -> Vec<AssemblyCaution> {
         let mut cautions: Vec<AssemblyCaution> = Vec::new();
         for part in parts_in_use(&self.parts) {
@@ -189,9 +192,8 @@ impl Assembly {
         cautions
     }
 
-    /// Describes a caution.
+    /// Describes a caution: which channels were assumed, and up to three of the model files.
     pub fn caution_words(&self, caution: &AssemblyCaution) -> String {
-        /// Maximum number of files listed by name.
         const MOST_FILES: usize = 3;
         let mut files: Vec<String> = Vec::new();
         for part in caution.parts.iter().take(MOST_FILES) {
@@ -210,8 +212,8 @@ impl Assembly {
             sides.push(format!("{side}s taken as {}", names.join(", ")));
         }
         format!(
-            "no names of channels in the file: {}, by their position in the dataset; check the order, or name them under \"models\" in \
-             the rules: {}",
+            "channels without names in the file: {}, by their position in the dataset; check the \
+            order, or name the channels under \"models\" in the rules (files: {})",
             sides.join(" and "),
             files.join(", ")
         )
@@ -250,7 +252,7 @@ fn find_problems(parts: &[Part], rules: &Rules) -> Vec<Problem> {
     problems
 }
 
-/// Prefixes the relative file names of models and flight records with a folder.
+/// Prefixes relative file names with a folder.
 fn prefix_files(draft: &mut DatasetDraft, folder: &str) {
     for condition in &mut draft.conditions {
         for model in condition

@@ -6,22 +6,23 @@ use super::channel_match::ChannelUse;
 use crate::dataset::state_space::Timing;
 use crate::dataset::unchecked_dataset::{BandsDraft, ModelDraft, ResponseArray, ResponseDraft};
 
-/// The file channels of a model, in the dataset's order; `None` where the model lacks a channel.
+/// File channels of a model, one entry per dataset channel; `None` if the model lacks the channel.
 #[derive(Clone, Copy)]
 pub(super) struct ChannelUses<'u> {
     pub inputs: &'u [Option<ChannelUse>],
     pub outputs: &'u [Option<ChannelUse>],
 }
 
-/// Whether values scale with the units of the channels.
+/// Whether the values of a table are multiplied by the unit factors of the channels.
 #[derive(Clone, Copy, PartialEq)]
 enum Scaling {
     Converted,
     Unchanged,
 }
 
-/// Converts a model to the dataset's channels: `H'_oi = f_o H_oi / f_i` with the factors f. Values
-/// that need no conversion keep their bits; missing channels have zero response.
+/// Converts a model to the dataset's channels: `H'_oi = f_o H_oi / f_i` with the unit factors `f`
+/// of output `o` and input `i`. Values whose factors are 1 are copied bit for bit; a missing
+/// channel gives a zero response.
 pub(super) fn convert_model(model: &ModelDraft, uses: ChannelUses<'_>) -> ModelDraft {
     let [a, b, c, d] = &model.matrices;
     let b = b.as_ref().map(|b| pick_inputs(b, uses.inputs));
@@ -29,7 +30,7 @@ pub(super) fn convert_model(model: &ModelDraft, uses: ChannelUses<'_>) -> ModelD
     let d = d
         .as_ref()
         .map(|d| pick_outputs(&pick_inputs(d, uses.inputs), uses.outputs));
-    // A factor shifts a curve in dB and leaves its standard deviation unchanged.
+    // A unit factor shifts the magnitude in dB and leaves its standard deviation unchanged.
     let bands = model.bands.as_ref().map(|bands| BandsDraft {
         omega: bands.omega.clone(),
         sd_db: pick_table(&bands.sd_db, uses, Scaling::Unchanged),
@@ -68,7 +69,8 @@ fn convert_response(response: &ResponseDraft, uses: ChannelUses<'_>) -> Response
     }
 }
 
-/// Returns the valid bands of a response, or its full frequency range where it has none.
+/// Returns the valid bands of a response \[rad/s\]; without valid bands, the band from 0 to the
+/// last frequency for each response.
 pub(super) fn bands_or_full_range(response: &ResponseDraft) -> ResponseArray {
     if let Some(bands) = &response.valid_bands {
         return bands.clone();
@@ -95,7 +97,7 @@ fn convert_timing(timing: &Timing, uses: ChannelUses<'_>) -> Timing {
     }
 }
 
-/// Picks the delays of the dataset's channels; zero where a channel is missing.
+/// Returns the delays \[s\] of the dataset's channels; zero for a missing channel.
 fn pick_delays(delays: &[f64], uses: &[Option<ChannelUse>]) -> Vec<f64> {
     let mut picked = Vec::with_capacity(uses.len());
     for used in uses {
@@ -105,7 +107,8 @@ fn pick_delays(delays: &[f64], uses: &[Option<ChannelUse>]) -> Vec<f64> {
     picked
 }
 
-/// Picks the columns of the dataset's inputs, each divided by its factor.
+/// Returns the matrix columns in the order of the dataset's inputs, each divided by its unit
+/// factor.
 fn pick_inputs(matrix: &DMatrix<f64>, uses: &[Option<ChannelUse>]) -> DMatrix<f64> {
     DMatrix::from_fn(matrix.nrows(), uses.len(), |row, column| {
         match &uses[column] {
@@ -117,7 +120,8 @@ fn pick_inputs(matrix: &DMatrix<f64>, uses: &[Option<ChannelUse>]) -> DMatrix<f6
     })
 }
 
-/// Picks the rows of the dataset's outputs, each multiplied by its factor.
+/// Returns the matrix rows in the order of the dataset's outputs, each multiplied by its unit
+/// factor.
 fn pick_outputs(matrix: &DMatrix<f64>, uses: &[Option<ChannelUse>]) -> DMatrix<f64> {
     DMatrix::from_fn(uses.len(), matrix.ncols(), |row, column| match &uses[row] {
         Some(used) if used.index < matrix.nrows() => {
@@ -127,7 +131,8 @@ fn pick_outputs(matrix: &DMatrix<f64>, uses: &[Option<ChannelUse>]) -> DMatrix<f
     })
 }
 
-/// Returns `value * numerator / denominator`; the same bits where both are equal.
+/// Returns `value * numerator / denominator`; exactly `value` if numerator and denominator are
+/// equal.
 fn scaled(value: f64, numerator: f64, denominator: f64) -> f64 {
     if numerator == denominator {
         value
@@ -136,7 +141,8 @@ fn scaled(value: f64, numerator: f64, denominator: f64) -> f64 {
     }
 }
 
-/// Picks the rows of a table, `[output, input, value]`; zeros where a channel is missing.
+/// Returns a table `[output, input, value]` for the dataset's channels; zeros for a missing
+/// channel.
 fn pick_table(array: &ResponseArray, uses: ChannelUses<'_>, scaling: Scaling) -> ResponseArray {
     let [output_count, input_count, count] = array.shape;
     let mut values = Vec::with_capacity(uses.outputs.len() * uses.inputs.len() * count);

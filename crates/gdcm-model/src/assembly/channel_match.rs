@@ -13,27 +13,29 @@ use crate::units::physical_unit::conversion_factor;
 /// A file channel matched to a dataset channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelUse {
-    /// Index in the file.
+    /// Index of the channel in the file.
     pub index: usize,
-    /// Dataset units per file unit; negative where the file has the opposite sign.
+    /// Dataset units per file unit; negative if the file has the opposite sign.
     pub factor: f64,
-    /// Note on the conversion ("rad/s → deg/s") or on an assumed unit, if any.
+    /// Description of the conversion ("rad/s → deg/s") or of an assumed unit; `None` if neither
+    /// applies.
     pub words: Option<String>,
 }
 
 /// The matched inputs or outputs of a model, in the dataset's order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ChannelMatch {
-    /// An entry per dataset channel; `None` where the model lacks the channel.
+    /// One entry per dataset channel; `None` if the model lacks the channel.
     pub uses: Vec<Option<ChannelUse>>,
     pub problems: Vec<ProblemKind>,
-    /// Assumptions about facts that the file does not give.
+    /// Remarks for the engineer to review: overridden units, and file channels that match no
+    /// dataset channel.
     pub notes: Vec<String>,
     /// Whether the file has no channel names, so that the channels were matched by position.
     pub by_position: bool,
 }
 
-/// Everything needed to match the inputs or the outputs of a model.
+/// Inputs for matching one side, the inputs or the outputs, of a model.
 #[derive(Clone, Copy)]
 pub(super) struct ChannelMatcher<'a> {
     pub side: ChannelSide,
@@ -47,11 +49,11 @@ pub(super) struct ChannelMatcher<'a> {
 }
 
 impl ChannelMatcher<'_> {
-    /// Matches the channels.
+    /// Matches the channels of one side.
     ///
-    /// 1. Without any names, match by position if the counts agree.
+    /// 1. If the file names no channel, match by position; the counts must agree.
     /// 2. Find the file channel for each dataset channel.
-    /// 3. Determine its factor from declarations and units.
+    /// 3. Determine its unit factor from declarations and units.
     /// 4. Determine its sign from declarations and names.
     pub(super) fn run(self) -> ChannelMatch {
         let mut found = ChannelMatch {
@@ -99,7 +101,8 @@ impl ChannelMatcher<'_> {
         }
     }
 
-    /// Finds the file channel for a dataset channel, and reports a missing or ambiguous channel.
+    /// Returns the index of the file channel for a dataset channel; `None` with a problem if it is
+    /// ambiguous, or missing although it is required.
     fn find(&self, rule: &ChannelRule, problems: &mut Vec<ProblemKind>) -> Option<usize> {
         let candidates = self.candidates(rule);
         match candidates.as_slice() {
@@ -126,7 +129,7 @@ impl ChannelMatcher<'_> {
         }
     }
 
-    /// Returns the file channels whose names agree best with a dataset channel.
+    /// Returns the file channels with the closest agreement in name; empty if no name agrees.
     fn candidates(&self, rule: &ChannelRule) -> Vec<usize> {
         for likeness in Likeness::CLOSEST_FIRST {
             let mut candidates = Vec::new();
@@ -144,7 +147,7 @@ impl ChannelMatcher<'_> {
         Vec::new()
     }
 
-    /// Lists the names of file channels; "none" where they have no names.
+    /// Lists the names of file channels; "none" if they have no names.
     fn list_names(&self, indices: &[usize]) -> String {
         let names: Vec<&str> = indices
             .iter()
@@ -157,7 +160,8 @@ impl ChannelMatcher<'_> {
         }
     }
 
-    /// Returns the channel with its factor: declared, or from the units.
+    /// Returns the channel with its unit factor: the declared factor, or the factor between its
+    /// units.
     ///
     /// A declared unit overrides the unit in the file; without either, the rule's unit for files
     /// applies.
@@ -182,7 +186,7 @@ impl ChannelMatcher<'_> {
             && declared_unit != file_unit
         {
             found.notes.push(format!(
-                "{}: declared to be in {declared_unit}, although the file says {file_unit}",
+                "{}: the declared unit {declared_unit} replaces the unit {file_unit} in the file",
                 rule.name
             ));
         }
@@ -209,13 +213,16 @@ impl ChannelMatcher<'_> {
         if factor != 1.0 {
             used.words = Some(format!("{} {unit} → {} (× {factor})", rule.name, rule.unit));
         } else if file_unit.is_none() {
-            used.words = Some(format!("{} taken to be in {unit}", rule.name));
+            used.words = Some(format!(
+                "{}: unit {unit}, since the file gives none",
+                rule.name
+            ));
         }
         used
     }
 
-    /// Returns the channel with its declared sign, or with the sign that its name implies; reports
-    /// a problem where neither determines the sign.
+    /// Returns the channel with its declared sign, or else with the sign implied by its name; adds
+    /// a problem if neither determines the sign.
     fn signed(
         &self,
         used: ChannelUse,
@@ -241,7 +248,10 @@ impl ChannelMatcher<'_> {
         }
         let note = match (declared, name) {
             (None, Some(name)) => {
-                format!("{}: sign reversed, from its name \"{name}\"", rule.name)
+                format!(
+                    "{}: sign reversed, because of its name \"{name}\"",
+                    rule.name
+                )
             }
             _ => format!("{}: sign reversed (× -1), as declared", rule.name),
         };
@@ -256,7 +266,7 @@ impl ChannelMatcher<'_> {
         }
     }
 
-    /// Notes the file channels that match no dataset channel.
+    /// Adds a note about the named file channels that match no dataset channel.
     fn note_unused(&self, found: &mut ChannelMatch) {
         let mut unused: Vec<&str> = Vec::new();
         for (index, label) in self.labels.iter().enumerate() {
@@ -276,7 +286,7 @@ impl ChannelMatcher<'_> {
         }
     }
 
-    /// Returns the problem of a measured response that has no dataset channel on this side.
+    /// Returns the problem of a measured response without any dataset channel on this side.
     fn unmatched(&self) -> ProblemKind {
         let found: Vec<&str> = self
             .labels
@@ -295,13 +305,13 @@ impl ChannelMatcher<'_> {
 /// Agreement between a name in a file and the name or an alias of a dataset channel.
 #[derive(Clone, Copy)]
 enum Likeness {
-    /// The channel's name, exactly.
+    /// Same as the channel's name.
     Name,
-    /// An alias from the rules, exactly.
+    /// Same as an alias from the rules.
     Alias,
-    /// The name or an alias from the rules, apart from sign marks.
+    /// Same as the name or an alias from the rules, apart from sign marks.
     SameButForSign,
-    /// Another name of the same channel, according to the alias table.
+    /// Another name for the same channel in the alias table.
     Channel,
 }
 
@@ -332,7 +342,6 @@ impl Likeness {
     }
 }
 
-/// Returns a name without its sign marks.
 fn unsigned_name(name: &str) -> String {
     SignedName::parse(name).name
 }

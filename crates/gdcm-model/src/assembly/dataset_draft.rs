@@ -1,4 +1,5 @@
-//! The unchecked dataset: models with a condition and a role, in the dataset's channels and units.
+//! Draft of the dataset: models with a condition and a role, converted to the dataset's channels
+//! and units.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,7 +15,7 @@ use crate::dataset::{Channel, ConditionId};
 use crate::names::{ChannelRule, RowRole};
 use crate::units::number;
 
-/// Builds the draft of a dataset. Models that are left out, or without a condition or role, are
+/// Builds the draft of a dataset. Models that are left out, or that have no condition or role, are
 /// skipped.
 pub(super) fn dataset_draft(rules: &Rules, parts: &[Part]) -> DatasetDraft {
     let mut conditions = Vec::new();
@@ -67,7 +68,7 @@ fn condition_draft(id: i64, parts: &[&Part], rules: &Rules) -> ConditionDraft {
     }
 }
 
-/// Returns the flight state of a condition; each value is the first that a model gives.
+/// Returns the flight state of a condition; each value is taken from the first model that gives it.
 fn flight_state(id: i64, parts: &[&Part]) -> FlightState {
     let mut rows = parts.iter().map(|part| &part.row);
     let airspeed_kt = rows.clone().find_map(|row| row.airspeed_kt);
@@ -100,10 +101,10 @@ fn condition_name(state: &FlightState) -> String {
     name
 }
 
-/// Returns the distinct flight records listed by the models' files.
+/// Returns the distinct flight records listed in the models' files.
 ///
-/// Where files list the same record, the first entry with pieces in use is kept. A different record
-/// whose name is already in use gets a number: "name (2)".
+/// If several files list the same record, the first entry that gives the used pieces is kept. A
+/// different record whose name is already taken is numbered: "name (2)".
 fn flight_records(parts: &[&Part]) -> Vec<ConditionRecord> {
     let mut records: Vec<ConditionRecord> = Vec::new();
     let mut known: Vec<&ConditionRecord> = Vec::new();
@@ -131,7 +132,7 @@ fn is_same_record(a: &ConditionRecord, b: &ConditionRecord) -> bool {
     a.name == b.name && a.file == b.file && a.variable == b.variable
 }
 
-/// Returns the name, or "name (2)", "name (3)" ... where records have it already.
+/// Returns the name, or "name (2)", "name (3)" ... if a record already has it.
 fn unused_name(name: &str, records: &[ConditionRecord]) -> String {
     let mut unused = name.to_owned();
     let mut number = 1;
@@ -142,8 +143,8 @@ fn unused_name(name: &str, records: &[ConditionRecord]) -> String {
     unused
 }
 
-/// Builds a physics model; coordinates that only other models of the bundle perturb have offset
-/// zero.
+/// Builds a physics model. Coordinates that are perturbed only in other models of the bundle get a
+/// zero offset.
 fn physics_model(part: &Part, coordinates: &BTreeSet<&String>) -> ModelDraft {
     let mut offsets = BTreeMap::new();
     for coordinate in coordinates {
@@ -200,7 +201,8 @@ fn identified_origin(part: &Part) -> Origin {
     }
 }
 
-/// Converts a model to the dataset's channels and units, and notes the conversions in its source.
+/// Converts a model to the dataset's channels and units, and notes the conversions in its
+/// provenance.
 fn converted_model(part: &Part) -> ModelDraft {
     let uses = ChannelUses {
         inputs: &part.inputs.uses,
@@ -226,8 +228,8 @@ fn converted_model(part: &Part) -> ModelDraft {
     model
 }
 
-/// Returns the note in the model's source, then the notes on its channels, its sample time and its
-/// conversions.
+/// Returns the existing note of the model's provenance, then the notes on its channels, sample time
+/// and unit conversions.
 fn conversion_notes(part: &Part) -> Vec<String> {
     let mut notes = Vec::new();
     if let Some(source) = &part.found.draft.source {

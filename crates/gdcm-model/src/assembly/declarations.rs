@@ -8,7 +8,7 @@ use super::file_scope::FileScope;
 use super::found_model::FoundModel;
 use crate::names::RowRole;
 
-/// A factor between units that have no fixed ratio, such as inches of stick travel and percent.
+/// A factor between units without a fixed ratio, such as inches of stick travel and percent.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct UnitRule {
     pub channel: String,
@@ -35,8 +35,8 @@ pub struct ChannelDeclarations {
 }
 
 impl ChannelDeclarations {
-    /// Applies all declarations in `other`. A unit replaces an earlier factor of the same channel,
-    /// and a factor an earlier unit.
+    /// Adds the declarations in `other`, which override existing ones. A unit replaces an earlier
+    /// factor of the same channel, and a factor an earlier unit.
     pub fn override_by(&mut self, other: &Self) {
         for (channel, unit) in &other.units {
             self.factors.remove(channel);
@@ -58,7 +58,7 @@ impl ChannelDeclarations {
     }
 }
 
-/// Moves the entry of one key to another.
+/// Moves the entry under the key `old` to the key `new`; does nothing without such an entry.
 pub(super) fn rename_key<T>(map: &mut BTreeMap<String, T>, old: &str, new: &str) {
     if let Some(value) = map.remove(old) {
         map.insert(new.to_owned(), value);
@@ -68,14 +68,14 @@ pub(super) fn rename_key<T>(map: &mut BTreeMap<String, T>, old: &str, new: &str)
 /// Declarations and the models to which they apply.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct ScopedDeclarations {
-    /// The models: `all`, `physics`, `identified`, a file, or a pattern of folders.
     pub of: FileScope,
     #[serde(flatten)]
     pub channels: ChannelDeclarations,
 }
 
-/// Returns the declarations that apply to a model, in ascending precedence: wide scopes first,
-/// equally wide scopes in the declared order. Later entries override earlier ones.
+/// Returns the declarations that apply to a model, in ascending precedence: from wide to narrow
+/// scopes, and in the order of declaration within equal scopes. Later entries override earlier
+/// ones.
 pub(super) fn applicable_declarations<'d>(
     declarations: &'d [ScopedDeclarations],
     found: &FoundModel,
@@ -92,13 +92,14 @@ pub(super) fn applicable_declarations<'d>(
 /// All units, factors and signs declared for the channels of a single model.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredChannels<'r> {
-    /// Factors between units that have no fixed ratio.
+    /// Factors between units without a fixed ratio.
     pub conversions: &'r [UnitRule],
     pub channels: ChannelDeclarations,
 }
 
 impl DeclaredChannels<'_> {
-    /// Returns the declared sign; 1 where only a factor is declared, which includes the sign.
+    /// Returns the declared sign. Without a sign but with a declared factor, returns 1, because the
+    /// factor includes the sign; `None` without either.
     pub fn sign_of(&self, channel: &str) -> Option<f64> {
         match self.channels.signs.get(channel) {
             Some(sign) => Some(*sign),
@@ -107,7 +108,8 @@ impl DeclaredChannels<'_> {
         }
     }
 
-    /// Returns the declared factor between units that have no fixed ratio.
+    /// Returns the declared factor from the unit `from` to the dataset's unit; `None` if there is
+    /// none.
     pub(super) fn conversion(&self, channel: &str, from: &str) -> Option<f64> {
         self.conversions
             .iter()

@@ -1,4 +1,4 @@
-//! Scope of a declaration: all models, those of a role, or those in certain files.
+//! Scope of a declaration: all models, the models with a role, or the models in certain files.
 
 use std::fmt;
 
@@ -68,7 +68,7 @@ impl FileScope {
         }
     }
 
-    /// Returns whether the scope includes a model; `role` is `None` where the model has none.
+    /// Returns whether the scope includes a model; `role` is `None` if the model has no role yet.
     pub fn holds(&self, found: &FoundModel, role: Option<RowRole>) -> bool {
         match self {
             Self::All => true,
@@ -80,7 +80,7 @@ impl FileScope {
 
 /// Returns whether a pattern matches a file or one of its parent folders. `*` matches any
 /// characters within a name, `?` a single character. A pattern without a slash may match any name
-/// in the path, a pattern with a slash must match the path from its beginning.
+/// in the path; a pattern with a slash must match the path from its beginning.
 fn matches_path(pattern: &str, file: &str) -> bool {
     let pattern = pattern.trim_end_matches('/');
     let mut names = file.split('/');
@@ -92,7 +92,8 @@ fn matches_path(pattern: &str, file: &str) -> bool {
         .all(|part| names.next().is_some_and(|name| matches_name(part, name)))
 }
 
-/// A star in a pattern, and how far the name was matched when the star was met or last extended.
+/// Position of a star in the pattern, and of the first letter of the name that it does not cover
+/// yet.
 struct Star {
     in_pattern: usize,
     in_name: usize,
@@ -100,7 +101,8 @@ struct Star {
 
 /// Returns whether a pattern matches a whole name.
 ///
-/// Backtracks to the last star only: the time grows with the product of both lengths.
+/// Only the last star is extended on a mismatch, so that the time grows with the product of both
+/// lengths, not exponentially.
 fn matches_name(pattern: &str, name: &str) -> bool {
     let pattern: Vec<char> = pattern.chars().collect();
     let name: Vec<char> = name.chars().collect();

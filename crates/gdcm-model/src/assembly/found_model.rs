@@ -7,7 +7,7 @@ use crate::dataset::unchecked_dataset::{ModelDraft, ResponseDraft};
 use crate::names::response_name::ResponseNameError;
 use crate::names::{KnownChannels, ResponseName};
 
-/// Name and unit of a channel in a file; `None` where the file gives none.
+/// Name and unit of a channel in a file; `None` if the file does not give them.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ChannelLabel {
     pub name: Option<String>,
@@ -15,7 +15,7 @@ pub struct ChannelLabel {
 }
 
 impl ChannelLabel {
-    /// Returns a label with this name and no unit.
+    /// Creates a label with a name and no unit.
     pub fn named(name: impl Into<String>) -> Self {
         Self {
             name: Some(name.into()),
@@ -24,39 +24,38 @@ impl ChannelLabel {
     }
 }
 
-/// Facts that a file gives about the flight condition of its model.
+/// Facts about a model that its file states: flight condition, model name and flight records.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Facts {
     pub condition: Option<i64>,
     /// True airspeed \[kt\].
     pub airspeed_kt: Option<f64>,
-    /// Altitude \[ft\].
     pub altitude_ft: Option<f64>,
-    /// Mass \[kg\].
     pub mass_kg: Option<f64>,
     pub name: Option<String>,
-    /// Whether the file is a dataset written by this program: names of files and folders are then
+    /// Whether the file is a dataset written by this program; file and folder names are then
     /// ignored.
     pub is_of_dataset: bool,
-    /// Flight records, with file paths relative to the requested path.
+    /// Flight records; file paths are relative to the requested path, the file or folder to be
+    /// imported.
     pub records: Vec<ConditionRecord>,
 }
 
 /// A model as read from a file, with channels in the file's order and units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FoundModel {
-    /// Matrices or response, timing, states and source. The name is that of the variable; the
-    /// origin may still change.
+    /// Matrices or response, timing, states and source. Its name is the variable name; its origin
+    /// is provisional.
     pub draft: ModelDraft,
     pub inputs: Vec<ChannelLabel>,
     pub outputs: Vec<ChannelLabel>,
     pub facts: Facts,
-    /// Notes on how the model was recognised and which parts were skipped.
+    /// Notes on how the model was recognised, and on skipped parts of the file.
     pub notes: Vec<String>,
 }
 
 impl FoundModel {
-    /// Returns the source file; empty where there is none.
+    /// Returns the path of the source file; empty if the model has no source file.
     pub fn file(&self) -> &str {
         self.draft
             .source
@@ -65,7 +64,8 @@ impl FoundModel {
             .unwrap_or_default()
     }
 
-    /// Returns the variable in the file; empty where the file holds one unnamed model.
+    /// Returns the name of the variable in the file; empty if the file holds a single unnamed
+    /// model.
     pub fn variable(&self) -> &str {
         self.draft
             .source
@@ -74,7 +74,7 @@ impl FoundModel {
             .unwrap_or_default()
     }
 
-    /// Returns the key for messages and rules: "c03/roll+5.mat#sys".
+    /// Returns the key that identifies the model in messages and rules: "c03/roll+5.mat#sys".
     pub fn key(&self) -> String {
         match self.variable() {
             "" => self.file().to_owned(),
@@ -82,8 +82,8 @@ impl FoundModel {
         }
     }
 
-    /// Returns the channel names. For a single measured response without names in the file, they
-    /// come from the variable, or else from the file name, where these contain known channel names.
+    /// Returns the channel names. Missing names of a single measured response are taken from the
+    /// variable name, or else from the file name, as far as these contain `known` channel names.
     pub fn labels_with_name(&self, known: KnownChannels<'_>) -> NamedLabels {
         let mut named = NamedLabels {
             labels: [self.inputs.clone(), self.outputs.clone()],
@@ -113,14 +113,14 @@ impl FoundModel {
         named
     }
 
-    /// Returns the model with channel names from the alias table, taken from the file name where
-    /// nothing else names them.
+    /// Returns the model with missing channel names taken from the variable name or file name, by
+    /// the alias table.
     pub fn with_names_of_file(mut self) -> Self {
         [self.inputs, self.outputs] = self.labels_with_name(KnownChannels::Field).labels;
         self
     }
 
-    /// Returns the measured response, if there is one.
+    /// Returns the measured response; `None` for a model given by matrices.
     pub fn response(&self) -> Option<&ResponseDraft> {
         self.draft.response.as_ref()
     }
@@ -145,16 +145,17 @@ impl FoundModel {
     }
 }
 
-/// Channel names of a model.
+/// Channel names of a model, completed from its variable or file name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedLabels {
     /// Inputs and outputs.
     pub labels: [Vec<ChannelLabel>; 2],
-    /// File or variable name that leaves missing channel names ambiguous.
+    /// First variable or file name that is ambiguous; `None` if no channel name is missing in the
+    /// end.
     pub ambiguous: Option<AmbiguousName>,
 }
 
-/// A file or variable name that is ambiguous about the channels of a response.
+/// A variable or file name from which the channels of a response cannot be determined.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AmbiguousName {
     pub name: String,
@@ -166,8 +167,8 @@ impl NamedLabels {
         self.labels.iter().all(|labels| labels[0].name.is_some())
     }
 
-    /// Names the channels that have no name yet. A channel that the alias table knows but the
-    /// dataset lacks keeps its name from the text, so that no other channel replaces it.
+    /// Fills in missing channel names. If a name in the text is in the alias table but not in the
+    /// dataset, it is kept, so that no other channel takes its place.
     fn fill(&mut self, found: ResponseName, text: &str) {
         let aliased = ResponseName::find(text, KnownChannels::Field).unwrap_or_default();
         let input = found.input.or(aliased.input);
@@ -180,7 +181,8 @@ impl NamedLabels {
     }
 }
 
-/// Returns a path with forward slashes and without its extension, ".gz" included.
+/// Returns the path with forward slashes and without its extension; of "x.mat.gz", both extensions
+/// are removed.
 pub(super) fn path_without_extension(file: &str) -> String {
     let file = file.replace('\\', "/");
     let file = file.strip_suffix(".gz").unwrap_or(&file);

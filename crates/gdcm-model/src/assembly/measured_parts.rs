@@ -1,4 +1,4 @@
-//! Measured responses from several files joined into one model.
+//! Joining of measured responses from several files into a single model.
 
 use std::ops::Range;
 
@@ -8,10 +8,10 @@ use super::rules::Rules;
 use crate::dataset::model::Provenance;
 use crate::dataset::unchecked_dataset::{ModelDraft, ResponseArray, ResponseDraft};
 
-/// Valid band of an unmeasured response \[rad/s\]: contains no frequency.
+/// Valid band of an unmeasured response \[rad/s\]: an empty band.
 const NOT_MEASURED: [f64; 2] = [0.0, 0.0];
 
-/// Adds the responses of a part to a measured model that lacks them.
+/// Adds those responses of a part that the measured model lacks, and extends its provenance.
 pub(super) fn join_part(model: &mut ModelDraft, response: &ResponseDraft, part: &Part) {
     let Some(joined) = &mut model.response else {
         return;
@@ -49,8 +49,8 @@ fn join_response(joined: &mut ResponseDraft, response: &ResponseDraft) {
     joined.valid_bands = Some(bands);
 }
 
-/// Copies the coherence over a range of values. If only some parts have coherence, it is 1 for the
-/// others.
+/// Copies the coherence in an index range. If only some parts have coherence, it is set to 1 for
+/// the other parts.
 fn join_coherence(joined: &mut ResponseDraft, response: &ResponseDraft, range: Range<usize>) {
     if joined.coherence.is_none() && response.coherence.is_none() {
         return;
@@ -66,8 +66,8 @@ fn join_coherence(joined: &mut ResponseDraft, response: &ResponseDraft, range: R
     }
 }
 
-/// Notes the responses of a measured model that no file gives; drops its valid bands where every
-/// response is valid at all frequencies.
+/// Adds a note about the responses that no file contains. Drops the valid bands if every response
+/// is valid at all frequencies.
 pub(super) fn note_unmeasured(model: &mut ModelDraft, rules: &Rules) {
     let Some(response) = &mut model.response else {
         return;
@@ -96,7 +96,7 @@ pub(super) fn note_unmeasured(model: &mut ModelDraft, rules: &Rules) {
     }
 }
 
-/// Appends to the note of a source, after a semicolon.
+/// Appends to the note of a provenance, separated by a semicolon.
 fn append_note(source: &mut Provenance, text: &str) {
     source.note = Some(match source.note.take() {
         Some(note) => format!("{note}; {text}"),

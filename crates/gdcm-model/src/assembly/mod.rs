@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! files -> found models (in gdcm-io)
-//!       -> rows: role, condition and trim, proposed from contents and names, decided by the rules
+//!       -> rows: role, condition and trim, proposed from contents and names, overridden by the rules
 //!       -> parts: channels matched by name, units converted as declared
 //!       -> problems, or the draft of a dataset, checked once
 //! ```

@@ -12,25 +12,24 @@ use crate::names::KnownChannels;
 /// A model with its place in the dataset and its channels matched.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
-    /// The model as read from its file.
     pub found: FoundModel,
     pub row: Row,
     /// Input and output names: from the rules, the file, or the file's name.
     pub labels: [Vec<ChannelLabel>; 2],
-    /// Inputs in the dataset's order.
     pub inputs: ChannelMatch,
-    /// Outputs in the dataset's order.
     pub outputs: ChannelMatch,
-    /// Sample time \[s\] from the rules where the file has none; 0 for a continuous-time model.
+    /// Sample time \[s\] from the rules, 0 for continuous time; `None` if the file gives one or the
+    /// rules do not.
     pub sample_time_s: Option<f64>,
 }
 
 impl Part {
-    /// Applies the rules to a model.
+    /// Places a model in the dataset and matches its channels.
     ///
-    /// 1. Name the channels: rules before file before file name.
+    /// 1. Name the channels: from the rules, or else the file, or else the file's name.
     /// 2. Match them to the dataset's channels.
-    /// 3. Report names whose count differs from the channels', and an ambiguous file name.
+    /// 3. Add problems if the rules give a wrong count of names, or if the file's name is
+    ///    ambiguous.
     pub(super) fn new(found: FoundModel, row: Row, rules: &Rules) -> Self {
         let rule = rules.rows.get(&found.key());
         let named = found.labels_with_name(KnownChannels::Dataset {
@@ -48,7 +47,7 @@ impl Part {
             labels: &input_labels,
             rules: &rules.inputs,
             declared: &declared,
-            // A measured response may have only some of the dataset's channels.
+            // `partial`: a measured response may have only some of the dataset's channels.
             partial: found.response().is_some(),
         };
         let output_matcher = ChannelMatcher {
@@ -68,7 +67,7 @@ impl Part {
         if let Some(ambiguous) = named.ambiguous
             && (input_names.is_none() || output_names.is_none())
         {
-            // The ambiguous name is the reason why the channels match nothing.
+            // Replace "unmatched" problems by their cause, the ambiguous name.
             for problems in [&mut inputs.problems, &mut outputs.problems] {
                 problems.retain(|kind| !matches!(kind, ProblemKind::ResponseUnmatched { .. }));
             }
@@ -87,7 +86,8 @@ impl Part {
         }
     }
 
-    /// Returns the sides whose channels have no names and were matched by position.
+    /// Returns the sides (inputs, outputs) whose channels have no names and were matched by
+    /// position.
     pub fn sides_by_position(&self) -> Vec<ChannelSide> {
         let mut sides = Vec::new();
         if self.inputs.by_position {
@@ -100,14 +100,14 @@ impl Part {
     }
 }
 
-/// Replaces channel names by those in the rules, if any.
+/// Replaces channel names by the names in the rules, if there are any.
 fn rename_labels(labels: &mut [ChannelLabel], names: Option<&[String]>) {
     for (label, name) in labels.iter_mut().zip(names.unwrap_or_default()) {
         label.name = Some(name.clone());
     }
 }
 
-/// Reports names in the rules whose count differs from the model's channels.
+/// Returns the problem if the count of names in the rules differs from the model's channel count.
 fn name_count_problem(
     matcher: &ChannelMatcher<'_>,
     names: Option<&[String]>,
@@ -123,7 +123,8 @@ fn name_count_problem(
     })
 }
 
-/// Returns the sample time in the rules if the model has matrices but no sample time.
+/// Returns the sample time \[s\] from the rules for a model with matrices whose file gives none;
+/// otherwise `None`.
 fn missing_sample_time(found: &FoundModel, rule: Option<&RowRule>, rules: &Rules) -> Option<f64> {
     if found.draft.timing.sample_time_s.is_some() || found.response().is_some() {
         return None;

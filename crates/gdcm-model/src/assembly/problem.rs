@@ -9,23 +9,23 @@ use crate::names::RowRole;
 use crate::names::response_name::ResponseNameError;
 use crate::units::number;
 
-/// A missing or contradictory fact.
+/// A missing or contradictory fact about a model, a condition or the dataset.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ProblemKind {
-    /// Every model is left out.
-    #[error("no model is included; add files that hold models")]
+    #[error("no model is included; add files with models, or include a model that is left out")]
     NoModels,
-    /// No inputs, or no outputs.
+    /// The dataset has no inputs, or no outputs.
     #[error("the dataset has no {0}; define them")]
     NoChannels(&'static str),
     /// Dataset channel without a unit.
     #[error("{0}: choose a unit")]
     NoUnit(String),
-    /// Dataset channel whose unit neither the file nor the rules give.
-    #[error("{0}: choose its unit in files without units")]
+    /// Dataset channel whose unit in a file is given neither by the file nor by the rules.
+    #[error("{0}: choose the unit that it has in files without units")]
     UnitOfFile(String),
     #[error(
-        "{channel} has the unit \"{from}\" in the file and \"{to}\" in the dataset: there is no factor between them; enter one"
+        "{channel} has the unit \"{from}\" in the file and \"{to}\" in the dataset, which cannot \
+        be converted; enter a factor"
     )]
     Conversion {
         channel: String,
@@ -42,7 +42,8 @@ pub enum ProblemKind {
     },
     /// Channel whose name in the file does not determine its sign.
     #[error(
-        "{channel} is called {found} in the file, which can be positive the other way: enter its sign, 1 or -1 (\"signs\" in the rules)"
+        "{channel} is called {found} in the file, which may be positive in the opposite \
+        direction; enter its sign, 1 or -1 (\"signs\" in the rules)"
     )]
     Sign {
         channel: String,
@@ -51,20 +52,19 @@ pub enum ProblemKind {
     },
     /// Model that looks discrete-time but has no sample time.
     #[error(
-        "all its poles lie inside the unit circle and {near} of {poles} near 1, as in a discrete-time model, but it has no sample time: \
-         enter it in s, or 0 for a continuous-time model (--sample-time)"
+        "all poles lie inside the unit circle and {near} of {poles} near 1, as in a discrete-time \
+        model, but the model has no sample time; enter it in s, or 0 for a continuous-time model \
+        (--sample-time)"
     )]
-    NoSampleTime {
-        /// Number of poles near 1.
-        near: usize,
-        /// Total number of poles.
-        poles: usize,
-    },
-    /// Part of the name that looks like a trim offset and matches no pattern.
-    #[error("\"{0}\" in its name is not understood: enter the trim offset")]
+    NoSampleTime { near: usize, poles: usize },
+    /// Part of the file name that looks like a trim offset but matches no pattern.
+    #[error(
+        "\"{0}\" in its name looks like a trim offset but matches no pattern; enter the trim \
+        offset"
+    )]
     TrimPart(String),
     /// Several model channels match the same dataset channel.
-    #[error("two {side}s of the model can be {channel}: {found}; choose one of them")]
+    #[error("several {side}s of the model match {channel}: {found}; choose one of them")]
     AmbiguousChannel {
         side: ChannelSide,
         channel: String,
@@ -72,19 +72,22 @@ pub enum ProblemKind {
         found: String,
     },
     /// Channels without names whose count differs from the dataset's.
-    #[error("the model has {found} {side}s without names, the dataset has {expected}; name them")]
+    #[error(
+        "the model has {found} {side}s without names, but the dataset has {expected}; name \
+        them under \"models\" in the rules"
+    )]
     Unnamed {
         side: ChannelSide,
-        /// Channel count of the dataset.
         expected: usize,
-        /// Channel count of the model.
         found: usize,
     },
-    /// Measured response without any dataset channel on a side.
+    /// Measured response with no dataset channel among its inputs, or among its outputs.
     #[error(
-        "no {side} of the measured response is in the dataset ({known}): {}. Name it in its headings, \"mag Q/LON [dB]\" (--headings, or \
-         \"headings\" in the rules), or in the rules: under \"models\", \"inputs\": [\"LON\"], \"outputs\": [\"Q\"]; or leave it out",
-        if found.is_empty() { "neither the file nor its name gives one".to_owned() } else { format!("it has {found}") }
+        "the measured response has no {side} of the dataset ({known}): {}. Name it in the \
+        headings, \"mag Q/LON [dB]\" (--headings, or \"headings\" in the rules), or under \
+        \"models\" in the rules: \"inputs\": [\"LON\"], \"outputs\": [\"Q\"]; or leave the \
+        response out",
+        if found.is_empty() { "neither the file nor its name names one".to_owned() } else { format!("it has {found}") }
     )]
     ResponseUnmatched {
         side: ChannelSide,
@@ -94,8 +97,9 @@ pub enum ProblemKind {
     },
     /// Measured response whose channels appear only in an ambiguous file or variable name.
     #[error(
-        "the name \"{name}\" does not give one output and one input: {error}. Name them in the headings, \"mag Q/LON [dB]\" (--headings, or \
-         \"headings\" in the rules), or in the rules: under \"models\", \"inputs\": [\"LON\"], \"outputs\": [\"Q\"]"
+        "the name \"{name}\" does not identify one output and one input: {error}. Name them in \
+        the headings, \"mag Q/LON [dB]\" (--headings, or \"headings\" in the rules), or under \
+        \"models\" in the rules: \"inputs\": [\"LON\"], \"outputs\": [\"Q\"]"
     )]
     ResponseName {
         /// File or variable name.
@@ -119,9 +123,7 @@ pub enum ProblemKind {
     )]
     Names {
         side: ChannelSide,
-        /// Number of names.
         said: usize,
-        /// Channel count of the model.
         found: usize,
     },
     #[error("choose its condition")]
@@ -138,24 +140,20 @@ pub enum ProblemKind {
         first: String,
         second: String,
     },
-    /// A file contradicts its name or its folders.
+    /// The values in a file contradict its name or the names of its folders.
     #[error(
         "its {field} is {} in the file and {} in the names of the file and its folders: correct one, or enter the right value (\"{field}\" \
          under \"models\" in the rules)", number(*of_file), number(*of_name)
     )]
     NameContradiction {
-        /// Quantity, by its name in the rules.
+        /// Quantity, by its key in the rules.
         field: String,
         of_file: f64,
         of_name: f64,
     },
     /// Condition without a nominal model, or with several.
     #[error("condition {condition} has {found} nominal models; it needs exactly one")]
-    Nominal {
-        condition: i64,
-        /// Number of nominal models.
-        found: usize,
-    },
+    Nominal { condition: i64, found: usize },
     #[error("duplicate name \"{name}\" among the {bundle} models of condition {condition}")]
     Name {
         condition: i64,
@@ -163,10 +161,10 @@ pub enum ProblemKind {
         bundle: &'static str,
         name: String,
     },
-    /// Physics model given as measured data.
+    /// Measured data given the role of a physics model, which needs matrices.
     #[error("a {} model needs matrices; this is measured data", .0.word())]
     MeasuredPhysics(RowRole),
-    /// Measured parts with different frequency grids.
+    /// Measured parts of one model with different frequency grids.
     #[error(
         "measured responses of one model must be at the same frequencies; {first} has {first_grid} and {second} has {second_grid}. Estimate \
          them at the same frequencies, or rename one to make it a separate model"
@@ -177,7 +175,7 @@ pub enum ProblemKind {
         second: String,
         second_grid: GridSpan,
     },
-    /// Fault found when the dataset is constructed.
+    /// Fault found by the final check of the dataset.
     #[error("{0}")]
     Dataset(String),
 }
@@ -185,7 +183,6 @@ pub enum ProblemKind {
 /// Size and range of a frequency grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GridSpan {
-    /// Frequency count.
     pub count: usize,
     /// NaN for an empty grid.
     pub lowest_rad_s: f64,
@@ -194,7 +191,6 @@ pub struct GridSpan {
 }
 
 impl GridSpan {
-    /// Returns the span for a measured response.
     pub(super) fn new(response: &ResponseDraft) -> Self {
         let omega = &response.omega;
         Self {
@@ -206,7 +202,7 @@ impl GridSpan {
 }
 
 impl fmt::Display for GridSpan {
-    /// Formats the span: "40 from 0.3 to 12.3 rad/s".
+    /// Formats the count and the range: "40 from 0.3 to 12.3 rad/s".
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
             count,
@@ -252,8 +248,8 @@ impl ProblemKind {
         }
     }
 
-    /// Returns the question about a channel that a command-line option answers; `None` for other
-    /// problems.
+    /// Returns the question to the engineer, if a command-line option can settle the problem for a
+    /// channel; otherwise `None`.
     pub(super) fn question(&self) -> Option<Question> {
         let (channel, option, value) = match self {
             Self::Sign { channel, .. } => (channel, "--sign", "-1"),
@@ -269,24 +265,24 @@ impl ProblemKind {
     }
 }
 
-/// A question about a channel, and the option of `gdcm assemble` that answers it.
+/// A missing fact about a channel, and the option of `gdcm assemble` that supplies it.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Question {
     pub channel: String,
     /// Name of the option: "--sign".
     option: &'static str,
-    /// Example or placeholder for the answer.
+    /// Example or placeholder for the option's value: "-1", "UNIT".
     value: &'static str,
 }
 
-/// A problem and its model.
+/// A missing or contradictory fact, and the model to which it belongs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
     /// Model index; `None` for a problem of the whole dataset.
     pub part: Option<usize>,
     pub kind: ProblemKind,
-    /// Scope of an answer: all models, those of a role, or a file; `None` where no command-line
-    /// option answers the problem.
+    /// Models to which the option's value applies; `None` if no command-line option settles the
+    /// problem.
     pub scope: Option<FileScope>,
 }
 
@@ -300,7 +296,7 @@ impl Problem {
         }
     }
 
-    /// Creates a problem of a model, by its index.
+    /// Creates a problem of the model with index `part`.
     pub fn in_part(part: usize, kind: ProblemKind) -> Self {
         Self {
             part: Some(part),
@@ -309,8 +305,9 @@ impl Problem {
         }
     }
 
-    /// Returns the option of `gdcm assemble` that answers the question for all models that raise
-    /// it: "--sign NZ=-1:identified". Quoted where a shell needs it.
+    /// Returns the option of `gdcm assemble` that settles the problem in all models of its scope:
+    /// "--sign NZ=-1:identified". The value is quoted if a shell requires it; `None` if no option
+    /// applies.
     pub fn option(&self) -> Option<String> {
         let question = self.kind.question()?;
         let scope = self.scope.as_ref()?;

@@ -9,7 +9,7 @@ use super::rules::Rules;
 use crate::names::RowRole;
 use crate::units::number;
 
-/// A model in use and its index among all models.
+/// A model that is not left out, and its index among all models.
 #[derive(Clone, Copy)]
 pub(super) struct IndexedPart<'p> {
     pub index: usize,
@@ -27,7 +27,8 @@ pub(super) fn parts_in_use(parts: &[Part]) -> Vec<IndexedPart<'_>> {
     in_use
 }
 
-/// Groups the models in use by condition; models without a condition are skipped.
+/// Groups the models in use by condition, in ascending order; models without a condition are
+/// skipped.
 pub(super) fn parts_by_condition(parts: &[Part]) -> BTreeMap<i64, Vec<IndexedPart<'_>>> {
     let mut conditions: BTreeMap<i64, Vec<IndexedPart<'_>>> = BTreeMap::new();
     for part in parts_in_use(parts) {
@@ -38,7 +39,8 @@ pub(super) fn parts_by_condition(parts: &[Part]) -> BTreeMap<i64, Vec<IndexedPar
     conditions
 }
 
-/// Finds problems in the dataset's channels.
+/// Returns a problem for each missing list of channels, and for each dataset channel without a
+/// unit.
 pub(super) fn channel_problems(rules: &Rules) -> Vec<Problem> {
     let mut problems = Vec::new();
     for (side, channels) in [("inputs", &rules.inputs), ("outputs", &rules.outputs)] {
@@ -55,7 +57,8 @@ pub(super) fn channel_problems(rules: &Rules) -> Vec<Problem> {
     problems
 }
 
-/// Finds problems in a model: its trim, contradictions with its name, its row, its channels.
+/// Finds the problems of a model: trim offsets, contradictions with its name, missing facts,
+/// channels.
 pub(super) fn part_problems(part: &Part, rules: &Rules) -> Vec<ProblemKind> {
     let rule = rules.rows.get(&part.found.key());
     let mut problems = Vec::new();
@@ -98,13 +101,13 @@ fn row_problems(part: &Part) -> Vec<ProblemKind> {
     problems
 }
 
-/// Reports a missing sample time for a model whose poles look discrete-time.
+/// Returns a problem if a model has no sample time but its poles look discrete-time.
 ///
-/// All poles lie inside the unit circle, or as little outside as those of an unstable helicopter
-/// mode, and at least half of them (two or more) lie near 1. As continuous-time poles, those near 1
-/// would be modes that diverge within about a second.
+/// All poles lie inside the unit circle, or as little outside as an unstable helicopter mode, and
+/// at least half of them (two or more) lie near 1. As continuous-time poles, those near 1 would be
+/// modes that diverge within about a second.
 fn missing_sample_time(part: &Part) -> Option<ProblemKind> {
-    /// Real part above which a pole counts as near 1.
+    /// Real part above which a pole is regarded as near 1.
     const NEAR: f64 = 0.5;
     /// Maximum magnitude of a pole; above 1 to admit unstable modes.
     const OUTSIDE: f64 = 1.05;
@@ -112,8 +115,8 @@ fn missing_sample_time(part: &Part) -> Option<ProblemKind> {
     if !a.is_square() || a.iter().any(|entry| !entry.is_finite()) {
         return None;
     }
-    // Cheap test first: the trace, which is the sum of the poles, is positive for such poles and
-    // negative for a damped continuous-time model.
+    // Test the trace first, which is cheap: as the sum of the poles, it is positive for such poles
+    // and negative for a damped continuous-time model.
     if part.found.draft.timing.sample_time_s.is_some() || a.nrows() < 2 || a.trace() <= 0.0 {
         return None;
     }
@@ -130,7 +133,7 @@ fn missing_sample_time(part: &Part) -> Option<ProblemKind> {
     }
 }
 
-/// Finds problems in a condition from its models, of which there is at least one.
+/// Finds the problems of a condition; `parts` has at least one model.
 pub(super) fn condition_problems(
     condition: i64,
     parts: &[IndexedPart<'_>],
@@ -162,7 +165,7 @@ pub(super) fn condition_problems(
 /// A field of a flight condition.
 struct ConditionField {
     name: &'static str,
-    /// Formats the field of a row; `None` where the row has no value.
+    /// Formats the field of a row; `None` if the row has no value.
     text: fn(&Row) -> Option<String>,
 }
 
@@ -208,8 +211,8 @@ fn contradictions(condition: i64, parts: &[IndexedPart<'_>]) -> Vec<ProblemKind>
     contradictions
 }
 
-/// Finds models with the same name in a bundle. Measured responses may share a name: they are parts
-/// of a single model.
+/// Finds models with the same name in a bundle. Measured responses may share a name: they then form
+/// a single model.
 fn name_problems(condition: i64, parts: &[IndexedPart<'_>], rules: &Rules) -> Vec<Problem> {
     let mut physics: BTreeMap<&str, Vec<&Part>> = BTreeMap::new();
     let mut identified: BTreeMap<&str, Vec<&Part>> = BTreeMap::new();
@@ -271,7 +274,7 @@ fn duplicate_response(part: &Part, earlier: &[&Part], rules: &Rules) -> Option<P
     None
 }
 
-/// Returns whether a part has a response, by the indices of its dataset channels.
+/// Returns whether a part contains a response, given by the indices of its dataset channels.
 fn measures(part: &Part, output: usize, input: usize) -> bool {
     let has_output = part.outputs.uses.get(output).is_some_and(Option::is_some);
     let has_input = part.inputs.uses.get(input).is_some_and(Option::is_some);

@@ -1,5 +1,5 @@
-//! The place proposed for each model: condition, role, name and trim, from the file, its name and
-//! the rules.
+//! Proposal of each model's place in the dataset (condition, role, name and trim), from the file,
+//! its name and the rules.
 
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
@@ -12,15 +12,15 @@ use crate::names::RowRole;
 use crate::names::name_facts::NameFacts;
 use crate::names::name_pattern::{read_name, unread_offsets};
 
-/// Maximum difference between an airspeed and its rounded value in a name \[kt\].
+/// Maximum difference \[kt\] between an airspeed in a file and the rounded airspeed in its name.
 const AIRSPEED_TOLERANCE_KT: f64 = 1.0;
-/// Maximum relative difference between other values and their rounded values in a name.
+/// Maximum relative difference between another value in a file and the rounded value in its name.
 const RELATIVE_TOLERANCE: f64 = 0.01;
 
 /// Proposes a row for each model.
 ///
-/// 1. Read the file's contents and its name.
-/// 2. Number the conditions where no name does.
+/// 1. Read the facts in the file and in its name.
+/// 2. Number the conditions if no name does.
 /// 3. Propose the nominal model of each condition.
 /// 4. Apply the rules for single models.
 pub(super) fn proposed_rows(models: &[FoundModel], rules: &Rules) -> Vec<Row> {
@@ -70,7 +70,8 @@ fn proposed_row(model: &FoundModel, models: &[FoundModel], rules: &Rules) -> Row
     for (coordinate, offset) in from_name.perturbation {
         row.perturbation.entry(coordinate).or_insert(offset);
     }
-    // Without a trim offset in the name, a hyphen and a number ("rev-3") mean something else.
+    // `unread_offsets`: only look for misspelled offsets in names that contain a trim offset; in
+    // others, a hyphen and a number ("rev-3") mean something else.
     if offsets.is_empty() && !row.perturbation.is_empty() {
         let last_part = name.rsplit('/').next().unwrap_or(&name);
         row.unread = unread_offsets(last_part, &rules.patterns);
@@ -89,8 +90,8 @@ fn proposed_row(model: &FoundModel, models: &[FoundModel], rules: &Rules) -> Row
     row
 }
 
-/// Returns the role of a physics model given by its file. The origin "perturbed" is also the default
-/// for models without facts, and then gives no role.
+/// Returns the role of a physics model stated in its file; `None` if the file does not state it.
+/// The origin "perturbed" is also the default, and counts only in a file of this program.
 fn file_role(model: &FoundModel) -> Option<RowRole> {
     match &model.draft.origin {
         Origin::Nominal { .. } => Some(RowRole::Nominal),
@@ -99,8 +100,8 @@ fn file_role(model: &FoundModel) -> Option<RowRole> {
     }
 }
 
-/// Returns the role implied by the kind of model: measured data is identified, a trim offset makes
-/// a perturbed model.
+/// Returns the role implied by the model: measured data is identified, a trim offset makes a
+/// perturbed model; otherwise `None`.
 fn implied_role(model: &FoundModel, row: &Row) -> Option<RowRole> {
     let is_identified = matches!(model.draft.origin, Origin::Identified { .. });
     if is_identified || model.response().is_some() {
@@ -112,7 +113,7 @@ fn implied_role(model: &FoundModel, row: &Row) -> Option<RowRole> {
     None
 }
 
-/// Returns the trim offsets that the file itself gives.
+/// Returns the trim offsets stated in the file, by coordinate.
 fn trim_offsets(origin: &Origin) -> BTreeMap<String, f64> {
     match origin {
         Origin::Nominal { perturbation } | Origin::Perturbed { perturbation } => {
@@ -122,9 +123,9 @@ fn trim_offsets(origin: &Origin) -> BTreeMap<String, f64> {
     }
 }
 
-/// Compares the values in a file with those in the names of file and folders, which are rounded. If
-/// a file holds models at several airspeeds, only trim offsets are compared, since the other values
-/// in the names cannot apply to all its models.
+/// Compares the values in a file with the rounded values in its name and folder names. If a file
+/// holds models at several airspeeds, only trim offsets are compared, because the other values in
+/// the names cannot apply to all its models.
 fn name_contradictions(
     model: &FoundModel,
     models: &[FoundModel],
@@ -165,9 +166,9 @@ fn name_contradictions(
     contradictions
 }
 
-/// A quantity in a file and in its name.
+/// A quantity as given by a file, and as given by the name of the file.
 struct Comparison {
-    /// Name of the quantity in the rules.
+    /// Key of the quantity in the rules.
     field: String,
     of_file: Option<f64>,
     of_name: Option<f64>,
@@ -176,7 +177,7 @@ struct Comparison {
 }
 
 impl Comparison {
-    /// Compares with the relative tolerance.
+    /// Creates a comparison with the relative tolerance.
     fn relative(field: &str, of_file: Option<f64>, of_name: Option<f64>) -> Self {
         Self {
             field: field.to_owned(),
@@ -200,7 +201,7 @@ impl Comparison {
     }
 }
 
-/// Returns whether a file holds models at several airspeeds, hence several conditions.
+/// Returns whether a file holds models at several airspeeds, and thus several conditions.
 fn has_several_airspeeds(models: &[FoundModel], file: &str) -> bool {
     let mut airspeeds = models
         .iter()
@@ -210,8 +211,8 @@ fn has_several_airspeeds(models: &[FoundModel], file: &str) -> bool {
     airspeeds.any(|airspeed| Some(airspeed) != first)
 }
 
-/// Returns the default name of a model: "measured" for a part of a measured model, the name in the
-/// file, the variable in a file with several models, or else the file name.
+/// Returns the default name of a model: "measured" for a part of a measured model; otherwise the
+/// name in the file, the variable if the file has several models, or the file name.
 fn default_name(model: &FoundModel, models: &[FoundModel], rules: &Rules, path: &str) -> String {
     let is_part =
         model.inputs.len() * model.outputs.len() < rules.inputs.len() * rules.outputs.len();
@@ -259,7 +260,7 @@ fn number_folders(models: &[FoundModel], rows: &mut [Row]) {
     }
 }
 
-/// Returns the folder of a model's file; empty where it has none.
+/// Returns the folder of a model's file; empty if the path has no folder.
 fn folder(model: &FoundModel) -> String {
     match path_without_extension(model.file()).rsplit_once('/') {
         Some((folder, _)) => folder.to_owned(),
@@ -267,7 +268,7 @@ fn folder(model: &FoundModel) -> String {
     }
 }
 
-/// Numbers the distinct flight points in ascending order; models without an airspeed get no
+/// Numbers the distinct flight points in ascending order from 1; models without an airspeed get no
 /// condition.
 fn number_flight_points(rows: &mut [Row]) {
     let mut points: Vec<[f64; 3]> = rows.iter().filter_map(flight_point).collect();
@@ -282,8 +283,8 @@ fn number_flight_points(rows: &mut [Row]) {
     }
 }
 
-/// Returns airspeed \[kt\], altitude \[ft\] and mass \[kg\]; an unknown altitude or mass sorts before
-/// all others.
+/// Returns airspeed \[kt\], altitude \[ft\] and mass \[kg\]; `None` without an airspeed. An unknown
+/// altitude or mass sorts before all known values.
 fn flight_point(row: &Row) -> Option<[f64; 3]> {
     Some([
         row.airspeed_kt?,

@@ -1,4 +1,4 @@
-//! Rules proposed from the models that were found, where the engineer has given none.
+//! Rules proposed from the models found, as long as the engineer has given none.
 
 use std::cmp::Reverse;
 use std::collections::BTreeSet;
@@ -34,7 +34,7 @@ pub fn proposed_rules(name: &str, models: &[FoundModel]) -> Rules {
     }
 }
 
-/// Returns the dataset's name for a channel.
+/// Returns the dataset's name for a channel under any of its aliases.
 fn find_channel(channels: &[ChannelRule], name: &str) -> Option<String> {
     let channel = channels
         .iter()
@@ -42,7 +42,7 @@ fn find_channel(channels: &[ChannelRule], name: &str) -> Option<String> {
     Some(channel.name.clone())
 }
 
-/// A model with its channel names, from the file or from the file's name.
+/// A model with its channel names, from the file or from the file name.
 struct LabelledModel<'m> {
     found: &'m FoundModel,
     /// Inputs and outputs.
@@ -69,7 +69,7 @@ impl<'m> LabelledModel<'m> {
             .count()
     }
 
-    /// Returns whether the file itself names a channel.
+    /// Returns whether the file, rather than its name, names a channel on this side.
     fn names_itself(&self, side: ChannelSide) -> bool {
         side.of(&self.found.inputs, &self.found.outputs)
             .iter()
@@ -81,12 +81,12 @@ impl<'m> LabelledModel<'m> {
     }
 }
 
-/// Proposes the dataset channels on a side.
+/// Proposes the dataset channels on a side, inputs or outputs.
 ///
 /// 1. Start with the model with the most named channels; prefer names in files to file names.
 /// 2. Take its channels. If it is a measured response, which may have a single channel, add the
 ///    channels of other measured responses; models with matrices have all channels.
-/// 3. Give each channel the unit that most files use.
+/// 3. Give each channel the unit that is used by most files.
 /// 4. If no model with matrices names its channels, number the missing channels.
 fn proposed_channels(models: &[LabelledModel<'_>], side: ChannelSide) -> Vec<ChannelRule> {
     let mut order: Vec<&LabelledModel<'_>> = models.iter().collect();
@@ -161,8 +161,8 @@ impl<'m> UnitCounts<'m> {
         });
     }
 
-    /// Returns the unit that most files use, the first of equally frequent units; empty where no
-    /// file gives a unit.
+    /// Returns the unit that is used by most files, or the first of equally frequent units; empty
+    /// if no file gives a unit.
     fn most_used(&self) -> String {
         let most = self.units.iter().map(|unit| unit.files.len()).max();
         for unit in &self.units {

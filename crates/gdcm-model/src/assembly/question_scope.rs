@@ -1,4 +1,4 @@
-//! Scope of each question about a channel: all models, those of a role, or a single file.
+//! Scope of each question about a channel: all models, the models with a role, or a single file.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -9,10 +9,10 @@ use super::problem::{Problem, Question};
 use super::rules::Rules;
 use crate::names::ChannelRule;
 
-/// Sets the scope of each problem that is a question about a channel.
+/// Sets the scope of each problem that an option for a channel can settle.
 ///
-/// The scope is as wide as possible while every model in it that has the channel raises the
-/// question; where no role qualifies, it is the model's file.
+/// The scope is the widest one (all models, or the models with a role) in which every model with
+/// the channel has the same problem. If there is none, the scope is the model itself.
 pub(super) fn set_scopes(problems: &mut [Problem], parts: &[Part], rules: &Rules) {
     let mut asking: BTreeMap<Question, BTreeSet<usize>> = BTreeMap::new();
     for problem in problems.iter() {
@@ -41,8 +41,8 @@ pub(super) fn set_scopes(problems: &mut [Problem], parts: &[Part], rules: &Rules
     }
 }
 
-/// Returns the scopes in which every model with the channel raises the question: all models, or
-/// one or both of the role scopes.
+/// Returns the scopes in which every model with the channel raises the question: all models, or the
+/// physics models, or the identified models; empty if there is none.
 fn scopes_asking(
     question: &Question,
     asking: &BTreeSet<usize>,
@@ -65,7 +65,7 @@ fn scopes_asking(
             scopes.push(scope);
         }
     }
-    // Models without a role are in neither role scope.
+    // `with_channel.iter()`: models without a role are in neither role scope and are checked here.
     if scopes.len() == 2 && with_channel.iter().all(|index| asking.contains(index)) {
         return vec![FileScope::All];
     }
@@ -76,7 +76,6 @@ fn role_scope(part: &Part) -> Option<FileScope> {
     part.row.role.map(FileScope::of_role)
 }
 
-/// Returns whether a model has a dataset channel.
 fn has_channel(part: &Part, channel: &str, rules: &Rules) -> bool {
     is_used(&rules.inputs, &part.inputs.uses, channel)
         || is_used(&rules.outputs, &part.outputs.uses, channel)

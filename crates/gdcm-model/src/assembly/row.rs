@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::names::RowRole;
 use crate::units::number;
 
-/// The place of a model in the dataset, as far as known.
+/// The place of a model in the dataset; `None` for an unknown value.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Row {
     pub left_out: bool,
@@ -16,42 +16,39 @@ pub struct Row {
     /// True airspeed \[kt\].
     pub airspeed_kt: Option<f64>,
     pub altitude: Option<String>,
-    /// Altitude \[ft\].
     pub altitude_ft: Option<f64>,
     pub weight: Option<String>,
-    /// Mass \[kg\].
     pub mass_kg: Option<f64>,
     pub method: Option<String>,
     /// Trim offsets by coordinate ("roll_deg").
     pub perturbation: BTreeMap<String, f64>,
     /// Parts of the model name that look like a trim offset but match no pattern.
     pub unread: Vec<String>,
-    /// Values in the file that contradict the names of file and folders.
     pub contradictions: Vec<NameContradiction>,
 }
 
 /// A value in a file that contradicts the names of file and folders.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NameContradiction {
-    /// The quantity, by its name in the rules: "airspeed_kt".
+    /// Key of the quantity in the rules: "airspeed_kt".
     pub field: String,
     pub of_file: f64,
     pub of_name: f64,
 }
 
 impl Row {
-    /// Formats the airspeed: "45 kt"; `None` where unknown.
+    /// Formats the airspeed: "45 kt"; `None` if unknown.
     pub fn airspeed_words(&self) -> Option<String> {
         let airspeed_kt = self.airspeed_kt?;
         Some(format!("{} kt", number(airspeed_kt)))
     }
 
-    /// Formats the altitude: "high", or else "2000 ft"; empty where unknown.
+    /// Formats the altitude: the class ("high"), or else the value ("2000 ft"); empty if unknown.
     pub fn altitude_words(&self) -> String {
         class_or_number(self.altitude.as_deref(), self.altitude_ft, "ft")
     }
 
-    /// Formats the weight: "low", or else "6600 kg"; empty where unknown.
+    /// Formats the weight: the class ("low"), or else the mass ("6600 kg"); empty if unknown.
     pub fn weight_words(&self) -> String {
         class_or_number(self.weight.as_deref(), self.mass_kg, "kg")
     }

@@ -29,26 +29,24 @@ pub struct RowRule {
     pub airspeed_kt: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub altitude: Option<String>,
-    /// Altitude \[ft\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub altitude_ft: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub weight: Option<String>,
-    /// Mass \[kg\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mass_kg: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub method: Option<String>,
-    /// Trim offsets; replace all proposed offsets.
+    /// Trim offsets by coordinate; they replace all proposed offsets.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub perturbation: Option<BTreeMap<String, f64>>,
-    /// Input names in the file's order, where the file has none or wrong names.
+    /// Input names in the file's order; for a file without names, or with wrong names.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub inputs: Option<Vec<String>>,
     /// Output names in the file's order.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub outputs: Option<Vec<String>>,
-    /// Signs, by dataset name.
+    /// Sign factors, 1 or -1, by dataset name.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub signs: Option<Signs>,
     /// Units, by dataset name; they override the file.
@@ -57,13 +55,13 @@ pub struct RowRule {
     /// Dataset units per file unit, by dataset name.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub factors: Option<BTreeMap<String, f64>>,
-    /// Sample time \[s\] where the file has none; 0 for a continuous-time model.
+    /// Sample time \[s\] for a file that gives none; 0 for a continuous-time model.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sample_time_s: Option<f64>,
 }
 
 impl RowRule {
-    /// Returns whether the rule decides a field on which a file and its names disagree.
+    /// Returns whether the rule gives a value for a field on which a file and its name disagree.
     pub(super) fn settles(&self, field: &str) -> bool {
         match field {
             "condition" => self.condition.is_some(),
@@ -127,7 +125,7 @@ impl RowRule {
     }
 }
 
-/// Replaces a value where the rule gives another.
+/// Replaces a value if the rule gives one.
 fn override_with<T: Clone>(value: &mut Option<T>, rule: &Option<T>) {
     if rule.is_some() {
         value.clone_from(rule);

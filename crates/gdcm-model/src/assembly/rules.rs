@@ -1,5 +1,4 @@
-//! The engineer's rules for the files in a folder: together with the files they determine the
-//! dataset.
+//! The engineer's rules for the files in a folder. Rules and files together determine the dataset.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +16,7 @@ use crate::names::{ChannelRule, NamePattern, RowRole, standard_patterns};
 /// Column headings by file: "omega \[rad/s\]", "mag P/LAT \[dB\]".
 pub type Headings = BTreeMap<String, Vec<String>>;
 
-/// The engineer's rules for the files of a folder.
+/// The engineer's rules for the files in a folder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rules {
     pub name: String,
@@ -27,21 +26,21 @@ pub struct Rules {
     pub inputs: Vec<ChannelRule>,
     /// Outputs in the dataset's order.
     pub outputs: Vec<ChannelRule>,
-    /// On-axis responses: output, input.
+    /// On-axis responses: names of output and input.
     pub on_axis: Vec<(String, String)>,
     /// Lower and upper end of the comparison band \[rad/s\].
     pub band: (f64, f64),
     /// Patterns for the names of folders, files and variables; earlier patterns take precedence.
     pub patterns: Vec<NamePattern>,
-    /// Factors between units that have no fixed ratio.
+    /// Factors between units without a fixed ratio.
     pub units: Vec<UnitRule>,
-    /// Signs in all files; they override sign marks in names.
+    /// Sign factors for all files, 1 or -1; they override sign marks in names.
     pub signs: Signs,
-    /// Signs by role, "identified" or "physics"; they override the signs for all files.
+    /// Sign factors by role, "identified" or "physics"; they override `signs`.
     pub role_signs: BTreeMap<String, Signs>,
-    /// Units, factors and signs for a role, a folder or a file.
+    /// Units, factors and signs for the models in a scope: a role, a folder or a file.
     pub declarations: Vec<ScopedDeclarations>,
-    /// Sample time \[s\] where a file has none, 0 for continuous time; `None` where unknown.
+    /// Sample time \[s\] for files that give none, 0 for continuous time; `None` if unknown.
     pub sample_time_s: Option<f64>,
     /// Column headings; they replace the headings in the files.
     pub headings: Headings,
@@ -72,7 +71,7 @@ impl Default for Rules {
 }
 
 impl Rules {
-    /// Returns the dataset channels on a side.
+    /// Returns the dataset's inputs or outputs.
     pub fn channels_mut(&mut self, side: ChannelSide) -> &mut Vec<ChannelRule> {
         side.of(&mut self.inputs, &mut self.outputs)
     }
@@ -80,8 +79,8 @@ impl Rules {
     /// Renames a dataset channel.
     ///
     /// 1. The old name becomes an alias.
-    /// 2. On-axis responses, conversions, signs and declarations follow the new name.
-    /// 3. Standard on-axis responses under the new name are marked.
+    /// 2. On-axis responses, conversions, signs and declarations are renamed.
+    /// 3. The standard on-axis responses of the new name are marked.
     pub fn rename(&mut self, side: ChannelSide, index: usize, name: String) {
         let Some(channel) = self.channels_mut(side).get_mut(index) else {
             return;
@@ -118,7 +117,7 @@ impl Rules {
         }
     }
 
-    /// Marks the standard on-axis responses of a channel.
+    /// Marks the responses of a channel that are on-axis by convention.
     fn mark_standard_on_axis(&mut self, side: ChannelSide, name: &str) {
         for other in side.of(&self.outputs, &self.inputs) {
             let [output, input] = match side {
@@ -132,8 +131,8 @@ impl Rules {
         }
     }
 
-    /// Returns the units, factors and signs for the channels of a model. A file overrides a folder,
-    /// a folder a role, and a role the declarations for all models.
+    /// Returns the units, factors and signs that apply to the channels of a model. Declarations for
+    /// a file override those for a folder, then those for a role, then those for all models.
     pub fn declared(&self, found: &FoundModel, role: Option<RowRole>) -> DeclaredChannels<'_> {
         let mut declarations = vec![signs_in_scope(FileScope::All, &self.signs)];
         for (role, signs) in &self.role_signs {
@@ -154,7 +153,7 @@ impl Rules {
     }
 
     /// Adds declarations; they override earlier declarations for the same channels and models.
-    /// Signs for all models are kept in [`Self::signs`], signs for a role in [`Self::role_signs`].
+    /// Signs are stored in [`Self::signs`] for all models, and in [`Self::role_signs`] for a role.
     pub fn declare(&mut self, scope: FileScope, declared: &ChannelDeclarations) {
         let signs = match &scope {
             FileScope::Files(_) => {
@@ -181,7 +180,7 @@ impl Rules {
         }
     }
 
-    /// Returns the declarations for a scope; adds an empty entry where there is none.
+    /// Returns the declarations for a scope; adds an empty entry if there is none.
     pub fn declarations_mut(&mut self, scope: FileScope) -> &mut ChannelDeclarations {
         let known = self
             .declarations

@@ -1,4 +1,4 @@
-//! Models for the tests of assembly.
+//! Synthetic models for the tests of the assembly.
 
 use nalgebra::DMatrix;
 
@@ -7,7 +7,8 @@ use crate::dataset::model::{Origin, Provenance};
 use crate::dataset::state_space::Timing;
 use crate::dataset::unchecked_dataset::{ModelDraft, ResponseArray, ResponseDraft};
 
-/// A measured response of one input at 1 and 5 rad/s, two real values per output.
+/// Creates a measured response from one input at 1 and 5 rad/s; `values` holds two real values per
+/// output.
 pub fn measured_model(values: &[f64]) -> ModelDraft {
     let shape = [values.len() / 2, 1, 2];
     let response = ResponseDraft {
@@ -39,7 +40,7 @@ pub fn measured_model(values: &[f64]) -> ModelDraft {
     }
 }
 
-/// A model in a file: 1 / (s + 1), one input and one output without names.
+/// Creates a model found in a file: 1 / (s + 1), one input and one output without names.
 pub fn found_model(file: &str, variable: Option<&str>, facts: Facts) -> FoundModel {
     let source = Provenance {
         file: Some(file.to_owned()),
@@ -64,7 +65,7 @@ pub fn found_model(file: &str, variable: Option<&str>, facts: Facts) -> FoundMod
     }
 }
 
-/// Facts with an airspeed only.
+/// Creates facts that contain only an airspeed.
 pub fn at_airspeed(airspeed_kt: f64) -> Facts {
     Facts {
         airspeed_kt: Some(airspeed_kt),

@@ -1,5 +1,5 @@
-//! Channels, responses and bundles of a dataset, tables with an entry per response, and the
-//! identity of conditions and models.
+//! Channels, responses and model bundles of a dataset; tables with an entry per response;
+//! identifiers of conditions and models.
 
 use std::fmt;
 use std::ops::{Index, IndexMut};
@@ -48,7 +48,8 @@ impl Pair {
     }
 }
 
-/// A table with an entry per response: `p` rows (outputs) by `m` columns (inputs).
+/// A table with an entry per response: `p` rows (outputs) by `m` columns (inputs), stored row by
+/// row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PairTable<T> {
     outputs: usize,
@@ -77,7 +78,6 @@ impl<T> PairTable<T> {
         self.inputs
     }
 
-    /// Returns the index of an entry in the row-major list.
     fn place(&self, pair: Pair) -> usize {
         let outputs = self.outputs;
         let inputs = self.inputs;
@@ -169,7 +169,7 @@ pub enum ChannelSide {
 }
 
 impl ChannelSide {
-    /// Returns `inputs` or `outputs`, according to the side.
+    /// Returns `inputs` or `outputs`, whichever belongs to this side.
     pub fn of<T>(self, inputs: T, outputs: T) -> T {
         match self {
             Self::Input => inputs,
@@ -184,12 +184,12 @@ impl std::fmt::Display for ChannelSide {
     }
 }
 
-/// A bundle of models in a condition.
+/// A bundle of models in a flight condition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum BundleKind {
     /// The physics models: one nominal, the others at perturbed trims.
     Physics,
-    /// The models identified from flight.
+    /// The models identified from flight tests.
     Identified,
 }
 
@@ -197,7 +197,7 @@ impl BundleKind {
     /// Both bundles, the physics models first.
     pub const BOTH: [BundleKind; 2] = [BundleKind::Physics, BundleKind::Identified];
 
-    /// Returns `physics` or `identified`, according to the bundle.
+    /// Returns `physics` or `identified`, whichever belongs to this bundle.
     pub fn pick<T>(self, physics: T, identified: T) -> T {
         match self {
             BundleKind::Physics => physics,
@@ -215,7 +215,7 @@ impl fmt::Display for BundleKind {
     }
 }
 
-/// Identity of a flight condition in its dataset.
+/// Identifier of a flight condition in its dataset.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
 )]
@@ -227,7 +227,7 @@ impl fmt::Display for ConditionId {
     }
 }
 
-/// Identity of a model in a dataset, unaffected when others are added, removed, replaced or
+/// Identifier of a model in a dataset, unaffected when other models are added, removed, replaced or
 /// reordered.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ModelId {
@@ -237,7 +237,7 @@ pub struct ModelId {
 }
 
 impl ModelId {
-    /// Creates the identity of a model, by its name in a bundle of a condition.
+    /// Creates the identifier of the model called `name` in a bundle of a condition.
     pub fn new(condition: ConditionId, bundle: BundleKind, name: impl Into<String>) -> Self {
         Self {
             condition,

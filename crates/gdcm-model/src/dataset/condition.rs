@@ -8,26 +8,23 @@ use super::channel::{BundleKind, ConditionId};
 use super::model::Model;
 use crate::units::number;
 
-/// A flight condition without its models.
+/// Identification and flight state of a condition: name, airspeed, altitude, weight.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlightState {
     pub id: ConditionId,
-    /// Display name.
     pub name: String,
     /// True airspeed \[kt\].
     pub airspeed_kt: f64,
     /// Altitude class ("low", "high").
     pub altitude: Option<String>,
-    /// Altitude \[ft\].
     pub altitude_ft: Option<f64>,
     /// Weight class ("low", "high").
     pub weight: Option<String>,
-    /// Mass \[kg\].
     pub mass_kg: Option<f64>,
 }
 
 impl FlightState {
-    /// Creates a condition with only an airspeed \[kt\], named after its id.
+    /// Creates a condition with only an airspeed \[kt\], named after its identifier.
     pub fn at(id: ConditionId, airspeed_kt: f64) -> Self {
         let name = format!("condition {id}");
         Self {
@@ -42,24 +39,24 @@ impl FlightState {
     }
 }
 
-/// A flight condition: physics models, exactly one of them nominal, identified models, and flight
+/// A flight condition: physics models, exactly one of them nominal; identified models; and flight
 /// records.
 ///
-/// A condition without identified models has no reference yet: it is valid, but gives no result
-/// ([`Condition::has_reference`]).
+/// A condition without identified models is valid, but gives no results: it has no reference for
+/// its physics models ([`Condition::has_reference`]).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Condition {
     flight_state: FlightState,
-    /// Physics models, identified models.
+    /// Physics models, then identified models.
     bundles: [Vec<Model>; 2],
     nominal: usize,
     records: Vec<ConditionRecord>,
-    /// Indices of physics and identified models, sorted by name: the binary search keeps look-ups
-    /// fast among thousands of models.
+    /// Indices of the physics and the identified models, sorted by name for binary search: linear
+    /// look-ups would be slow for thousands of models.
     by_name: [Vec<usize>; 2],
 }
 
-/// Error for bundles that do not form a condition.
+/// Error for data that do not form a flight condition.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ConditionError {
     /// A value that is not finite, or a negative airspeed or mass.
@@ -67,7 +64,7 @@ pub enum ConditionError {
     FlightState {
         /// Quantity and unit.
         field: &'static str,
-        /// " not below zero" where required.
+        /// " not below zero" if negative values are not permitted, otherwise empty.
         bound: &'static str,
         value: f64,
     },
@@ -87,7 +84,7 @@ pub enum ConditionError {
     #[error("the physics bundle: expected exactly one nominal model, found {found}{names}")]
     Nominal {
         found: usize,
-        /// Names of the nominal models in parentheses, where there are several.
+        /// Names of the nominal models in parentheses; empty if there is none.
         names: String,
     },
     #[error("records: duplicate name \"{name}\" (records {first} and {second}); names must differ")]
@@ -98,13 +95,12 @@ pub enum ConditionError {
         /// Second record, counted from 1.
         second: usize,
     },
-    /// Sample time or piece out of range.
+    /// A record with an invalid sample time, or with an invalid interval of time.
     #[error("record \"{name}\" (number {position}), {field}: expected {expected}, found {}", number(*value))]
     Record {
         name: String,
-        /// Record position, counted from 1.
         position: usize,
-        /// Key in the file.
+        /// Key in the dataset file: "sample_time_s", "used_s" or "part_s".
         field: &'static str,
         expected: &'static str,
         value: f64,
@@ -112,7 +108,11 @@ pub enum ConditionError {
 }
 
 impl Condition {
-    /// Creates a condition from models in file order.
+    /// Creates a condition without flight records from its models in file order.
+    ///
+    /// # Errors
+    /// [`ConditionError`] for an invalid value, an empty physics bundle, a duplicate name, or a
+    /// number of nominal models other than one.
     pub fn new(
         flight_state: FlightState,
         physics: Vec<Model>,
@@ -145,7 +145,7 @@ impl Condition {
         }
     }
 
-    /// Returns the same condition with other flight records, in file order.
+    /// Returns the condition with its flight records replaced, in file order.
     ///
     /// # Errors
     /// [`ConditionError::DuplicateRecord`] and [`ConditionError::Record`].
@@ -155,11 +155,12 @@ impl Condition {
         Ok(self)
     }
 
-    /// Returns the same condition with another identified bundle and additional flight records.
+    /// Returns the condition with its identified models replaced and with additional flight
+    /// records.
     ///
-    /// A record replaces the record with the same name, or else with the same samples in the same
-    /// file; otherwise it is appended. If parts of a record are added, the whole record is marked
-    /// unused, so that no sample counts twice.
+    /// A record replaces the existing record with the same name, or else the one with the same
+    /// samples of the same file; otherwise it is appended. If a part of a record is added, the
+    /// whole record is marked unused, so that no sample counts twice.
     ///
     /// # Errors
     /// The errors of [`Condition::new`] and [`Condition::with_records`].
@@ -191,12 +192,12 @@ impl Condition {
         &self.records
     }
 
-    /// Returns the condition without its models.
+    /// Returns the identification and flight state, without the models.
     pub fn flight_state(&self) -> &FlightState {
         &self.flight_state
     }
 
-    /// Returns the identity in the dataset.
+    /// Returns the identifier in the dataset.
     pub fn id(&self) -> ConditionId {
         self.flight_state.id
     }
@@ -211,7 +212,7 @@ impl Condition {
         !self.bundle(BundleKind::Identified).is_empty()
     }
 
-    /// Returns the index of the named model in its bundle.
+    /// Returns the index of the named model in its bundle; `None` if there is no such model.
     pub fn position(&self, kind: BundleKind, name: &str) -> Option<usize> {
         let models = self.bundle(kind);
         let order = &self.by_name[kind as usize];
@@ -221,7 +222,7 @@ impl Condition {
         Some(order[place])
     }
 
-    /// Returns the named model in a bundle.
+    /// Returns the named model in a bundle; `None` if there is no such model.
     pub fn model(&self, kind: BundleKind, name: &str) -> Option<&Model> {
         Some(&self.bundle(kind)[self.position(kind, name)?])
     }
@@ -267,8 +268,8 @@ fn check_not_negative(field: &'static str, value: Option<f64>) -> Result<(), Con
     }
 }
 
-/// Checks a bundle. An identified bundle may be empty: models can be identified later from flight
-/// records.
+/// Checks a bundle: unique names, and at least one physics model. An identified bundle may be
+/// empty, because models can be identified later from flight records.
 fn check_bundle(bundle: BundleKind, models: &[Model]) -> Result<(), ConditionError> {
     if models.is_empty() && bundle == BundleKind::Physics {
         return Err(ConditionError::EmptyBundle(bundle));
@@ -313,14 +314,14 @@ fn check_records(records: &[ConditionRecord]) -> Result<(), ConditionError> {
     Ok(())
 }
 
-/// A time out of range.
+/// A sample time or interval end out of range.
 struct TimeFault {
     field: &'static str,
     expected: &'static str,
     value: f64,
 }
 
-/// Checks the sample time and the pieces of a record.
+/// Checks the sample time and the time intervals of a record.
 fn check_times(record: &ConditionRecord) -> Result<(), TimeFault> {
     if let Some(value) = record.sample_time_s
         && (!value.is_finite() || value <= 0.0)
@@ -358,7 +359,7 @@ fn check_piece(field: &'static str, [first, last]: [f64; 2]) -> Result<(), TimeF
     Ok(())
 }
 
-/// Lists the first names in parentheses, enough to find the mistake; empty for no models.
+/// Lists up to five names in parentheses; empty for no models.
 fn list_names(models: &[Model], indices: &[usize]) -> String {
     const SHOWN: usize = 5;
     if indices.is_empty() {
@@ -391,7 +392,6 @@ pub enum RecordKind {
 }
 
 impl RecordKind {
-    /// All kinds.
     pub const ALL: [Self; 4] = [
         Self::Sweep,
         Self::Multisine,
@@ -409,20 +409,20 @@ impl RecordKind {
         }
     }
 
-    /// Parses a keyword.
+    /// Parses a keyword; `None` for an unknown word.
     pub fn from_word(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| kind.word() == word)
     }
 }
 
-/// Reference to a flight record: the file that holds its samples, and their use.
+/// Reference to a flight record: the file with its samples, and how they are used.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ConditionRecord {
     /// Name, unique in the condition.
     pub name: String,
     /// Path relative to the dataset's file.
     pub file: String,
-    /// Record or variable in the file; `None` where the file holds a single record.
+    /// Name of the record or variable in the file; `None` if the file holds a single record.
     pub variable: Option<String>,
     /// SHA-256 of the file, in hexadecimal.
     pub sha256: Option<String>,
@@ -431,15 +431,15 @@ pub struct ConditionRecord {
     pub held_out: bool,
     /// Whether the record is used at all, for identification or validation.
     pub used: bool,
-    /// Sample time \[s\], once known.
+    /// Sample time \[s\]; `None` until the record has been read.
     pub sample_time_s: Option<f64>,
-    /// Pieces in use: first and last time \[s\] on the record's time axis; empty for the whole
-    /// record.
+    /// Intervals in use: first and last time \[s\] on the record's time axis; empty if the whole
+    /// record is used.
     pub used_s: Vec<[f64; 2]>,
-    /// First and last time \[s\] within the file's samples, on the file's time axis; `None` for the
-    /// whole file.
+    /// Interval of the file that forms this record: first and last time \[s\] on the file's time
+    /// axis; `None` for the whole file.
     pub part_s: Option<[f64; 2]>,
-    /// Corrections specific to this record, by channel.
+    /// Channel corrections specific to this record, by channel name.
     pub remedies: BTreeMap<String, ChannelRemedy>,
 }
 
@@ -447,20 +447,20 @@ pub struct ConditionRecord {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ChannelRemedy {
-    /// Extra logging delay relative to other records \[s\], to be removed.
+    /// Extra logging delay \[s\] relative to the other records; it is removed.
     pub delay_s: f64,
     /// Factor on the channel's samples, in addition to the unit conversion.
     pub factor: f64,
 }
 
 impl ChannelRemedy {
-    /// No correction.
+    /// No correction: no delay, factor 1.
     pub const NONE: Self = Self {
         delay_s: 0.0,
         factor: 1.0,
     };
 
-    /// Combines two corrections, `next` applied after `self`.
+    /// Returns the correction that applies `self`, then `next`.
     #[must_use]
     pub fn then(self, next: Self) -> Self {
         Self {
@@ -477,8 +477,8 @@ impl Default for ChannelRemedy {
 }
 
 impl ConditionRecord {
-    /// Returns whether both entries refer to the same record of the same file. Folders are ignored:
-    /// paths may be relative to different places.
+    /// Returns whether both entries refer to the same record of the same file. Only file names are
+    /// compared, because the paths may be relative to different folders.
     fn is_of_same_source(&self, other: &ConditionRecord) -> bool {
         let contents_differ = match (&self.sha256, &other.sha256) {
             (Some(a), Some(b)) => a != b,
@@ -502,7 +502,7 @@ impl ConditionRecord {
         self.part_s.is_some() && whole.part_s.is_none() && self.is_of_same_source(whole)
     }
 
-    /// Creates a record in use, with an unknown manoeuvre.
+    /// Creates an entry for a whole record in use, with an unknown manoeuvre.
     pub fn new(name: impl Into<String>, file: impl Into<String>) -> Self {
         Self {
             name: name.into(),

@@ -9,9 +9,9 @@ use super::condition::Condition;
 use super::model::{Dynamics, Model};
 use crate::units::number;
 
-/// Channels, on-axis responses, the default band, and the flight conditions with their models (M1).
+/// Channels, on-axis responses, default band, and the flight conditions with their models (M1).
 ///
-/// Checked once at construction: every model has `p` outputs and `m` inputs.
+/// Consistent since construction: every model has `p` outputs and `m` inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dataset {
     header: DatasetHeader,
@@ -21,7 +21,7 @@ pub struct Dataset {
 /// Error for channels and conditions that do not form a dataset.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DatasetError {
-    /// List without entries: inputs, outputs or conditions.
+    /// A list without entries: inputs, outputs or conditions.
     #[error("{0}: expected at least one entry, found none")]
     Empty(&'static str),
     #[error("{list}: duplicate name \"{name}\"; names must differ")]
@@ -31,7 +31,8 @@ pub enum DatasetError {
         name: String,
     },
     #[error(
-        "conditions: duplicate id {id} (conditions number {first} and {second}); ids must differ"
+        "conditions: duplicate id {id} (positions {first} and {second} in the list); ids must \
+        differ"
     )]
     DuplicateId {
         id: ConditionId,
@@ -54,7 +55,6 @@ pub enum DatasetError {
     ModelShape {
         condition: ConditionId,
         model: String,
-        /// Outputs and inputs of the dataset.
         expected: (usize, usize),
         /// Outputs and inputs of the model.
         found: (usize, usize),
@@ -64,22 +64,23 @@ pub enum DatasetError {
 /// Description of a dataset, without its conditions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DatasetHeader {
-    /// Display name.
     pub name: String,
     /// Content and source of the data.
     pub description: String,
-    /// Input channels, in order.
     pub inputs: Vec<Channel>,
-    /// Output channels, in order.
     pub outputs: Vec<Channel>,
     /// On-axis responses (M1).
     pub on_axis: PairTable<bool>,
-    /// Default comparison band.
+    /// Default band in which models are compared.
     pub band: Band,
 }
 
 impl Dataset {
     /// Creates a dataset from conditions in file order.
+    ///
+    /// # Errors
+    /// [`DatasetError`] for an empty list, a duplicate channel name or condition identifier, or a
+    /// wrong number of channels in a model or in `on_axis`.
     pub fn new(header: DatasetHeader, conditions: Vec<Condition>) -> Result<Self, DatasetError> {
         check_channels("inputs", &header.inputs)?;
         check_channels("outputs", &header.outputs)?;
@@ -95,7 +96,7 @@ impl Dataset {
         })
     }
 
-    /// Returns the description, without the conditions.
+    /// Returns a copy of the description, without the conditions.
     pub fn header(&self) -> DatasetHeader {
         self.header.clone()
     }
@@ -110,12 +111,12 @@ impl Dataset {
         &self.header.description
     }
 
-    /// Returns the input channels, in order.
+    /// Returns the input channels, in the order of the model inputs.
     pub fn inputs(&self) -> &[Channel] {
         &self.header.inputs
     }
 
-    /// Returns the output channels, in order.
+    /// Returns the output channels, in the order of the model outputs.
     pub fn outputs(&self) -> &[Channel] {
         &self.header.outputs
     }
@@ -125,12 +126,12 @@ impl Dataset {
         &self.header.on_axis
     }
 
-    /// Returns the default comparison band.
+    /// Returns the default band in which models are compared.
     pub fn band(&self) -> Band {
         self.header.band
     }
 
-    /// Returns the slowest and the fastest airspeed \[kt\].
+    /// Returns the minimum and the maximum airspeed \[kt\] of the conditions.
     pub fn airspeed_range_kt(&self) -> (f64, f64) {
         let mut slowest = f64::INFINITY;
         let mut fastest = f64::NEG_INFINITY;
@@ -147,7 +148,7 @@ impl Dataset {
         &self.conditions
     }
 
-    /// Returns the condition ids, in file order.
+    /// Returns the condition identifiers, in file order.
     pub fn ids(&self) -> impl Iterator<Item = ConditionId> {
         self.conditions.iter().map(|condition| condition.id())
     }
@@ -161,14 +162,14 @@ impl Dataset {
             .collect()
     }
 
-    /// Returns the condition with this id.
+    /// Returns the condition with this identifier; `None` if there is none.
     pub fn condition(&self, id: ConditionId) -> Option<&Arc<Condition>> {
         self.conditions
             .iter()
             .find(|condition| condition.id() == id)
     }
 
-    /// Returns the same dataset with `condition` in place of the condition of the same id.
+    /// Returns a copy in which `condition` replaces the condition with the same identifier.
     ///
     /// # Errors
     /// [`DatasetError::ModelShape`].
@@ -185,7 +186,7 @@ impl Dataset {
         Ok(dataset)
     }
 
-    /// Returns whether any identified model is measured with coherence.
+    /// Returns whether any identified model is a measured response with coherence.
     pub fn has_coherence(&self) -> bool {
         self.conditions
             .iter()
@@ -196,7 +197,7 @@ impl Dataset {
             })
     }
 
-    /// Returns the model with this identity.
+    /// Returns the model with this identifier; `None` if there is none.
     pub fn model(&self, id: &ModelId) -> Option<&Model> {
         self.condition(id.condition)?.model(id.bundle, &id.name)
     }
@@ -225,7 +226,7 @@ impl Dataset {
         )
     }
 
-    /// Returns the response from the named input to the named output.
+    /// Returns the response from the named input to the named output; `None` if either is missing.
     pub fn find_pair(&self, output: &str, input: &str) -> Option<Pair> {
         Some(Pair {
             output: channel_index(&self.header.outputs, output)?,
@@ -233,8 +234,8 @@ impl Dataset {
         })
     }
 
-    /// Returns the pairs that enter the objective of a model: the on-axis pairs, or all pairs if
-    /// none is on-axis (M5, M7).
+    /// Returns the responses that enter the objective of a model: the on-axis responses, or all
+    /// responses if none is on-axis (M5, M7).
     pub fn measuring_pairs(&self) -> PairTable<bool> {
         if self.header.on_axis.marked().next().is_some() {
             self.header.on_axis.clone()
@@ -323,16 +324,16 @@ pub struct Band {
     max: f64,
 }
 
-/// Error for a band that is empty or exceeds the frequency limits.
+/// Error for a band that is empty, reversed or outside the frequency limits.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
     "the frequency band must be {} <= min < max <= {} (rad/s), found min {}, max {}",
     number(LEAST_OMEGA), number(GREATEST_OMEGA), number(*min), number(*max)
 )]
 pub struct BandError {
-    /// The lower end given \[rad/s\].
+    /// Lower end \[rad/s\], as given.
     pub min: f64,
-    /// The upper end given \[rad/s\].
+    /// Upper end \[rad/s\], as given.
     pub max: f64,
 }
 
@@ -360,7 +361,8 @@ impl Band {
         }
     }
 
-    /// Creates a band that may exceed the limits, `0 < min < max`, such as a plotted range.
+    /// Creates a band that may exceed the frequency limits, `0 < min < max`, such as a plotted
+    /// range.
     pub fn beyond(min: f64, max: f64) -> Result<Self, BandError> {
         if 0.0 < min && min < max && max.is_finite() {
             Ok(Self { min, max })

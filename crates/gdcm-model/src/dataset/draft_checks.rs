@@ -1,4 +1,4 @@
-//! The checks of a dataset draft, which collect all faults.
+//! Checks of a dataset draft; all faults are collected.
 
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ use super::unchecked_dataset::{
 const MOST_FAULTS: usize = 1000;
 
 impl DatasetDraft {
-    /// Checks the draft, and returns the dataset with warnings.
+    /// Checks the draft, and returns the dataset with any warnings.
     ///
     /// # Errors
     /// The first fault.
@@ -29,14 +29,14 @@ impl DatasetDraft {
         self.check_all().map_err(|mut faults| faults.swap_remove(0))
     }
 
-    /// Returns every fault with its location, in draft order; empty for a valid dataset. A fault
-    /// hidden by another, such as a duplicate name beside invalid models, appears after the other
-    /// is repaired.
+    /// Returns every fault with its location, in the order of the draft; empty for a valid dataset.
+    /// A fault can hide another: duplicate names, for example, are found only once all models are
+    /// valid.
     pub fn faults(self) -> Vec<DraftError> {
         self.check_all().err().unwrap_or_default()
     }
 
-    /// Runs all checks; an error holds at least one fault.
+    /// Runs all checks. The list of faults is never empty.
     fn check_all(self) -> Result<(Dataset, Vec<Warning>), Vec<DraftError>> {
         let mut checker = Checker::new(self.outputs.len(), self.inputs.len());
         let lists = [
@@ -73,14 +73,14 @@ impl DatasetDraft {
         };
         match Dataset::new(header, conditions) {
             Ok(dataset) => Ok((dataset, checker.warnings)),
-            // The error itself names the list or the condition.
+            // `Location::default()`: the error itself names the list or the condition.
             Err(error) => Err(vec![DraftError::new(Location::default(), error)]),
         }
     }
 }
 
 impl Dataset {
-    /// Checks a draft as an identified model with this dataset's channels, and returns it with
+    /// Checks a draft as an identified model with this dataset's channels, and returns it with any
     /// warnings.
     ///
     /// # Errors
@@ -92,7 +92,7 @@ impl Dataset {
     }
 }
 
-/// Marks the on-axis responses, given by the names of output and input.
+/// Returns the table of on-axis responses, given by the names of output and input.
 fn on_axis_table(
     outputs: &[Channel],
     inputs: &[Channel],
@@ -139,7 +139,7 @@ fn find_channel(kind: &'static str, channels: &[Channel], name: &str) -> Result<
         })
 }
 
-/// Channel counts in the dataset, and findings so far.
+/// Channel counts of the dataset, with the faults and warnings found so far.
 struct Checker {
     outputs: usize,
     inputs: usize,
@@ -147,11 +147,11 @@ struct Checker {
     warnings: Vec<Warning>,
 }
 
-/// Required third dimension in a table of frequency data.
+/// Required length of a table of frequency data along its third index.
 #[derive(Clone, Copy)]
 struct TableDepth {
     count: usize,
-    /// Meaning of the entries, for messages: "frequencies".
+    /// Meaning of the third index, for messages: "frequencies".
     meaning: &'static str,
 }
 
@@ -174,7 +174,7 @@ impl Checker {
         }
     }
 
-    /// Returns the checked value, or records the fault.
+    /// Returns the checked value; otherwise stores the fault and returns `None`.
     fn record_fault<T>(&mut self, checked: Result<T, DraftError>) -> Option<T> {
         match checked {
             Ok(value) => Some(value),
@@ -185,7 +185,7 @@ impl Checker {
         }
     }
 
-    /// Checks a count against its limit.
+    /// Returns whether a count is within its limit; adds a fault if not.
     fn check_count(&mut self, place: Location, found: usize, most: usize) -> bool {
         if found > most {
             self.faults
@@ -194,8 +194,7 @@ impl Checker {
         found <= most
     }
 
-    /// Checks a condition; `position` counts from 1. Returns `None` where it has
-    /// faults.
+    /// Checks a condition; `position` counts from 1. Returns `None` if it has faults.
     fn condition(&mut self, position: usize, draft: ConditionDraft) -> Option<Condition> {
         let place = Location::condition(position, draft.flight_state.id.0);
         let before = self.faults.len();
@@ -211,7 +210,7 @@ impl Checker {
         self.record_fault(condition)
     }
 
-    /// Checks a bundle; invalid models are missing in the result.
+    /// Checks a bundle, and returns its valid models.
     fn bundle(
         &mut self,
         condition: &Location,
@@ -231,7 +230,7 @@ impl Checker {
         models
     }
 
-    /// Checks a model.
+    /// Checks a model, and builds it from its draft.
     fn model(
         &mut self,
         place: Location,
@@ -255,7 +254,7 @@ impl Checker {
         })
     }
 
-    /// Checks that a model has either matrices or a measured response, and builds it.
+    /// Checks that a model has either matrices or a measured response, and builds its dynamics.
     fn dynamics(
         &self,
         place: &Location,
@@ -281,7 +280,7 @@ impl Checker {
         Err(DraftError::new(place.clone(), fault))
     }
 
-    /// Warns where the order reported by an identification differs from the state count.
+    /// Adds a warning if the order stated by the identification differs from the state count.
     fn check_order(&mut self, place: &Location, dynamics: &Dynamics, origin: &Origin) {
         if let Dynamics::StateSpace(model) = dynamics
             && let Origin::Identified {
@@ -290,7 +289,7 @@ impl Checker {
             && model.order() != *order
         {
             let words = format!(
-                "order says {order}, the matrices have {} states",
+                "the stated order is {order}, but the matrices have {} states",
                 model.order()
             );
             self.warnings.push(Warning {
@@ -300,7 +299,7 @@ impl Checker {
         }
     }
 
-    /// Returns the state names; drops them with a warning where their count differs from the order.
+    /// Returns the state names; empty, with a warning, if their count differs from the order.
     fn state_names(
         &mut self,
         place: Location,
@@ -316,7 +315,7 @@ impl Checker {
         }
         if order > 0 && !names.is_empty() {
             let words = format!(
-                "{} names for {order} states: they are left out",
+                "{} state names for {order} states; the names are ignored",
                 names.len()
             );
             self.warnings.push(Warning { place, words });
@@ -324,7 +323,7 @@ impl Checker {
         Arc::default()
     }
 
-    /// Builds the state-space model from the matrices A, B, C and D.
+    /// Builds the state-space model from the matrices A, B, C and D, in this order.
     fn state_space(
         &self,
         place: &Location,
@@ -338,7 +337,7 @@ impl Checker {
         let mut b = required_matrix(place, 'B', b)?;
         let mut c = required_matrix(place, 'C', c)?;
         let d = required_matrix(place, 'D', d)?;
-        // D is checked first, so that its wrong shape is not reported as a fault of B or C.
+        // Check D first, so that a wrong shape of D is not reported as a fault of B or C.
         if d.shape() != (p, m) {
             let fault = DraftFault::Shape {
                 expected: format!("{p} x {m} (outputs x inputs)"),
@@ -346,7 +345,7 @@ impl Checker {
             };
             return Err(DraftError::new(place.at("matrix D"), fault));
         }
-        // Without states, the file's empty list for B does not give the column count.
+        // A file writes B without states as an empty list, which does not give the column count.
         if a.nrows() == 0 && b.nrows() == 0 {
             b = DMatrix::zeros(0, m);
         }
@@ -396,7 +395,7 @@ impl Checker {
             .map_err(|error| DraftError::new(place.at("bands"), error))
     }
 
-    /// Checks the shape of a table, and splits it by response.
+    /// Checks the shape of a table, and splits it into one list of values per response.
     fn table(
         &self,
         place: &Location,

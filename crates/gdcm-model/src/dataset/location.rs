@@ -1,36 +1,35 @@
-//! Locations in a dataset, for messages about faults.
+//! Locations in a dataset, for messages about its faults.
 
 use std::fmt;
 
 use super::channel::BundleKind;
 use crate::message_text::quoted;
 
-/// The place of a condition in a dataset that is being read.
+/// The place of a condition in a dataset file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ConditionPlace {
     /// Position, counted from 1.
     pub position: usize,
-    /// Its id, where readable.
+    /// Identifier of the condition; `None` if it cannot be read.
     pub id: Option<i64>,
 }
 
-/// The place of a model in a dataset that is being read.
+/// The place of a model in a dataset file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ModelPlace {
     pub bundle: BundleKind,
     /// Position in the bundle, counted from 1.
     pub position: usize,
-    /// Its name, where readable.
+    /// Name of the model; `None` if it cannot be read.
     pub name: Option<String>,
 }
 
-/// A location in a dataset: condition, model, and entry (matrix, row, column), each where
-/// applicable.
+/// A location in a dataset: condition, model, and entry (matrix, row, column), each if applicable.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Location {
     pub condition: Option<ConditionPlace>,
     pub model: Option<ModelPlace>,
-    /// Entry, such as a matrix; empty for the whole dataset, condition or model.
+    /// Entry, such as a matrix; empty if the location is the whole dataset, condition or model.
     pub entry: String,
 }
 
@@ -76,8 +75,8 @@ impl Location {
         }
     }
 
-    /// Returns the location with a colon and a space, to precede a message; empty for the whole
-    /// file.
+    /// Returns the location followed by a colon and a space, as the beginning of a message; empty
+    /// for the whole file.
     pub fn before(&self) -> String {
         let place = self.to_string();
         if place.is_empty() {

@@ -6,9 +6,10 @@ use super::channel::{Pair, PairTable};
 use super::limits::{AVERAGES, WINDOW_S};
 use crate::units::number;
 
-/// A frequency response measured (or exported) at `N` frequencies, instead of a state-space model.
+/// A frequency response measured (or exported) at `N` frequencies, given instead of a state-space
+/// model.
 ///
-/// `omega` \[rad/s\] rises strictly from a positive value, `N >= 2`; every response has `N` finite
+/// `omega` \[rad/s\] is positive and strictly rising, `N >= 2`; every response has `N` finite
 /// values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredResponse {
@@ -19,18 +20,18 @@ pub struct MeasuredResponse {
     estimate: Estimate,
 }
 
-/// Settings with which a response was estimated, as far as its author gives them. With coherence,
-/// they determine error bars (M13) and the weight in the coupling fit (M16.2), but not the gains
-/// and delays of the condition itself.
+/// Settings with which a response was estimated; `None` if its author does not give them. With the
+/// coherence, they determine error bars (M13) and the weight in the coupling fit (M16.2), but not
+/// the gains and delays of the condition itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimate {
-    /// Independent averages.
+    /// Number of independent averages.
     pub averages: Option<f64>,
-    /// Window length \[s\].
+    /// Length of an averaging window \[s\].
     pub window_s: Option<f64>,
 }
 
-/// Error for frequency data that do not form a response.
+/// Error for frequency data that do not form a measured response.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MeasuredResponseError {
     #[error("expected at least 2 frequencies, found {0}")]
@@ -49,14 +50,15 @@ pub enum MeasuredResponseError {
         output: usize,
         /// Input, counted from 1.
         input: usize,
-        /// Frequency count.
+        /// Number of frequencies.
         expected: usize,
-        /// Value count.
+        /// Number of values.
         found: usize,
     },
     /// Valid band that starts below zero, or ends before it starts.
     #[error(
-        "valid_band_rad_s, output {output}, input {input}: expected two rising frequencies from 0, found {} and {}",
+        "valid_band_rad_s, output {output}, input {input}: expected a first and a last frequency, \
+        not negative and in ascending order, found {} and {}",
         number(band[0]), number(band[1])
     )]
     ValidBand {
@@ -66,7 +68,7 @@ pub enum MeasuredResponseError {
         input: usize,
         band: [f64; 2],
     },
-    /// Count or window length of averages out of range.
+    /// An estimation setting out of range.
     #[error("{key}: expected a number from {} to {}, found {}", number(range[0]), number(range[1]), number(*value))]
     Estimate {
         /// `averages` or `window_s`.
@@ -75,7 +77,7 @@ pub enum MeasuredResponseError {
         range: [f64; 2],
         value: f64,
     },
-    /// Value that is NaN or infinite, or coherence outside 0 to 1.
+    /// A value that is not finite, or a coherence outside 0 to 1.
     #[error("{array}, output {output}, input {input}, entry {entry}: expected {expected}, found {}", number(*value))]
     Value {
         /// `re`, `im` or `coherence`.
@@ -86,7 +88,7 @@ pub enum MeasuredResponseError {
         input: usize,
         /// Entry, counted from 1.
         entry: usize,
-        /// The permitted values.
+        /// Description of the permitted values.
         expected: &'static str,
         value: f64,
     },
@@ -128,11 +130,11 @@ impl MeasuredResponse {
         })
     }
 
-    /// Returns the same response with valid bands: first and last trusted frequency of each pair
+    /// Returns the response with valid bands: first and last trusted frequency of each response
     /// \[rad/s\] (M4a).
     ///
     /// # Errors
-    /// [`MeasuredResponseError::ValidBand`] where a band is not finite, negative, or ends before it
+    /// [`MeasuredResponseError::ValidBand`] if a band is not finite, negative, or ends before it
     /// begins.
     pub fn with_valid_bands(
         mut self,
@@ -152,7 +154,7 @@ impl MeasuredResponse {
         Ok(self)
     }
 
-    /// Returns the same response with other estimation settings.
+    /// Returns the response with its estimation settings replaced.
     ///
     /// # Errors
     /// [`MeasuredResponseError::Estimate`] for a setting outside its limits.
@@ -176,24 +178,25 @@ impl MeasuredResponse {
         &self.omega
     }
 
-    /// Returns the values per response and frequency.
+    /// Returns the complex values of each response, one per frequency.
     pub fn values(&self) -> &PairTable<Vec<Complex<f64>>> {
         &self.values
     }
 
-    /// Returns the coherence per response and frequency, 0 to 1, where the file gives it.
+    /// Returns the coherence (0 to 1) of each response, one value per frequency; `None` if the file
+    /// does not give it.
     pub fn coherence(&self) -> Option<&PairTable<Vec<f64>>> {
         self.coherence.as_ref()
     }
 
-    /// Returns the first and last trusted frequency of each response \[rad/s\], where the file
-    /// gives them.
+    /// Returns the first and last trusted frequency of each response \[rad/s\]; `None` if the file
+    /// does not give them.
     pub fn valid_bands(&self) -> Option<&PairTable<[f64; 2]>> {
         self.valid_bands.as_ref()
     }
 
-    /// Returns whether a response has data: some values are not zero, and its valid band contains a
-    /// frequency.
+    /// Returns whether a response has data: at least one nonzero value, and a valid band, if given,
+    /// that is not empty.
     pub fn is_measured(&self, pair: Pair) -> bool {
         let has_band = self
             .valid_bands
@@ -205,13 +208,13 @@ impl MeasuredResponse {
                 .any(|value| *value != Complex::new(0.0, 0.0))
     }
 
-    /// Returns the estimation settings.
+    /// Returns the settings with which the response was estimated.
     pub fn estimate(&self) -> Estimate {
         self.estimate
     }
 }
 
-/// Checks that there are two or more finite, positive and rising frequencies.
+/// Checks that there are two or more frequencies, and that they are finite, positive and rising.
 pub(super) fn check_frequencies(omega: &[f64]) -> Result<(), MeasuredResponseError> {
     if omega.len() < 2 {
         return Err(MeasuredResponseError::TooFewFrequencies(omega.len()));
@@ -229,7 +232,7 @@ pub(super) fn check_frequencies(omega: &[f64]) -> Result<(), MeasuredResponseErr
     Ok(())
 }
 
-/// Checks that every response has `length` acceptable values.
+/// Checks that every response has `length` values and that `accepts` holds for each.
 pub(super) fn check_values(
     array: &'static str,
     table: &PairTable<Vec<f64>>,

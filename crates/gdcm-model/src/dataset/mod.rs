@@ -1,4 +1,4 @@
-//! The engineer's data: channels, models, flight conditions; checked once at construction (M1).
+//! The engineer's data: channels, models and flight conditions, checked once at construction (M1).
 
 pub mod channel;
 pub mod condition;
@@ -20,14 +20,15 @@ pub use dataset::{Band, Dataset};
 pub use model::{Dynamics, Model};
 pub use state_space::StateSpace;
 
-/// Upper limits on all inputs: they bound the memory and time that a faulty or hostile file can
+/// Upper limits on file contents: they bound the memory and time that a faulty or hostile file can
 /// take.
 pub mod limits {
-    /// Maximum text in a file \[bytes\], before or after decompression: 128 MiB, some 500
-    /// conditions of the example's size.
+    /// Maximum length of the text in a file \[bytes\], before or after decompression: 128 MiB,
+    /// enough for about 500 conditions of the example's size.
     pub const LARGEST_TEXT: u64 = 128 << 20;
-    /// Maximum number of inputs, and of outputs: the largest tested with gains and delays. Tables
-    /// of pairs grow with the product, the search for the best gains grows faster.
+    /// Maximum number of inputs, and of outputs: the largest number tested with gains and delays.
+    /// Tables of responses grow with the product of both, and the search for the best gains grows
+    /// faster.
     pub const MOST_CHANNELS: usize = 32;
     /// Maximum number of on-axis, constrained or ignored responses.
     pub const MOST_PAIRS: usize = MOST_CHANNELS * MOST_CHANNELS;

@@ -11,16 +11,16 @@ use super::measured_response::{
 };
 use super::state_space::{StateSpace, Timing};
 
-/// Dynamics of a model.
+/// Dynamics of a model: matrices or measured data.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Dynamics {
     StateSpace(StateSpace),
-    /// Measured frequency data, interpolated (identified models only).
+    /// Measured frequency response (identified models only), interpolated between its frequencies.
     Measured(MeasuredResponse),
 }
 
 impl Dynamics {
-    /// Returns the output count p and the input count m.
+    /// Returns the output count `p` and the input count `m`.
     pub fn shape(&self) -> (usize, usize) {
         match self {
             Dynamics::StateSpace(model) => (model.outputs(), model.inputs()),
@@ -31,29 +31,29 @@ impl Dynamics {
     }
 }
 
-/// Origin of a model.
+/// Origin of a model: linearised at a trim, or identified.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Origin {
-    /// The physics model linearised at the condition's trim.
+    /// Physics model linearised at the condition's trim.
     Nominal {
-        /// Trim offsets from the condition, by coordinate name (all zero, where given).
+        /// Trim offsets from the condition, by coordinate name; all zero, if given.
         perturbation: Option<BTreeMap<String, f64>>,
     },
-    /// The physics model linearised at a perturbed trim.
+    /// Physics model linearised at a perturbed trim.
     Perturbed {
         /// Trim offsets from the condition, by coordinate name ("airspeed_kt", "roll_deg").
         perturbation: Option<BTreeMap<String, f64>>,
     },
-    /// Identified from flight.
+    /// Identified from flight tests.
     Identified {
         /// Identification method ("CT-PBSID").
         method: Option<String>,
-        /// Order reported by the identification.
+        /// Order stated by the identification.
         order: Option<usize>,
     },
 }
 
-/// Source file of a model, as far as its author gives it.
+/// Source of a model, as far as its author gives it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Provenance {
     /// Path relative to the dataset's file.
@@ -62,16 +62,16 @@ pub struct Provenance {
     pub sha256: Option<String>,
     /// Variable in the file, or flight record.
     pub variable: Option<String>,
-    /// Creation date, in the author's format.
+    /// Creation date, in any format.
     pub made: Option<String>,
-    /// Further notes from the reader.
+    /// Notes added when the file was read.
     pub note: Option<String>,
-    /// Names of the flight records that an identified model was estimated from; empty where
-    /// unknown.
+    /// Names of the flight records from which an identified model was estimated; empty if unknown.
     pub records: Vec<String>,
-    /// Unused variables of the file; the first model of a file lists them for the whole file.
+    /// Unused variables of the file; listed only in the first model of each file.
     pub unused: Vec<String>,
-    /// Sides whose channels have no names in the file and were matched by position.
+    /// Sides (inputs, outputs) whose channels have no names in the file and were matched by
+    /// position.
     pub by_position: Vec<ChannelSide>,
 }
 
@@ -88,7 +88,7 @@ impl Provenance {
         parts.extend(self.made.as_ref().map(|date| format!("made {date}")));
         parts.extend(self.sha256.as_ref().map(|hash| format!("SHA-256 {hash}")));
         if !self.records.is_empty() {
-            parts.push(format!("the records {}", self.records.join(", ")));
+            parts.push(format!("from the records {}", self.records.join(", ")));
         }
         parts.extend(self.note.clone());
         if !self.unused.is_empty() {
@@ -98,23 +98,23 @@ impl Provenance {
     }
 }
 
-/// A model of a bundle.
+/// A physics model or an identified model: its dynamics, and their origin and source.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model {
     /// Name, unique in its bundle.
     pub name: String,
     pub origin: Origin,
     pub dynamics: Dynamics,
-    /// Source file, where known.
+    /// Source file; `None` if unknown.
     pub source: Option<Provenance>,
-    /// State names; empty where unknown.
+    /// State names; empty if unknown.
     pub states: Arc<[String]>,
-    /// Uncertainty of its response, where the identification gives it.
+    /// Standard deviation of the response over frequency, if the identification gives it.
     pub bands: Option<Arc<ModelBands>>,
 }
 
 impl Model {
-    /// Creates a model with this name.
+    /// Creates a model with a name, an origin and dynamics only.
     pub fn new(name: impl Into<String>, origin: Origin, dynamics: Dynamics) -> Self {
         Self {
             name: name.into(),
@@ -126,7 +126,7 @@ impl Model {
         }
     }
 
-    /// Returns the name of a state, or its number (from 1) where it has none: "q", "state 5".
+    /// Returns the name of a state; if it has no name, its index counted from 1: "q", "state 5".
     pub fn state_name(&self, state: usize) -> String {
         self.states
             .get(state)
@@ -147,7 +147,8 @@ impl Model {
         matches!(self.origin, Origin::Nominal { .. })
     }
 
-    /// Returns the trim offsets from the condition, where the file gives them.
+    /// Returns the trim offsets from the condition; `None` for an identified model, or if the file
+    /// gives none.
     pub fn perturbation(&self) -> Option<&BTreeMap<String, f64>> {
         match &self.origin {
             Origin::Nominal { perturbation } | Origin::Perturbed { perturbation } => {
@@ -167,7 +168,8 @@ impl Model {
             hash.update(coordinate.as_bytes());
             hash.update(offset.to_le_bytes());
         }
-        // Absent bands add nothing: fingerprints from before bands existed stay valid.
+        // Absent bands add nothing to the hash, so that fingerprints from before the introduction
+        // of bands remain valid.
         if let Some(bands) = &self.bands {
             bands.add_to(&mut hash);
         }
@@ -177,8 +179,8 @@ impl Model {
             .collect()
     }
 
-    /// Returns the state count, or the order reported by the identification; `None` for measured
-    /// data without an order.
+    /// Returns the state count of a state-space model. For measured data, returns the order stated
+    /// by the identification, if any.
     pub fn order(&self) -> Option<usize> {
         match (&self.dynamics, &self.origin) {
             (Dynamics::StateSpace(model), _) => Some(model.order()),
@@ -188,11 +190,11 @@ impl Model {
     }
 }
 
-/// Standard deviation of a model response over frequency, as estimated by the identification
+/// Standard deviation of a model's response over frequency, as estimated by the identification
 /// (M14).
 ///
-/// A curve lies between `H_dB - z sd_db` and `H_dB + z sd_db` with probability `1 - 2 Phi(-z)`; the
-/// same holds for the phase.
+/// The true magnitude lies between `H_dB - z sd_db` and `H_dB + z sd_db` with probability
+/// `1 - 2 Phi(-z)` at each frequency; likewise the phase.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelBands {
     omega: Vec<f64>,
@@ -201,7 +203,7 @@ pub struct ModelBands {
 }
 
 impl ModelBands {
-    /// Creates bands from standard deviations in magnitude \[dB\] and phase \[deg\] at `omega`
+    /// Creates bands from the standard deviations of magnitude \[dB\] and phase \[deg\] at `omega`
     /// \[rad/s\], both p x m tables with `N` values per response.
     ///
     /// # Errors
@@ -234,12 +236,12 @@ impl ModelBands {
         &self.omega
     }
 
-    /// Returns the standard deviation in magnitude \[dB\] at each frequency.
+    /// Returns the standard deviation of the magnitude \[dB\] at each frequency.
     pub fn sd_db(&self) -> &PairTable<Vec<f64>> {
         &self.sd_db
     }
 
-    /// Returns the standard deviation in phase \[deg\] at each frequency.
+    /// Returns the standard deviation of the phase \[deg\] at each frequency.
     pub fn sd_deg(&self) -> &PairTable<Vec<f64>> {
         &self.sd_deg
     }
@@ -256,13 +258,13 @@ impl ModelBands {
     }
 }
 
-/// SHA-256 over all values that determine a model response: equal hashes mean equal responses.
+/// SHA-256 over all values that determine a model's response: equal hashes mean equal responses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ContentHash([u8; 32]);
 
 impl ContentHash {
     /// Computes the hash over matrices and timing, or over measured frequencies, values, coherence
-    /// and valid bands; shapes included.
+    /// and valid bands; their shapes are included.
     pub fn new(dynamics: &Dynamics) -> Self {
         let mut hash = Sha256::new();
         match dynamics {
@@ -272,7 +274,7 @@ impl ContentHash {
         Self(hash.finalize().into())
     }
 
-    /// Returns the bytes of the hash.
+    /// Returns the 32 bytes of the hash.
     pub fn bytes(&self) -> &[u8; 32] {
         &self.0
     }
@@ -294,7 +296,8 @@ fn add_state_space(hash: &mut Sha256, model: &StateSpace) {
         hash.update((matrix.nrows() as u64).to_le_bytes());
         add_numbers(hash, matrix.as_slice());
     }
-    // A plain timing adds nothing: hashes from before timing existed stay valid.
+    // A plain timing adds nothing to the hash, so that hashes from before the introduction of
+    // timing remain valid.
     if !model.timing().is_plain() {
         let Timing {
             sample_time_s,

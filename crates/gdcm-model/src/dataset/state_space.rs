@@ -22,14 +22,14 @@ pub struct StateSpace {
 /// Error for matrices that do not form a state-space model.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StateSpaceError {
-    /// Matrix whose shape contradicts the shapes of the others.
+    /// A matrix whose shape contradicts the shapes of the other matrices.
     #[error("matrix {matrix}: expected {} x {}, found {} x {}", expected.0, expected.1, found.0, found.1)]
     Shape {
         /// `A`, `B`, `C` or `D`.
         matrix: char,
-        /// Rows and columns required.
+        /// Required rows and columns.
         expected: (usize, usize),
-        /// Rows and columns found.
+        /// Rows and columns of the matrix.
         found: (usize, usize),
     },
     #[error("matrix {matrix}, row {row}, column {column}: expected a finite number, found {value}")]
@@ -47,8 +47,8 @@ pub enum StateSpaceError {
 }
 
 impl StateSpace {
-    /// Creates the continuous-time model (A, B, C, D); `A` gives the order, the shape of `D` the
-    /// outputs and inputs.
+    /// Creates the continuous-time model (A, B, C, D). `A` determines the number of states; `D`
+    /// determines the numbers of outputs and inputs.
     pub fn new(
         a: DMatrix<f64>,
         b: DMatrix<f64>,
@@ -74,16 +74,17 @@ impl StateSpace {
         })
     }
 
-    /// Returns the same matrices with a sample time or delays (M2a).
+    /// Returns the model with a sample time or delays (M2a).
     ///
     /// # Errors
-    /// [`TimingError`] where they are out of range or their count differs from the channel count.
+    /// [`TimingError`] if they are out of range, or if the delay count differs from the channel
+    /// count.
     pub fn timed(mut self, timing: Timing) -> Result<Self, StateSpaceError> {
         self.timing = timing.checked(self.outputs(), self.inputs())?;
         Ok(self)
     }
 
-    /// Returns the sample time and delays; delays that are all zero are removed.
+    /// Returns the sample time and delays; delays that are all zero are represented by `None`.
     pub fn timing(&self) -> &Timing {
         &self.timing
     }
@@ -152,32 +153,31 @@ fn check_finite(name: char, matrix: &DMatrix<f64>) -> Result<(), StateSpaceError
     })
 }
 
-/// Maximum channel delay \[s\].
+/// Maximum delay of an input or output channel \[s\].
 pub const GREATEST_CHANNEL_DELAY_S: f64 = 60.0;
 
-/// Sample time and channel delays of a model, which its matrices do not contain (M2a).
+/// Sample time and channel delays of a model, which are not part of its matrices (M2a).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Timing {
     /// Sample time T \[s\] of a discrete-time model; `None` in continuous time.
     pub sample_time_s: Option<f64>,
-    /// Delay per input \[s\]; `None` without delays.
+    /// Delay of each input \[s\]; `None` without delays.
     pub input_delays_s: Option<Vec<f64>>,
-    /// Delay per output \[s\]; `None` without delays.
+    /// Delay of each output \[s\]; `None` without delays.
     pub output_delays_s: Option<Vec<f64>>,
 }
 
 /// Error for an invalid sample time or delay.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TimingError {
-    #[error("sample_time_s: expected a positive number of seconds (none at all for continuous time), found {}", number(*.0))]
+    #[error("sample_time_s: expected a positive number of seconds (omit it for continuous time), \
+        found {}", number(*.0))]
     SampleTime(f64),
     #[error("{list}: expected {expected} delays, one for each channel, found {found}")]
     Count {
         /// `input_delays_s` or `output_delays_s`.
         list: &'static str,
-        /// Channel count.
         expected: usize,
-        /// Delay count.
         found: usize,
     },
     #[error("{list}, entry {entry}: expected a delay from 0 to {GREATEST_CHANNEL_DELAY_S} s, found {}", number(*value))]
@@ -196,20 +196,20 @@ impl Timing {
         *self == Self::default()
     }
 
-    /// Returns the Nyquist frequency `pi / T` \[rad/s\], at and above which a discrete-time model has
-    /// no response; `None` in continuous time.
+    /// Returns the Nyquist frequency `pi / T` \[rad/s\], at and above which a discrete-time model
+    /// has no response; `None` in continuous time.
     pub fn nyquist_rad_s(&self) -> Option<f64> {
         let sample_time_s = self.sample_time_s?;
         Some(std::f64::consts::PI / sample_time_s)
     }
 
-    /// Returns the response delay `tau_o + tau_i` \[s\].
+    /// Returns the delay of a response, output delay plus input delay \[s\].
     pub fn delay_s(&self, output: usize, input: usize) -> f64 {
         channel_delay(self.output_delays_s.as_deref(), output)
             + channel_delay(self.input_delays_s.as_deref(), input)
     }
 
-    /// Describes the timing: "discrete time, T = 0.01 s, input delays 0.02, 0 s"; empty where it is
+    /// Describes the timing: "discrete time, T = 0.01 s, input delays 0.02, 0 s"; empty if it is
     /// plain.
     pub fn words(&self) -> String {
         let mut parts = Vec::new();
@@ -225,8 +225,8 @@ impl Timing {
         parts.join(", ")
     }
 
-    /// Checks the timing for a model with `outputs` and `inputs`, and removes delays that are all
-    /// zero, so that such a model equals the one without delays.
+    /// Checks the timing of a model with `outputs` and `inputs`. Removes delays that are all zero,
+    /// so that the model compares equal to one without delays.
     pub(super) fn checked(self, outputs: usize, inputs: usize) -> Result<Self, TimingError> {
         if let Some(value) = self.sample_time_s
             && (!value.is_finite() || value <= 0.0)
@@ -253,7 +253,7 @@ fn list(values: &[f64]) -> String {
     numbers.join(", ")
 }
 
-/// Checks the delays of a side; `None` where all are zero.
+/// Checks the delays of the inputs or outputs; `None` if all are zero.
 fn checked_delays(
     list: &'static str,
     delays: Option<Vec<f64>>,
@@ -360,7 +360,7 @@ mod timing_tests {
     #[test]
     fn invalid_sample_times_and_delays_are_named() {
         let error = |timing: Timing| timing.checked(1, 2).unwrap_err().to_string();
-        assert!(error(timing(Some(0.0), &[])).contains("none at all for continuous time"));
+        assert!(error(timing(Some(0.0), &[])).contains("omit it for continuous time"));
         assert!(error(timing(Some(f64::INFINITY), &[0.0; 2])).contains("sample_time_s"));
         assert_eq!(
             error(timing(None, &[0.0])),

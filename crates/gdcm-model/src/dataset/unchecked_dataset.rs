@@ -1,5 +1,5 @@
-//! A dataset before its checks, filled by any reader from any format, and the faults that it may
-//! have.
+//! A dataset before its checks, as filled by the reader of any file format, and its possible
+//! faults.
 
 use nalgebra::{Complex, DMatrix};
 
@@ -11,60 +11,59 @@ use super::measured_response::{Estimate, MeasuredResponse, MeasuredResponseError
 use super::model::{Dynamics, Model, Origin, Provenance};
 use super::state_space::{StateSpaceError, Timing};
 
-/// A value per response and frequency, `[output][input][frequency]`; the last index runs fastest.
+/// A value for each response and frequency, `[output][input][frequency]`; the last index runs
+/// fastest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponseArray {
-    /// Output, input and frequency count.
+    /// Output count, input count and frequency count.
     pub shape: [usize; 3],
     pub values: Vec<f64>,
 }
 
-/// A measured frequency response, unchecked.
+/// A measured frequency response before its checks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponseDraft {
     /// Frequencies \[rad/s\].
     pub omega: Vec<f64>,
     pub re: ResponseArray,
     pub im: ResponseArray,
-    /// Coherence, where given.
+    /// Coherence (0 to 1); `None` if the file does not give it.
     pub coherence: Option<ResponseArray>,
-    /// First and last trusted frequency of each response \[rad/s\], where given.
+    /// First and last trusted frequency of each response \[rad/s\]; `None` if the file does not
+    /// give them.
     pub valid_bands: Option<ResponseArray>,
     pub estimate: Estimate,
 }
 
-/// Standard deviation of a model response, unchecked.
+/// Standard deviation of a model's response, before its checks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BandsDraft {
     /// Frequencies \[rad/s\].
     pub omega: Vec<f64>,
-    /// Standard deviation in magnitude \[dB\].
+    /// Standard deviation of the magnitude \[dB\].
     pub sd_db: ResponseArray,
-    /// Standard deviation in phase \[deg\].
+    /// Standard deviation of the phase \[deg\].
     pub sd_deg: ResponseArray,
 }
 
-/// A model, unchecked.
+/// A model before its checks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelDraft {
     pub name: String,
     pub origin: Origin,
-    /// Matrices A, B, C, D, each where given.
+    /// Matrices A, B, C and D; `None` if missing.
     pub matrices: [Option<DMatrix<f64>>; 4],
-    /// Sample time and delays, where given.
     pub timing: Timing,
-    /// Measured response, where given.
     pub response: Option<ResponseDraft>,
-    /// Source file.
     pub source: Option<Provenance>,
-    /// State names, for display; empty where unknown.
+    /// State names, for display only; empty if unknown.
     pub states: Vec<String>,
-    /// Uncertainty of its response, where given.
+    /// Standard deviation of the response, if the file gives it.
     pub bands: Option<BandsDraft>,
 }
 
 impl ResponseArray {
-    /// Converts a table with equally many values per response.
+    /// Converts a table in which every response has the same number of values.
     fn from_table<V: AsRef<[f64]>>(table: &PairTable<V>) -> Self {
         let mut length = 0;
         let mut values = Vec::new();
@@ -80,7 +79,7 @@ impl ResponseArray {
 }
 
 impl ModelDraft {
-    /// Converts a model to a draft, for writing or merging.
+    /// Converts a model to a draft, so that it can be written or merged.
     pub fn from_model(model: &Model) -> Self {
         let mut draft = Self {
             name: model.name.clone(),
@@ -132,7 +131,7 @@ fn imaginary_parts(values: &[Complex<f64>]) -> Vec<f64> {
     values.iter().map(|value| value.im).collect()
 }
 
-/// A flight condition, unchecked.
+/// A flight condition before its checks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionDraft {
     pub flight_state: FlightState,
@@ -141,7 +140,7 @@ pub struct ConditionDraft {
     pub records: Vec<ConditionRecord>,
 }
 
-/// A dataset, unchecked.
+/// A dataset before its checks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DatasetDraft {
     pub name: String,
@@ -149,19 +148,19 @@ pub struct DatasetDraft {
     pub description: String,
     pub inputs: Vec<Channel>,
     pub outputs: Vec<Channel>,
-    /// On-axis responses: output, input.
+    /// On-axis responses: names of output and input.
     pub on_axis: Vec<(String, String)>,
     /// Lower and upper end of the default band \[rad/s\].
     pub band: (f64, f64),
     pub conditions: Vec<ConditionDraft>,
 }
 
-/// A fault in a draft.
+/// A fault in a dataset draft.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DraftFault {
     #[error("expected at most {most} entries, found {found}")]
     TooMany { most: usize, found: usize },
-    /// Table or matrix whose shape contradicts the number of channels or states.
+    /// A table or matrix whose shape contradicts the number of channels or states.
     #[error("expected {expected}, found {found}")]
     Shape { expected: String, found: String },
     #[error("the dataset has no {kind} \"{name}\"; a pair is written [output, input]")]
@@ -184,7 +183,8 @@ pub enum DraftFault {
     )]
     TimedResponse,
     #[error(
-        "a physics model needs matrices A, B, C, D; a measured response is for identified models"
+        "a physics model needs matrices A, B, C, D; only an identified model can be a measured \
+        response"
     )]
     MeasuredPhysics,
     #[error(transparent)]
@@ -199,7 +199,7 @@ pub enum DraftFault {
     Dataset(#[from] DatasetError),
 }
 
-/// A fault in a draft, with its location; boxed to keep successful results small.
+/// A fault in a dataset draft, with its location; boxed to keep `Result` small.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DraftError {
     pub place: Box<Location>,
@@ -215,7 +215,7 @@ impl DraftError {
     }
 }
 
-/// An unusual but harmless property of a draft.
+/// An unusual but harmless property of a dataset draft.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Warning {
     pub place: Location,

@@ -1,7 +1,8 @@
-//! Channel aliases: the spellings by which files name helicopter inputs and outputs.
+//! Channel aliases: the spellings of helicopter inputs and outputs in files.
 
-/// Aliases, a row per channel, folded by [`folded_name`]; the first name in a row is canonical.
-/// Each name appears once. "elevyoke1" and the like come from a flight simulator.
+/// Aliases, one row per channel, as folded by [`folded_name`]; the first name in a row is
+/// canonical. Each name appears once. "elevyoke1" and similar names are written by a flight
+/// simulator.
 const ALIASES: [&str; 16] = [
     "lon long longitudinal longcyc cyclong dlon deltalon dlong deltalong db deltab de deltae xb xlon b1s theta1s \
      pitchstick elevator loncyc lonstick longstick loncyclic cycliclon longitudinalcyclic longitudinalstick elevyoke1",
@@ -23,10 +24,10 @@ const ALIASES: [&str; 16] = [
     "psi yaw heading yawangle",
 ];
 
-/// Count of leading rows in [`ALIASES`] that name inputs; the others name outputs.
+/// Number of leading rows in [`ALIASES`] that list inputs; the other rows list outputs.
 const INPUT_ROWS: usize = 4;
 
-/// Folds a name: lower case without marks and blanks, Greek letters spelt out. "δ_a" becomes
+/// Folds a name: removes case, marks and blanks, and spells out Greek letters. "δ_a" becomes
 /// "deltaa", "Sample_Time" becomes "sampletime".
 pub fn folded_name(name: &str) -> String {
     let mut folded = String::with_capacity(name.len());
@@ -44,7 +45,7 @@ pub fn folded_name(name: &str) -> String {
     folded
 }
 
-/// Returns the canonical name of a channel; the folded name where the channel has no alias row.
+/// Returns the canonical name of a channel, or the folded name if it has no row in [`ALIASES`].
 pub(super) fn canonical_name(name: &str) -> String {
     let folded = folded_name(name);
     let canonical = alias_row(&folded).and_then(|row| ALIASES[row].split(' ').next());
@@ -54,24 +55,24 @@ pub(super) fn canonical_name(name: &str) -> String {
     }
 }
 
-/// Returns the index of the row in [`ALIASES`] that holds a folded name.
+/// Returns the index of the row in [`ALIASES`] that contains a folded name.
 fn alias_row(folded: &str) -> Option<usize> {
     ALIASES
         .iter()
         .position(|row| row.split(' ').any(|alias| alias == folded))
 }
 
-/// Returns whether an alias row names the channel as an input.
+/// Returns whether a name is listed among the inputs in [`ALIASES`].
 pub(super) fn is_known_input(name: &str) -> bool {
     alias_row(&folded_name(name)).is_some_and(|row| row < INPUT_ROWS)
 }
 
-/// Returns whether an alias row names the channel as an output.
+/// Returns whether a name is listed among the outputs in [`ALIASES`].
 pub(super) fn is_known_output(name: &str) -> bool {
     alias_row(&folded_name(name)).is_some_and(|row| row >= INPUT_ROWS)
 }
 
-/// Returns whether two names denote the same channel: equal but for case and marks, or aliases.
+/// Returns whether two names denote the same channel: aliases, or equal apart from case and marks.
 pub fn same_channel(a: &str, b: &str) -> bool {
     a == b || canonical_name(a) == canonical_name(b)
 }

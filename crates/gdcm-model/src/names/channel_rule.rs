@@ -6,19 +6,19 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub struct ChannelRule {
     pub name: String,
-    /// Its unit in the dataset; empty while unknown.
+    /// Unit in the dataset; empty if unknown.
     #[serde(default)]
     pub unit: String,
     /// Further names in files; a leading minus marks the opposite sign.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub aliases: Vec<String>,
-    /// Unit in files that give none; `None` while unknown.
+    /// Unit in files that give none; `None` if unknown.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit_in_files: Option<String>,
 }
 
 impl ChannelRule {
-    /// Creates a channel with an unknown unit.
+    /// Creates a channel with an unknown unit and without aliases.
     pub fn named(name: impl Into<String>) -> Self {
         Self {
             name: name.into(),

@@ -1,4 +1,4 @@
-//! Facts about a model or a record that its file name gives.
+//! Facts about a model or a record, read from its file name.
 
 use std::collections::BTreeMap;
 
@@ -12,12 +12,11 @@ pub enum RowRole {
     Nominal,
     /// A physics model at a perturbed trim.
     Perturbed,
-    /// Identified from flight, or measured.
+    /// A model identified from flight tests, or a measured response.
     Identified,
 }
 
 impl RowRole {
-    /// All roles.
     pub const ALL: [Self; 3] = [Self::Nominal, Self::Perturbed, Self::Identified];
 
     /// Returns the keyword of the role in files and tables.
@@ -29,13 +28,13 @@ impl RowRole {
         }
     }
 
-    /// Parses a role keyword.
+    /// Parses a role keyword; `None` for an unknown word.
     pub fn from_word(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|role| role.word() == word)
     }
 }
 
-/// Values that the names of folders, a file and a variable give; `None` or empty where they give
+/// Values read from the names of folders, file and variable; `None` or empty if the names give
 /// none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NameFacts {
@@ -46,13 +45,10 @@ pub struct NameFacts {
     pub airspeed_kt: Option<f64>,
     /// Altitude class: "low", "high".
     pub altitude: Option<String>,
-    /// Altitude \[ft\].
     pub altitude_ft: Option<f64>,
     /// Weight class: "light", "high".
     pub weight: Option<String>,
-    /// Mass \[kg\].
     pub mass_kg: Option<f64>,
-    /// Identification method.
     pub method: Option<String>,
     /// Trim offsets by coordinate ("roll_deg").
     pub perturbation: BTreeMap<String, f64>,

@@ -8,12 +8,11 @@ use regex::{Regex, RegexBuilder};
 use super::name_facts::{NameFacts, RowRole};
 use crate::message_text::{quoted, sanitized, shortened};
 
-/// Maximum length of a pattern \[bytes\].
 const LONGEST_PATTERN: usize = 1000;
 /// Maximum memory of a compiled pattern \[bytes\].
 const MOST_MEMORY: usize = 1 << 20;
 
-/// Group names, apart from trim offsets.
+/// Permitted group names, apart from trim offsets.
 const GROUPS: &str = "condition airspeed_kt altitude altitude_ft weight mass_kg method name nominal perturbed identified";
 /// Prefix of group names for trim offsets.
 const OFFSET: &str = "by_";
@@ -22,22 +21,22 @@ const OFFSET: &str = "by_";
 ///
 /// | group | holds |
 /// |---|---|
-/// | `condition`, `airspeed_kt`, `altitude`, `altitude_ft` | the value of this name |
-/// | `weight`, `mass_kg`, `method`, `name` | the value of this name |
+/// | `condition`, `airspeed_kt`, `altitude`, `altitude_ft` | the value of the field with the same name |
+/// | `weight`, `mass_kg`, `method`, `name` | the value of the field with the same name |
 /// | `by_roll_deg`, `by_...` | trim offset in `roll_deg`, ... (`+5`, `-5`, `p5`, `m5`) |
-/// | `nominal`, `perturbed`, `identified` | any text; sets this role |
+/// | `nominal`, `perturbed`, `identified` | any text; sets the role of this name |
 #[derive(Clone, Debug)]
 pub struct NamePattern {
     regex: Regex,
 }
 
-/// Error for a text that is not a valid pattern.
+/// Error for a text that is not a valid name pattern.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PatternError {
-    #[error("{} is not a regular expression: {}", quoted(pattern), shortened(&sanitized(reason)))]
+    #[error("{} is not a valid regular expression: {}", quoted(pattern), shortened(&sanitized(reason)))]
     Syntax {
         pattern: String,
-        /// Message from the parser.
+        /// Message of the regular-expression parser.
         reason: String,
     },
     #[error(
@@ -50,15 +49,16 @@ pub enum PatternError {
 }
 
 impl NamePattern {
-    /// Compiles a case-insensitive pattern.
+    /// Compiles a pattern; case is ignored.
     ///
     /// # Errors
-    /// The text is too long, not a regular expression, or has an unknown group.
+    /// [`PatternError`] if the text is too long, is not a regular expression, or has an unknown
+    /// group.
     pub fn new(pattern: &str) -> Result<Self, PatternError> {
         if pattern.len() > LONGEST_PATTERN {
             return Err(PatternError::Syntax {
                 pattern: pattern.to_owned(),
-                reason: format!("it is longer than {LONGEST_PATTERN} letters"),
+                reason: format!("it is longer than {LONGEST_PATTERN} bytes"),
             });
         }
         let regex = RegexBuilder::new(pattern)
@@ -80,13 +80,13 @@ impl NamePattern {
         Ok(Self { regex })
     }
 
-    /// Returns the source text.
+    /// Returns the text of the pattern.
     pub fn as_str(&self) -> &str {
         self.regex.as_str()
     }
 
-    /// Fills the empty fields of `facts` with the values in a name; of several matches, the first
-    /// wins.
+    /// Fills the empty fields of `facts` with the values in a name; the first of several matches
+    /// applies.
     pub fn read(&self, name: &str, facts: &mut NameFacts) {
         for found in self.regex.captures_iter(name) {
             for group in self.regex.capture_names().flatten() {
@@ -98,7 +98,7 @@ impl NamePattern {
     }
 }
 
-/// Reads a name by several patterns; earlier patterns take precedence.
+/// Reads a name with several patterns; earlier patterns take precedence.
 pub fn read_name(name: &str, patterns: &[NamePattern]) -> NameFacts {
     let mut facts = NameFacts::default();
     for pattern in patterns {
@@ -107,8 +107,8 @@ pub fn read_name(name: &str, patterns: &[NamePattern]) -> NameFacts {
     facts
 }
 
-/// Returns the last line of a parser message, which holds the reason; the lines before it quote the
-/// pattern.
+/// Returns the last line of a parser message, which states the reason; the lines before it quote
+/// the pattern.
 fn last_line(message: &str) -> String {
     message.lines().last().unwrap_or_default().trim().to_owned()
 }
@@ -117,9 +117,10 @@ fn is_known_group(name: &str) -> bool {
     name.starts_with(OFFSET) || GROUPS.split(' ').any(|group| group == name)
 }
 
-/// Returns the parts of a name that look like a trim offset ("dPHI+5") and that no pattern reads.
+/// Returns the parts of a name that look like a trim offset ("dPHI+5") but are matched by no
+/// pattern.
 pub fn unread_offsets(name: &str, patterns: &[NamePattern]) -> Vec<String> {
-    // A word, a sign and a number; ends at a unit or at the next part.
+    // A word, a sign and a number.
     let Ok(offset) = Regex::new(r"[A-Za-z]+[_ ]?[+-]\d+(?:\.\d+)?") else {
         return Vec::new();
     };
@@ -144,7 +145,7 @@ pub fn unread_offsets(name: &str, patterns: &[NamePattern]) -> Vec<String> {
     unread
 }
 
-/// Sets the field for a group from its text, unless the field has a value already.
+/// Sets the field named by a group to its text, unless the field already has a value.
 fn put_if_empty(group: &str, text: &str, facts: &mut NameFacts) {
     match group {
         "condition" => facts.condition = facts.condition.or_else(|| text.parse().ok()),
@@ -217,7 +218,7 @@ pub fn standard_patterns() -> &'static [NamePattern] {
     &STANDARD
 }
 
-/// Standard patterns, compiled once: every record needs them.
+/// Standard patterns, compiled once because every record needs them.
 static STANDARD: LazyLock<Vec<NamePattern>> = LazyLock::new(|| {
     let texts = [
         r"(?:^|[/_ #.-])(?:c|cond|condition|fc|case|point)[_ -]?0*(?<condition>\d+)(?:[/_ .#-]|$)".to_owned(),
@@ -239,7 +240,8 @@ static STANDARD: LazyLock<Vec<NamePattern>> = LazyLock::new(|| {
             .to_owned(),
         r"(?:^|[/_ #.-])(?<perturbed>perturbed|pert)\d*(?:[/_ .#(-]|$)".to_owned(),
     ];
-    // A test counts the compiled patterns and thereby ensures that none is dropped.
+    // `.ok()`: a test counts the compiled patterns, so that an invalid pattern is not dropped
+    // unnoticed.
     texts
         .iter()
         .filter_map(|text| NamePattern::new(text).ok())
@@ -355,7 +357,7 @@ mod tests {
         let group = "speed".to_owned();
         let pattern = "(?<speed>\\d+)".to_owned();
         assert_eq!(unknown, PatternError::Group { pattern, group });
-        // However long the text and whatever it contains, the message is a single line.
+        // The message must be a single line, whatever the text contains.
         for wrong in [
             "(".to_owned(),
             "(?<cond\u{7f}ition>a)".to_owned(),

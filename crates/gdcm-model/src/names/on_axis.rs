@@ -1,8 +1,8 @@
-//! On-axis responses of a helicopter, by channel name.
+//! Standard on-axis responses of a helicopter, by channel name.
 
 use super::channel_alias::same_channel;
 
-/// Standard on-axis responses, output and input.
+/// Standard on-axis responses: output and input.
 ///
 /// Source: Table 2 of "Bridging the Gap: Data Driven Method for Linearized Model Fidelity
 /// Enhancement" (`docs/method.md`, M1).
@@ -14,7 +14,8 @@ pub const STANDARD_ON_AXIS: [(&str, &str); 5] = [
     ("NZ", "COL"),
 ];
 
-/// Returns whether the response from `input` to `output` is on-axis for a helicopter.
+/// Returns whether the response from `input` to `output` is on-axis by the standard list; aliases
+/// are recognised.
 pub fn is_standard_on_axis(output: &str, input: &str) -> bool {
     STANDARD_ON_AXIS
         .iter()

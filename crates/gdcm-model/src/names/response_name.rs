@@ -1,4 +1,4 @@
-//! Output and input of a response from the name of its file or variable: `frf_q_delta_lon`,
+//! Output and input of a response, read from the name of its file or variable: `frf_q_delta_lon`,
 //! `roll_rate per lat_cyclic run 2`.
 
 use std::collections::BTreeSet;
@@ -12,10 +12,10 @@ use crate::units::physical_unit::{Dimension, PhysicalUnit};
 
 /// Maximum number of words in a channel name.
 const LONGEST_NAME: usize = 4;
-/// Maximum number of words considered in a text.
+/// Maximum number of words that are read; further words are ignored.
 const MOST_WORDS: usize = 64;
 
-/// Words in file names that do not belong to a channel. Numbers and units are ignored too.
+/// Words in file names that do not name a channel. Numbers and units are also ignored.
 const FILLERS: [&str; 44] = [
     "frf",
     "fr",
@@ -63,7 +63,7 @@ const FILLERS: [&str; 44] = [
     "file",
 ];
 
-/// Words that turn an adjacent channel into another: "q dot" is not q.
+/// Words that change the meaning of an adjacent channel name: "q dot" is not q.
 const MODIFIERS: [&str; 23] = [
     "dot",
     "ddot",
@@ -90,37 +90,37 @@ const MODIFIERS: [&str; 23] = [
     "delta",
 ];
 
-/// An output and an input as spelt in a text, as far as the text names them.
+/// Output and input named in a text, in its spelling; `None` if the text does not name them.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ResponseName {
-    /// The output: "q", "roll_rate".
+    /// "q", "roll_rate".
     pub output: Option<String>,
-    /// The input: "delta_lon".
+    /// "delta_lon".
     pub input: Option<String>,
 }
 
-/// Error for a text with an ambiguous output or input.
+/// Error for a text that does not name one output and one input unambiguously.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ResponseNameError {
     #[error("it names several {side}s: {found}")]
     Several {
         /// "output" or "input".
         side: &'static str,
-        /// The channels as spelt in the text, separated by commas.
+        /// Channels in the spelling of the text, separated by commas.
         found: String,
     },
-    #[error("\"{word}\" beside {channel} may change the channel")]
+    #[error("the word \"{word}\" next to {channel} may change its meaning")]
     OtherChannel {
         word: String,
-        /// The channel as spelt in the text.
+        /// Channel in the spelling of the text.
         channel: String,
     },
 }
 
-/// Channels that a text may name.
+/// Channels that can be recognised in a text.
 #[derive(Clone, Copy, Debug)]
 pub enum KnownChannels<'r> {
-    /// Dataset channels, by name and alias.
+    /// Dataset channels, by their names and aliases.
     Dataset {
         inputs: &'r [ChannelRule],
         outputs: &'r [ChannelRule],
@@ -129,7 +129,7 @@ pub enum KnownChannels<'r> {
     Field,
 }
 
-/// Canonical names of the known channels.
+/// Canonical names of the channels that can be recognised.
 enum KnownNames {
     Dataset {
         inputs: BTreeSet<String>,
@@ -149,7 +149,7 @@ impl KnownNames {
         }
     }
 
-    /// Returns the sides that have a channel called `name`.
+    /// Returns whether an input, an output or both are called `name`.
     fn sides(&self, name: &str) -> Sides {
         match self {
             Self::Dataset { inputs, outputs } => {
@@ -167,7 +167,7 @@ impl KnownNames {
     }
 }
 
-/// Returns the canonical names of channels and of their aliases, without sign marks.
+/// Returns the canonical names of channels and their aliases, without sign marks.
 fn canonical_names(rules: &[ChannelRule]) -> BTreeSet<String> {
     let mut names = BTreeSet::new();
     for rule in rules {
@@ -178,7 +178,7 @@ fn canonical_names(rules: &[ChannelRule]) -> BTreeSet<String> {
     names
 }
 
-/// The sides that have a channel with a given name.
+/// Whether an output, and whether an input, has a given name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Sides {
     output: bool,
@@ -195,32 +195,35 @@ impl Sides {
     }
 }
 
-/// A channel named by a run of words.
+/// A channel named by consecutive words of a text.
 struct NamedChannel<'t> {
     /// Indices of the words.
     words: Range<usize>,
-    /// The name as spelt in the text.
+    /// The words in the spelling of the text.
     text: &'t str,
     sides: Sides,
 }
 
-/// A word and its first byte in the text.
+/// A word and the index of its first byte in the text.
 struct Word<'t> {
     start: usize,
     text: &'t str,
 }
 
 impl ResponseName {
-    /// Finds the channels that a text names.
+    /// Finds the channels named in a text.
     ///
     /// 1. Split the text into words.
-    /// 2. From the left, take the longest run of words that names a known channel.
-    /// 3. Reject a word that may change a channel beside it.
-    /// 4. Read two names that may each be input or output as "output input", or "input to output".
-    /// 5. Otherwise each side takes the name that fits it only, or else the name that fits both.
+    /// 2. From the left, take the longest sequence of words that names a known channel.
+    /// 3. Reject a word that may change the meaning of an adjacent channel name.
+    /// 4. If both of two names can be input or output, read them as "output input", or as "input to
+    ///    output".
+    /// 5. Otherwise prefer, for each side, a name that belongs only to this side over a name that
+    ///    may belong to either.
     ///
     /// # Errors
-    /// The text names several outputs or inputs, or a word may change the channel beside it.
+    /// The text names several outputs or inputs, or a word may change the meaning of a channel
+    /// name.
     pub fn find(text: &str, known: KnownChannels<'_>) -> Result<Self, ResponseNameError> {
         let words = words_of(text);
         let named = named_channels(text, &words, &KnownNames::new(known));
@@ -237,7 +240,7 @@ impl ResponseName {
         })
     }
 
-    /// Reads two channels by their order: "output input", or "input to output".
+    /// Assigns two channels by their order: "output input", or "input to output".
     fn from_order(words: &[Word<'_>], first: &NamedChannel<'_>, second: &NamedChannel<'_>) -> Self {
         let input_first = words[first.words.end..second.words.start]
             .iter()
@@ -254,8 +257,8 @@ impl ResponseName {
     }
 }
 
-/// Returns an error where a word may change the channel beside it: a modifier, or any unknown word
-/// between the channels.
+/// Returns an error if a word may change the meaning of a channel name: a modifier anywhere, or any
+/// unknown word between the names.
 fn reject_modifiers(
     words: &[Word<'_>],
     named: &[NamedChannel<'_>],
@@ -285,8 +288,11 @@ fn reject_modifiers(
     Ok(())
 }
 
-/// Returns the channel on a side, or `None` where the text names none. A name that fits only this
-/// side takes precedence over names that fit both.
+/// Returns the channel named for a side; `None` if the text names none. A name that belongs only to
+/// this side takes precedence over a name that may belong to either.
+///
+/// # Errors
+/// The text names several different channels for this side.
 fn only_channel(
     side: ChannelSide,
     named: &[NamedChannel<'_>],
@@ -314,7 +320,7 @@ fn only_channel(
     })
 }
 
-/// Splits a text into runs of letters and digits.
+/// Splits a text into words, which consist of letters and digits.
 fn words_of(text: &str) -> Vec<Word<'_>> {
     let mut words = Vec::new();
     let mut start = None;
@@ -336,7 +342,7 @@ fn words_of(text: &str) -> Vec<Word<'_>> {
     words
 }
 
-/// Finds the known channels in a text, the longest run of words first.
+/// Finds the known channels in a text from left to right; of several at the same word, the longest.
 fn named_channels<'t>(
     text: &'t str,
     words: &[Word<'t>],

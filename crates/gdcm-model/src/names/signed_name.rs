@@ -9,25 +9,26 @@ const Z_ACCELERATION: [&str; 5] = ["az", "azb", "accz", "verticalacceleration", 
 /// Names for the load factor, which is positive up.
 const LOAD_FACTOR: [&str; 4] = ["nz", "loadfactor", "normalacceleration", "gloadnorml"];
 
-/// A channel name and its sign marks.
+/// A channel name, separated from its sign marks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SignedName {
-    /// The name without its marks.
+    /// Name without its sign marks.
     pub name: String,
-    /// Whether a minus precedes the name.
+    /// Whether a minus sign precedes the name.
     pub minus: bool,
-    /// 1 where marked positive up, right or forward, -1 for the opposite direction.
+    /// 1 if marked as positive up, right or forward, -1 if marked as the opposite; `None` without a
+    /// mark.
     pub direction: Option<f64>,
 }
 
-/// A name without the direction mark in brackets behind it.
+/// A name, separated from the direction mark in brackets at its end.
 struct MarkedName<'t> {
     name: &'t str,
     direction: Option<f64>,
 }
 
 impl SignedName {
-    /// Parses the sign marks in a name.
+    /// Separates a name from its sign marks.
     pub fn parse(text: &str) -> Self {
         let text = text.trim();
         let mut minus = false;
@@ -50,7 +51,8 @@ impl SignedName {
         }
     }
 
-    /// Returns the marked direction, or 1 for a load factor without a mark.
+    /// Returns the marked direction; without a mark, 1 for a load factor and `None` for other
+    /// names.
     fn known_direction(&self) -> Option<f64> {
         match self.direction {
             Some(direction) => Some(direction),
@@ -68,14 +70,14 @@ impl SignedName {
     }
 }
 
-/// Returns whether a name follows a sign: a letter, or "#", after optional blanks.
+/// Returns whether the text after a sign is a name: a letter or "#", after optional blanks.
 fn begins_name(rest: &str) -> bool {
     rest.trim_start()
         .starts_with(|letter: char| letter.is_alphabetic() || letter == '#')
 }
 
-/// Splits a direction mark in brackets from the end of a name: "az (down)". The brackets of a unit
-/// stay part of the name.
+/// Separates a direction mark in brackets from the end of a name: "az (down)". A unit in brackets
+/// remains part of the name.
 fn split_direction(text: &str) -> MarkedName<'_> {
     for (open, close) in [('(', ')'), ('[', ']'), ('{', '}')] {
         let inside = text.strip_suffix(close);
@@ -97,7 +99,7 @@ fn split_direction(text: &str) -> MarkedName<'_> {
 }
 
 /// Parses a direction mark such as "down", "+down", "positive down", "-up": 1 for positive up,
-/// right or forward, -1 for the opposite direction.
+/// right or forward, -1 for the opposite; `None` for other words.
 pub fn parse_direction(mark: &str) -> Option<f64> {
     let mark = mark.trim().to_lowercase();
     let (sign, word) = match mark.strip_prefix(['-', '\u{2212}']) {
@@ -120,11 +122,12 @@ pub fn parse_direction(mark: &str) -> Option<f64> {
     }
 }
 
-/// Returns the factor, 1 or -1, from a file channel `label` to a dataset channel `channel`; `None`
-/// where the names do not determine it.
+/// Returns the factor, 1 or -1, that converts the sign of a file channel `label` to that of a
+/// dataset channel `channel`; `None` if the names do not determine it.
 ///
 /// 1. Equal names have the same sign.
-/// 2. If one name marks a direction, that of the other must be known; a load factor is positive up.
+/// 2. If one name marks a direction, the direction of the other must be known; a load factor is
+///    positive up.
 /// 3. Without marked directions, a leading minus reverses the sign. If neither name has a minus, a
 ///    z acceleration and a load factor may differ in sign, and the factor is undetermined.
 pub fn sign_between(label: &str, channel: &str) -> Option<f64> {

@@ -14,7 +14,7 @@ pub(super) struct ComplexLanes<S: Simd> {
 }
 
 impl<S: Simd> ComplexLanes<S> {
-    /// Returns the same real value in every lane.
+    /// Returns a real value, repeated in every lane.
     #[inline(always)]
     pub(super) fn real(simd: S, value: f64) -> Self {
         Self {
@@ -23,7 +23,7 @@ impl<S: Simd> ComplexLanes<S> {
         }
     }
 
-    /// Returns `self - factor real`: 2 fused operations.
+    /// Returns `self - factor * real`: 2 fused operations.
     #[inline(always)]
     pub(super) fn minus_real_product(self, simd: S, factor: Self, real: S::f64s) -> Self {
         Self {
@@ -32,7 +32,7 @@ impl<S: Simd> ComplexLanes<S> {
         }
     }
 
-    /// Returns `self + left right`: 4 fused operations.
+    /// Returns `self + left * right`: 4 fused operations.
     #[inline(always)]
     pub(super) fn plus_product(self, simd: S, left: Self, right: Self) -> Self {
         let re = simd.mul_add_e_f64s(left.re, right.re, self.re);
@@ -60,7 +60,7 @@ impl<S: Simd> ComplexLanes<S> {
         Complex::new(re[lane], im[lane])
     }
 
-    /// Returns `self - left right`: 4 fused operations.
+    /// Returns `self - left * right`: 4 fused operations.
     #[inline(always)]
     pub(super) fn minus_product(self, simd: S, left: Self, right: Self) -> Self {
         let Self { re, im } = self.minus_real_product(simd, left, right.re);
@@ -70,7 +70,7 @@ impl<S: Simd> ComplexLanes<S> {
         }
     }
 
-    /// Returns `self other`.
+    /// Returns `self * other`.
     #[inline(always)]
     pub(super) fn product(self, simd: S, other: Self) -> Self {
         let re = simd.mul_f64s(self.re, other.re);
@@ -81,7 +81,7 @@ impl<S: Simd> ComplexLanes<S> {
         }
     }
 
-    /// Returns `self scale`, with a real scale per lane.
+    /// Returns `self * scale`, with a real scale per lane.
     #[inline(always)]
     pub(super) fn scaled(self, simd: S, scale: S::f64s) -> Self {
         Self {
@@ -106,7 +106,7 @@ impl<S: Simd> ComplexLanes<S> {
         simd.mul_add_e_f64s(self.im, self.im, simd.mul_f64s(self.re, self.re))
     }
 
-    /// Returns `chosen` in the lanes of `mask`, `self` in the others.
+    /// Returns `chosen` in the lanes of `mask`, and `self` in the other lanes.
     #[inline(always)]
     pub(super) fn replaced_where(self, simd: S, mask: S::m64s, chosen: Self) -> Self {
         Self {

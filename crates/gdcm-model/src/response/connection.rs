@@ -7,8 +7,8 @@ use crate::dataset::{Pair, PairTable, StateSpace};
 /// Returns for each response whether a chain of nonzero entries leads from the input through `B`,
 /// any number of times through `A`, and `C` (or directly through `D`) to the output.
 ///
-/// Without such a chain the response is a structural zero, zero at every frequency: computed values
-/// would be rounding errors, for which ratios are meaningless (M6).
+/// Without such a chain the response is zero at every frequency (a structural zero). Its computed
+/// values are rounding errors, and their ratios are meaningless (M6).
 pub fn connected(model: &StateSpace) -> PairTable<bool> {
     let reached: Vec<Vec<bool>> = (0..model.inputs())
         .map(|input| reached_states(model, input))
@@ -19,7 +19,7 @@ pub fn connected(model: &StateSpace) -> PairTable<bool> {
     })
 }
 
-/// Returns whether an output has a nonzero entry in `C` for a marked state.
+/// Returns whether an output has a nonzero entry in `C` for any marked state.
 fn output_sees(model: &StateSpace, output: usize, marked: &[bool]) -> bool {
     model
         .c()
@@ -42,13 +42,13 @@ pub(super) fn connecting_states(model: &StateSpace, pair: Pair) -> Vec<usize> {
         .collect()
 }
 
-/// Marks the states that an input reaches.
+/// Marks the states that an input reaches through `B` and `A`.
 fn reached_states(model: &StateSpace, input: usize) -> Vec<bool> {
     let b = model.b().column(input);
     spread(model.a(), b.iter().map(|b| *b != 0.0).collect())
 }
 
-/// Marks all states that marked states reach through the columns of `a`.
+/// Marks all states that can be reached from the marked states through the columns of `a`.
 fn spread(a: &DMatrix<f64>, mut reached: Vec<bool>) -> Vec<bool> {
     let mut open: Vec<usize> = (0..reached.len()).filter(|&state| reached[state]).collect();
     let mut left = reached.len() - open.len();

@@ -1,5 +1,5 @@
 //! Values of a curve over frequency: phase unwrapping, whole turns between two curves (M2, M3), and
-//! interpolation between measured frequencies.
+//! interpolation between frequencies.
 
 use std::f64::consts::{PI, TAU};
 
@@ -25,9 +25,10 @@ pub fn wrap(angle: f64) -> f64 {
     }
 }
 
-/// Adds multiples of 2 pi to each angle \[rad\] except the first, so that no step exceeds pi.
+/// Unwraps angles \[rad\]: adds multiples of 2 pi to all but the first, so that no step exceeds pi.
 ///
-/// Adds up whole turns, not steps: each angle is rounded once, however many precede it.
+/// Sums whole turns instead of steps, so that each angle is rounded only once, however many precede
+/// it.
 pub fn unwrap(angles: &mut [f64]) {
     let Some(&first) = angles.first() else {
         return;
@@ -46,20 +47,21 @@ pub fn unwrap(angles: &mut [f64]) {
     }
 }
 
-/// Computes the phase difference of M3: `angles` (principal values of arg H_a conj H_b) unwrapped,
-/// then shifted by the multiple of 2 pi that puts their median in (-pi, pi]. `scratch` is
-/// overwritten.
+/// Computes the phase difference of M3: `angles` (principal values of arg H_a conj H_b) are
+/// unwrapped, then shifted by the multiple of 2 pi that moves their median into (-pi, pi].
+/// `scratch` is overwritten.
 pub fn centred_unwrap(angles: &mut [f64], scratch: &mut Vec<f64>) {
     unwrap(angles);
     if angles.iter().all(|angle| *angle > -PI && *angle <= PI) {
-        // The median lies in the same interval; computing it would cost more than all other steps.
+        // No shift is needed: the median also lies in (-pi, pi]. Its computation would take longer
+        // than all other steps.
         return;
     }
     scratch.clear();
     scratch.extend_from_slice(angles);
     let middle = median(scratch);
     let shift = wrap(middle) - middle;
-    // Most differences need no shift; adding a rounded zero would only cost accuracy.
+    // `shift.abs() > PI`: skip a shift that is zero apart from rounding.
     if shift.abs() > PI {
         for angle in angles {
             *angle += shift;
@@ -67,10 +69,10 @@ pub fn centred_unwrap(angles: &mut [f64], scratch: &mut Vec<f64>) {
     }
 }
 
-/// Returns the multiple of 2 pi \[rad\] to add to `phase` so that the median of its difference from
-/// `reference` is closest to zero (M2).
+/// Returns the multiple of 2 pi \[rad\] to be added to `phase` so that the median of its difference
+/// from `reference` is closest to zero (M2).
 ///
-/// Ignores frequencies at which either curve is not finite; zero where none remain.
+/// Frequencies at which either curve is not finite are ignored; returns zero if none remain.
 pub fn nearest_turn_offset(phase: &[f64], reference: &[f64]) -> f64 {
     let differences = phase
         .iter()
@@ -89,8 +91,8 @@ pub fn nearest_turn_offset(phase: &[f64], reference: &[f64]) -> f64 {
 /// Interpolates the measured response at each `omega` \[rad/s\]: linear on log omega, in dB and in
 /// unwrapped phase.
 ///
-/// NaN outside the measured frequencies: no extrapolation. Zero next to a measured zero, which has
-/// no dB value.
+/// Returns NaN outside the measured frequencies, since nothing is extrapolated. Returns zero next
+/// to a measured zero, whose magnitude in dB is minus infinity.
 pub fn interpolate(response: &MeasuredResponse, omega: &[f64]) -> PairTable<Vec<Complex<f64>>> {
     let places = places(response.omega(), omega);
     response
@@ -98,7 +100,7 @@ pub fn interpolate(response: &MeasuredResponse, omega: &[f64]) -> PairTable<Vec<
         .map(|_, values| interpolate_curve(values, &places))
 }
 
-/// Interpolates a curve at each place; NaN without a place.
+/// Interpolates a curve at each place; NaN for a frequency outside the curve.
 fn interpolate_curve(values: &[Complex<f64>], places: &[Option<Place>]) -> Vec<Complex<f64>> {
     let magnitude_db: Vec<f64> = values
         .iter()
@@ -119,10 +121,8 @@ fn interpolate_curve(values: &[Complex<f64>], places: &[Option<Place>]) -> Vec<C
     interpolated
 }
 
-/// Interpolates the coherence of each measured response at each `omega` \[rad/s\], linear on log
-/// omega (M4a); `None` for a response without coherence.
-///
-/// NaN outside the measured frequencies.
+/// Interpolates the coherence of each response at each `omega` \[rad/s\], linear on log omega
+/// (M4a); NaN outside the measured frequencies. Returns `None` if the file gives no coherence.
 pub fn coherence_at(response: &MeasuredResponse, omega: &[f64]) -> Option<PairTable<Vec<f64>>> {
     let coherence = response.coherence()?;
     let places = places(response.omega(), omega);
@@ -134,8 +134,8 @@ pub fn coherence_at(response: &MeasuredResponse, omega: &[f64]) -> Option<PairTa
     }))
 }
 
-/// Interpolates `values` at rising frequencies `known` to each `omega` \[rad/s\]: linear on log
-/// omega, constant beyond the ends; NaN if there are no values.
+/// Interpolates `values`, given at rising frequencies `known`, at each `omega` \[rad/s\]: linear on
+/// log omega, constant beyond the ends; NaN if there are no values.
 pub fn interpolate_values(known: &[f64], values: &[f64], omega: &[f64]) -> Vec<f64> {
     let (Some(&lowest), Some(&highest)) = (known.first(), known.last()) else {
         return vec![f64::NAN; omega.len()];
@@ -149,22 +149,22 @@ pub fn interpolate_values(known: &[f64], values: &[f64], omega: &[f64]) -> Vec<f
         .collect()
 }
 
-/// Interpolates `values` at rising frequencies `known` \[rad/s\] to `omega`: linear on log omega;
-/// `None` outside the range.
+/// Interpolates `values`, given at rising frequencies `known` \[rad/s\], at `omega`: linear on log
+/// omega; `None` outside their range.
 pub fn between(known: &[f64], values: &[f64], omega: f64) -> Option<f64> {
     Place::find(known, omega).map(|place| place.value(values))
 }
 
-/// Position of a frequency between two others: at index `after`, or `fraction` of the way to it
-/// from its predecessor.
+/// Position of a frequency in a list: between the entries `after - 1` and `after`.
 struct Place {
     after: usize,
-    /// From 0 to 1; 1 where the frequency equals that at `after`.
+    /// Share of the way from `after - 1` to `after` on log omega, above 0 and up to 1; 1 if the
+    /// frequency equals entry `after`.
     fraction: f64,
 }
 
 impl Place {
-    /// Finds `omega` among rising frequencies; `None` outside their range.
+    /// Finds `omega` in a list of rising frequencies; `None` outside their range.
     fn find(known: &[f64], omega: f64) -> Option<Self> {
         let after = known.partition_point(|&known| known < omega);
         if after == known.len() {
@@ -196,8 +196,8 @@ impl Place {
         low + self.fraction * (high - low)
     }
 
-    /// Interpolates magnitudes \[dB\]: minus infinity beside a value of minus infinity, where
-    /// [`Place::value`] would be NaN.
+    /// Interpolates magnitudes \[dB\]; minus infinity next to a value of minus infinity, for which
+    /// [`Place::value`] may be NaN.
     fn magnitude_db(&self, values: &[f64]) -> f64 {
         let is_beside_zero =
             self.fraction < 1.0 && values[self.after - 1..=self.after].contains(&f64::NEG_INFINITY);
@@ -251,7 +251,7 @@ mod tests {
         let mut angles: Vec<f64> = (0..100).map(|k| wrap(-0.3 * f64::from(k))).collect();
         unwrap(&mut angles);
         for (k, angle) in angles.iter().enumerate() {
-            // A hundred additions of rounded steps of at most pi.
+            // Tolerance: a hundred additions of rounded steps of at most pi.
             assert!((angle + 0.3 * k as f64).abs() < 1e-12);
         }
     }
@@ -274,7 +274,7 @@ mod tests {
         fn wrapping_keeps_the_angle_and_lands_in_the_half_open_turn(angle in -1e3_f64..1e3) {
             let wrapped = wrap(angle);
             prop_assert!(wrapped > -PI && wrapped <= PI);
-            // The multiple of 2 pi is exact up to the rounding of angles up to 1e3.
+            // Tolerance: the multiple of 2 pi is exact up to the rounding of angles up to 1e3.
             prop_assert!(((angle - wrapped) / TAU - ((angle - wrapped) / TAU).round()).abs() < 1e-12);
         }
 

@@ -21,14 +21,15 @@ use super::s_plane::SPlane;
 use super::schur_form::SchurForm;
 use crate::dataset::{Dynamics, StateSpace};
 
-/// Maximum pole movement per unit change in the balanced A for which eigenvectors are meaningful. A
-/// double pole with a single eigenvector has 1e8 in floating point, a simple pole less than 1e3.
+/// Maximum displacement of a pole per unit change in the balanced A for which eigenvectors are
+/// meaningful. In floating point, a double pole with a single eigenvector has about 1e8, a well
+/// separated pole less than 1e3.
 const NEAR_DEFECTIVE: f64 = 1e6;
 
-/// A pole of a model and the motion it describes.
+/// A pole of a model and its motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode {
-    /// The pole `lambda` \[rad/s\].
+    /// Pole `lambda` \[rad/s\].
     pub pole: Complex<f64>,
     /// Undamped natural frequency `|lambda|` \[rad/s\].
     pub frequency_rad_s: f64,
@@ -37,33 +38,34 @@ pub struct Mode {
     /// `-1 / Re lambda` \[s\], negative for a growing mode; `None` for a mode that neither grows
     /// nor decays.
     pub time_constant_s: Option<f64>,
-    /// State participation (index, share) in descending order, sum 1; or the reason why there is
-    /// none.
+    /// State participation (state index, share) in descending order, with the sum 1; or the reason
+    /// why it is unavailable.
     pub participation: Result<Vec<(usize, f64)>, NearDefective>,
-    /// Residue per output over all inputs: its magnitude is the norm of the output's row in the
-    /// residue matrix, its phase is relative to the other outputs. `None` for a near-defective
-    /// pole.
+    /// Residue of each output for all inputs together: its magnitude is the norm of the output's
+    /// row in the residue matrix, its phase is relative to the other outputs. `None` for a
+    /// near-defective pole.
     pub residues: Option<Vec<Complex<f64>>>,
 }
 
-/// Error for a pole whose eigenvectors, and thus the state participation, are rounding errors: the
-/// pole coincides or shares an eigenvector with another, as for two identical sensors.
+/// Error for a pole whose eigenvectors, and thus the state participation, are dominated by rounding
+/// errors: the pole coincides or shares an eigenvector with another pole, as for two identical
+/// sensors.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "the pole cannot be distinguished from a neighbour: a relative change of A by 1e-16 moves it {movement:.0e} times as far, so \
-     the shares of the states are meaningless"
+    "the pole cannot be distinguished from a neighbouring pole: a relative change of 1e-16 in A \
+    moves it {movement:.0e} times as far, so that its state participation is meaningless"
 )]
 pub struct NearDefective {
-    /// Pole movement per unit change in A.
+    /// Displacement of the pole per unit change in A.
     pub movement: f64,
 }
 
-/// Reason why a model has no modes.
+/// Reason why the modes of a model are unavailable.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ModesError {
     #[error("{0}")]
     TooLarge(LargeEntry),
-    #[error("the eigenvalues of its matrix A were not found: the iteration does not converge")]
+    #[error("the eigenvalues of the matrix A were not found: the iteration does not converge")]
     NotConverged,
 }
 
@@ -101,13 +103,13 @@ impl Mode {
 
 /// Computes the modes of a model, one per pole, in ascending `|lambda|`. In a conjugate pair the
 /// pole above the real axis comes first, and the other is its exact conjugate. A pole below the
-/// rounding error of the matrix counts as zero.
+/// rounding error of the matrix is set to zero.
 ///
 /// Discrete-time poles are given as `s = ln z / T`; poles at `z = 0`, which vanish within one
-/// sample, have no `s` and are left out (M2a). Channel delays do not move poles.
+/// sample, have no `s` and are omitted (M2a). Channel delays do not move poles.
 ///
 /// # Errors
-/// [`ModesError`] where the eigenvalues cannot be computed.
+/// [`ModesError`] if the eigenvalues cannot be computed.
 pub fn modes(model: &StateSpace) -> Result<Vec<Mode>, ModesError> {
     if let Some(entry) = LargeEntry::find(model) {
         return Err(ModesError::TooLarge(entry));
@@ -120,7 +122,7 @@ pub fn modes(model: &StateSpace) -> Result<Vec<Mode>, ModesError> {
     let form = SchurForm::new(&a).ok_or(ModesError::NotConverged)?;
     let rounding = 4.0 * f64::EPSILON * a.nrows() as f64 * a.norm();
     let mut modes: Vec<Mode> = Vec::with_capacity(a.nrows());
-    // The last mode above the real axis, until its conjugate follows.
+    // The last mode above the real axis, until its conjugate has been added.
     let mut upper_mode: Option<Mode> = None;
     for (index, eigenvalue) in form.eigenvalues().into_iter().enumerate() {
         if let Some(upper) = upper_mode.take() {
@@ -166,7 +168,7 @@ pub fn modes(model: &StateSpace) -> Result<Vec<Mode>, ModesError> {
 /// states.
 ///
 /// # Errors
-/// As [`modes`].
+/// [`ModesError`], as in [`modes`].
 pub fn modes_of(dynamics: &Dynamics) -> Result<Vec<Mode>, ModesError> {
     match dynamics {
         Dynamics::StateSpace(model) => modes(model),
@@ -174,19 +176,22 @@ pub fn modes_of(dynamics: &Dynamics) -> Result<Vec<Mode>, ModesError> {
     }
 }
 
-/// Eigenvectors for an eigenvalue: `A v = lambda v`, `w A = lambda w` and `w v = 1`.
+/// Right and left eigenvectors for an eigenvalue: `A v = lambda v`, `w A = lambda w` and `w v = 1`.
 struct Eigenvectors {
     right: DVector<Complex<f64>>,
     left: DVector<Complex<f64>>,
 }
 
 impl Eigenvectors {
-    /// Computes the eigenvectors for the eigenvalue at position `index` on the diagonal.
+    /// Computes the eigenvectors for the eigenvalue at diagonal position `index` of `T`.
+    ///
+    /// # Errors
+    /// [`NearDefective`] if they are dominated by rounding errors.
     fn new(form: &SchurForm, index: usize) -> Result<Self, NearDefective> {
         let x = form.right(index);
         let y = form.left(index);
         let movement = x.norm() * y.norm();
-        // Also true for NaN, which results where the eigenvectors overflow.
+        // `!movement.le(...)` is also true for NaN, which results if the eigenvectors overflow.
         if !movement.le(&NEAR_DEFECTIVE) {
             return Err(NearDefective { movement });
         }
@@ -196,7 +201,7 @@ impl Eigenvectors {
         })
     }
 
-    /// Returns the state participation, in descending order.
+    /// Returns the state participation (state index, share) in descending order.
     fn participation(&self) -> Vec<(usize, f64)> {
         let products: Vec<f64> = self
             .right
@@ -214,7 +219,7 @@ impl Eigenvectors {
         shares
     }
 
-    /// Returns `(C v)_i |w B|` for each output.
+    /// Returns the residue `(C v)_i |w B|` of each output.
     fn residues(&self, b: &DMatrix<f64>, c: &DMatrix<f64>) -> Vec<Complex<f64>> {
         let of_inputs = (b.map(Complex::from).transpose() * &self.left).norm();
         (c.map(Complex::from) * &self.right)
@@ -224,8 +229,8 @@ impl Eigenvectors {
     }
 }
 
-/// Returns the eigenvalues of A without balancing \[rad/s for continuous time\], or `None` where
-/// the Schur iteration does not converge.
+/// Returns the eigenvalues of A, computed without balancing: \[rad/s\] in continuous time, `z` in
+/// discrete time. Returns `None` if the Schur iteration does not converge.
 #[must_use]
 pub fn poles(model: &StateSpace) -> Option<Vec<Complex<f64>>> {
     let schur =
@@ -254,7 +259,7 @@ mod tests {
 
     #[test]
     fn an_oscillator_and_a_lag_have_the_modes_of_the_textbook() {
-        // x'' + 2 0.3 4 x' + 16 x = 0 beside x' = -0.5 x.
+        // Block diagonal: x'' + 2 0.3 4 x' + 16 x = 0 and x' = -0.5 x.
         let found = modes(&model(
             dmatrix![0.0, 1.0, 0.0; -16.0, -2.4, 0.0; 0.0, 0.0, -0.5],
         ))
@@ -309,8 +314,8 @@ mod tests {
 
     #[test]
     fn discrete_time_modes_equal_the_sampled_modes() {
-        // e^(A T) for the oscillator and the lag above, T = 0.02 s; an alternating sign, and a
-        // state that vanishes within a sample.
+        // e^(A T) for the oscillator and the lag above, T = 0.02 s; a state whose sign alternates,
+        // and a state that vanishes within a sample.
         let sampled = (dmatrix![0.0, 1.0, 0.0; -16.0, -2.4, 0.0; 0.0, 0.0, -0.5] * 0.02).exp();
         let mut a = DMatrix::zeros(5, 5);
         a.view_mut((0, 0), (3, 3)).copy_from(&sampled);
@@ -330,7 +335,8 @@ mod tests {
         ];
         assert_eq!(found.len(), 4, "the pole at z = 0 has no s");
         for (mode, (re, im)) in found.iter().zip(expected) {
-            // The exponential rounds by about 1e-16, in s by 50 times as much.
+            // Tolerance: the matrix exponential has a rounding error of about 1e-16, and
+            // `s = ln z / T` amplifies it 50 times.
             assert!(
                 (mode.pole - Complex::new(re, im)).norm() < 1e-12,
                 "{} {re} {im}",
@@ -354,7 +360,7 @@ mod tests {
             entries in prop::collection::vec(-2.0_f64..2.0, 25), exponents in prop::collection::vec(-12_i32..12, 5),
         ) {
             let a = DMatrix::from_vec(5, 5, entries);
-            // Powers of two: no rounding.
+            // Scaling by powers of two causes no rounding.
             let scaled = DMatrix::from_fn(5, 5, |row, column| a[(row, column)] * 2.0_f64.powi(exponents[row] - exponents[column]));
             let plain = modes(&model(a.clone())).unwrap();
             let scaled = modes(&model(scaled)).unwrap();
@@ -362,7 +368,8 @@ mod tests {
                 let Ok(shares) = &mode.participation else { continue };
                 let near = |other: &&Mode| (other.pole - mode.pole).norm();
                 let same = scaled.iter().min_by(|a, b| near(a).total_cmp(&near(b))).unwrap();
-                // The movement is at most 1e6; for poles of such matrices it is mostly 1 to 100.
+                // Tolerance: rounding errors of 1e-16 times a displacement of at most 1e6, mostly 1
+                // to 100.
                 prop_assert!(near(&same) < 1e-8, "{} {}", same.pole, mode.pole);
                 let Ok(others) = &same.participation else { continue };
                 let share_of = |state: usize| others.iter().find(|(other, _)| *other == state).map_or(0.0, |(_, share)| *share);

@@ -47,7 +47,7 @@ pub fn evaluate(model: &StateSpace, omega: &[f64]) -> FrequencyResponse {
     evaluate_on(Arch::new(), model, omega)
 }
 
-/// As [`evaluate`], on a given instruction set: for tests and benchmarks.
+/// Evaluates as [`evaluate`], with a given instruction set, for tests and benchmarks.
 pub fn evaluate_on(arch: Arch, model: &StateSpace, omega: &[f64]) -> FrequencyResponse {
     let s: Vec<_> = omega
         .iter()
@@ -59,17 +59,17 @@ pub fn evaluate_on(arch: Arch, model: &StateSpace, omega: &[f64]) -> FrequencyRe
     })
 }
 
-/// `H(s)` of a reduced model, for evaluation with the vectors of an instruction set.
+/// Evaluation of `H(s)` of a reduced model, compiled for an instruction set.
 pub(super) struct Elimination<'a> {
     pub(super) form: &'a HessenbergForm,
-    /// Each `s` \[rad/s\].
+    /// Values of `s` \[rad/s\] at which to evaluate.
     pub(super) s: &'a [Complex<f64>],
 }
 
-/// Count of frequencies that share their pivots, whatever the vector length.
+/// Number of neighbouring frequencies that share their pivots, independent of the vector length.
 const GROUP: usize = 8;
 
-/// Maximum `|s| / alpha`: its square must not overflow.
+/// Maximum `|s| / alpha`: beyond it, its square could overflow.
 const LARGEST: f64 = 1e150;
 
 impl WithSimd for Elimination<'_> {
@@ -101,15 +101,16 @@ impl WithSimd for Elimination<'_> {
     }
 }
 
-/// Each `s / alpha` in a group; real and imaginary parts apart.
+/// The values `s / alpha` of a group, real and imaginary parts separate.
 struct GroupShifts {
     re: [f64; GROUP],
     im: [f64; GROUP],
 }
 
 impl GroupShifts {
-    /// Scales the frequencies of a group; a short group repeats its last frequency. A frequency
-    /// whose square would overflow becomes NaN, so that its response cannot pass for a valid value.
+    /// Scales the frequencies of a group; an incomplete group repeats its last frequency. A
+    /// frequency whose square could overflow becomes NaN, so that its response cannot be mistaken
+    /// for a valid value.
     #[inline(always)]
     fn new(group: &[Complex<f64>], frequency_scale: f64) -> Self {
         let mut shifts = Self {
@@ -130,9 +131,10 @@ impl GroupShifts {
 
 /// Eliminates the states for a group: steps 2 to 6.
 ///
-/// The next row, which is real, costs half as much as the active row: it clears a column unless the
-/// active row's entry is more than tau times as large in some lane. Multipliers within G are then
-/// at most tau, and since the rows of G enter unchanged, entries grow at most by the factor `n tau`.
+/// The next row is real, and costs half as much as the active row. It is therefore used to clear a
+/// column unless the active row's entry is more than tau times as large in some lane. Multipliers
+/// within G are then at most tau, and since the rows of G enter unchanged, entries grow at most by
+/// the factor `n tau`.
 #[inline(always)]
 fn eliminate_group<S: Simd>(
     simd: S,
@@ -160,7 +162,7 @@ fn eliminate_group<S: Simd>(
 }
 
 /// Appends the values of a group to the curves. A NaN frequency gives NaN, even for a model without
-/// states, whose response would be finite.
+/// states, whose response would otherwise be finite.
 #[inline(always)]
 fn append_group<S: Simd>(
     form: &HessenbergForm,
@@ -193,12 +195,13 @@ fn append_group<S: Simd>(
 struct ComplexRows<S: Simd> {
     /// `s / alpha`.
     shift: ComplexLanes<S>,
-    /// Row-major.
+    /// Entries, row by row.
     entries: Vec<ComplexLanes<S>>,
 }
 
 impl<S: Simd> ComplexRows<S> {
-    /// Initialises the rows before any elimination, and reuses the memory of earlier frequencies.
+    /// Sets the rows to their values before elimination, reusing the memory of the previous
+    /// frequencies.
     #[inline(always)]
     fn start(&mut self, simd: S, form: &HessenbergForm, shift: ComplexLanes<S>) {
         self.shift = shift;
@@ -212,8 +215,8 @@ impl<S: Simd> ComplexRows<S> {
         }
     }
 
-    /// Returns whether, in any lane, the active row's entry is NaN or too large for the next row to
-    /// clear.
+    /// Returns whether, in any lane, the active row's entry is NaN or exceeds the pivot threshold
+    /// of the next row.
     #[inline(always)]
     fn needs_interchange(&self, simd: S, form: &HessenbergForm, column: usize) -> bool {
         let inverse_square_threshold =
@@ -223,8 +226,8 @@ impl<S: Simd> ComplexRows<S> {
         simd.first_true_m64s(exceeds) < S::F64_LANES
     }
 
-    /// Clears a column; an interchange swaps active and next row in the lanes where the active
-    /// entry is larger.
+    /// Clears a column; with `interchange`, the active row and the next row are swapped in the
+    /// lanes where the active entry is larger.
     #[inline(always)]
     fn clear(&mut self, simd: S, form: &HessenbergForm, column: usize, interchange: bool) {
         let next = form.next_row(column);
@@ -250,7 +253,7 @@ impl<S: Simd> ComplexRows<S> {
             subtract_multiple(simd, row, quotient, active);
             subtract_next(simd, row, multiplier, next, shift);
         }
-        // The active row comes last: the others need its old value.
+        // Update the active row last: the other rows need its old value.
         let [quotient, multiplier] = interchange.active_factors(simd, subdiagonal, pivot);
         let zero = ComplexLanes::real(simd, 0.0);
         for entry in &mut *active {
@@ -282,8 +285,8 @@ impl<S: Simd> ComplexRows<S> {
     }
 }
 
-/// Subtracts `multiplier (next row)` from a row, to the right of the cleared column: nearly all the
-/// work. The first entry in the next row also contains `-shift`.
+/// Subtracts `multiplier (next row)` from a row, to the right of the cleared column; this takes
+/// most of the time. The first entry in the next row also contains `-shift`.
 #[inline(always)]
 fn subtract_next<S: Simd>(
     simd: S,
@@ -331,7 +334,7 @@ struct Interchange<S: Simd> {
 }
 
 impl<S: Simd> Interchange<S> {
-    /// Selects the lanes where the active row's entry `u` is larger than the next row's `h`.
+    /// Selects the lanes in which the active row's entry `u` is larger than the next row's `h`.
     #[inline(always)]
     fn new(simd: S, subdiagonal: &Subdiagonal, pivot: ComplexLanes<S>) -> Self {
         let lanes = simd.greater_than_f64s(pivot.square(simd), simd.splat_f64s(subdiagonal.square));
@@ -341,7 +344,8 @@ impl<S: Simd> Interchange<S> {
         }
     }
 
-    /// Returns quotient and multiplier for a row with entry `w`: `w / u` and zero, or zero and `w`.
+    /// Returns quotient and multiplier for a row with entry `w`: `w / u` and zero in the selected
+    /// lanes, zero and `w` in the others.
     #[inline(always)]
     fn factors(&self, simd: S, entry: ComplexLanes<S>) -> [ComplexLanes<S>; 2] {
         let zero = ComplexLanes::real(simd, 0.0);
@@ -349,7 +353,8 @@ impl<S: Simd> Interchange<S> {
         [quotient, entry.replaced_where(simd, self.lanes, zero)]
     }
 
-    /// Returns quotient and multiplier for the active row: `h / u` and `-h`, or -1 and `u`.
+    /// Returns quotient and multiplier for the active row: `h / u` and `-h` in the selected lanes,
+    /// -1 and `u` in the others.
     #[inline(always)]
     fn active_factors(
         &self,
@@ -357,7 +362,8 @@ impl<S: Simd> Interchange<S> {
         subdiagonal: &Subdiagonal,
         pivot: ComplexLanes<S>,
     ) -> [ComplexLanes<S>; 2] {
-        // Zero even where the pivot is zero: nothing remains from the active row.
+        // If `h` is zero, set the quotient to zero without division by the pivot, which may be zero
+        // too.
         let quotient = if subdiagonal.entry == 0.0 {
             ComplexLanes::real(simd, 0.0)
         } else {
@@ -428,7 +434,7 @@ mod tests {
         let omega: Vec<f64> = (0..19).map(|k| f64::from(k) * 0.25).collect();
         let response = evaluate(&oscillator(), &omega);
         for (omega, value) in omega.iter().zip(response.curve(Pair::new(0, 0))) {
-            // 1 / (4 - omega^2); a handful of operations, whose rounding the difference amplifies
+            // 1 / (4 - omega^2): the difference amplifies the rounding errors of a few operations
             // up to 8 times.
             let expected = 1.0 / (4.0 - omega * omega);
             assert_eq!(value.is_finite(), *omega != 2.0, "{omega}");
@@ -457,7 +463,7 @@ mod tests {
                 ),
                 &[1.3],
             ));
-            // A power of two: no rounding.
+            // The unit is a power of two, so that scaling causes no rounding.
             assert_eq!(scaled, plain * unit);
         }
     }
@@ -477,7 +483,7 @@ mod tests {
             &siso(&scale * a * &inverse, scale * b, c * inverse, 0.1),
             &[1.3],
         ));
-        // The scaling itself rounds each entry once.
+        // Tolerance: the scaling rounds each entry once.
         assert!((plain - scaled).norm() < 1e-14 * plain.norm());
     }
 
@@ -492,8 +498,8 @@ mod tests {
         simd.vectorize(Elimination { form, s: &s }).curves().clone()
     }
 
-    /// Returns the values on every instruction set of this machine with fused multiply-adds; the
-    /// bits must agree.
+    /// Returns the values for every instruction set of this machine with fused multiply-adds; they
+    /// must agree bit for bit.
     fn on_vectors(model: &StateSpace, omega: &[f64]) -> Vec<Values> {
         let mut values = Vec::new();
         #[cfg(target_arch = "x86_64")]
@@ -506,7 +512,7 @@ mod tests {
         values
     }
 
-    /// Entries from a sine: irregular, but reproducible.
+    /// Returns a matrix with reproducible irregular entries from a sine.
     fn matrix(rows: usize, columns: usize, seed: f64) -> DMatrix<f64> {
         DMatrix::from_fn(rows, columns, |row, column| {
             (seed + 7.3 * row as f64 + 2.9 * (column * column) as f64).sin()
@@ -521,15 +527,15 @@ mod tests {
         StateSpace::new(a, b, c, d).unwrap()
     }
 
-    /// Frequencies from far below the poles, where the real rows are the pivots, to far above,
-    /// where the active rows are; the lanes of a vector differ in between.
+    /// Returns frequencies from far below the poles, where the real rows are the pivots, to far
+    /// above, where the active rows are; in between, the lanes of a vector differ.
     fn wide(count: usize) -> Vec<f64> {
         (0..count)
             .map(|k| 1e-3 * 1e6_f64.powf(k as f64 / count as f64))
             .collect()
     }
 
-    /// Computes the response by a dense decomposition.
+    /// Computes the response with a dense matrix decomposition.
     fn dense(model: &StateSpace, omega: f64) -> DMatrix<Complex<f64>> {
         let [a, b, c, d] =
             [model.a(), model.b(), model.c(), model.d()].map(|matrix| matrix.map(Complex::from));
@@ -544,7 +550,7 @@ mod tests {
             .collect()
     }
 
-    /// Returns the largest difference, relative to the largest value.
+    /// Returns the maximum difference, relative to the largest expected value.
     fn difference(found: &Values, expected: &Values) -> f64 {
         let found = flattened(found);
         let expected = flattened(expected);
@@ -556,7 +562,7 @@ mod tests {
             .iter()
             .zip(&expected)
             .map(|(found, expected)| (found - expected).norm());
-        // NaN must not be lost in a maximum.
+        // `f64::max` would drop a NaN.
         differences.fold(
             0.0,
             |worst: f64, next| if next <= worst { worst } else { next },
@@ -570,8 +576,8 @@ mod tests {
             let omega = wide(count);
             let scalar = on(Scalar::new(), &model, &omega);
             for vectors in on_vectors(&model, &omega) {
-                // Two backward stable solutions of order 9: rounding errors of at most 9 tau times
-                // 1e-16 each.
+                // Tolerance: two backward stable solutions of order 9, each with rounding errors of
+                // at most 9 tau times 1e-16.
                 assert!(
                     count == 0 || difference(&vectors, &scalar) < 8e-12,
                     "{count} frequencies"
@@ -619,7 +625,8 @@ mod tests {
 
     #[test]
     fn frequencies_of_a_group_may_need_different_pivots() {
-        // In the same group, the real row must be the pivot at 1e-4, and the complex row at 1e4.
+        // Both ends in one group: the real row must be the pivot at 1e-4 rad/s, the complex row at
+        // 1e4 rad/s.
         let model = model(14, 6, 4);
         let omega: Vec<f64> = (0..29)
             .map(|k| if k % 2 == 0 { 1e-4 } else { 1e4 } * (1.0 + f64::from(k)))
@@ -635,8 +642,8 @@ mod tests {
                     .fold(0.0, f64::max);
                 for (pair, values) in values.iter() {
                     let error = (values[k] - expected[(pair.output, pair.input)]).norm();
-                    // The bound of threshold pivoting, 3e-11, times the condition number of a
-                    // random matrix of order 14.
+                    // Tolerance: the bound of threshold pivoting, 3e-11, times the condition number
+                    // of a random matrix of order 14.
                     assert!(error < 1e-9 * largest, "{omega}, {pair:?}: {error}");
                 }
             }
@@ -648,7 +655,8 @@ mod tests {
         for order in 1..=9 {
             let b = matrix(order, 2, 1.1);
             let c = matrix(3, order, 2.3);
-            // All poles at zero; then pairs at 2 rad/s, with a single pole at zero left over.
+            // All poles at zero; then pairs of poles at 2 rad/s and, for an odd order, a single
+            // pole at zero.
             let turning = DMatrix::from_fn(order, order, |row, column| match (row % 2, column) {
                 (0, column) if column == row + 1 => 2.0,
                 (1, column) if column + 1 == row => -2.0,
@@ -674,8 +682,8 @@ mod tests {
 
     #[test]
     fn a_chain_coupled_by_1e_minus_55_neither_overflows_nor_loses_its_coupling() {
-        // The inverse coupling is 1e55 per step: without shrinking, the fifth step would overflow
-        // the square of a pivot.
+        // The inverse coupling is 1e55 per step: without the factor `h` of an interchange, the
+        // square of a pivot would overflow in the fifth step.
         let weak = 1e-55;
         let a = DMatrix::from_fn(8, 8, |row, column| match row.abs_diff(column) {
             0 => -1.0,
@@ -699,7 +707,7 @@ mod tests {
                     1 => lag * lag * weak,
                     _ => continue,
                 };
-                // A dozen operations.
+                // Tolerance: about a dozen roundings.
                 assert!(
                     (values[1] - expected).norm() < 1e-14 * expected.norm(),
                     "{pair:?}: {}",

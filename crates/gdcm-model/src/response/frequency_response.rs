@@ -9,18 +9,18 @@ use super::lead_filter::GainDelay;
 use crate::dataset::{Band, Pair, PairTable};
 use crate::units::ratio_to_db;
 
-/// `H(j omega)` for every response of a model on a grid of `N` frequencies: a p x m table of
+/// Values `H(j omega)` of every response of a model on a grid of `N` frequencies: a p x m table of
 /// curves.
 ///
-/// A value is not finite where the response is undefined: at a pole on the imaginary axis, or
-/// outside the frequencies of measured data.
+/// A value is not finite if the response is undefined: at a pole on the imaginary axis, or outside
+/// the frequencies of measured data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrequencyResponse {
     pub(super) curves: PairTable<Vec<Complex<f64>>>,
 }
 
 impl FrequencyResponse {
-    /// Creates a response from curves with `N` values each.
+    /// Creates a frequency response from curves with `N` values each.
     pub fn new(curves: PairTable<Vec<Complex<f64>>>) -> Self {
         Self { curves }
     }
@@ -35,18 +35,18 @@ impl FrequencyResponse {
         self.curves.inputs()
     }
 
-    /// Returns the `N` values of a response.
+    /// Returns the `N` complex values of a response.
     pub fn curve(&self, pair: Pair) -> &[Complex<f64>] {
         &self.curves[pair]
     }
 
-    /// Returns the values of every response, `[output, input]`.
+    /// Returns the complex values of every response, `[output, input]`.
     pub fn curves(&self) -> &PairTable<Vec<Complex<f64>>> {
         &self.curves
     }
 
-    /// Returns the responses that are zero wherever they are finite, with at least one finite
-    /// value. Such a response counts as zero, even if its other values are undefined.
+    /// Returns the responses with at least one finite value whose finite values are all zero. They
+    /// are treated as zero, even if other values are undefined.
     pub fn zero_where_finite(&self) -> Vec<Pair> {
         let mut found = Vec::new();
         for (pair, curve) in self.curves.iter() {
@@ -58,7 +58,7 @@ impl FrequencyResponse {
         found
     }
 
-    /// Returns the responses that are not finite at some frequency.
+    /// Returns the responses that are not finite at one or more frequencies.
     pub fn not_finite(&self) -> Vec<Pair> {
         let mut found = Vec::new();
         for (pair, curve) in self.curves.iter() {
@@ -123,15 +123,15 @@ pub fn log_spaced(lowest: f64, highest: f64, count: usize) -> Vec<f64> {
 /// Magnitude and unwrapped phase of a response, for plots (M2).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponseShape {
-    /// Magnitude \[dB\] at each frequency; a value that is not finite leaves a gap.
+    /// Magnitude \[dB\] at each frequency; NaN where the value is zero or not finite.
     pub magnitude_db: Arc<[f64]>,
-    /// Phase \[deg\] at each frequency; a value that is not finite leaves a gap.
+    /// Phase \[deg\] at each frequency; NaN where the value is zero or not finite.
     pub phase_deg: Arc<[f64]>,
 }
 
 impl ResponseShape {
-    /// Computes the shape. The phase is principal at the first finite value, then unwrapped; a
-    /// value that is not finite leaves a gap (M2).
+    /// Computes magnitude and phase; NaN where a value is zero or not finite. The phase is
+    /// principal at the first other value, then unwrapped (M2).
     pub fn new(values: &[Complex<f64>]) -> Self {
         let finite: Vec<usize> = (0..values.len())
             .filter(|&k| values[k].is_finite() && values[k].norm() > 0.0)
@@ -150,8 +150,8 @@ impl ResponseShape {
         }
     }
 
-    /// Returns the shape shifted by whole turns, as close as possible to `reference` over the first
-    /// `points` frequencies (M2).
+    /// Returns the shape with its phase shifted by whole turns, as close as possible to `reference`
+    /// over the first `points` frequencies (M2).
     pub fn phase_aligned(self, reference: &Self, points: usize) -> Self {
         let own = radians(self.phase_deg.iter().take(points));
         let other = radians(reference.phase_deg.iter().take(points));
@@ -165,7 +165,7 @@ impl ResponseShape {
         }
     }
 
-    /// Returns the shape over the first `points` frequencies; NaN at the others.
+    /// Returns the shape over the first `points` frequencies; NaN at the other frequencies.
     pub fn first(self, points: usize) -> Self {
         if points >= self.phase_deg.len() {
             return self;
@@ -176,7 +176,7 @@ impl ResponseShape {
         }
     }
 
-    /// Returns the shape after a correction (M10).
+    /// Returns the shape after a correction of gain and delay (M10).
     pub fn corrected(&self, omega: &[f64], correction: GainDelay) -> Self {
         let phase = radians(self.phase_deg.iter());
         Self {
@@ -191,20 +191,19 @@ impl ResponseShape {
     }
 }
 
-/// Converts degrees to radians.
 fn radians<'v>(degrees: impl Iterator<Item = &'v f64>) -> Vec<f64> {
     degrees.map(|degrees| degrees.to_radians()).collect()
 }
 
-/// Keeps the first `points` values; the others become NaN.
+/// Returns the values with all but the first `points` replaced by NaN.
 fn first_values(values: &[f64], points: usize) -> Arc<[f64]> {
     let mut first = values.to_vec();
     first[points..].fill(f64::NAN);
     first.into()
 }
 
-/// Wraps a continuous phase \[deg\] to -180 to 180 degrees, with a gap at each jump instead of a
-/// line from edge to edge.
+/// Wraps a continuous phase \[deg\] to -180 to 180 degrees. A plot shows a gap at each jump, not a
+/// line from edge to edge, because one value there is NaN.
 pub fn wrapped_deg(phase_deg: &[f64]) -> Vec<f64> {
     let wrapped: Vec<f64> = phase_deg
         .iter()
@@ -219,17 +218,17 @@ pub fn wrapped_deg(phase_deg: &[f64]) -> Vec<f64> {
     with_gaps
 }
 
-/// A response as `N` magnitudes \[dB\] and `N` principal phases \[rad\], all finite.
+/// A response given by `N` magnitudes \[dB\] and `N` principal phases \[rad\], all finite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PolarCurve {
-    /// `20 log10 |H|`.
+    /// `20 log10 |H|` at each frequency.
     pub magnitude_db: Vec<f64>,
-    /// `arg H` in (-pi, pi].
+    /// `arg H` at each frequency, in (-pi, pi].
     pub phase: Vec<f64>,
 }
 
 impl PolarCurve {
-    /// Converts a response; `None` where it is zero or not finite at some frequency.
+    /// Converts a response; `None` if it is zero or not finite at any frequency.
     pub fn from_values(values: &[Complex<f64>]) -> Option<Self> {
         let magnitude_db: Vec<f64> = values.iter().map(magnitude_db).collect();
         if magnitude_db.iter().any(|magnitude| !magnitude.is_finite()) {
@@ -242,8 +241,8 @@ impl PolarCurve {
     }
 }
 
-/// Returns `20 log10 |H| = 10 log10 |H|^2`; the square avoids a root where it neither overflows nor
-/// underflows.
+/// Returns `20 log10 |H|`, computed as `10 log10 |H|^2` to avoid a square root, unless the square
+/// overflows or underflows.
 fn magnitude_db(value: &Complex<f64>) -> f64 {
     let square = value.norm_sqr();
     if square.is_normal() {
@@ -263,7 +262,7 @@ pub struct PolarResponse {
 }
 
 impl PolarResponse {
-    /// Computes magnitude and phase for every response.
+    /// Computes magnitude and phase of every response.
     pub fn new(response: &FrequencyResponse) -> Self {
         Self {
             curves: response
@@ -272,8 +271,8 @@ impl PolarResponse {
         }
     }
 
-    /// Computes magnitude and phase for the marked responses only: a logarithm and an arc tangent
-    /// cost more than the response itself.
+    /// Computes magnitude and phase of the marked responses only: a logarithm and an arc tangent
+    /// take longer than the response itself.
     pub fn from_marked(response: &FrequencyResponse, marked: &PairTable<bool>) -> Self {
         Self {
             curves: response.curves.map(|pair, curve| {
@@ -287,8 +286,9 @@ impl PolarResponse {
     }
 
     /// Returns the responses that are numerically zero (M6a): their peak over the band lies more
-    /// than 120 dB (factor 1e-6) below the largest peak for the same output, and below the largest
-    /// peak for the same input. Numerical differentiation yields such values for exact zeros.
+    /// than 120 dB (factor 1e-6) below the largest peak for the same output, and also below the
+    /// largest peak for the same input. Numerical differentiation produces such values instead of
+    /// exact zeros.
     pub fn numerically_nothing(&self) -> PairTable<bool> {
         const LEAST_DB: f64 = -120.0;
         let peaks = self.curves.map(|_, curve| match curve {
@@ -308,20 +308,20 @@ impl PolarResponse {
         })
     }
 
-    /// Makes the marked responses undefined.
+    /// Removes the curves of the marked responses.
     pub fn clear(&mut self, marked: &PairTable<bool>) {
         for pair in marked.marked() {
             self.curves[pair] = None;
         }
     }
 
-    /// Returns the curves, `[output, input]`.
+    /// Returns the curves, `[output, input]`; `None` for an undefined response.
     pub fn curves(&self) -> &PairTable<Option<PolarCurve>> {
         &self.curves
     }
 }
 
-/// Returns the largest value; minus infinity for no values.
+/// Returns the maximum; minus infinity for no values.
 fn largest<'v>(values: impl Iterator<Item = &'v f64>) -> f64 {
     values.copied().fold(f64::NEG_INFINITY, f64::max)
 }
@@ -339,7 +339,7 @@ mod tests {
         );
         let ratio = (12.0_f64 / 0.5).powf(1.0 / 199.0);
         for pair in grid.omega().windows(2) {
-            // exp and ln round to about 1 ulp each, of arguments up to 2.5.
+            // Tolerance: exp and ln each round by about 1 ulp, for arguments up to 2.5.
             assert!((pair[1] / pair[0] / ratio - 1.0).abs() < 1e-14);
         }
     }
@@ -349,7 +349,7 @@ mod tests {
         let turned = |degrees: f64| Complex::from_polar(10.0, degrees.to_radians());
         let shape = ResponseShape::new(&[turned(-170.0), Complex::new(0.0, 0.0), turned(170.0)]);
         assert!(shape.magnitude_db[1].is_nan() && shape.phase_deg[1].is_nan());
-        // A few roundings of angles of 3 rad.
+        // Tolerance: a few roundings of angles of about 3 rad.
         assert!(
             (shape.magnitude_db[2] - 20.0).abs() < 1e-12
                 && (shape.phase_deg[2] + 190.0).abs() < 1e-12
@@ -368,8 +368,8 @@ mod tests {
 
     #[test]
     fn a_response_is_zero_only_relative_to_both_channels() {
-        // 2 x 2 responses: only the last is small relative to both; the third belongs to an output
-        // in small units.
+        // 2 x 2 responses: only the last is small relative to both its row and its column; the
+        // third is small because its output has small units.
         let values = [[1.0, 1.0], [1e-7, 0.99e-13]];
         let curves = PairTable::from_fn(2, 2, |pair| {
             vec![Complex::from(values[pair.output][pair.input]); 3]
@@ -400,7 +400,7 @@ mod tests {
             (1.0, 0.0),
             (1e200, 4000.0),
         ] {
-            // One rounding for the logarithm and one for its multiple.
+            // Tolerance: one rounding of the logarithm and one of its multiple.
             assert!((magnitude_db(&Complex::new(0.0, magnitude)) - db).abs() < 1e-12);
         }
         assert_eq!(magnitude_db(&Complex::new(0.0, 0.0)), f64::NEG_INFINITY);

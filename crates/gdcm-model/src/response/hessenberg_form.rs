@@ -1,5 +1,5 @@
-//! A state-space model in coordinates with O(n^2) cost per frequency: balanced, and reduced to
-//! upper Hessenberg form by Householder reflections.
+//! A state-space model transformed so that each frequency costs O(n^2) operations: balanced, and
+//! reduced to upper Hessenberg form by Householder reflections.
 
 use std::ops::Range;
 
@@ -9,8 +9,8 @@ use pulp::{Arch, Simd, WithSimd};
 use super::subdiagonal::Subdiagonal;
 use crate::dataset::{Pair, StateSpace};
 
-/// Minimum `alpha`, 2^-450 rad/s: at any frequency in use, all poles of a slower model are
-/// effectively zero.
+/// Minimum `alpha`, 2^-450 rad/s: the poles of a slower model are effectively zero at any frequency
+/// in use.
 const LEAST_ALPHA: f64 = f64::from_bits((1023 - 450) << 52);
 
 /// The system matrix of a model, prepared for state elimination.
@@ -34,34 +34,34 @@ const LEAST_ALPHA: f64 = f64::from_bits((1023 - 450) << 52);
 /// inputs are the model's outputs.
 #[derive(Clone, Debug)]
 pub(super) struct HessenbergForm {
-    /// State count, `n`.
+    /// Number of states, `n`.
     pub order: usize,
-    /// Row count of L: inputs (of the dual).
+    /// Number of rows of L: inputs (of the dual if `dual`).
     pub inputs: usize,
-    /// Column count of K: outputs (of the dual).
+    /// Number of columns of K: outputs (of the dual if `dual`).
     pub outputs: usize,
     /// Whether this is the dual: L then has a row per output, K a column per input.
     pub dual: bool,
-    /// Index of the input in the first row of L: the input with the largest column in B, which
-    /// swaps places with the first input.
+    /// Index of the input that was swapped with the first input, because its column in B is the
+    /// largest.
     first_input: usize,
     /// `1 / alpha`.
     pub frequency_scale: f64,
-    /// The only nonzero entry in the first row of L.
+    /// The last entry of the first row of L; all its other entries are zero.
     pub gain: f64,
-    /// Subdiagonal entry in each column of G except the last.
+    /// Subdiagonal entries of G, one for each column except the last.
     pub subdiagonals: Vec<Subdiagonal>,
     /// First row of `[G K]`, then all rows of `[L D']` except the first.
     pub complex_rows: Vec<f64>,
-    /// Other rows of `[G K]`, each divided by its subdiagonal entry.
+    /// All rows of `[G K]` except the first, each divided by its subdiagonal entry.
     next_rows: Vec<f64>,
-    /// First row of D'.
+    /// First row of `D'`.
     pub feed_through: Vec<f64>,
 }
 
 impl HessenbergForm {
-    /// Computes the reduced form of a model with `a` replacing its A. `arch` affects only the
-    /// computing time; the bits are the same on every instruction set.
+    /// Computes the reduced form of a model whose A is replaced by `a`. `arch` affects only the
+    /// computing time: the result is the same bit for bit on every instruction set.
     pub fn new(arch: Arch, a: DMatrix<f64>, model: &StateSpace) -> Self {
         let mut system = ScaledSystem::new(a, model);
         let first_input = system.swap_largest_input_first();
@@ -118,7 +118,8 @@ impl HessenbergForm {
         }
     }
 
-    /// Returns the model response for row `input` of L and column `output` of K.
+    /// Returns the response of the model that corresponds to row `input` of L and column `output`
+    /// of K.
     pub fn pair(&self, input: usize, output: usize) -> Pair {
         let input = if input == 0 {
             self.first_input
@@ -134,12 +135,13 @@ impl HessenbergForm {
         }
     }
 
-    /// Returns the entry count in a row of `[G K]`.
+    /// Returns the number of entries in a row of `[G K]`.
     pub fn width(&self) -> usize {
         self.order + self.outputs
     }
 
-    /// Returns the row with a one below the diagonal in this column, beginning at the next column.
+    /// Returns the row of `[G K]` whose subdiagonal entry, scaled to 1, lies in this column; it
+    /// begins at the next column.
     #[inline(always)]
     pub fn next_row(&self, column: usize) -> &[f64] {
         &self.next_rows[column * self.width()..][column + 1..self.width()]
@@ -171,7 +173,7 @@ impl ScaledSystem {
         let input_scale = 1.0 / power_of_two_below(b.amax());
         a *= frequency_scale;
         b *= input_scale;
-        // The larger factor first: a result within range must not underflow in between.
+        // Multiply by the larger factor first, so that no intermediate result underflows.
         let output_scale = 1.0 / input_scale;
         c *= frequency_scale.max(output_scale);
         c *= frequency_scale.min(output_scale);
@@ -185,7 +187,8 @@ impl ScaledSystem {
         }
     }
 
-    /// Swaps the first input with the input that has the largest column in B; returns its index.
+    /// Swaps the first input with the input that has the largest column in B; returns the index of
+    /// the latter.
     fn swap_largest_input_first(&mut self) -> usize {
         let mut largest = 0;
         for input in 1..self.b.ncols() {
@@ -206,7 +209,7 @@ impl ScaledSystem {
         largest
     }
 
-    /// Returns the rows of `[A B; C D]`, each stored in a column.
+    /// Returns the matrix `[A B; C D]`, transposed so that each row is contiguous in memory.
     fn into_rows(self) -> DMatrix<f64> {
         let order = self.a.nrows();
         let inputs = self.b.ncols();
@@ -227,9 +230,8 @@ impl ScaledSystem {
 
 /// The reduced system matrix, transposed, with the states in reversed order.
 struct ReversedSystem {
-    /// The rows before transposition, each stored in a column.
+    /// The matrix before transposition and reversal, with each row stored as a column.
     rows: DMatrix<f64>,
-    /// State count.
     order: usize,
 }
 
@@ -246,7 +248,7 @@ impl ReversedSystem {
         }
     }
 
-    /// Returns the first `width` entries of a row times a factor.
+    /// Returns the first `width` entries of a row, multiplied by a factor.
     fn scaled_row(&self, row: usize, width: usize, factor: f64) -> impl Iterator<Item = f64> {
         (0..width).map(move |column| factor * self.entry(row, column))
     }
@@ -261,27 +263,27 @@ fn power_of_two_below(value: f64) -> f64 {
     value.log2().floor().clamp(-1e3, 1e3).exp2()
 }
 
-/// Count of partial sums in a scalar product.
+/// Number of partial sums in a scalar product.
 const LANES: usize = 8;
 
 /// Transforms `[A B; C D]` to `[Q' A Q, Q' B; C Q, D]` with Q orthogonal, `Q' A Q` upper
 /// Hessenberg, and the first column of `Q' B` zero below its first entry.
 ///
-/// A reflection `I - beta v v'` clears that column, another each column of A (Golub & Van Loan,
-/// "Matrix Computations", 4th ed. 2013, 7.4.2). It is applied from both sides in a single pass over
-/// the matrix T, as `T - y v' - v w'` with
+/// One reflection `I - beta v v'` clears that column, and one more clears each column of A (Golub &
+/// Van Loan, "Matrix Computations", 4th ed. 2013, 7.4.2). Each is applied from both sides in a
+/// single pass over the matrix T, as `T - y v' - v w'` with
 ///
 /// ```text
 /// y = beta T v,   w = beta T' v - gamma v,   gamma = beta v' y
 /// ```
 ///
-/// 10/3 n^3 + 4 n^2 (m + p) operations. A scalar product uses eight partial sums, and every
-/// multiply-add is fused, in software where necessary: the result has the same bits on every
-/// instruction set.
+/// This takes 10/3 n^3 + 4 n^2 (m + p) operations. A scalar product uses eight partial sums, and
+/// every multiply-add is fused, in software where necessary, so that the result is the same bit for
+/// bit on every instruction set.
 struct HouseholderReduction<'a> {
-    /// The rows of `[A B; C D]`, each stored in a column.
+    /// The matrix `[A B; C D]`, with each row stored as a column.
     rows: &'a mut DMatrix<f64>,
-    /// Row count of A.
+    /// Number of rows of A.
     states: usize,
 }
 
@@ -297,8 +299,8 @@ impl WithSimd for HouseholderReduction<'_> {
     }
 }
 
-/// Clears a column below row `first` by reflecting the states from `first` on, from both sides; the
-/// column does not belong to these states.
+/// Clears a column below row `first` by a reflection of the states from `first` on, applied from
+/// both sides. The column itself must not be one of these states.
 #[inline(always)]
 fn clear(rows: &mut DMatrix<f64>, states: usize, column: usize, first: usize) {
     let mut v = vec![0.0; rows.nrows()];
@@ -312,7 +314,8 @@ fn clear(rows: &mut DMatrix<f64>, states: usize, column: usize, first: usize) {
     if tail == 0.0 {
         return;
     }
-    // The largest entries in A and B are near 1: squares that underflow are negligible.
+    // Underflow is harmless: the largest entries in A and B are near 1, so that such squares are
+    // negligible.
     let norm = (*head * *head + tail).sqrt();
     let left = -norm.copysign(*head);
     let beta = 1.0 / (norm * (norm + head.abs()));
@@ -323,11 +326,11 @@ fn clear(rows: &mut DMatrix<f64>, states: usize, column: usize, first: usize) {
     }
 }
 
-/// Applies the reflection `I - beta v v'` of these states from both sides.
+/// Applies the reflection `I - beta v v'` of the given states from both sides.
 #[inline(always)]
 fn reflect(rows: &mut DMatrix<f64>, states: Range<usize>, v: &[f64], beta: f64) {
     let width = rows.nrows();
-    // Earlier entries are finished; v is zero there. Partial sums begin at whole blocks.
+    // Skip earlier entries, where v is zero; start at a whole block of partial sums.
     let from = states.start / LANES * LANES;
     let mut y = vec![0.0; rows.ncols()];
     let mut w = vec![0.0; width];
@@ -352,7 +355,7 @@ fn reflect(rows: &mut DMatrix<f64>, states: Range<usize>, v: &[f64], beta: f64) 
     }
 }
 
-/// Returns `left' right`.
+/// Returns the scalar product `left' right`, with a fixed order of summation.
 #[inline(always)]
 fn dot(left: &[f64], right: &[f64]) -> f64 {
     let mut sums = [0.0_f64; LANES];
@@ -369,7 +372,7 @@ fn dot(left: &[f64], right: &[f64]) -> f64 {
     ((a + e) + (c + g)) + ((b + f) + (d + h))
 }
 
-/// Computes `sums + left right`, entry by entry.
+/// Adds `left * right` to `sums`, entry by entry.
 #[inline(always)]
 fn add_products<const N: usize>(sums: &mut [f64; N], left: &[f64; N], right: &[f64; N]) {
     for lane in 0..N {
@@ -377,7 +380,7 @@ fn add_products<const N: usize>(sums: &mut [f64; N], left: &[f64; N], right: &[f
     }
 }
 
-/// Computes `from -= factor row`.
+/// Subtracts `factor * row` from `from`, entry by entry.
 #[inline(always)]
 fn subtract_multiple(from: &mut [f64], factor: f64, row: &[f64]) {
     for (from, row) in from.iter_mut().zip(row) {
@@ -385,18 +388,18 @@ fn subtract_multiple(from: &mut [f64], factor: f64, row: &[f64]) {
     }
 }
 
-/// Balances row k and column k of `a`, for each state k, to norms that differ by less than a factor
-/// two. The diagonal similarity consists of powers of two, so that nothing is rounded:
+/// Balances A: for each state k, the norms of row k and column k then differ by less than a factor
+/// of two. The diagonal similarity `S` consists of powers of two, so that nothing is rounded:
 /// `a <- S^-1 a S`, `b <- S^-1 b`, `c <- c S`.
 ///
 /// Balancing of Parlett and Reinsch with 2-norms (James, Langou & Lowery, arXiv:1401.5766,
-/// algorithm 3). The sweep count is limited (each sweep leaves a similar model), and so is the
-/// scale, so that B and C do not overflow; both limits matter only for entries far beyond those of
-/// any aircraft.
+/// algorithm 3). The number of sweeps is limited (the model remains similar after each sweep), and
+/// so is the scale, to prevent overflow in B and C; both limits take effect only for entries far
+/// beyond those of any aircraft.
 pub(super) fn balance(a: &mut DMatrix<f64>, b: &mut DMatrix<f64>, c: &mut DMatrix<f64>) {
-    /// Maximum number of sweeps; a helicopter model takes three to six.
+    /// Maximum number of sweeps; a helicopter model needs three to six.
     const MOST_SWEEPS: usize = 100;
-    /// Maximum scale: 30 decades in either direction.
+    /// Maximum scale, about 1e30 in either direction.
     const LARGEST_SCALE: f64 = (1_u128 << 100) as f64;
     let mut scales = vec![1.0; a.nrows()];
     for _ in 0..MOST_SWEEPS {
@@ -422,8 +425,8 @@ pub(super) fn balance(a: &mut DMatrix<f64>, b: &mut DMatrix<f64>, c: &mut DMatri
     }
 }
 
-/// Returns the power of two that brings a column and its row closest together; `None` where it
-/// reduces their squares by less than 5 %.
+/// Returns the power of two that makes the norms of a column and its row most nearly equal; `None`
+/// if it reduces the sum of their squares by less than 5 %.
 fn balancing_factor(a: &DMatrix<f64>, state: usize) -> Option<f64> {
     let column = a.column(state).norm_squared();
     let row = a.row(state).norm_squared();
@@ -491,7 +494,7 @@ mod tests {
             dmatrix![0.1, 0.2; 0.3, 0.4],
         );
         let form = form(&model.unwrap());
-        // The second input has the larger column of B.
+        // `first_input`: the second input has the larger column in B.
         assert_eq!(
             (form.gain, form.pair(0, 1), form.pair(1, 0)),
             (1.5, Pair::new(1, 1), Pair::new(0, 0))
@@ -511,19 +514,21 @@ mod tests {
         );
         let form = form(&model.unwrap());
         let next: Vec<&[f64]> = form.next_rows.chunks_exact(4).collect();
-        // Rounding errors of a few operations; there are two next rows.
+        // Tolerance: rounding errors of a few operations. There are two next rows.
         assert!(
             next.len() == 2 && (next[0][0] - 1.0).abs() < 1e-15 && (next[1][1] - 1.0).abs() < 1e-15
         );
         assert_eq!(next[1][0], 0.0);
         assert_eq!(form.next_row(1), &next[1][2..]);
-        // |B| = sqrt(14), which a reflection keeps, over the power of two below 3.
+        // A reflection preserves |B| = sqrt(14); the scaling divides it by 2, the power of two
+        // below 3.
         assert!((form.gain.abs() - 14.0_f64.sqrt() / 2.0).abs() < 1e-14);
     }
 
     const STATES: usize = 11;
 
-    /// The rows for two inputs and three outputs; entries from a sine: irregular, but reproducible.
+    /// Returns the rows for two inputs and three outputs, with reproducible irregular entries from
+    /// a sine.
     fn rows() -> DMatrix<f64> {
         DMatrix::from_fn(STATES + 2, STATES + 3, |column, row| {
             if row < STATES || column < STATES {
@@ -577,8 +582,8 @@ mod tests {
         for (power, output, input) in [(0, 0, 0), (1, 2, 1), (5, 1, 0)] {
             let [before, after] =
                 [&before, &after].map(|rows| markov_parameter(rows, power, output, input));
-            // Entries of A^5 grow to some thousand; eleven reflections with rounding errors of
-            // 1e-16 each.
+            // Tolerance: entries of A^5 of up to some thousands, and eleven reflections with
+            // rounding errors of 1e-16.
             assert!(
                 (before - after).abs() < 1e-11,
                 "C A^{power} B: {before} and {after}"

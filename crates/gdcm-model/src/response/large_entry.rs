@@ -1,17 +1,19 @@
-//! Model entries that are too large to compute with.
+//! Model entries that are too large for computations.
 
 use nalgebra::DMatrix;
 
 use crate::dataset::StateSpace;
 
-/// Maximum entry accepted in computations. Products of three matrices in any state units (up to
-/// 2^100) then stay far below the largest double, and no entry of a helicopter model comes close.
+/// Maximum magnitude of an entry accepted in computations. Products of three matrices, even in
+/// state units that differ by factors up to 2^100, then remain far below the largest `f64`. Entries
+/// of helicopter models are far smaller.
 pub const LARGEST_ENTRY: f64 = 1e75;
 
 /// An entry of a model's matrices beyond [`LARGEST_ENTRY`].
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "its matrix {matrix} has {value:e} in row {row}, column {column}, beyond the limit {LARGEST_ENTRY:e} of computations"
+    "its matrix {matrix} has {value:e} in row {row}, column {column}; the limit for computations \
+    is {LARGEST_ENTRY:e}"
 )]
 pub struct LargeEntry {
     /// `A`, `B`, `C` or `D`.
@@ -24,7 +26,7 @@ pub struct LargeEntry {
 }
 
 impl LargeEntry {
-    /// Returns the first entry that is too large, or `None`.
+    /// Returns the first entry that is too large; `None` if there is none.
     pub fn find(model: &StateSpace) -> Option<Self> {
         let matrices = [
             ('A', model.a()),

@@ -1,5 +1,5 @@
 //! A realisable filter that gives a channel phase lead (M15.3), and the correction of a response by
-//! gain, delay and lead filters of its two channels (eq. (12), M15.5).
+//! the gains, delays and lead filters of its two channels (eq. (12), M15.5).
 
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::units::{db_to_ratio, ratio_to_db};
 
-/// Order of numerator and denominator in a lead filter.
+/// Order of a lead filter (of both numerator and denominator).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(try_from = "f64", into = "usize")]
 pub enum LeadOrder {
@@ -20,7 +20,7 @@ pub enum LeadOrder {
 }
 
 impl LeadOrder {
-    /// Returns the order, 1 or 2.
+    /// Returns the order as a number, 1 or 2.
     pub fn number(self) -> usize {
         match self {
             LeadOrder::First => 1,
@@ -28,7 +28,8 @@ impl LeadOrder {
         }
     }
 
-    /// Returns `1 + j x`, or `1 + sqrt(2) j x - x^2` for second order.
+    /// Evaluates numerator or denominator at `x = a omega` or `b omega`: `1 + j x` for first order,
+    /// `1 + sqrt(2) j x - x^2` for second order.
     fn polynomial(self, x: f64) -> Complex<f64> {
         match self {
             LeadOrder::First => Complex::new(1.0, x),
@@ -59,9 +60,9 @@ impl From<LeadOrder> for usize {
     }
 }
 
-/// `L(s) = (1 + sqrt(2) a s + a^2 s^2) / (1 + sqrt(2) b s + b^2 s^2)`, or first-order
-/// `(1 + a s) / (1 + b s)`, `a >= b > 0`: replaces a servo with `1 / a` rad/s by one with `1 / b`
-/// rad/s (M15.3).
+/// Lead filter `L(s) = (1 + sqrt(2) a s + a^2 s^2) / (1 + sqrt(2) b s + b^2 s^2)`, or
+/// `(1 + a s) / (1 + b s)` for first order, with `a >= b > 0`. It cancels a servo with the
+/// bandwidth `1 / a` rad/s and introduces one with `1 / b` rad/s (M15.3).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeadFilter {
     pub order: LeadOrder,
@@ -72,8 +73,8 @@ pub struct LeadFilter {
 }
 
 impl LeadFilter {
-    /// Creates the filter with lead time `l >= 0` at low frequency and lag time constant `b > 0`
-    /// \[s\]: `a = b + l / sqrt(2)`, or `a = b + l` for first order.
+    /// Creates the filter from the lead time `l >= 0` at low frequency and the lag time constant
+    /// `b > 0`, both in s: `a = b + l / sqrt(2)`, or `a = b + l` for first order.
     pub fn new(order: LeadOrder, lead_s: f64, lag_s: f64) -> Self {
         let apart_s = match order {
             LeadOrder::First => lead_s,
@@ -104,18 +105,19 @@ impl LeadFilter {
         1.0 / self.lag_s
     }
 
-    /// Returns `R = L(j inf) = (a / b)^order`.
+    /// Returns the gain at infinite frequency, `R = L(j inf) = (a / b)^order`.
     pub fn gain_at_infinity(self) -> f64 {
         (self.zero_s / self.lag_s).powi(self.order.number() as i32)
     }
 
-    /// Returns `20 log10 R`.
+    /// Returns the gain at infinite frequency in dB, `20 log10 R`.
     pub fn gain_at_infinity_db(self) -> f64 {
         ratio_to_db(self.gain_at_infinity())
     }
 
-    /// Returns `arg L(j omega)` \[rad\], continuous in `omega`, from 0 to less than pi: the
-    /// argument of the numerator times the conjugate of the denominator, which avoids cancellation.
+    /// Returns the phase `arg L(j omega)` \[rad\], continuous in `omega`, from 0 to less than pi.
+    /// Uses the argument of the numerator times the conjugate of the denominator, because a
+    /// difference of two arguments would cancel.
     pub fn phase(self, omega: f64) -> f64 {
         let x = self.zero_s * omega;
         let y = self.lag_s * omega;
@@ -126,8 +128,8 @@ impl LeadFilter {
         }
     }
 
-    /// Returns `20 log10 |L(j omega)|`; for second order
-    /// `|L|^2 = (1 + (a omega)^4) / (1 + (b omega)^4)`.
+    /// Returns the magnitude `20 log10 |L(j omega)|` \[dB\];
+    /// `|L|^2 = (1 + (a omega)^4) / (1 + (b omega)^4)` for second order.
     pub fn magnitude_db(self, omega: f64) -> f64 {
         let power = 2 * self.order.number() as i32;
         let numerator = 1.0 + (self.zero_s * omega).powi(power);
@@ -135,14 +137,14 @@ impl LeadFilter {
         10.0 * (numerator / denominator).log10()
     }
 
-    /// Returns `L(j omega)`.
+    /// Returns the frequency response `L(j omega)`.
     pub fn at(self, omega: f64) -> Complex<f64> {
         self.order.polynomial(self.zero_s * omega) / self.order.polynomial(self.lag_s * omega)
     }
 }
 
-/// `k e^(-j omega tau) L_o L_i`: the correction factor on a response (eq. (12), M10), with optional
-/// lead filters on its output and its input (M15). Exact in frequency, without Pade approximation.
+/// Correction factor `k e^(-j omega tau) L_o L_i` of a response (eq. (12), M10), with optional lead
+/// filters of its output and its input (M15). The delay is exact, not a Padé approximation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GainDelay {
     gain_db: f64,
@@ -151,14 +153,15 @@ pub struct GainDelay {
 }
 
 impl GainDelay {
-    /// Leaves a response unchanged.
+    /// No correction: gain 1, no delay, no lead filters.
     pub const NONE: Self = Self {
         gain_db: 0.0,
         delay_s: 0.0,
         leads: [None; 2],
     };
 
-    /// Creates a correction from a positive gain (ratio) and a delay \[s\].
+    /// Creates a correction without lead filters from a positive gain (ratio, not dB) and a delay
+    /// \[s\].
     pub fn new(gain: f64, delay_s: f64) -> Self {
         Self {
             gain_db: ratio_to_db(gain),
@@ -167,12 +170,12 @@ impl GainDelay {
         }
     }
 
-    /// Returns the correction with these lead filters in series.
+    /// Returns the correction with its lead filters (of output and input) replaced.
     pub fn led(self, leads: [Option<LeadFilter>; 2]) -> Self {
         Self { leads, ..self }
     }
 
-    /// Returns its value at `omega` \[rad/s\].
+    /// Returns the complex correction factor at `omega` \[rad/s\].
     pub fn at(self, omega: f64) -> Complex<f64> {
         let mut value = Complex::from_polar(db_to_ratio(self.gain_db), -omega * self.delay_s);
         for filter in self.leads.iter().flatten() {
@@ -236,10 +239,10 @@ mod tests {
             let order = if second { LeadOrder::Second } else { LeadOrder::First };
             let filter = LeadFilter::new(order, lead_s, lag_s);
             let value = Complex::from_polar(10f64.powf(filter.magnitude_db(omega) / 20.0), filter.phase(omega));
-            // Rounding errors of a few operations.
+            // Tolerance: rounding errors of a few operations.
             prop_assert!((value / filter.at(omega) - 1.0).norm() < 1e-13);
             prop_assert!((0.0..std::f64::consts::PI).contains(&filter.phase(omega)));
-            // Cancellation in the difference of two times of up to 0.8 s.
+            // Tolerance: cancellation in the difference between two times of up to 0.8 s.
             prop_assert!((filter.lead_s() - lead_s).abs() < 1e-15);
         }
     }

@@ -1,4 +1,4 @@
-//! A model prepared for its frequency response on any grid.
+//! A model prepared for the evaluation of its frequency response on any grid.
 //!
 //! A discrete-time model is evaluated in a form that loses no digits for fast sampling (M2a):
 //!
@@ -21,11 +21,11 @@ use super::s_plane::SPlane;
 use crate::dataset::measured_response::MeasuredResponse;
 use crate::dataset::{Dynamics, PairTable, StateSpace};
 
-/// The part of a response that does not depend on the grid: computed once per model, and used for
-/// every band and plot.
+/// The part of a frequency response that does not depend on the grid: computed once per model, and
+/// reused for every band and plot.
 ///
 /// For a state-space model with `n` states this is the Hessenberg form: `O(n^3)` operations to
-/// compute and some `8 n (n + m + p)` bytes to store.
+/// compute and about `8 n (n + m + p)` bytes to store.
 #[derive(Clone, Debug)]
 pub struct PreparedModel {
     source: Source,
@@ -37,7 +37,7 @@ pub struct PreparedModel {
 enum Source {
     StateSpace(PreparedStateSpace),
     Measured(MeasuredResponse),
-    /// A model with a [`LargeEntry`].
+    /// A model with a [`LargeEntry`], which is not evaluated.
     TooLarge {
         outputs: usize,
         inputs: usize,
@@ -52,7 +52,7 @@ struct PreparedStateSpace {
 }
 
 impl PreparedModel {
-    /// Prepares a model.
+    /// Prepares a model, at the cost of a Hessenberg reduction for a state-space model.
     pub fn of(dynamics: &Dynamics) -> Self {
         match dynamics {
             Dynamics::StateSpace(model) => {
@@ -81,17 +81,16 @@ impl PreparedModel {
     /// | model | response |
     /// |---|---|
     /// | continuous time | `C (j omega I - A)^-1 B + D` |
-    /// | discrete time | `C (zI - A)^-1 B + D`, `z = e^(j omega T)`; NaN from `pi / T` on |
+    /// | discrete time | `C (zI - A)^-1 B + D`, `z = e^(j omega T)`; NaN at and above `pi / T` |
     /// | measured | interpolated; NaN outside the measured frequencies |
     ///
-    /// Delayed channels multiply it by `e^(-j omega (tau_o + tau_i))`. The response of an output
-    /// that the input cannot reach is exactly zero; all responses of a model with a [`LargeEntry`]
-    /// are NaN.
+    /// Channel delays multiply it by `e^(-j omega (tau_o + tau_i))`. A response whose input cannot
+    /// reach its output is exactly zero; all responses of a model with a [`LargeEntry`] are NaN.
     pub fn response(&self, grid: &FrequencyGrid) -> FrequencyResponse {
         self.at(grid.omega())
     }
 
-    /// As [`PreparedModel::response`], at any frequencies `omega` \[rad/s\].
+    /// Computes the response as [`PreparedModel::response`], at any frequencies `omega` \[rad/s\].
     pub fn at(&self, omega: &[f64]) -> FrequencyResponse {
         let mut response = self.undelayed(omega);
         if let Some(delays_s) = &self.delays_s {
@@ -117,8 +116,8 @@ impl PreparedModel {
 }
 
 impl FrequencyResponse {
-    /// Computes the response of a model on a single grid; for several grids prepare the model once,
-    /// see [`PreparedModel`].
+    /// Computes the response of a model on a single grid. For several grids, use a
+    /// [`PreparedModel`].
     pub fn of(dynamics: &Dynamics, grid: &FrequencyGrid) -> Self {
         PreparedModel::of(dynamics).response(grid)
     }
@@ -143,7 +142,8 @@ impl PreparedStateSpace {
         let mut response = Arch::new().dispatch(Elimination { form, s: &s });
         for (pair, is_connected) in self.connected.iter() {
             if !is_connected {
-                // Without a connection the values are rounding errors.
+                // A response without a structural connection is zero; its computed values are
+                // rounding errors.
                 response.curves[pair].fill(Complex::new(0.0, 0.0));
             }
         }
@@ -158,8 +158,8 @@ fn delay(curve: &mut [Complex<f64>], omega: &[f64], delay_s: f64) {
     }
 }
 
-/// Returns `s = j omega`, or `s = e^(j omega T) - 1` in discrete time, which is NaN from
-/// `omega = pi / T` on.
+/// Returns `s = j omega`, or `s = e^(j omega T) - 1` in discrete time, which is NaN at and above
+/// `omega = pi / T`.
 fn evaluation_point(omega: f64, sample_time_s: Option<f64>) -> Complex<f64> {
     let Some(sample_time_s) = sample_time_s else {
         return Complex::new(0.0, omega);
@@ -213,7 +213,7 @@ mod tests {
             .to_vec()
     }
 
-    /// Discretises with a zero-order hold: `A_d = e^(A T)`, `B_d = integral of e^(A t) B`.
+    /// Discretises a model with a zero-order hold: `A_d = e^(A T)`, `B_d = integral of e^(A t) B`.
     fn held(model: &StateSpace, sample_time_s: f64) -> StateSpace {
         let n = model.order();
         let m = model.inputs();
@@ -241,8 +241,8 @@ mod tests {
         let found = curve(held(&oscillator(), sample_time_s));
         for ((value, expected), omega) in found.iter().zip(&expected).zip(grid.omega()) {
             let lag = Complex::from_polar(1.0, -0.5 * omega * sample_time_s);
-            // Remaining errors: the hold, (omega T)^2 / 24 = 6e-10, and its aliasing; and rounding,
-            // 1e-16 / (omega T).
+            // Tolerance: the zero-order hold, (omega T)^2 / 24 = 6e-10, with its aliasing; and
+            // rounding, 1e-16 / (omega T).
             assert!(
                 (value - expected * lag).norm() < 1e-8 * expected.norm(),
                 "{omega}"
@@ -377,7 +377,8 @@ mod discrete_form_tests {
             &[1.0, std::f64::consts::FRAC_PI_2, 2.0],
         );
         let values = response.curve(Pair::new(0, 0));
-        // The double nearest to pi is not pi: the pole leaves a value of the order of 1 / rounding.
+        // The `f64` nearest to pi is not pi: next to the pole the value is about 1 / rounding
+        // error.
         assert!(!values[1].is_finite() || values[1].norm() > 1e15);
         for (omega, value) in [(1.0, values[0]), (2.0, values[2])] {
             let expected: Complex<f64> = (Complex::from_polar(1.0, 2.0 * omega) + 1.0).inv();

@@ -4,14 +4,14 @@ use nalgebra::{Complex, DMatrix};
 
 use crate::dataset::StateSpace;
 
-/// Maps eigenvalues of matrices to poles and zeros `s` \[rad/s\]: unchanged in continuous time,
-/// `s = ln z / T` in discrete time.
+/// Map from the eigenvalues of matrices to poles and zeros `s` \[rad/s\]: identity in continuous
+/// time, `s = ln z / T` in discrete time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SPlane {
     sample_time_s: Option<f64>,
 }
 
-/// `|z|` below which a mode vanishes within one sample and counts as `z = 0`, which has no `s`.
+/// `|z|` below which a mode vanishes within one sample; it is treated as `z = 0`, which has no `s`.
 const GONE: f64 = 1e-6;
 
 impl SPlane {
@@ -21,8 +21,8 @@ impl SPlane {
         }
     }
 
-    /// Returns the matrix for the eigenvalue computation: `A`, or `A - I` in discrete time, which
-    /// keeps more digits for fast sampling.
+    /// Returns the matrix whose eigenvalues [`SPlane::value`] expects: `A`, or `A - I` in discrete
+    /// time, which preserves more digits for fast sampling.
     pub(super) fn matrix(self, a: &DMatrix<f64>) -> DMatrix<f64> {
         match self.sample_time_s {
             None => a.clone(),
@@ -30,8 +30,8 @@ impl SPlane {
         }
     }
 
-    /// Returns the `s` for an eigenvalue of [`SPlane::matrix`]: `lambda`, or the principal value of
-    /// `ln(1 + lambda) / T`; `None` where `z = 1 + lambda` is zero.
+    /// Returns the `s` for an eigenvalue of [`SPlane::matrix`]: `lambda`, or in discrete time the
+    /// principal value of `ln(1 + lambda) / T`; `None` if `z = 1 + lambda` is practically zero.
     pub(super) fn value(self, eigenvalue: Complex<f64>) -> Option<Complex<f64>> {
         let Some(sample_time_s) = self.sample_time_s else {
             return Some(eigenvalue);
@@ -61,7 +61,8 @@ mod tests {
             Complex::new(0.3, -1e-3),
         ] {
             let found = SAMPLED.value((s * 0.01).exp() - 1.0).unwrap();
-            // The difference from 1 rounds by 1e-16, a hundred times as much in s.
+            // Tolerance: the difference from 1 has a rounding error of 1e-16, a hundred times as
+            // much in s.
             assert!((found - s).norm() < 1e-13, "{found} {s}");
         }
     }

@@ -1,10 +1,10 @@
-//! Complex Schur form of a real matrix: its eigenvalues, and the triangular form for its
-//! eigenvectors.
+//! Complex Schur form of a real matrix: its eigenvalues, and the triangular matrix from which its
+//! eigenvectors are computed.
 //!
 //! ```text
-//! 1  A = Q T Q', T with blocks of one and two rows on its diagonal: Francis' implicit double shifts
-//! 2  for each block of two rows [p q; r s]: mean and half difference m = (p + s) / 2, h = (p - s) / 2
-//!       lambda = m +- j sqrt(-(h^2 + q r)), conjugate to the last digit; or two real ones
+//! 1  A = Q T Q', T with 1 x 1 and 2 x 2 blocks on its diagonal: Francis' implicit double shifts
+//! 2  for each 2 x 2 block [p q; r s]: mean and half difference m = (p + s) / 2, h = (p - s) / 2
+//!       lambda = m +- j sqrt(-(h^2 + q r)), exact conjugates; or two real eigenvalues
 //! 3     rotate its rows so that the block becomes triangular: first column (lambda - s, r) / norm
 //! ```
 //!
@@ -14,16 +14,16 @@ use nalgebra::{Complex, DMatrix, DVector, Schur};
 
 /// `A = Q T Q^H` with `Q` unitary and `T` upper triangular.
 pub struct SchurForm {
-    /// Schur vectors.
+    /// Schur vectors, one per column.
     pub q: DMatrix<Complex<f64>>,
-    /// Triangular, with the eigenvalues on its diagonal.
+    /// Upper triangular matrix with the eigenvalues on its diagonal.
     pub t: DMatrix<Complex<f64>>,
-    /// Minimum difference of eigenvalues used as divisor: their rounding error.
+    /// Minimum magnitude of a difference of eigenvalues used as a divisor: their rounding error.
     least: f64,
 }
 
 impl SchurForm {
-    /// Computes the Schur form of a square matrix; `None` where the iteration does not converge.
+    /// Computes the Schur form of a square matrix; `None` if the iteration does not converge.
     pub fn new(a: &DMatrix<f64>) -> Option<Self> {
         let (q, t) = quasi_triangular(a)?;
         let blocks: Vec<usize> = (1..a.nrows())
@@ -49,17 +49,17 @@ impl SchurForm {
         Some(form)
     }
 
-    /// Returns the eigenvalues in the order of the diagonal; pairs are exact conjugates.
+    /// Returns the eigenvalues in the order of the diagonal; conjugate pairs are exact.
     pub(super) fn eigenvalues(&self) -> Vec<Complex<f64>> {
         self.t.diagonal().iter().copied().collect()
     }
 
-    /// Returns the unit eigenvector for the eigenvalue at a position on the diagonal.
+    /// Returns the eigenvector of unit length for the eigenvalue at diagonal position `at`.
     pub fn eigenvector(&self, at: usize) -> DVector<Complex<f64>> {
         (&self.q * self.right(at)).normalize()
     }
 
-    /// Solves `(T - t_kk) x = 0` with `x_k = 1`.
+    /// Returns the solution of `(T - t_kk) x = 0` with `x_k = 1`.
     pub(super) fn right(&self, k: usize) -> DVector<Complex<f64>> {
         let mut x = self.unit(k);
         for row in (0..k).rev() {
@@ -71,7 +71,7 @@ impl SchurForm {
         x
     }
 
-    /// Solves `y (T - t_kk) = 0` with `y_k = 1`.
+    /// Returns the solution of `y (T - t_kk) = 0` with `y_k = 1`.
     pub(super) fn left(&self, k: usize) -> DVector<Complex<f64>> {
         let mut y = self.unit(k);
         for column in k + 1..self.t.nrows() {
@@ -81,14 +81,14 @@ impl SchurForm {
         y
     }
 
-    /// Returns the unit vector k.
+    /// Returns the unit vector with entry `k` equal to 1.
     fn unit(&self, k: usize) -> DVector<Complex<f64>> {
         DVector::from_fn(self.t.nrows(), |row, _| {
             Complex::from(if row == k { 1.0 } else { 0.0 })
         })
     }
 
-    /// Returns the difference between two eigenvalues; at least their rounding error.
+    /// Returns the difference between two eigenvalues, or their rounding error if it is larger.
     fn difference(&self, at: usize, from: usize) -> Complex<f64> {
         let difference = self.t[(at, at)] - self.t[(from, from)];
         if difference.norm() < self.least {
@@ -98,8 +98,8 @@ impl SchurForm {
         }
     }
 
-    /// Exchanges neighbouring eigenvalues until those selected by `first` come first; returns the
-    /// count of selected eigenvalues.
+    /// Exchanges neighbouring eigenvalues until those for which `first` holds come first; returns
+    /// their number.
     pub fn order_by(&mut self, first: impl Fn(Complex<f64>) -> bool) -> usize {
         let mut placed = 0;
         for at in 0..self.t.nrows() {
@@ -113,13 +113,13 @@ impl SchurForm {
         placed
     }
 
-    /// Exchanges the eigenvalues at `upper` and `upper + 1` by one rotation of these two rows and
-    /// columns.
+    /// Exchanges the eigenvalues at diagonal positions `upper` and `upper + 1` by a rotation of
+    /// these two rows and columns.
     fn exchange(&mut self, upper: usize) {
         let lower = upper + 1;
         let first = self.t[(upper, upper)];
         let second = self.t[(lower, lower)];
-        // The eigenvector for `second` in these two rows.
+        // `(x, y)`: eigenvector for `second` in the 2 x 2 block.
         let x = self.t[(upper, lower)];
         let y = second - first;
         let norm = x.norm().hypot(y.norm());
@@ -147,7 +147,7 @@ impl SchurForm {
         self.t[(lower, lower)] = first;
     }
 
-    /// Makes the block in rows `first` and `first + 1` triangular.
+    /// Makes the 2 x 2 block in rows `first` and `first + 1` triangular by a rotation.
     fn split(&mut self, first: usize, block: Block) {
         let second = first + 1;
         let size = self.t.nrows();
@@ -187,7 +187,7 @@ fn rotate_columns(
     matrix[(row, first + 1)] = right * c.conj() - left * s;
 }
 
-/// A 2 x 2 block `[p q; r s]` on the diagonal.
+/// A 2 x 2 diagonal block `[p q; r s]`.
 #[derive(Clone, Copy)]
 struct Block {
     p: f64,
@@ -197,7 +197,8 @@ struct Block {
 }
 
 impl Block {
-    /// Returns the eigenvalues; the value with positive imaginary part comes first.
+    /// Returns the eigenvalues; of a conjugate pair, the one with positive imaginary part comes
+    /// first.
     fn eigenvalues(self) -> [Complex<f64>; 2] {
         let Self { p, q, r, s } = self;
         let mean = 0.5 * (p + s);
@@ -210,16 +211,17 @@ impl Block {
                 Complex::new(mean, -imaginary),
             ];
         }
-        // The larger distance from s has no cancellation, and the product of both distances is
-        // -q r.
+        // `far`, the larger distance from s, is computed without cancellation; `near` follows from
+        // the product of both distances, -q r.
         let far = half + squared.sqrt().copysign(half);
         let near = if far == 0.0 { 0.0 } else { -q * r / far };
         [Complex::from(s + far), Complex::from(s + near)]
     }
 }
 
-/// Computes `A = Q T Q'`. A stalled iteration (a cyclic permutation is a fixed point) is repeated
-/// on a reflection of the matrix, which has the same eigenvalues.
+/// Computes the real Schur form `A = Q T Q'`. The iteration can stall, since a cyclic permutation
+/// is one of its fixed points; it is then repeated for a reflection of the matrix, which has the
+/// same eigenvalues.
 fn quasi_triangular(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
     const TRIES: i32 = 3;
     /// Maximum number of iterations per eigenvalue; three or four are typical.
@@ -250,7 +252,7 @@ mod tests {
     fn check(a: &DMatrix<f64>) {
         let form = SchurForm::new(a).unwrap();
         let again = &form.q * &form.t * form.q.adjoint();
-        // A few hundred rotations of the whole matrix, each backward stable.
+        // Tolerance: a few hundred rotations of the whole matrix, each backward stable.
         assert!((again - a.map(Complex::from)).norm() < 1e-13 * a.norm());
         let below = (0..a.nrows()).flat_map(|row| (0..row).map(move |column| (row, column)));
         assert!(
@@ -290,7 +292,7 @@ mod tests {
         );
         check(&shift);
         for eigenvalue in SchurForm::new(&shift).unwrap().eigenvalues() {
-            // Orthogonal: each eigenvalue has condition number 1.
+            // Tolerance: the matrix is orthogonal, so that each eigenvalue has condition number 1.
             assert!((eigenvalue.powi(8) - 1.0).norm() < 1e-12);
         }
     }

@@ -1,35 +1,36 @@
-//! Subdiagonal entries in a Hessenberg matrix, with the constants for elimination.
+//! Subdiagonal entries of a Hessenberg matrix, with the constants for their elimination.
 
-/// Magnitude below which a subdiagonal entry counts as zero, which splits the model in two. The
-/// largest entry is near 1 and a double has 16 digits, so that the error is far below rounding.
+/// Magnitude below which a subdiagonal entry is set to zero, which splits the model in two. Since
+/// the largest entry is near 1, the error is far below the rounding error.
 const NEGLIGIBLE: f64 = 1e-70;
 
-/// The pivot threshold tau times the order n. Active and next row are interchanged where the active
-/// entry is more than tau times as large as the next row's entry.
+/// The pivot threshold tau times the order n. The active row and the next row are interchanged if
+/// the active entry is more than tau times as large as the next row's entry.
 ///
-/// With tau = 1 elimination is partial pivoting. Real rows cost a half to a third as much as
-/// complex rows, and increase the rounding error by a factor of at most `n tau`: times the unit
-/// roundoff 1.1e-16 this is 3e-11, for any order. The models in `benches/responses.rs` have errors
-/// up to 7e-13, relative to their largest value.
+/// With tau = 1 the elimination is Gaussian elimination with partial pivoting. A larger tau uses
+/// real rows more often, which cost a half to a third as much as complex rows, and increases the
+/// rounding error by a factor of at most `n tau`: with the unit roundoff 1.1e-16 it is at most
+/// 3e-11, for any order. The models in `benches/responses.rs` have errors up to 7e-13, relative to
+/// their largest value.
 const PIVOT_THRESHOLD: f64 = (1_u32 << 18) as f64;
 
-/// The subdiagonal entry `h` in a column of G, with the constants for its elimination.
+/// Subdiagonal entry `h` in a column of G, with the constants for its elimination.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Subdiagonal {
-    /// `h`; zero where negligible.
+    /// `h`; zero if negligible.
     pub entry: f64,
-    /// Divisor that normalises `h` to 1: `h`, or 1 where `h` is negligible.
+    /// Divisor that scales `h` to 1: `h`, or 1 if `h` is negligible.
     pub divisor: f64,
     /// Reciprocal of [`divisor`](Self::divisor).
     pub reciprocal: f64,
-    /// `1 / (tau h)^2`; NaN where `h` is negligible, so that no comparison holds.
+    /// `1 / (tau h)^2`; NaN if `h` is negligible, so that comparisons with it are false.
     pub inverse_square_threshold: f64,
-    /// `h^2`; less than every square where `h` is negligible.
+    /// `h^2`; below any square if `h` is negligible.
     pub square: f64,
 }
 
 impl Subdiagonal {
-    /// Creates the constants for a model of the given order.
+    /// Creates the constants for a subdiagonal entry of a model with `order` states.
     pub fn new(entry: f64, order: usize) -> Self {
         if entry.abs() < NEGLIGIBLE {
             return Self {
@@ -76,7 +77,7 @@ mod tests {
                 .sqrt()
                 .recip()
                 / 0.5;
-            // Rounding errors of a few operations.
+            // Tolerance: rounding errors of a few operations.
             assert!((tau * order as f64 / PIVOT_THRESHOLD - 1.0).abs() < 1e-14);
         }
     }

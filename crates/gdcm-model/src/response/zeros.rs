@@ -2,18 +2,18 @@
 //!
 //! ```text
 //! 1  keep the states on a chain of nonzero entries from the input to the output; balance A
-//! 2  keep the controllable and observable states (staircase): no pole is left that a zero would cancel
+//! 2  keep the controllable and observable states (staircase), so that no pole cancels a zero
 //! 3  A Hessenberg, b = beta e_1. While d is negligible, the input acts on the first state only,
-//!    and can set it freely: this state becomes the input,
+//!    and can set it to any value: this state becomes the input,
 //!       A <- A_22, b <- A_21, c <- c_2, d <- c_1       (a zero at infinity each time)
-//! 4  zeros are where [A - sI  b; c  d] loses rank: the eigenvalues of A - b c / d
-//! 5  Newton: z <- z - H(z) / H'(z) on the model of step 2, while |H| falls
+//! 4  zeros: where [A - sI  b; c  d] loses rank, i.e. the eigenvalues of A - b c / d
+//! 5  Newton: z <- z - H(z) / H'(z) on the model of step 2, while |H| decreases
 //! ```
 //!
 //! Emami-Naeini & Van Dooren, "Computation of zeros of linear multivariable systems", Automatica
 //! 18(4), 1982, for the single-input, single-output case.
 //!
-//! Includes the reduction of a model to its controllable or observable part by reflections.
+//! This module also reduces a model to its controllable or observable part, by reflections.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -27,15 +27,15 @@ use crate::dataset::{Dynamics, Pair, StateSpace};
 /// Transmission zeros of a response.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TransmissionZeros {
-    /// Finite zeros \[rad/s\] in ascending modulus; pairs are exact conjugates, the zero above the
-    /// real axis first.
+    /// Finite zeros \[rad/s\] in ascending modulus; conjugate pairs are exact, with the zero above
+    /// the real axis first.
     pub finite: Vec<Complex<f64>>,
-    /// Count of zeros at infinity: poles minus finite zeros. In discrete time it includes the zeros
-    /// at `z = 0`, which have no `s`.
+    /// Number of zeros at infinity: poles minus finite zeros. In discrete time it includes zeros at
+    /// `z = 0`, which have no `s`.
     pub infinite: usize,
 }
 
-/// Reason why a response has no zeros.
+/// Reason why the zeros of a response are unavailable.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ZerosError {
     #[error("{0}")]
@@ -44,12 +44,12 @@ pub enum ZerosError {
     NoResponse,
     #[error("the zeros were not found: the eigenvalue iteration does not converge")]
     NotConverged,
-    #[error("the model has no output number {} or no input number {}", pair.output + 1, pair.input + 1)]
+    #[error("the model has no output {} or no input {}", pair.output + 1, pair.input + 1)]
     OutsideModel { pair: Pair },
 }
 
-/// Returns the finite transmission zeros of a model's response; empty for a measured response,
-/// which has no states, and for a response that the model does not have.
+/// Returns the finite transmission zeros \[rad/s\] of a model's response. Empty for a measured
+/// response, which has no states, and if the zeros are unavailable.
 pub fn finite_zeros(dynamics: &Dynamics, pair: Pair) -> Vec<Complex<f64>> {
     match dynamics {
         Dynamics::StateSpace(model) => match transmission_zeros(model, pair) {
@@ -60,12 +60,12 @@ pub fn finite_zeros(dynamics: &Dynamics, pair: Pair) -> Vec<Complex<f64>> {
     }
 }
 
-/// Computes the zeros of `H(z) = C (zI - A)^-1 B + D` for a single output and input. Poles that
-/// cancel (uncontrollable or unobservable) do not count as zeros either. Discrete-time zeros are
-/// given as `s = ln z / T` (M2a).
+/// Computes the zeros of `H(z) = C (zI - A)^-1 B + D` for a single output and input. Uncontrollable
+/// and unobservable poles, which cancel, do not appear as zeros. Discrete-time zeros are given as
+/// `s = ln z / T` (M2a).
 ///
 /// # Errors
-/// [`ZerosError`] where there is no response, or the computation fails.
+/// [`ZerosError`] if there is no response, or if the computation fails.
 pub fn transmission_zeros(model: &StateSpace, pair: Pair) -> Result<TransmissionZeros, ZerosError> {
     if let Some(entry) = LargeEntry::find(model) {
         return Err(ZerosError::TooLarge(entry));
@@ -109,16 +109,16 @@ pub fn transmission_zeros(model: &StateSpace, pair: Pair) -> Result<Transmission
     Ok(TransmissionZeros { finite, infinite })
 }
 
-/// A response without zeros at infinity, and the number of zeros that were removed.
+/// A response without zeros at infinity, and the number of zeros at infinity that were removed.
 struct ReducedResponse {
     model: SingleResponse,
     infinite: usize,
 }
 
-/// Removes the zeros at infinity from a Hessenberg model (step 3); `None` where nothing is left.
+/// Removes the zeros at infinity from a Hessenberg model (step 3); `None` if nothing remains.
 ///
-/// A feed-through counts as zero where it would put a zero farther out than 1e10 times `|A|`, or,
-/// once a zero has been removed, where it is below 1e-12 times `|c|`, the rounding error.
+/// A feed-through is treated as zero if a zero would otherwise be farther out than 1e10 times
+/// `|A|`, or, once a zero has been removed, if it is below 1e-12 times `|c|`, its rounding error.
 fn without_infinite_zeros(mut model: SingleResponse) -> Option<ReducedResponse> {
     const FARTHEST: f64 = 1e10;
     const ROUNDING: f64 = 1e-12;
@@ -139,7 +139,8 @@ fn without_infinite_zeros(mut model: SingleResponse) -> Option<ReducedResponse> 
             return None;
         }
         let rest = states - 1;
-        // Only the first entry of b is nonzero: a factor of the response, which moves no zero.
+        // Omit the first entry of b: it is its only nonzero entry, and as a factor of the response
+        // does not move any zero.
         model = SingleResponse {
             a: model.a.view((1, 1), (rest, rest)).into_owned(),
             b: model.a.view((1, 0), (rest, 1)).column(0).into_owned(),
@@ -150,15 +151,15 @@ fn without_infinite_zeros(mut model: SingleResponse) -> Option<ReducedResponse> 
     }
 }
 
-/// A response at a point of the s-plane.
+/// Value and slope of a response at a point of the s-plane.
 struct PointValue {
     /// `H(s)`.
     value: Complex<f64>,
-    /// `H'(s) = -c (sI - A)^-2 b`.
+    /// `dH/ds = -c (sI - A)^-2 b`.
     slope: Complex<f64>,
 }
 
-/// Computes a response and its slope; `None` at a pole.
+/// Computes the value and slope of a response at `s`; `None` at a pole.
 fn response_and_slope(model: &SingleResponse, s: Complex<f64>) -> Option<PointValue> {
     let resolvent = DMatrix::from_fn(model.a.nrows(), model.a.nrows(), |row, column| {
         let diagonal = if row == column { s } else { Complex::from(0.0) };
@@ -173,15 +174,16 @@ fn response_and_slope(model: &SingleResponse, s: Complex<f64>) -> Option<PointVa
     })
 }
 
-/// Returns `c x`.
+/// Returns the output `c x` of states x.
 fn output(model: &SingleResponse, states: &DVector<Complex<f64>>) -> Complex<f64> {
     model.c.iter().zip(states.iter()).map(|(c, x)| x * *c).sum()
 }
 
-/// Moves a zero to the nearby minimum of the response, if there is one (step 5).
+/// Refines a zero by Newton's method (step 5), at most by a relative distance of 1e-3; returns it
+/// unchanged if the response does not decrease.
 fn polished(model: &SingleResponse, zero: Complex<f64>) -> Complex<f64> {
     const MOST_STEPS: usize = 4;
-    /// Maximum relative distance by which rounding may have moved a zero.
+    /// Maximum relative distance between a zero and its refined value.
     const CLOSE: f64 = 1e-3;
     let mut best = zero;
     let Some(mut last) = response_and_slope(model, zero) else {
@@ -192,7 +194,7 @@ fn polished(model: &SingleResponse, zero: Complex<f64>) -> Complex<f64> {
         if zero.im == 0.0 {
             next.im = 0.0;
         }
-        // Also true for NaN, which results where the slope is zero.
+        // `!(...).le(...)` is also true for NaN, which results from a slope of zero.
         if !(next - zero).norm().le(&(CLOSE * zero.norm())) || next.im < 0.0 {
             break;
         }
@@ -216,11 +218,11 @@ pub(super) struct SingleResponse {
     pub(super) d: f64,
 }
 
-/// Share of |A| below which a coupling counts as a rounding error of the reflections.
+/// Share of |A| below which an entry is regarded as a rounding error of the reflections.
 const NEGLIGIBLE: f64 = 1e-12;
 
 impl SingleResponse {
-    /// Extracts the balanced model between an input and an output (step 1).
+    /// Extracts the model between an input and an output, and balances it (step 1).
     fn new(model: &StateSpace, plane: SPlane, pair: Pair) -> Self {
         let states = connecting_states(model, pair);
         let mut a = plane.matrix(&model.a().select_rows(&states).select_columns(&states));
@@ -235,7 +237,7 @@ impl SingleResponse {
         }
     }
 
-    /// Returns the same response without the uncontrollable states: A is then Hessenberg, and b is
+    /// Returns the model without its uncontrollable states: A is then upper Hessenberg, and b is
     /// zero except for its first entry.
     ///
     /// Reflections align b with the first state, then each column of A with its subdiagonal; the
@@ -261,7 +263,7 @@ impl SingleResponse {
         self
     }
 
-    /// Returns the transposed model: its controllable states are the observable states of the
+    /// Returns the transposed model, whose controllable states are the observable states of the
     /// original.
     pub(super) fn transposed(self) -> Self {
         Self {
@@ -272,8 +274,8 @@ impl SingleResponse {
         }
     }
 
-    /// Reflects the states so that `axis`, which is zero before `at`, has its only entry at that
-    /// index.
+    /// Reflects the states so that the vector `axis`, which is zero before index `at`, is zero
+    /// except at that index.
     fn reflect(&mut self, axis: DVector<f64>, at: usize) {
         let mut normal = axis.clone();
         normal[at] += axis.norm().copysign(axis[at]);
@@ -285,7 +287,7 @@ impl SingleResponse {
         for vector in [&mut self.b, &mut self.c] {
             *vector -= 2.0 * normal.dot(vector) * &normal;
         }
-        // Entries that the reflection makes zero, up to rounding.
+        // Set the entries that the reflection clears, apart from rounding, to exactly zero.
         if at == 0 {
             self.b.rows_mut(1, self.b.nrows() - 1).fill(0.0);
         } else {
@@ -318,7 +320,7 @@ mod tests {
         input: 0,
     };
 
-    /// Returns the polynomial with these real roots, highest power first.
+    /// Returns the coefficients of the polynomial with these real roots, highest power first.
     fn polynomial(roots: &[f64]) -> Vec<f64> {
         roots.iter().fold(vec![1.0], |of, root| {
             let shifted = of.iter().copied().chain([0.0]);
@@ -328,7 +330,7 @@ mod tests {
         })
     }
 
-    /// Returns `gain (s - z1) ... / (s - p1) ...` in the controllable canonical form.
+    /// Returns `gain (s - z1) ... / ((s - p1) ...)` in controllable canonical form.
     fn canonical(gain: f64, zeros: &[f64], poles: &[f64]) -> StateSpace {
         let n = poles.len();
         let mut numerator = polynomial(zeros);
@@ -350,7 +352,7 @@ mod tests {
         StateSpace::new(a, b, c, dmatrix![gain * through]).unwrap()
     }
 
-    /// Returns the same model in other state coordinates.
+    /// Returns the model in other state coordinates.
     fn transformed(model: &StateSpace, by: &DMatrix<f64>) -> StateSpace {
         let inverse = by.clone().try_inverse().unwrap();
         StateSpace::new(
@@ -384,7 +386,7 @@ mod tests {
 
     #[test]
     fn the_zeros_of_a_ratio_of_polynomials_are_found() {
-        // Conditioning of polynomials of degree 2 to 5 with roots this far apart.
+        // Tolerance: the condition of polynomials of degree 2 to 5 with roots this far apart.
         assert_zeros(
             &canonical(2.0, &[-1.0, -2.0], &[-3.0, -4.0, -5.0]),
             &[-1.0, -2.0],
@@ -425,7 +427,7 @@ mod tests {
 
     #[test]
     fn a_pole_that_the_response_does_not_have_is_no_zero() {
-        // A heading beside a lag, which is unobservable; and an uncontrollable mode.
+        // A lag and its integral, which is unobservable; and an uncontrollable mode.
         let model = StateSpace::new(
             dmatrix![-1.0, 0.0, 0.5; 1.0, 0.0, 0.0; 0.0, 0.0, -4.0],
             dmatrix![1.0; 0.0; 0.0],
@@ -493,7 +495,7 @@ mod tests {
             transmission_zeros(&gain, Pair::new(1, 0))
                 .unwrap_err()
                 .to_string()
-                .contains("output number 2")
+                .contains("no output 2")
         );
     }
 
@@ -516,8 +518,8 @@ mod tests {
             prop_assert_eq!((found.finite.len(), found.infinite), (zeros.len(), extra + 1));
             for zero in &zeros {
                 let nearest = found.finite.iter().map(|found| (found - zero).norm()).fold(f64::INFINITY, f64::min);
-                // The canonical form of seven poles has entries up to 1e4, and zeros 0.3 apart have
-                // a condition number of about 1e3.
+                // Tolerance: the canonical form of seven poles has entries up to 1e4, and zeros
+                // that are 0.3 apart have a condition number of about 1e3.
                 prop_assert!(nearest < 1e-6, "{zero}: {found:?}");
             }
             let minimal = SingleResponse::new(&model, SPlane::new(&model), ONLY);
@@ -525,9 +527,9 @@ mod tests {
                 .map(|there| there.value.norm()).fold(0.0, f64::max);
             for zero in &found.finite {
                 let value = response_and_slope(&minimal, *zero).unwrap().value;
-                // Of sixteen digits the coordinates cost three and the entries of the canonical
-                // form four, as above; a zero far to the left lies where the response is steeper
-                // than on the axis used for the peak.
+                // Tolerance: of sixteen digits, the coordinates cost three and the canonical form
+                // four, as above; and far to the left the response is steeper than on the axis
+                // where the peak is evaluated.
                 prop_assert!(value.norm() < 1e-6 * peak, "{zero}: {} of {peak}", value.norm());
             }
         }
@@ -542,7 +544,8 @@ mod staircase_tests {
 
     #[test]
     fn states_that_the_input_does_not_reach_are_left_out() {
-        // Two lags whose sum alone is driven by the input: a single state in other coordinates.
+        // Two lags of which the input drives only the sum: a single controllable state in other
+        // coordinates.
         let a = dmatrix![-1.5, 0.5; 0.5, -1.5];
         let model = SingleResponse {
             a,
@@ -552,7 +555,7 @@ mod staircase_tests {
         };
         let reached = model.clone().controllable();
         assert_eq!(reached.a.nrows(), 1);
-        // 0.25 + 1 / (s + 1): the rounding of one reflection.
+        // 0.25 + 1 / (s + 1); tolerance: the rounding of one reflection.
         assert!(
             (reached.a[(0, 0)] + 1.0).abs() < 1e-14
                 && (reached.b[0] * reached.c[0] - 1.0).abs() < 1e-14

@@ -1,4 +1,4 @@
-//! Discretisation of a state-space model, exact for inputs that are linear between samples.
+//! Discretisation of a state-space model that is exact for inputs which are linear between samples.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -22,7 +22,7 @@ pub struct FirstOrderHold {
 }
 
 impl FirstOrderHold {
-    /// Discretises `model` at `sample_time_s` \[s\]; `None` where the result is not finite.
+    /// Discretises `model` at `sample_time_s` \[s\]; `None` if the result is not finite.
     #[must_use]
     pub fn new(model: &StateSpace, sample_time_s: f64) -> Option<Self> {
         let n = model.order();
@@ -51,7 +51,7 @@ impl FirstOrderHold {
         })
     }
 
-    /// Simulates the outputs from the state `initial`; inputs and outputs have a row per sample.
+    /// Simulates the outputs from the state `initial`; inputs and outputs have one row per sample.
     #[must_use]
     pub fn simulate(&self, initial: &DVector<f64>, inputs: &DMatrix<f64>) -> DMatrix<f64> {
         let mut outputs = DMatrix::zeros(inputs.nrows(), self.c.nrows());
@@ -67,8 +67,8 @@ impl FirstOrderHold {
         outputs
     }
 
-    /// Returns the free response to each initial state, `C Phi^n` for `samples` samples: a column
-    /// per state, a row per sample and output, the outputs of a sample in consecutive rows.
+    /// Returns the outputs `C Phi^n` of the free response to each initial state, for n = 0 ...
+    /// `samples` - 1: one column per state, and for each sample one row per output.
     #[must_use]
     pub fn free_responses(&self, samples: usize) -> DMatrix<f64> {
         let (outputs, states) = self.c.shape();

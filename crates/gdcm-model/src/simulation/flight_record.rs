@@ -1,4 +1,4 @@
-//! Flight records as logged, and their segments on a uniform time grid.
+//! Flight records as logged, and their segments without gaps on a uniform time grid.
 
 use std::fmt;
 
@@ -6,16 +6,16 @@ use nalgebra::{DMatrix, DVectorView};
 
 use crate::dataset::channel::ChannelSide;
 
-/// A flight record: time stamps and samples for all inputs and outputs, in file units.
+/// A flight record: time stamps and samples of all inputs and outputs, in the units of the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlightRecord {
     /// Display name.
     pub name: String,
-    /// Time stamps \[s\]; NaN where missing.
+    /// Time stamps \[s\]; NaN if missing.
     pub time_s: Vec<f64>,
-    /// Inputs: a row per sample, a column per channel; NaN where missing.
+    /// Inputs: one row per sample, one column per channel; NaN if missing.
     pub inputs: DMatrix<f64>,
-    /// Outputs: a row per sample, a column per channel; NaN where missing.
+    /// Outputs: one row per sample, one column per channel; NaN if missing.
     pub outputs: DMatrix<f64>,
 }
 
@@ -28,14 +28,14 @@ pub struct Segment {
     pub start_s: f64,
     /// Sample time \[s\].
     pub sample_time_s: f64,
-    /// Inputs: a row per sample, a column per channel.
+    /// Inputs: one row per sample, one column per channel.
     pub inputs: DMatrix<f64>,
-    /// Outputs: a row per sample, a column per channel.
+    /// Outputs: one row per sample, one column per channel.
     pub outputs: DMatrix<f64>,
 }
 
 impl FlightRecord {
-    /// Returns a channel's samples.
+    /// Returns the samples of a channel; panics if the record does not have it.
     #[must_use]
     pub fn channel(&self, signal: &Signal) -> DVectorView<'_, f64> {
         signal
@@ -46,7 +46,7 @@ impl FlightRecord {
 }
 
 impl Segment {
-    /// Returns a channel's samples.
+    /// Returns the samples of a channel; panics if the segment does not have it.
     #[must_use]
     pub fn channel(&self, signal: &Signal) -> DVectorView<'_, f64> {
         signal
@@ -56,7 +56,7 @@ impl Segment {
     }
 }
 
-/// Subtracts the mean of each column.
+/// Subtracts its mean from each column.
 #[must_use]
 pub fn centred(mut samples: DMatrix<f64>) -> DMatrix<f64> {
     for mut column in samples.column_iter_mut() {
@@ -72,7 +72,6 @@ pub struct Signal {
     pub role: ChannelSide,
     /// Index among the inputs or outputs, counted from 0.
     pub index: usize,
-    /// Display name.
     pub name: String,
 }
 

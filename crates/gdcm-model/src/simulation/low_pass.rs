@@ -6,11 +6,11 @@ use nalgebra::DMatrix;
 
 use super::flight_record::Segment;
 
-/// Half length of the filter, in periods of the cut-off frequency.
+/// Half the filter length, in periods of the cut-off frequency.
 const PERIODS: f64 = 4.0;
-/// Share of the Nyquist frequency above which a cut-off needs no filter.
+/// Share of the Nyquist frequency above which a cut-off frequency removes practically nothing.
 const NEAR_NYQUIST: f64 = 0.8;
-/// Maximum half length in samples; only an unreasonably low cut-off exceeds it.
+/// Maximum half length \[samples\]; only an unreasonably low cut-off frequency exceeds it.
 const LONGEST: f64 = 1e5;
 
 /// A symmetric finite impulse response: a Hamming-windowed sinc with unit sum.
@@ -19,20 +19,20 @@ const LONGEST: f64 = 1e5;
 /// h[n] ~ sin(wc n dt) / (pi n) (0.54 + 0.46 cos(pi n / M)),   n = -M ... M,   M = ceil(4 * 2 pi / (wc dt))
 /// ```
 ///
-/// It has zero phase. All channels of a record pass through the same filter, so that the responses
+/// Its phase is zero. All channels of a record pass through the same filter, so that the responses
 /// between channels are unchanged. At both ends the signal is extended by odd reflection,
 /// `2 x[0] - x[n]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LowPass {
-    /// `h[0] ... h[M]`.
+    /// Coefficients `h[0] ... h[M]`; the others follow by symmetry.
     half: Vec<f64>,
 }
 
 impl LowPass {
-    /// Creates the filter with cut-off `omega` \[rad/s\] for a sample time \[s\].
+    /// Creates the filter with the cut-off frequency `omega` \[rad/s\] for a sample time \[s\].
     ///
-    /// `None` where `omega dt > 0.8 pi` (nothing to remove), where either argument is not positive,
-    /// and where `M` would exceed 100 000.
+    /// Returns `None` if `omega dt > 0.8 pi` (nothing to remove), if either argument is not
+    /// positive, or if `M` would exceed 100 000.
     #[must_use]
     pub fn new(omega: f64, sample_time_s: f64) -> Option<Self> {
         let step = omega * sample_time_s;
@@ -53,7 +53,7 @@ impl LowPass {
         Some(Self { half })
     }
 
-    /// Returns the filtered `samples`.
+    /// Returns the filtered `samples`, as many as given.
     #[must_use]
     pub fn filter(&self, samples: &[f64]) -> Vec<f64> {
         let reach = self.half.len() - 1;
@@ -63,7 +63,7 @@ impl LowPass {
             .collect()
     }
 
-    /// Returns the filtered value at index `centre` of an extended signal.
+    /// Returns the filtered value at index `centre` of the extended signal.
     fn filtered_sample(&self, extended: &[f64], centre: usize) -> f64 {
         let sides: f64 = self
             .half
@@ -75,8 +75,8 @@ impl LowPass {
         self.half[0] * extended[centre] + sides
     }
 
-    /// Filters every channel of a segment with cut-off `omega` \[rad/s\]; unchanged where there is
-    /// nothing to remove.
+    /// Filters every channel of a segment with the cut-off frequency `omega` \[rad/s\]. Returns the
+    /// segment unchanged if [`LowPass::new`] returns `None`.
     #[must_use]
     pub fn applied(omega: f64, segment: &Segment) -> Segment {
         let Some(low_pass) = Self::new(omega, segment.sample_time_s) else {
@@ -89,7 +89,6 @@ impl LowPass {
         }
     }
 
-    /// Filters each column.
     fn filter_columns(&self, samples: &DMatrix<f64>) -> DMatrix<f64> {
         let mut filtered = Vec::with_capacity(samples.len());
         for column in samples.as_slice().chunks(samples.nrows().max(1)) {
@@ -99,8 +98,8 @@ impl LowPass {
     }
 }
 
-/// Returns `sin(wc n dt) / (pi n)` times the Hamming window of half length `length`, for a cut-off
-/// of `step = wc dt`.
+/// Returns `sin(wc n dt) / (pi n)` times the Hamming window of half length `length`, with
+/// `step = wc dt`.
 fn windowed_sinc(n: f64, step: f64, length: f64) -> f64 {
     let sinc = if n == 0.0 {
         step / PI
@@ -110,8 +109,8 @@ fn windowed_sinc(n: f64, step: f64, length: f64) -> f64 {
     sinc * (0.54 + 0.46 * (PI * n / length).cos())
 }
 
-/// Extends `samples` by `reach` at each end through repeated odd reflection; a single sample is
-/// extended by its value.
+/// Extends `samples` by `reach` values at each end, by repeated odd reflection; a single sample is
+/// repeated.
 fn oddly_reflected(samples: &[f64], reach: usize) -> Vec<f64> {
     let (Some(&first), Some(&last)) = (samples.first(), samples.last()) else {
         return Vec::new();
@@ -123,8 +122,8 @@ fn oddly_reflected(samples: &[f64], reach: usize) -> Vec<f64> {
         let start = reach;
         let end = reach + length - 1;
         for k in 1..=reach {
-            // Both ends grow together, so that the reflected samples exist already, however short
-            // the signal.
+            // Extend both ends together, so that the reflected samples exist already, however short
+            // the signal is.
             extended[start - k] = 2.0 * first - extended[start + k];
             extended[end + k] = 2.0 * last - extended[end - k];
         }

@@ -1,4 +1,4 @@
-//! Validation in the time domain: a model simulated against records.
+//! Validation in the time domain: simulation of a model and comparison with flight records.
 
 use nalgebra::{DMatrix, DVector, RowDVector};
 
@@ -9,11 +9,12 @@ use crate::dataset::StateSpace;
 use crate::executor::{Executor, each};
 use crate::response::eigenvalues::poles;
 
-/// Window length for an unstable model, in time constants of its fastest diverging mode (M14, 6).
+/// Maximum window length for an unstable model, in time constants of its fastest diverging mode
+/// (M14, section 6).
 const TIME_CONSTANTS: f64 = 3.0;
 /// Minimum ratio of output samples to unknowns (initial state and offsets) in a window.
 const OVER_UNKNOWNS: usize = 3;
-/// Singular value, relative to the largest, below which a combination of unknowns is not estimated.
+/// Relative singular value below which a combination of unknowns is not estimated.
 const RANK_TOLERANCE: f64 = 1e-9;
 
 /// Settings for validation in the time domain.
@@ -21,13 +22,14 @@ const RANK_TOLERANCE: f64 = 1e-9;
 pub struct ValidationSettings {
     /// Maximum window length \[s\].
     pub longest_window_s: f64,
-    /// Low-pass cut-off for inputs and outputs \[rad/s\]; `None` compares raw signals.
+    /// Cut-off frequency \[rad/s\] of the low-pass filter for inputs and outputs; `None` compares
+    /// unfiltered signals.
     pub low_pass: Option<f64>,
 }
 
 impl ValidationSettings {
-    /// Returns settings with 10 s windows and signals low-pass filtered at twice `highest`
-    /// \[rad/s\], the highest spectral line in use (M14, 6).
+    /// Returns settings with 10 s windows and with signals low-pass filtered at twice `highest`
+    /// \[rad/s\], the highest spectral line in use (M14, section 6).
     #[must_use]
     pub fn filtered(highest: f64) -> Self {
         Self {
@@ -36,7 +38,7 @@ impl ValidationSettings {
         }
     }
 
-    /// Returns settings with 10 s windows and raw signals, for plots.
+    /// Returns settings with 10 s windows and unfiltered signals, for plots.
     #[must_use]
     pub fn unfiltered() -> Self {
         Self {
@@ -45,9 +47,9 @@ impl ValidationSettings {
         }
     }
 
-    /// Returns the same settings with windows common to all models: the shortest window that any of
-    /// them needs. A model with too few samples in windows of its own is not compared, and does not
-    /// shorten the windows of the others.
+    /// Returns the settings with a maximum window length that suits all models: the shortest of
+    /// their window lengths. A model with too few samples in its own windows cannot be compared,
+    /// and does not shorten the windows of the other models.
     #[must_use]
     pub fn common_to<'m>(
         self,
@@ -73,7 +75,7 @@ impl ValidationSettings {
     }
 }
 
-/// A window of a record, measured and simulated.
+/// Measured and simulated outputs in a window of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ValidationWindow {
     /// Record index, counted from 0.
@@ -82,63 +84,63 @@ pub struct ValidationWindow {
     pub start_s: f64,
     /// Sample time \[s\].
     pub sample_time_s: f64,
-    /// Measured outputs after filtering: a row per sample, a column per output.
+    /// Measured outputs, filtered if requested: one row per sample, one column per output.
     pub measured: DMatrix<f64>,
-    /// Simulated outputs: a row per sample, a column per output.
+    /// Simulated outputs: one row per sample, one column per output.
     pub simulated: DMatrix<f64>,
 }
 
-/// Agreement between a model and records in the time domain.
+/// Agreement of a model with flight records in the time domain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Validation {
     /// The windows, by segment and time; at least one.
     pub windows: Vec<ValidationWindow>,
-    /// For each output `100 (1 - rms(e) / std(y))`, at most 100; `None` where the output is
+    /// Fit of each output, `100 (1 - rms(e) / std(y))`, at most 100; `None` if the output is
     /// constant.
     pub fit_percent: Vec<Option<f64>>,
-    /// For each output Theil's coefficient `rms(e) / (rms y + rms y^)` about the mean of y, 0 to 1;
-    /// `None` where both are constant.
+    /// Theil's coefficient of each output, `rms(e) / (rms y + rms y^)` about the mean of y, 0 to 1;
+    /// `None` if both are constant.
     pub theil: Vec<Option<f64>>,
 }
 
-/// Error for a model that cannot be compared with a record in the time domain.
+/// Error for a model that cannot be compared with flight records in the time domain.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ValidationError {
-    #[error("there is no record to compare the model with")]
+    #[error("no record is available for the comparison with the model")]
     NoSegments,
-    /// Inputs or outputs differ from those of a segment; index of its record, counted from 0.
-    #[error("record {} has other channels than the model", .0 + 1)]
+    /// The inputs or outputs differ from those of a segment; index of its record, counted from 0.
+    #[error("the channels of record {} differ from those of the model", .0 + 1)]
     ChannelsDiffer(usize),
-    /// Model that cannot be discretised, or whose poles cannot be computed.
-    #[error(
-        "the model cannot be simulated: its matrices do not fit each other or hold values that are not finite"
-    )]
+    /// A model that cannot be discretised, or whose poles cannot be computed.
+    #[error("the model cannot be simulated: its poles or its discretisation could not be computed")]
     NotSimulated,
-    #[error("windows must last longer than 0 s")]
+    #[error("the window length must be positive")]
     NoWindow,
-    /// Too few samples to estimate an initial state; window length \[s\].
+    /// Too few samples for the estimate of an initial state; window length \[s\].
     #[error(
-        "too short to compare in time: windows of {0:.2} s, the record or {TIME_CONSTANTS} time constants of the \
-         model's fastest diverging mode, hold too few samples for its initial state"
+        "too short to compare in time: windows of {0:.2} s (limited by the record, or to \
+        {TIME_CONSTANTS} time constants of the model's fastest diverging mode) contain too few \
+        samples to estimate the initial state"
     )]
     TooShort(f64),
     #[error("the simulated outputs are not finite")]
     NotFinite,
 }
 
-/// Validates `model`, in the units of the file, against `segments` in the time domain (M14, 6):
-/// windows short enough for an unstable model, each with its own initial state and output offsets.
+/// Validates `model`, in the units of the file, against `segments` in the time domain (M14, section
+/// 6). The windows are short enough for an unstable model, and each has its own initial state and
+/// output offsets.
 ///
 /// ```text
-/// window: 3 / max Re lambda, at most the longest; each segment in equal windows, no sample left out
+/// window: 3 / max Re lambda, at most longest_window_s; each segment is divided into equal windows without a remainder
 /// y^ = C Phi^n x0 + offset + response to (u - mean u), inputs linear between samples
 /// x0, offset: least squares over all outputs, each divided by its standard deviation
 /// fit = 100 (1 - rms(y - y^) / std(y)),   Theil = rms(y - y^) / (rms(y) + rms(y^))
 /// ```
 ///
 /// # Errors
-/// No segments, channels that differ from the model's, a model that cannot be simulated, or windows
-/// that are too short.
+/// [`ValidationError`] if there are no segments, the channels differ from the model's, the model
+/// cannot be simulated, or the windows are too short.
 pub fn validate(
     model: &StateSpace,
     segments: &[Segment],
@@ -183,8 +185,8 @@ pub fn validate(
     })
 }
 
-/// Returns the window length \[s\]; `None` where the model is not finite or its poles cannot
-/// be computed.
+/// Returns the window length \[s\]: `longest_s`, or less for an unstable model. `None` if the poles
+/// cannot be computed.
 fn window_s(model: &StateSpace, longest_s: f64) -> Option<f64> {
     let fastest = poles(model)?.iter().map(|pole| pole.re).fold(0.0, f64::max);
     Some(if fastest > 0.0 {
@@ -194,11 +196,11 @@ fn window_s(model: &StateSpace, longest_s: f64) -> Option<f64> {
     })
 }
 
-/// Returns the count of equal windows in a segment; `None` where they hold too few samples for the
-/// initial state.
+/// Returns the number of equal windows in a segment; `None` if they have too few samples for the
+/// estimate of an initial state.
 fn window_count(model: &StateSpace, segment: &Segment, window_s: f64) -> Option<usize> {
     let (samples, outputs) = segment.outputs.shape();
-    // An excess of up to a millionth of a window counts as rounding.
+    // `- 1e-6`: an excess of up to a millionth of a window is attributed to rounding.
     let count = (samples as f64 * segment.sample_time_s / window_s - 1e-6)
         .ceil()
         .clamp(1.0, samples.max(1) as f64) as usize;
@@ -209,8 +211,8 @@ fn window_count(model: &StateSpace, segment: &Segment, window_s: f64) -> Option<
     }
 }
 
-/// Simulates the windows of a segment; none where it is too short. `std` has the standard deviation
-/// per output.
+/// Simulates the windows of a segment; empty if it is too short. `std` holds the standard deviation
+/// of each output.
 fn windows(
     model: &StateSpace,
     segment: &Segment,
@@ -244,14 +246,14 @@ fn windows(
     Ok(windows)
 }
 
-/// Returns the index of the first sample in window `k`, in 128 bits because the product may be
-/// large.
+/// Returns the index of the first sample in window `k`; uses 128 bits because the product may
+/// overflow 64 bits.
 fn window_start(k: usize, count: usize, samples: usize) -> usize {
     (samples as u128 * k as u128 / count as u128) as usize
 }
 
-/// Simulates `inputs` with the initial state and offsets that bring the outputs closest to
-/// `measured`; `None` where they are not finite.
+/// Simulates `inputs` with the initial state and offsets that minimise the squared difference
+/// between the outputs and `measured`; `None` if the outputs are not finite.
 fn best_simulation(
     held: &FirstOrderHold,
     free: &DMatrix<f64>,
@@ -263,8 +265,8 @@ fn best_simulation(
     let states = free.ncols();
     let forced = held.simulate(&DVector::zeros(states), &centred(inputs));
 
-    // Rows: sample after sample, each output divided by its standard deviation; columns: initial
-    // states, offsets, remaining error.
+    // Rows: one per sample and output, divided by the output's standard deviation. Columns: initial
+    // states, offsets, right-hand side.
     let mut rows = DMatrix::zeros(samples * outputs, states + outputs + 1);
     for n in 0..samples {
         for (o, std) in std.iter().enumerate() {
@@ -287,8 +289,9 @@ fn best_simulation(
     }
 }
 
-/// Returns the least-squares solution `x` of `a x = b`, given as `[a | b]`; of minimum norm for
-/// columns scaled to unit length. `None` where it is not finite.
+/// Returns the least-squares solution `x` of `a x = b`, given as `[a | b]`; of several solutions,
+/// the one of minimum norm after scaling the columns of `a` to unit length. `None` if it is not
+/// finite.
 fn solve(rows: DMatrix<f64>) -> Option<DVector<f64>> {
     let unknowns = rows.ncols() - 1;
     if !rows.norm().is_finite() {
@@ -314,7 +317,7 @@ fn solve(rows: DMatrix<f64>) -> Option<DVector<f64>> {
     Some(solution.column(0).component_div(&lengths.transpose()))
 }
 
-/// Returns the standard deviation per column over all `parts`; 1 for a constant column.
+/// Returns the standard deviation of each column over all `parts`; 1 for a constant column.
 fn deviations<'a>(parts: impl Iterator<Item = &'a DMatrix<f64>> + Clone) -> Vec<f64> {
     let means = means(parts.clone());
     let squares = sums(parts.clone(), |o, y| (y - means[o]).powi(2));
@@ -331,7 +334,7 @@ fn deviations<'a>(parts: impl Iterator<Item = &'a DMatrix<f64>> + Clone) -> Vec<
     deviations
 }
 
-/// Returns the column means over all `parts`.
+/// Returns the mean of each column over all `parts`.
 fn means<'a>(parts: impl Iterator<Item = &'a DMatrix<f64>> + Clone) -> Vec<f64> {
     let samples: usize = parts.clone().map(DMatrix::nrows).sum();
     sums(parts, |_, y| y)
@@ -355,13 +358,13 @@ fn sums<'a>(
     sums
 }
 
-/// Agreement per output over all windows.
+/// Agreement of each output over all windows.
 struct Agreement {
     fit_percent: Vec<Option<f64>>,
     theil: Vec<Option<f64>>,
 }
 
-/// Computes fit \[%\] and Theil's coefficient per output.
+/// Computes the fit \[%\] and Theil's coefficient of each output.
 fn agreement(windows: &[ValidationWindow]) -> Agreement {
     let measured = windows.iter().map(|window| &window.measured);
     let means = means(measured.clone());
@@ -374,7 +377,8 @@ fn agreement(windows: &[ValidationWindow]) -> Agreement {
     let simulated = sums(windows.iter().map(|window| &window.simulated), |o, y| {
         (y - means[o]).powi(2)
     });
-    // All sums run over the same samples, so that their count cancels.
+    // Sums replace rms and standard deviation: all run over the same samples, so that the number of
+    // samples cancels.
     let mut agreement = Agreement {
         fit_percent: Vec::new(),
         theil: Vec::new(),
@@ -388,7 +392,6 @@ fn agreement(windows: &[ValidationWindow]) -> Agreement {
     agreement
 }
 
-/// Returns the value, or `None` where it is not finite.
 fn finite(value: f64) -> Option<f64> {
     if value.is_finite() { Some(value) } else { None }
 }

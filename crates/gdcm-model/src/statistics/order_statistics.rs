@@ -1,4 +1,4 @@
-//! Mean, median and quantiles.
+//! Median, weighted median, mean and quantiles.
 
 /// Returns the median: the middle value, or the mean of the two middle values (M6).
 ///
@@ -17,12 +17,12 @@ pub fn median(values: &mut [f64]) -> f64 {
 }
 
 /// Returns the weighted median: the smallest value at which the cumulative weight reaches half the
-/// total, or, where it is exactly half, the mean of this value and the next (M4a). Equals
-/// [`median`] for equal weights.
+/// total; if it is exactly half, the mean of this value and the next (M4a). Equals [`median`] for
+/// equal weights.
 ///
 /// NaN for no values. Values must be finite, weights positive, and their counts equal.
 pub fn weighted_median(values: &[f64], weights: &[f64]) -> f64 {
-    /// Relative rounding error allowed in sums of thousands of weights.
+    /// Relative rounding error tolerated in sums of thousands of weights.
     const ROUNDING: f64 = 1e-12;
     let mut sorted: Vec<WeightedValue> = values
         .iter()
@@ -114,7 +114,7 @@ mod tests {
 
     #[test]
     fn quantiles_interpolate_as_numpy_does() {
-        // numpy.quantile([15, 20, 35, 40, 50], 0.4) == 29.0; q = 0.05 gives 16.0.
+        // Reference: numpy.quantile([15, 20, 35, 40, 50], 0.4) == 29.0; q = 0.05 gives 16.0.
         let values = [35.0, 20.0, 15.0, 50.0, 40.0];
         assert!((quantile(&mut values.clone(), 0.4) - 29.0).abs() < 1e-12);
         assert!((quantile(&mut values.clone(), 0.05) - 16.0).abs() < 1e-12);

@@ -10,7 +10,7 @@ pub fn db_to_ratio(db: f64) -> f64 {
     10.0_f64.powf(db / 20.0)
 }
 
-/// Converts the natural logarithm of a magnitude ratio, such as a small relative error, to
+/// Converts the natural logarithm of a magnitude ratio, such as a small relative deviation, to
 /// decibels: `20 neper / ln 10`.
 pub fn neper_to_db(neper: f64) -> f64 {
     const DB_PER_NEPER: f64 = 8.685_889_638_065_037;
@@ -39,7 +39,7 @@ mod tests {
     #[test]
     fn decibels_and_ratios_are_inverse() {
         for ratio in [1e-6, 0.5, 1.0, 2.0, 1e6] {
-            // A few ulp of log10 and powf, amplified by |db| / 8.7 <= 14.
+            // Tolerance: a few ulp of log10 and powf, amplified by |db| / 8.7 <= 14.
             assert!((db_to_ratio(ratio_to_db(ratio)) / ratio - 1.0).abs() < 1e-13);
         }
     }

@@ -1,4 +1,4 @@
-//! Physical units, conversions between internal and display units, and numbers as text.
+//! Physical units, and conversions between internal and display units.
 
 pub mod conversion;
 pub mod physical_unit;

@@ -11,21 +11,22 @@ pub enum Dimension {
     Length,
     Speed,
     Acceleration,
-    /// Fraction, such as stick travel over full travel.
+    /// Dimensionless fraction, such as stick travel over full travel.
     Part,
     Force,
     Time,
-    /// Cycles over time.
+    /// Cycles per time.
     Frequency,
     /// Logarithm of a ratio.
     Level,
 }
 
-/// A physical unit.
+/// A physical unit, recognised by its spelling.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhysicalUnit {
     pub dimension: Dimension,
-    /// Size in the base unit of its dimension: rad, rad/s, rad/s^2, m, m/s, m/s^2, 1, N, s, Hz or dB.
+    /// Size, in the base unit of its dimension: rad, rad/s, rad/s^2, m, m/s, m/s^2, 1, N, s, Hz or
+    /// dB.
     pub size: f64,
     /// Usual spelling.
     pub name: &'static str,
@@ -40,10 +41,9 @@ const KNOT: f64 = 1852.0 / 3600.0;
 /// Newtons per pound-force.
 const POUND_FORCE: f64 = 4.448_221_615_260_5;
 
-/// A row in the table of units.
 struct UnitRow {
     dimension: Dimension,
-    /// Size in the base unit.
+    /// Size, in the base unit of the dimension.
     size: f64,
     /// Spellings as returned by [`folded_unit`], the usual spelling first.
     spellings: &'static [&'static str],
@@ -57,7 +57,7 @@ const fn unit(dimension: Dimension, size: f64, spellings: &'static [&'static str
     }
 }
 
-/// All supported units. `rps` is missing: it may mean radians or revolutions per second.
+/// All supported units. `rps` is not supported: it may mean radians or revolutions per second.
 const UNITS: &[UnitRow] = {
     use Dimension::*;
     &[
@@ -119,10 +119,10 @@ const UNITS: &[UnitRow] = {
 
 impl PhysicalUnit {
     /// Parses a unit in any common spelling: "deg/s", "°/sec", "dps", "ft/s^2", "g", "% of stick",
-    /// "msec".
+    /// "msec"; `None` for an unknown unit.
     pub fn of(text: &str) -> Option<Self> {
-        // Most units have a spelling from the table. Many units are parsed for each column of each
-        // record, so that avoiding the folding saves time.
+        // Try the text as it is first: most units are spelt as in the table, and many are parsed
+        // for each column of each record, so that it pays to avoid the folding.
         let row = find_unit(text).or_else(|| find_unit(&folded_unit(text)))?;
         Some(Self {
             dimension: row.dimension,
@@ -136,10 +136,10 @@ fn find_unit(spelling: &str) -> Option<&'static UnitRow> {
     UNITS.iter().find(|row| row.spellings.contains(&spelling))
 }
 
-/// Words that name the quantity to which a fraction refers.
+/// Words that name the whole to which a percentage refers.
 const WHOLES: [&str; 4] = ["of stick", "of travel", "of full travel", "stick"];
 
-/// Alternative spellings and their replacements, applied in this order.
+/// Alternative spellings and their replacements, in the order in which they are applied.
 const REPLACEMENTS: [(&str, &str); 18] = [
     ("°", "deg"),
     ("degrees", "deg"),
@@ -161,7 +161,7 @@ const REPLACEMENTS: [(&str, &str); 18] = [
     ("knots", "knot"),
 ];
 
-/// Folds a unit: lower case, without blanks, brackets and alternative spellings.
+/// Folds a unit: lower case, without blanks and brackets, in the standard spelling.
 fn folded_unit(text: &str) -> String {
     let mut unit = text
         .trim()
@@ -172,7 +172,7 @@ fn folded_unit(text: &str) -> String {
         unit = unit.replace(words, "");
     }
     unit.retain(|letter| !letter.is_whitespace());
-    // "per" inside "percent" must stay.
+    // Return "percent" before "per" is replaced by "/".
     if matches!(unit.as_str(), "percent" | "percentage") {
         return "percent".to_owned();
     }
@@ -182,8 +182,8 @@ fn folded_unit(text: &str) -> String {
     unit
 }
 
-/// Returns the factor from unit `from` to unit `to`; `None` where either is unknown or their
-/// dimensions differ. Exactly 1 for the same unit.
+/// Returns the factor from unit `from` to unit `to`: exactly 1 for the same unit, `None` if either
+/// is unknown or their dimensions differ.
 pub fn conversion_factor(from: &str, to: &str) -> Option<f64> {
     if from.trim() == to.trim() {
         return Some(1.0);
@@ -255,7 +255,7 @@ mod tests {
             ("kt", "m/s", 0.514_444_444_444_444_4),
         ] {
             let factor = conversion_factor(from, to).unwrap();
-            // A division of two rounded sizes.
+            // Tolerance: the quotient of two rounded sizes.
             assert!(
                 (factor / expected - 1.0).abs() < 4e-16,
                 "{from} {to} {factor}"

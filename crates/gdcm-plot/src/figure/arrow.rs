@@ -1,16 +1,16 @@
-//! Arrows from one value to another, as lines in the units of a panel.
+//! Arrows from one point to another, as lines in the units of a panel.
 
 use super::axis::Range;
 
-/// Length of an arrow head, as a fraction of the spans of the arrows in a plot.
+/// Length of an arrow head, relative to the spans of all arrows in the plot.
 const HEAD_LENGTH: f64 = 0.035;
-/// Half-width of an arrow head, as a fraction of the spans.
+/// Half-width of an arrow head, relative to the spans.
 const HEAD_HALF_WIDTH: f64 = 0.012;
-/// Minimum span, relative to the largest absolute coordinate.
+/// Minimum span of an axis, relative to the largest coordinate on it.
 const LEAST_SPAN: f64 = 1e-3;
 
-/// Returns the extents of the points along x and y, the units of arrow heads; positive even for a
-/// single point.
+/// Returns the extents of the points along x and y, relative to which arrow heads are sized;
+/// positive even for a single point.
 pub(super) fn spans(points: &[[f64; 2]]) -> [f64; 2] {
     [0, 1].map(|axis| {
         let range = Range::of(points.iter().map(|point| point[axis]));
@@ -22,8 +22,8 @@ pub(super) fn spans(points: &[[f64; 2]]) -> [f64; 2] {
     })
 }
 
-/// Returns a line between two points with an arrow head in the middle, where no dot hides it:
-/// `from`, tip, wing, tip, other wing, tip, `to`. A line shorter than a head has none.
+/// Returns a line between two points, with an arrow head in the middle, where no dot hides it:
+/// `from`, tip, wing, tip, other wing, tip, `to`. A line shorter than an arrow head has no head.
 pub(super) fn arrow(from: [f64; 2], to: [f64; 2], spans: [f64; 2]) -> Vec<[f64; 2]> {
     let along = [0, 1].map(|axis| (to[axis] - from[axis]) / spans[axis]);
     let length = along[0].hypot(along[1]);
@@ -51,7 +51,7 @@ struct ScaledLine {
 }
 
 impl ScaledLine {
-    /// Returns the point at a distance along the line and a distance to its left.
+    /// Returns the point at a distance `ahead` along the line and a distance `beside` to its left.
     fn point(&self, ahead: f64, beside: f64) -> [f64; 2] {
         let [x, y] = self.direction;
         let offset = [ahead * x - beside * y, ahead * y + beside * x];
@@ -65,7 +65,7 @@ mod tests {
 
     #[test]
     fn an_arrow_ends_at_its_target_and_its_head_points_there() {
-        // As fractions of the span from the origin to the far corner.
+        // The spans run from the origin to [2, 100]: head sizes are fractions of them.
         let points = arrow([1.0, 10.0], [3.0, 10.0], [2.0, 100.0]);
         assert_eq!(
             (points[0], points[6], points.len()),

@@ -20,7 +20,7 @@ use super::figure::{Figure, Panel, Plot};
 use super::marks::{Bars, Note, Place, Rule};
 
 const ZERO: Stroke = Stroke::solid(Color::DIM, 0.6);
-/// Bar width; conditions are 1 apart.
+/// Bar width; neighbouring conditions are 1 apart on the axis.
 const BAR: f64 = 0.27;
 
 /// A part of ΔJ and the style of its bars; in print, parts differ in darkness.
@@ -28,7 +28,7 @@ struct Part {
     name: &'static str,
     color: Color,
     value: fn(CostChange) -> f64,
-    /// Offset from the condition on the axis.
+    /// Offset of the bars from the position of their condition on the axis.
     beside: f64,
 }
 
@@ -72,7 +72,7 @@ pub fn assessment_figure(analysis: &Analysis, pairs: &[Pair], choice: Assessment
         AssessedCorrection::ScheduleOfOthers => "the schedule of the other conditions",
         AssessedCorrection::Own => "each condition's own optimum",
     };
-    let title = format!("Change of J of the {model} model under {correction}");
+    let title = format!("Change in J of the {model} model under {correction}");
     Figure::new(title)
         .caption(caption(analysis, &table))
         .plots(plots)
@@ -80,7 +80,7 @@ pub fn assessment_figure(analysis: &Analysis, pairs: &[Pair], choice: Assessment
         .aspect(0.62)
 }
 
-/// Returns the choice of Figures 8 to 19: the nominal model under the schedule, with the average
+/// Returns the choice used in Figures 8 to 19: nominal model, scheduled correction, and the average
 /// from the settings.
 pub fn usual_choice(analysis: &Analysis) -> AssessmentChoice {
     AssessmentChoice {
@@ -168,7 +168,7 @@ pub fn average_word(average: CostAverage) -> &'static str {
     }
 }
 
-/// Describes the settings, the schedule, and the excluded conditions with reasons.
+/// Describes the settings and the schedule, and lists the excluded conditions with reasons.
 fn caption(analysis: &Analysis, table: &AssessmentTable) -> String {
     let study = &analysis.study;
     let mut caption = settings_words(&study.dataset, &study.settings);
@@ -178,7 +178,7 @@ fn caption(analysis: &Analysis, table: &AssessmentTable) -> String {
     }
     let average = average_word(table.choice.average);
     caption.push_str(&format!(
-        " J takes {average} over frequency; below 0 is better."
+        " J is {average} over frequency; negative changes are improvements."
     ));
     for left_out in &table.left_out {
         caption.push_str(&format!(

@@ -4,9 +4,9 @@ pub use super::display_units::{FrequencyUnit, MagnitudeUnit, PhaseErrorUnit, Pha
 pub use super::range::Range;
 pub use super::ticks::{Scale, Tick, TickGaps, ticks_of};
 
-/// Margin on either side of the shown values, relative to their range.
+/// Margin at both ends of a fitted range, relative to its width.
 const MARGIN: f64 = 0.05;
-/// Range of an axis without values.
+/// Range of an axis without values to show.
 const EMPTY: Range = Range {
     min: 1.0,
     max: 10.0,
@@ -23,11 +23,11 @@ pub struct Axis {
     pub scale: Scale,
     /// Displayed range; fitted to the marks if `None`.
     pub range: Option<Range>,
-    /// Values that a fitted range contains.
+    /// Values that a fitted range must contain.
     pub including: Vec<f64>,
     /// Minimum width of a fitted linear range, in the unit of the axis.
     pub least: f64,
-    /// Values with their names, which replace the numeric ticks.
+    /// Positions with names, which replace the numeric ticks.
     pub names: Option<Vec<(f64, String)>>,
 }
 
@@ -58,7 +58,7 @@ impl Axis {
         Self::new(label, Scale::Logarithmic)
     }
 
-    /// Creates an axis with names at 0, 1, 2, …; the range extends half a step beyond the first and
+    /// Creates an axis with names at 0, 1, 2, …; its range extends half a step beyond the first and
     /// the last name.
     pub fn named(
         label: impl Into<String>,
@@ -77,7 +77,7 @@ impl Axis {
         }
     }
 
-    /// Returns the axis with exactly this range; unchanged if `None`.
+    /// Returns the axis with this range; unchanged if `None`.
     pub fn showing(self, range: Option<Range>) -> Self {
         Self {
             range: range.or(self.range),
@@ -85,19 +85,20 @@ impl Axis {
         }
     }
 
-    /// Returns the axis with `value` in its fitted range.
+    /// Returns the axis with a fitted range that contains `value`.
     pub fn including(mut self, value: f64) -> Self {
         self.including.push(value);
         self
     }
 
-    /// Returns the axis with a minimum width of the fitted range, in the unit of the axis.
+    /// Returns the axis with a minimum width for a fitted linear range, in the unit of the axis.
     pub fn at_least(self, least: f64) -> Self {
         Self { least, ..self }
     }
 
-    /// Returns the given range, otherwise the range fitted to `values`: exact on a logarithmic
-    /// axis, with a margin on a linear axis. Values that the axis cannot show are skipped.
+    /// Returns the fixed range if there is one, otherwise a range fitted to `values` and
+    /// `including`: without a margin on a logarithmic axis, with a margin on a linear axis. Values
+    /// that the axis cannot show are skipped.
     pub(super) fn fitted(&self, values: impl Iterator<Item = f64>) -> Range {
         if let Some(range) = self.range {
             return range;
@@ -136,7 +137,8 @@ impl Axis {
         Some((self.place(value) - low) / (high - low))
     }
 
-    /// Returns the coordinate along the axis: the value, or its logarithm on a logarithmic axis.
+    /// Returns the coordinate along the axis: the value on a linear axis, its logarithm on a
+    /// logarithmic axis.
     fn place(&self, value: f64) -> f64 {
         match self.scale {
             Scale::Logarithmic => value.log10(),
@@ -161,7 +163,8 @@ impl Axis {
     }
 }
 
-/// Returns a tick for each name in `range`, or for every n-th name if the names would be too close.
+/// Returns a tick for each name in `range`, or for every n-th name if the ticks would otherwise be
+/// too close.
 fn name_ticks(names: &[(f64, String)], range: Range, length_pt: f64, gap_pt: f64) -> Vec<Tick> {
     let apart_pt = length_pt / range.width();
     let every = (gap_pt / apart_pt).ceil().max(1.0) as usize;

@@ -31,11 +31,11 @@ use super::role::Role;
 
 /// Background of the band of comparison.
 const BAND: Color = Color::of(Hue::Accent).tint(8);
-/// Background above the band if there are leads.
+/// Background of the frequencies above the band at which a model with leads is invalid.
 const INVALID: Color = Color::of(Hue::Warning).tint(10);
-/// Line at a marked frequency.
+/// Line at a frequency at which a bandwidth is read.
 const CROSSING: Stroke = Stroke::dashed(Color::of(Hue::Text), 0.8, Dash::Short);
-/// Height of the magnitude panel, relative to 1 for the phase panel.
+/// Height of the magnitude panel; the phase panel has height 1.
 const MAGNITUDE_WEIGHT: f64 = 1.35;
 /// Margin above and below the curves, relative to their height.
 const MARGIN: f64 = 0.04;
@@ -43,15 +43,15 @@ const MARGIN: f64 = 0.04;
 const LEAST_DB: f64 = 4.0;
 const LEAST_DEG: f64 = 20.0;
 
-/// Plots the responses `pairs` in a condition, magnitude above phase, for every model and for the
-/// corrected models.
+/// Plots the responses `pairs` in a condition, magnitude above phase, for all models and corrected
+/// models.
 pub fn bode_figure(source: &ConditionSource<'_>, pairs: &[Pair], options: &BodeOptions) -> Figure {
     figure_of_pairs(source, pairs, None, |pair| {
         condition_plot(source, pair, options)
     })
 }
 
-/// Plots a response in a condition, with a strip for its coherence.
+/// Plots a response in a condition, with a coherence panel below.
 fn condition_plot(source: &ConditionSource<'_>, pair: Pair, options: &BodeOptions) -> Plot {
     let band = source.study.settings.band;
     let curves = source.response_curves(pair, options, &mut ResponseCache::default());
@@ -70,7 +70,7 @@ fn condition_plot(source: &ConditionSource<'_>, pair: Pair, options: &BodeOption
     }
 }
 
-/// Contents of a response plot, magnitude above phase.
+/// Contents of the plot of a response, magnitude above phase.
 struct ResponsePlot<'a> {
     curves: &'a [BodeCurve],
     bands: &'a [BodeBand],
@@ -90,7 +90,7 @@ impl ResponsePlot<'_> {
             .panel(self.on_grounds(phase))
     }
 
-    /// Builds the magnitude panel, with named crossings.
+    /// Builds the magnitude panel, with labelled lines at the marked frequencies.
     fn magnitude_panel(&self) -> Panel {
         let range_db = self.options.values[0].or(self.fitted(Pane::Magnitude, LEAST_DB));
         let panel = match self.options.magnitude {
@@ -114,7 +114,7 @@ impl ResponsePlot<'_> {
         panel.with_all(crossings)
     }
 
-    /// Builds the phase panel, with unnamed crossings.
+    /// Builds the phase panel, with unlabelled lines at the marked frequencies.
     fn phase_panel(&self) -> Panel {
         let range_deg = self.options.values[1].or(self.fitted(Pane::Phase, LEAST_DEG));
         let axis = Axis::degrees("Phase [deg]").showing(range_deg);
@@ -141,8 +141,8 @@ impl ResponsePlot<'_> {
         }
     }
 
-    /// Returns the range of the visible curves within the band (with leads, up to the end of the
-    /// invalid frequencies), at least `least` high.
+    /// Returns a range that fits the visible curves within the band (with leads, up to the end of
+    /// the invalid frequencies) and is at least `least` high.
     fn fitted(&self, pane: Pane, least: f64) -> Option<Range> {
         let visible: Vec<BodeCurve> = self
             .curves
@@ -155,9 +155,9 @@ impl ResponsePlot<'_> {
         Some(range.with_margin(MARGIN, least))
     }
 
-    /// Returns the end \[rad/s\] of the frequencies above the band at which a model with leads is
-    /// not valid: the last frequency of the visible curve without leads, where the drawn cost of
-    /// leads ends (M15.6). `None` without such a curve.
+    /// Returns the upper end \[rad/s\] of the frequencies above the band at which a model with
+    /// leads is invalid (M15.6). This is the last frequency of the curve without leads; `None` if
+    /// that curve is missing or hidden.
     fn invalid_up_to(&self) -> Option<f64> {
         let without_leads = self
             .curves
@@ -166,7 +166,7 @@ impl ResponsePlot<'_> {
         without_leads.omega.last().copied()
     }
 
-    /// Returns the panel with shaded frequency ranges.
+    /// Returns the panel with the band and the invalid frequencies shaded.
     fn on_grounds(&self, panel: Panel) -> Panel {
         let band = band_ground(self.band, self.options);
         match self.invalid_up_to() {
@@ -175,7 +175,7 @@ impl ResponsePlot<'_> {
         }
     }
 
-    /// Returns the shading above the band, where a model with leads is not valid.
+    /// Returns the shading from the band to `up_to` \[rad/s\], where a model with leads is invalid.
     fn invalid_ground(&self, up_to: f64) -> Band {
         Band {
             range: self.options.in_unit(self.band.max(), up_to),
@@ -250,7 +250,10 @@ pub fn overview_figure(source: &ConditionSource<'_>, options: &BodeOptions) -> F
         .pairs()
         .map(|pair| overview_plot(source, pair, options));
     Figure::new(source.condition_words())
-        .caption(format!("{} * held exactly.", source.caption()))
+        .caption(format!(
+            "{} An asterisk (*) marks held responses.",
+            source.caption()
+        ))
         .plots(plots)
         .columns(dataset.inputs().len())
         .dense()

@@ -1,4 +1,4 @@
-//! A frequency response as drawn: magnitude and phase over frequency, with its name and role.
+//! A frequency response as drawn: magnitude and phase over frequency, with name and role.
 
 use std::sync::Arc;
 
@@ -18,11 +18,11 @@ pub enum CurveId {
     WithoutLeads,
     /// Representative physics model with couplings alone.
     Coupled,
-    /// Representative physics model in a study variant, with that variant's own correction.
+    /// Representative physics model in a study variant, with the correction from that variant.
     Variant,
 }
 
-/// The upper or the lower panel in a Bode plot.
+/// Upper or lower panel of a Bode plot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Pane {
     /// Upper panel \[dB\].
@@ -31,20 +31,21 @@ pub enum Pane {
     Phase,
 }
 
-/// A frequency response with its name and role. Also used for an error; its phase values then have
-/// the unit of phase errors.
+/// A frequency response with its name and role. Also used for the deviation from a reference; the
+/// phase then has the unit of phase errors.
 #[derive(Clone, Debug)]
 pub struct BodeCurve {
     pub id: CurveId,
-    /// Name shown under the pointer.
+    /// Name displayed under the pointer.
     pub label: String,
-    /// Second line shown under the pointer. May be empty.
+    /// Second line displayed under the pointer. May be empty.
     pub detail: String,
     pub role: Role,
     pub rejected: bool,
-    /// Whether the curve is pointed at in another view.
+    /// Whether the curve is emphasised because its model or condition is selected or under the
+    /// pointer.
     pub highlighted: bool,
-    /// Whether the engineer hides the curve; its role remains in the legend.
+    /// Whether the curve is hidden at the engineer's request; its role remains in the legend.
     pub hidden: bool,
     /// Frequencies \[rad/s\], ascending.
     pub omega: Arc<[f64]>,
@@ -55,7 +56,7 @@ pub struct BodeCurve {
 }
 
 impl BodeCurve {
-    /// Creates a visible curve without label, detail and points.
+    /// Creates a visible curve without a label, a detail and points.
     pub fn new(id: CurveId, role: Role) -> Self {
         Self {
             id,
@@ -92,7 +93,8 @@ impl BodeCurve {
         self.shared_values(pane)
     }
 
-    /// Returns [`Self::values`] as a shared slice; an unchanged address means unchanged values.
+    /// Returns [`Self::values`] as a shared slice; as long as its address is unchanged, so are the
+    /// values.
     pub fn shared_values(&self, pane: Pane) -> &Arc<[f64]> {
         match pane {
             Pane::Magnitude => &self.magnitude_db,
@@ -108,8 +110,8 @@ impl BodeCurve {
             .map(|(omega, value)| [omega.log10(), *value])
     }
 
-    /// Returns [`Self::points`]; `axis` keeps the logarithms for further curves with the
-    /// same frequencies.
+    /// Iterates over the same points as [`Self::points`]; `axis` caches the logarithms for other
+    /// curves with the same frequencies.
     pub fn points_on<'a>(
         &'a self,
         axis: &'a mut LogFrequencies,
@@ -121,8 +123,8 @@ impl BodeCurve {
             .map(|(log_omega, value)| [*log_omega, *value])
     }
 
-    /// Returns the points of [`Self::points_on`] from `low` to `high` in `log10 omega`, and the
-    /// next point on either side.
+    /// Returns the points of [`Self::points_on`] between `low` and `high` in `log10 omega`, and the
+    /// nearest point beyond either end.
     pub fn points_between<'a>(
         &'a self,
         axis: &'a mut LogFrequencies,
@@ -140,14 +142,15 @@ impl BodeCurve {
             .map(|(log_omega, value)| [*log_omega, *value])
     }
 
-    /// Returns the value at `omega` \[rad/s\], linear in `log10 omega` between points; `None`
-    /// outside the curve's frequencies and beside a gap.
+    /// Returns the value at `omega` \[rad/s\], interpolated linearly in `log10 omega`; `None`
+    /// outside the curve's frequencies and next to a gap.
     pub fn value_at(&self, pane: Pane, omega: f64) -> Option<f64> {
         let value = self.interpolated(self.values(pane), omega)?;
         if value.is_finite() { Some(value) } else { None }
     }
 
-    /// Interpolates `values`, which may be NaN beside a gap.
+    /// Interpolates `values` at `omega` \[rad/s\]; NaN next to a gap, `None` outside the curve's
+    /// frequencies.
     fn interpolated(&self, values: &[f64], omega: f64) -> Option<f64> {
         let after = self.omega.partition_point(|at| *at < omega);
         if self.omega.get(after) == Some(&omega) {
@@ -163,7 +166,8 @@ impl BodeCurve {
     }
 }
 
-/// Logarithms of the last curve's frequencies; most curves of a plot share their frequencies.
+/// Cache of the logarithms of the previous curve's frequencies; most curves of a plot share their
+/// frequencies.
 #[derive(Clone, Debug, Default)]
 pub struct LogFrequencies {
     omega: Arc<[f64]>,
@@ -171,7 +175,7 @@ pub struct LogFrequencies {
 }
 
 impl LogFrequencies {
-    /// Returns `log10` of each frequency.
+    /// Returns `log10` of each frequency, computed only if `omega` is not the previous slice.
     fn logarithms(&mut self, omega: &Arc<[f64]>) -> &[f64] {
         if !Arc::ptr_eq(&self.omega, omega) {
             self.omega = Arc::clone(omega);
@@ -185,7 +189,7 @@ impl LogFrequencies {
 mod tests {
     use super::*;
 
-    /// Returns a curve at 1, 10, 100, … rad/s.
+    /// Returns a curve with these magnitudes at 1, 10, 100, … rad/s.
     fn curve(magnitude_db: &[f64]) -> BodeCurve {
         let omega: Vec<f64> = (0..magnitude_db.len())
             .map(|k| 10f64.powi(k as i32))

@@ -8,7 +8,7 @@ use super::axis::{Axis, FrequencyUnit, MagnitudeUnit, PhaseErrorUnit, PhaseUnit,
 use super::bode_curve::CurveId;
 use super::role::Role;
 
-/// Options of a figure over frequency: contents, units and ranges.
+/// Options of a figure over frequency.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BodeOptions {
     pub unit: FrequencyUnit,
@@ -17,25 +17,28 @@ pub struct BodeOptions {
     pub phase_error: PhaseErrorUnit,
     pub hidden: BTreeSet<Role>,
     pub hidden_models: BTreeSet<ModelId>,
-    /// The only model shown besides the representatives.
+    /// Model to be shown alone, besides the representatives.
     pub isolated: Option<ModelId>,
-    /// Whole turns added to phases by hand.
+    /// Number of full turns (360°) by which the engineer shifts the phase of a curve.
     pub turns: BTreeMap<(ConditionId, Pair, CurveId), i32>,
-    /// Whether the envelopes of maximum unnoticeable added dynamics are shown, about the identified
-    /// response and among the errors.
+    /// Whether to show the envelopes of maximum unnoticeable added dynamics (MUAD), about the
+    /// identified response and in the error plots.
     pub shows_muad: bool,
-    /// Response whose zeros are shown among the poles.
+    /// Response whose zeros are shown in the pole plot.
     pub zeros_of: Option<Pair>,
-    /// Names and frequencies \[rad/s\] at which a bandwidth is read, marked by vertical lines.
+    /// Names and values of the frequencies \[rad/s\] at which a bandwidth is read, marked by
+    /// vertical lines.
     pub crossings: Vec<(&'static str, f64)>,
     /// Displayed frequency range \[rad/s\]; fitted to the curves if `None`.
     pub omega: Option<Range>,
-    /// Ranges in the upper panel \[dB\] and the lower panel \[deg\]; fitted to the band if `None`.
+    /// Displayed ranges of the upper panel \[dB\] and the lower panel \[deg\]; fitted to the curves
+    /// within the band if `None`.
     pub values: [Option<Range>; 2],
 }
 
 impl BodeOptions {
-    /// Returns the frequency axis.
+    /// Returns the logarithmic frequency axis in the displayed unit, with the chosen range if there
+    /// is one.
     pub(super) fn frequency_axis(&self) -> Axis {
         Axis::logarithmic(self.unit.axis_label())
             .showing(self.omega.map(|range| self.in_unit(range.min, range.max)))

@@ -1,4 +1,4 @@
-//! Coherence of measured responses, in a strip below a Bode plot: at low coherence, magnitude and
+//! Coherence of measured responses, in a panel below a Bode plot: at low coherence, magnitude and
 //! phase are unreliable.
 
 use gdcm_model::dataset::{BundleKind, Dynamics, Pair};
@@ -12,15 +12,14 @@ use super::figure::Panel;
 use super::marks::{Curve, Rule};
 use super::role::Role;
 
-/// Strip height, relative to 1 for the phase.
+/// Height of the coherence panel; the phase panel has height 1.
 const WEIGHT: f64 = 0.45;
-/// Line at the minimum coherence that counts.
+/// Line at the minimum coherence of the frequencies that count.
 const TRUSTED: Stroke = Stroke::dashed(Color::DIM, 0.8, Dash::Short);
 
 /// Coherence of a measured response.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoherenceCurve {
-    /// Name of the model.
     pub label: String,
     pub role: Role,
     pub rejected: bool,
@@ -29,8 +28,8 @@ pub struct CoherenceCurve {
 }
 
 impl ConditionSource<'_> {
-    /// Returns the coherence of a response for every visible identified model measured with
-    /// coherence; the representative comes last.
+    /// Returns the coherence of a response for every visible identified model that was measured
+    /// with coherence; the representative comes last.
     pub fn coherence_curves(&self, pair: Pair, options: &BodeOptions) -> Vec<CoherenceCurve> {
         let mut curves: Vec<CoherenceCurve> = self
             .models(BundleKind::Identified, options)
@@ -42,7 +41,8 @@ impl ConditionSource<'_> {
         curves
     }
 
-    /// Returns the coherence of a response of an identified model; `None` if it was not measured.
+    /// Returns the coherence of a response of an identified model; `None` if the model has no
+    /// measured coherence.
     fn coherence_curve(&self, model: SourceModel, pair: Pair) -> Option<CoherenceCurve> {
         let identified = self.curves.condition.bundle(BundleKind::Identified);
         let Dynamics::Measured(response) = &identified[model.index].dynamics else {
@@ -73,7 +73,7 @@ impl ConditionSource<'_> {
     }
 }
 
-/// Builds the strip below a Bode plot; `None` if no response was measured with coherence.
+/// Builds the coherence panel below a Bode plot; `None` if no response was measured with coherence.
 pub(super) fn coherence_panel(
     source: &ConditionSource<'_>,
     pair: Pair,

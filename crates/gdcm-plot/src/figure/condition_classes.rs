@@ -1,4 +1,4 @@
-//! Altitude and weight classes, and how dots distinguish them.
+//! Altitude and weight classes, and the dot shapes that distinguish them.
 
 use std::collections::BTreeSet;
 
@@ -6,21 +6,21 @@ use gdcm_model::dataset::Dataset;
 use gdcm_model::dataset::condition::FlightState;
 use gdcm_study::decisions::choices::ConditionChoice;
 
-/// Names of the classes that come first in their order.
+/// Names of the classes that precede all others.
 const FIRST: [&str; 2] = ["low", "light"];
 
 /// Classes in a dataset. Conditions in the first altitude class are circles, others diamonds;
 /// conditions in the first weight class are filled, others open.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Classes {
-    /// `low` or `light` first, then in alphabetical order.
+    /// `low` first if present, then in alphabetical order.
     pub altitudes: Vec<String>,
-    /// `low` or `light` first, then in alphabetical order.
+    /// `light` first if present, then in alphabetical order.
     pub weights: Vec<String>,
 }
 
 impl Classes {
-    /// Collects the classes in a dataset.
+    /// Collects and sorts the classes that occur in a dataset.
     pub fn of(dataset: &Dataset) -> Self {
         let mut altitudes = BTreeSet::new();
         let mut weights = BTreeSet::new();
@@ -35,12 +35,12 @@ impl Classes {
         }
     }
 
-    /// Returns whether a condition is drawn as a circle.
+    /// Returns whether a condition is in the first altitude class, and therefore drawn as a circle.
     pub fn is_first_altitude(&self, state: &FlightState) -> bool {
         state.altitude.as_ref() == self.altitudes.first()
     }
 
-    /// Returns whether a condition is drawn filled.
+    /// Returns whether a condition is in the first weight class, and therefore drawn filled.
     pub fn is_first_weight(&self, state: &FlightState) -> bool {
         state.weight.as_ref() == self.weights.first()
     }
@@ -48,7 +48,7 @@ impl Classes {
 
 fn ordered(names: BTreeSet<String>) -> Vec<String> {
     let mut names: Vec<String> = names.into_iter().collect();
-    // Stable: the others keep their alphabetical order.
+    // The sort is stable: the other names keep their alphabetical order.
     names.sort_by_key(|name| !FIRST.contains(&name.as_str()));
     names
 }
@@ -64,8 +64,8 @@ pub fn class_names(state: &FlightState) -> [Option<String>; 2] {
     ]
 }
 
-/// Returns `low altitude, high weight`, or `optimum` for a condition without classes; followed by
-/// `held out` or `not in the schedule` where this applies.
+/// Returns `low altitude, high weight`, or `optimum` for a condition without classes; if
+/// applicable, followed by `held out` or `not in the schedule`.
 pub(super) fn class_words(state: &FlightState, choice: &ConditionChoice) -> String {
     let mut words: Vec<String> = class_names(state).into_iter().flatten().collect();
     if words.is_empty() {

@@ -1,5 +1,5 @@
 //! Data behind the figures of a condition: its models with their roles, the corrected versions of
-//! the representative, and the texts that describe them.
+//! the representative physics model, and descriptions of both.
 
 use std::sync::Arc;
 
@@ -20,12 +20,12 @@ pub use super::bode_curve::CurveId;
 use super::bode_options::BodeOptions;
 use super::role::Role;
 
-/// Data behind the figures of a condition.
+/// Data from which the figures of a condition are drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct ConditionSource<'a> {
-    /// The dataset with its decisions.
+    /// The dataset with the engineer's decisions.
     pub study: &'a Study,
-    /// Result of the condition; without it, the responses can still be shown.
+    /// Result of the condition; without it, responses are shown but no corrected models.
     pub analysis: Option<&'a ConditionAnalysis>,
     pub schedule: Option<&'a Schedule>,
     /// Responses of the condition's models.
@@ -34,7 +34,7 @@ pub struct ConditionSource<'a> {
     pub variant: Option<(&'a str, &'a ConditionAnalysis)>,
 }
 
-/// A model of the condition, unless the isolation of another model suppresses it.
+/// A model of the condition as drawn.
 #[derive(Clone, Debug)]
 pub(super) struct SourceModel {
     pub(super) id: ModelId,
@@ -42,18 +42,18 @@ pub(super) struct SourceModel {
     pub(super) index: usize,
     pub(super) role: Role,
     pub(super) rejected: bool,
-    /// Whether the engineer hides the model or its role.
+    /// Whether the engineer has hidden the model or its role.
     pub(super) hidden: bool,
 }
 
-/// The representative physics model after a correction.
+/// The representative physics model after a correction, as drawn.
 #[derive(Clone, Debug)]
 pub(super) struct CorrectedModel<'a> {
-    /// Curve without points.
+    /// Identity, style and legend text; the points are computed later.
     pub(super) curve: BodeCurve,
-    /// Result that contains its couplings.
+    /// Result with the couplings of the model.
     pub(super) result: &'a ConditionAnalysis,
-    /// Index of the physics model.
+    /// Index of the physics model in its bundle.
     pub(super) model: usize,
     pub(super) correction: GainDelay,
 }
@@ -62,7 +62,7 @@ pub(super) struct CorrectedModel<'a> {
 struct Version<'c> {
     id: CurveId,
     role: Role,
-    /// Text after the model's name in its label.
+    /// Text appended to the model's name in the label.
     words: &'static str,
     correction: &'c ChannelCorrection,
 }
@@ -76,7 +76,7 @@ impl<'a> ConditionSource<'a> {
         &self.study.dataset
     }
 
-    /// Returns the unit of a response, output over input: `(deg/s)/in`.
+    /// Returns the unit of a response, output unit over input unit: `(deg/s)/in`.
     pub fn ratio_unit(dataset: &Dataset, pair: Pair) -> String {
         let output = &dataset.outputs()[pair.output].unit;
         let input = &dataset.inputs()[pair.input].unit;
@@ -98,7 +98,7 @@ impl<'a> ConditionSource<'a> {
         caption
     }
 
-    /// Returns a bundle's representative; `None` before the bundle is compared.
+    /// Returns the name of a bundle's representative; `None` before the bundle is compared.
     fn representative(&self, kind: BundleKind) -> Option<&'a str> {
         self.analysis
             .map(|analysis| analysis.representative_name(kind))
@@ -126,8 +126,8 @@ impl<'a> ConditionSource<'a> {
         models
     }
 
-    /// Returns whether another model of the condition is isolated, so that this model is not shown;
-    /// representatives are never suppressed.
+    /// Returns whether a model is not shown because another model of its condition is isolated;
+    /// representatives are always shown.
     fn is_suppressed(&self, id: &ModelId, options: &BodeOptions) -> bool {
         match &options.isolated {
             Some(isolated) if isolated.condition == id.condition => {
@@ -158,7 +158,7 @@ impl<'a> ConditionSource<'a> {
         }
     }
 
-    /// Creates a model's curve, without points.
+    /// Creates the curve of a model, without points.
     pub(super) fn curve_of(&self, model: SourceModel) -> BodeCurve {
         BodeCurve {
             label: model.id.name.clone(),
@@ -169,7 +169,7 @@ impl<'a> ConditionSource<'a> {
         }
     }
 
-    /// Returns a model's detail: `ratio 3.68, suggested as an outlier · from run 3`.
+    /// Returns the detail line of a model: `ratio 3.68, suggested as an outlier · from run 3`.
     fn detail(&self, id: &ModelId, index: usize) -> String {
         let mut parts = Vec::new();
         if id.bundle == BundleKind::Physics
@@ -236,8 +236,8 @@ impl<'a> ConditionSource<'a> {
         models
     }
 
-    /// Returns a version of the representative physics model of `result`; `None` if the condition
-    /// does not have that model, or if the correction does not apply to the response.
+    /// Returns a corrected version of the representative physics model of `result`; `None` if the
+    /// condition does not have that model, or if the correction does not apply to the response.
     fn corrected_model(
         &self,
         result: &'a ConditionAnalysis,
@@ -328,13 +328,13 @@ pub(super) fn settings_words(dataset: &Dataset, settings: &Settings) -> String {
     let high = compact(settings.band.max());
     let phase = match settings.phase {
         PhaseCorrection::Delay => "",
-        PhaseCorrection::None => " No correction of the phase.",
+        PhaseCorrection::None => " No phase correction.",
         PhaseCorrection::Lead => " A delay or a lead filter in each channel.",
     };
     let couplings = match settings.couplings {
         CouplingCorrection::None => "",
-        CouplingCorrection::Mixing => " The physics models with a mixing of the inputs.",
-        CouplingCorrection::MixingAndFeedback => " The physics models with mixing and feedback.",
+        CouplingCorrection::Mixing => " Physics models include a mixing of the inputs.",
+        CouplingCorrection::MixingAndFeedback => " Physics models include mixing and feedback.",
     };
     format!(
         "{}. Band {low} to {high} rad/s, {} frequencies; \u{3b1} {} for gains, {} for delays.{phase}{couplings}",

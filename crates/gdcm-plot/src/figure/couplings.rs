@@ -1,4 +1,4 @@
-//! Effect of couplings on their loop `I - K H` and on the poles (M16.4).
+//! Effect of couplings on the loop `I - K H` that they close, and on the poles (M16.4).
 
 use nalgebra::Complex;
 
@@ -24,10 +24,10 @@ pub(super) const AXIS: Stroke = Stroke::solid(Color::DIM, 0.6);
 /// Maximum magnitude of the displayed poles, relative to the upper end of the band.
 const SHOWN_POLES: f64 = 1.5;
 
-/// Plots the minimum singular value of `I - K H` over frequency for every condition, `shown` on
-/// top; and the poles of the physics representative of that condition, without and with couplings.
-/// Without a selected condition, shows the condition with the smallest margin; `None` without
-/// conditions.
+/// Plots the minimum singular value of `I - K H` over frequency for every condition, and the poles
+/// of the physics representative without and with couplings for the condition `shown`, whose curve
+/// is drawn on top. If `shown` is `None`, uses the condition with the smallest margin. Returns
+/// `None` if there are no conditions.
 pub fn couplings_figure(
     assessment: &CouplingsAssessment,
     shown: Option<ConditionId>,
@@ -47,7 +47,8 @@ pub fn couplings_figure(
     Some(figure)
 }
 
-/// Returns the condition with the smallest margin; conditions without a margin come last.
+/// Returns the condition with the smallest margin; a missing margin counts as infinite. `None` if
+/// there are no conditions.
 fn nearest_to_ringing(assessment: &CouplingsAssessment) -> Option<ConditionId> {
     let ids = assessment.conditions.keys().copied();
     ids.min_by(|a, b| least_margin(assessment, *a).total_cmp(&least_margin(assessment, *b)))
@@ -60,7 +61,7 @@ fn least_margin(assessment: &CouplingsAssessment, id: ConditionId) -> f64 {
     }
 }
 
-/// Plots the minimum singular value of the loop over frequency.
+/// Plots the minimum singular value of the loop over frequency, for every condition.
 fn loop_plot(assessment: &CouplingsAssessment, shown: ConditionId, unit: FrequencyUnit) -> Plot {
     let frequencies: Vec<f64> = assessment
         .omega
@@ -76,7 +77,7 @@ fn loop_plot(assessment: &CouplingsAssessment, shown: ConditionId, unit: Frequen
         key: "band".to_owned(),
     };
     let ringing = Rule::horizontal(LoopMargin::CAUTION, RINGING).label("close to ringing");
-    let y = Axis::linear("least singular value of I − K H")
+    let y = Axis::linear("minimum singular value of I − K H")
         .including(0.0)
         .including(1.0);
     let mut panel = Panel::new(Axis::logarithmic(unit.axis_label()), y)
@@ -93,7 +94,7 @@ fn loop_plot(assessment: &CouplingsAssessment, shown: ConditionId, unit: Frequen
     let name = format!("condition {shown}");
     let values = assessment.conditions[&shown].singular_values.clone();
     let curve = Curve::new(&name, SHOWN, frequencies, values).key(&name);
-    Plot::new("Loop at the sticks").panel(panel.with(curve))
+    Plot::new("Coupling loop at the inputs").panel(panel.with(curve))
 }
 
 /// Plots the poles near the band, without and with couplings.
@@ -113,7 +114,7 @@ fn pole_plot(assessment: &CouplingsAssessment, shown: ConditionId) -> Plot {
     Plot::new(format!("Poles of condition {shown}")).panel(panel)
 }
 
-/// Draws the poles without and with couplings, and an arrow from each to its new position.
+/// Draws the poles without and with couplings, and an arrow from each pole to its new position.
 pub(super) fn pole_shift_marks(shifts: &[PoleShift]) -> Vec<Mark> {
     let mut ends = Vec::new();
     let mut before = Dots::new(

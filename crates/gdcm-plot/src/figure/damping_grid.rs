@@ -7,12 +7,12 @@ use super::marks::Guide;
 use super::ticks::step_above;
 
 const DAMPING_RATIOS: [f64; 6] = [0.1, 0.2, 0.4, 0.6, 0.8, 0.95];
-/// Length of the rays in a figure \[rad/s\], beyond every displayed pole.
+/// Length of the rays \[rad/s\]; they extend beyond every displayed pole.
 const FAR: f64 = 1e3;
 /// Maximum number of arcs, and number of intervals of each arc.
 const ARCS: u32 = 8;
 const ARC_POINTS: usize = 60;
-/// Fractions of plot width and height within which two labels would overlap.
+/// Distances, as fractions of plot width and height, below which two labels overlap.
 const BESIDE: [f64; 2] = [0.11, 0.07];
 
 /// Returns unlabelled rays at constant damping ratio, `Re λ = -ζ |λ|`, above and below the real
@@ -31,8 +31,9 @@ pub(super) fn rays() -> Vec<Guide> {
     rays
 }
 
-/// Returns the grid lines in the displayed ranges of the s-plane: rays at constant damping ratio,
-/// the upper rays labelled at the edge of the displayed part, and arcs at constant frequency.
+/// Returns the grid lines in the displayed ranges of the s-plane: rays at constant damping ratio
+/// and arcs at constant frequency. The upper rays are labelled where they leave the displayed
+/// ranges.
 pub fn damping_grid([real, imaginary]: [Range; 2]) -> impl Iterator<Item = Guide> {
     let mut reach = 0.0f64;
     for end in [real.min, real.max, imaginary.min, imaginary.max] {
@@ -50,15 +51,14 @@ pub fn damping_grid([real, imaginary]: [Range; 2]) -> impl Iterator<Item = Guide
     guides.into_iter()
 }
 
-/// Returns rays up to `reach` \[rad/s\] in the displayed ranges; a label too near the previous
-/// label is omitted.
+/// Returns rays of length `reach` \[rad/s\], labelled where they leave the displayed ranges; a
+/// label too close to the previous label is omitted.
 fn labelled_rays(real: Range, imaginary: Range, reach: f64) -> Vec<Guide> {
     let mut last_label: Option<[f64; 2]> = None;
     let mut rays = Vec::new();
     for ratio in DAMPING_RATIOS {
         let slope = (1.0 - ratio * ratio).sqrt() / ratio;
-        // Distance between the imaginary axis and the point at which the ray leaves the displayed
-        // part.
+        // Distance from the imaginary axis at which the ray leaves the displayed ranges.
         let edge = (-real.min).min(imaginary.max / slope).max(0.0);
         let place = [edge / real.width(), edge * slope / imaginary.width()];
         let is_labelled = edge > 0.0 && !last_label.is_some_and(|last| is_beside(place, last));
@@ -82,12 +82,12 @@ fn labelled_rays(real: Range, imaginary: Range, reach: f64) -> Vec<Guide> {
     rays
 }
 
-/// Returns whether the labels at two places would overlap.
+/// Returns whether labels at these two places would overlap.
 fn is_beside(place: [f64; 2], other: [f64; 2]) -> bool {
     (0..2).all(|axis| (place[axis] - other[axis]).abs() < BESIDE[axis])
 }
 
-/// Returns the left half of a circle about the origin, starting at the top.
+/// Returns the left half of a circle about the origin, starting at its top.
 fn arc(radius: f64) -> Guide {
     let mut points = Vec::new();
     for k in 0..=ARC_POINTS {

@@ -1,4 +1,4 @@
-//! Units in which responses and their errors are displayed.
+//! Units in which responses and their deviations are displayed.
 
 use serde::{Deserialize, Serialize};
 
@@ -44,7 +44,7 @@ impl FrequencyUnit {
         )
     }
 
-    /// Returns the label for a frequency axis.
+    /// Returns the axis label `Frequency [rad/s]` or `Frequency [Hz]`.
     pub fn axis_label(self) -> String {
         format!("Frequency [{}]", self.symbol())
     }
@@ -55,7 +55,7 @@ impl FrequencyUnit {
 pub enum MagnitudeUnit {
     #[default]
     Decibel,
-    /// Ratio of output to input, in the units of both.
+    /// Ratio of output to input, in their own units.
     Ratio,
 }
 

@@ -8,15 +8,15 @@ pub const PT_PER_MM: f64 = 72.0 / 25.4;
 /// A drawing on white paper, in points from the upper left corner, y downwards.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawing {
-    /// Title of the file.
+    /// Title in the metadata of the file.
     pub title: String,
     /// Width and height \[pt\].
     pub size: [f64; 2],
-    /// Later shapes cover earlier ones.
+    /// In drawing order: later shapes cover earlier ones.
     pub shapes: Vec<Shape>,
 }
 
-/// A shape of a drawing.
+/// A shape of a drawing: a path, a text, or a clipped group of shapes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     Path {
@@ -32,28 +32,30 @@ pub enum Shape {
         fill: Option<Color>,
         stroke: Option<Stroke>,
     },
-    /// A line of text.
     Text(Text),
     /// Shapes clipped to an area.
-    Clipped { area: Area, shapes: Vec<Shape> },
+    Clipped {
+        area: Area,
+        shapes: Vec<Shape>,
+    },
 }
 
-/// A line of text.
+/// A line of text, with its position and style.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Text {
-    /// Anchor position on the base line.
+    /// Position of the anchor, on the base line.
     pub at: [f64; 2],
     pub words: String,
     /// Font size \[pt\].
     pub size_pt: f64,
-    /// Part of the text that lies at the position.
+    /// Part of the text that is placed at `at`.
     pub anchor: Anchor,
     /// Whether the text runs upwards.
     pub upright: bool,
     pub color: Color,
 }
 
-/// Part of a text that lies at its position.
+/// Part of a text that is placed at its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
     Start,
@@ -62,7 +64,7 @@ pub enum Anchor {
 }
 
 impl Text {
-    /// Creates a horizontal text in ink that begins at `at`.
+    /// Creates a horizontal text that begins at `at`, in the primary text colour.
     pub fn new(at: [f64; 2], words: impl Into<String>, size_pt: f64) -> Self {
         Self {
             at,
@@ -74,7 +76,7 @@ impl Text {
         }
     }
 
-    /// Returns the text anchored at another part.
+    /// Returns the text with another anchor.
     pub fn anchored(self, anchor: Anchor) -> Self {
         Self { anchor, ..self }
     }
@@ -84,14 +86,14 @@ impl Text {
         Self { color, ..self }
     }
 
-    /// Returns the text running upwards, or horizontally.
+    /// Returns the text, running upwards if `upright` is set, otherwise horizontally.
     pub fn upright(self, upright: bool) -> Self {
         Self { upright, ..self }
     }
 }
 
 impl Anchor {
-    /// Returns the part of the text's width that lies before its position.
+    /// Returns the fraction of the text's width before the anchor, from 0 to 1.
     pub fn before(self) -> f64 {
         match self {
             Self::Start => 0.0,
@@ -121,22 +123,22 @@ impl Area {
         }
     }
 
-    /// Returns the right edge, `left + width`.
+    /// Returns the coordinate of the right edge, `left + width`.
     pub fn right(&self) -> f64 {
         self.left + self.width
     }
 
-    /// Returns the lower edge, `top + height`.
+    /// Returns the coordinate of the lower edge, `top + height`.
     pub fn bottom(&self) -> f64 {
         self.top + self.height
     }
 
-    /// Returns the point at fractions of width, from the left, and height, from the bottom.
+    /// Returns the point at `x` widths from the left edge and `y` heights from the lower edge.
     pub fn at(&self, x: f64, y: f64) -> [f64; 2] {
         [self.left + x * self.width, self.bottom() - y * self.height]
     }
 
-    /// Returns the corners, clockwise from the upper left.
+    /// Returns the four corners, clockwise from the upper left corner.
     pub fn corners(&self) -> [[f64; 2]; 4] {
         [
             [self.left, self.top],
@@ -151,7 +153,7 @@ impl Area {
         (self.left..=self.right()).contains(&x) && (self.top..=self.bottom()).contains(&y)
     }
 
-    /// Returns width times height.
+    /// Returns the area, width times height.
     pub fn size(&self) -> f64 {
         self.width * self.height
     }
@@ -197,7 +199,7 @@ impl Shape {
         }
     }
 
-    /// Creates a rectangle.
+    /// Creates a rectangular path, with optional fill and stroke.
     pub fn rectangle(area: Area, fill: Option<Color>, stroke: Option<Stroke>) -> Self {
         Self::Path {
             points: area.corners().to_vec(),
@@ -208,12 +210,11 @@ impl Shape {
     }
 }
 
-/// Meaning of a colour. Paper and each theme of the window assign it a colour of their own.
+/// Meaning of a colour. Paper and each theme of the window assign a different colour to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Hue {
     /// Paper, and plot backgrounds in the window.
     Background,
-    /// Grid lines.
     Grid,
     /// Titles and primary text.
     Text,
@@ -233,7 +234,7 @@ pub enum Hue {
     Accent,
     /// Cautions and deteriorations.
     Warning,
-    /// Proofs and improvements.
+    /// Proofs of optimality, and improvements.
     Good,
     /// Airspeed, from 0 in the colour of perturbed models to 255 in the colour of identified
     /// models; distinguishable by colour-blind readers.
@@ -268,7 +269,7 @@ impl Hue {
     }
 }
 
-/// Interpolates between two colours: `part` 0 gives `from`, 1 gives `to`.
+/// Interpolates linearly between two colours: `part` = 0 gives `from`, `part` = 1 gives `to`.
 fn mixed(from: [u8; 3], to: [u8; 3], part: f64) -> [u8; 3] {
     let mut mixed = [0; 3];
     for (channel, mixed) in mixed.iter_mut().enumerate() {
@@ -283,18 +284,18 @@ fn mixed(from: [u8; 3], to: [u8; 3], part: f64) -> [u8; 3] {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Color {
     pub hue: Hue,
-    /// Strength \[%\]: 100 is full, 0 is the background.
+    /// Strength \[%\]: 100 is the full colour, 0 the background.
     pub percent: u8,
 }
 
 impl Color {
-    /// Paper.
+    /// Background colour of paper.
     pub const WHITE: Self = Self::of(Hue::Background);
-    /// Titles and primary text.
+    /// Colour of titles and primary text.
     pub const INK: Self = Self::of(Hue::Text);
-    /// Labels, frames and secondary text.
+    /// Colour of labels, frames and secondary text.
     pub const DIM: Self = Self::of(Hue::DimText);
-    /// Grid lines.
+    /// Colour of grid lines.
     pub const GRID: Self = Self::of(Hue::Grid);
 
     /// Creates a colour at full strength.
@@ -302,12 +303,12 @@ impl Color {
         Self { hue, percent: 100 }
     }
 
-    /// Returns this colour blended with the background.
+    /// Returns this colour blended with the background to a strength of `percent`.
     pub const fn tint(self, percent: u8) -> Self {
         Self { percent, ..self }
     }
 
-    /// Returns red, green and blue on paper (sRGB).
+    /// Returns red, green and blue on paper (sRGB), blended to the strength of this colour.
     pub fn rgb(self) -> [u8; 3] {
         mixed(
             Hue::Background.on_paper(),
@@ -349,13 +350,12 @@ impl Dash {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stroke {
     pub color: Color,
-    /// Width \[pt\].
     pub width_pt: f64,
     pub dash: Dash,
 }
 
 impl Stroke {
-    /// Creates a solid line.
+    /// Creates the style of a solid line.
     pub const fn solid(color: Color, width_pt: f64) -> Self {
         Self {
             color,
@@ -364,7 +364,7 @@ impl Stroke {
         }
     }
 
-    /// Creates a dashed line.
+    /// Creates the style of a dashed line.
     pub const fn dashed(color: Color, width_pt: f64, dash: Dash) -> Self {
         Self {
             color,
@@ -381,12 +381,12 @@ impl Stroke {
         }
     }
 
-    /// Line width on paper relative to the window.
+    /// Line width on paper, relative to the width in the window.
     const PRINTED: f64 = 0.55;
 }
 
 impl Drawing {
-    /// Returns the drawing with fewer points: every omitted point lies within `tolerance_pt` of the
+    /// Returns the drawing with fewer points; every omitted point lies within `tolerance_pt` of the
     /// remaining line.
     pub fn thinned(self, tolerance_pt: f64) -> Self {
         let pixel = Pixel {

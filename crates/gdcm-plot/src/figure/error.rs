@@ -1,4 +1,4 @@
-//! Errors used by the fit: deviation of a response from its reference at each frequency (M6).
+//! Deviation of a response from its reference at each frequency, as used by the fit (M6).
 
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ use super::frequency_panels::{FrequencyPanels, figure_of_pairs};
 use super::muad::muad_among_errors;
 use super::reference_line::{Level, ReferenceKind, ReferenceLine};
 
-/// Plots the errors used by the fit for `pairs`: for every kept physics model, and for the
+/// Plots the deviations used by the fit for `pairs`: for every kept physics model, and for the
 /// representative before and after its correction, with G, D and the bounds.
 pub fn error_figure(source: &ConditionSource<'_>, pairs: &[Pair], options: &BodeOptions) -> Figure {
     figure_of_pairs(source, pairs, Some("Error"), |pair| {
@@ -58,9 +58,9 @@ fn error_plot(source: &ConditionSource<'_>, pair: Pair, options: &BodeOptions) -
 }
 
 impl ConditionSource<'_> {
-    /// Returns the errors over the band: for every kept physics model, for the reference as the
+    /// Returns the deviations over the band: for every kept physics model, for the reference as the
     /// line at zero, and for the representative after each correction. `cache` keeps the computed
-    /// errors until their sources change.
+    /// deviations until their sources change.
     pub fn error_curves(
         &self,
         pair: Pair,
@@ -113,8 +113,8 @@ impl ConditionSource<'_> {
         drawn
     }
 
-    /// Returns lines at G and D, at the channel bounds, and at the quantiles of the
-    /// representative's error among `drawn`, hidden or not (M6, M7).
+    /// Returns lines at G and D, at the channel bounds, and at quantiles of the representative's
+    /// deviation, whether its curve in `drawn` is hidden or not (M6, M7).
     pub fn error_references(
         &self,
         pair: Pair,
@@ -143,7 +143,7 @@ impl ConditionSource<'_> {
     }
 }
 
-/// Deviation of a response from the reference, with the phase on its branch.
+/// Deviation of a response from the reference, with the phase on the branch of M6b.
 #[derive(Clone, Debug)]
 struct ErrorShape {
     /// `20 log10 |H_sim| / |H_ref|`.
@@ -153,7 +153,7 @@ struct ErrorShape {
     phase: Vec<f64>,
 }
 
-/// The error as drawn.
+/// Deviation in the units in which it is drawn.
 #[derive(Clone, Debug)]
 struct DrawnError {
     /// `20 log10 |H_ref| / |H_sim|`.
@@ -163,14 +163,14 @@ struct DrawnError {
 }
 
 impl DrawnError {
-    /// Returns a curve with these values over `omega` \[rad/s\].
+    /// Returns the curve with these values over `omega` \[rad/s\].
     fn apply(&self, curve: BodeCurve, omega: &Arc<[f64]>) -> BodeCurve {
         curve.with(omega, &self.magnitude_db, &self.phase)
     }
 }
 
 impl ErrorShape {
-    /// Computes the error at the frequencies that count; NaN at the others (M4a). `None` if no
+    /// Computes the deviation at the frequencies that count; NaN at the others (M4a). `None` if no
     /// frequency counts.
     fn new(
         simulated: &PolarCurve,
@@ -186,8 +186,8 @@ impl ErrorShape {
         })
     }
 
-    /// Returns the error, as drawn over `omega` \[rad/s\], after a gain and a delay are added to
-    /// the simulated response (M10); the phase stays on its branch.
+    /// Returns the deviation, as drawn over `omega` \[rad/s\], after a gain and a delay are added
+    /// to the simulated response (M10); the phase stays on its branch.
     fn drawn(&self, correction: GainDelay, omega: &[f64], unit: PhaseErrorUnit) -> DrawnError {
         let magnitude_db = correction
             .magnitudes_db(&self.mismatch_db, omega)
@@ -208,20 +208,20 @@ impl ErrorShape {
     }
 }
 
-/// Choices that determine the errors of a response.
+/// Choices that determine the deviations of a response.
 #[derive(Clone, Debug, PartialEq)]
 struct ErrorKey {
     pair: Pair,
-    /// Index of the identified model to which the others are compared.
+    /// Index of the identified model that serves as the reference.
     reference: usize,
     /// Band ends \[rad/s\].
     band: [f64; 2],
-    /// Minimum coherence that counts.
+    /// Minimum coherence of the frequencies that count; `None` if coherence is ignored.
     least_coherence: Option<f64>,
     unit: PhaseErrorUnit,
 }
 
-/// Responses and choices from which an error is computed.
+/// Responses and choices from which a deviation is computed.
 #[derive(Clone, Debug)]
 struct ErrorSource {
     curves: Arc<ConditionCurves>,
@@ -233,8 +233,8 @@ impl ErrorSource {
         Arc::ptr_eq(&self.curves, &other.curves) && self.key == other.key
     }
 
-    /// Computes the error of a response over `omega`, the frequencies in the band. `None` if the
-    /// response or the reference is zero or not finite anywhere in the band.
+    /// Computes the deviation of a response over `omega`, the frequencies in the band. `None` if
+    /// the response or the reference is zero or not finite at any of them.
     fn shape(&self, response: &FrequencyResponse, omega: &[f64]) -> Option<ErrorShape> {
         let reference = self.polar(self.curves.identified.get(self.key.reference)?)?;
         ErrorShape::new(
@@ -245,13 +245,13 @@ impl ErrorSource {
         )
     }
 
-    /// Returns a response in the band; `None` if it is zero or not finite anywhere there.
+    /// Returns a response in the band; `None` if it is zero or not finite at any frequency there.
     fn polar(&self, response: &FrequencyResponse) -> Option<PolarCurve> {
         PolarCurve::from_values(response.curve(self.key.pair).get(self.band_indices())?)
     }
 
-    /// Returns the weights of the frequencies `omega` from the coherence of the reference; `None`
-    /// without coherence.
+    /// Returns the weights of the frequencies `omega`, derived from the coherence of the reference;
+    /// `None` without coherence.
     fn coherence_weights(&self, omega: &[f64]) -> Option<CoherenceWeights> {
         let identified = self.curves.condition.bundle(BundleKind::Identified);
         let flight = &identified.get(self.key.reference)?.dynamics;
@@ -269,21 +269,22 @@ impl ErrorSource {
     }
 }
 
-/// Error of an unchanged physics model.
+/// Deviation of an uncorrected physics model.
 #[derive(Debug)]
 struct ModelError {
     shape: ErrorShape,
     drawn: DrawnError,
 }
 
-/// Errors of a response for every physics model of a condition, kept until their source changes.
+/// Deviations of a response for every physics model of a condition, kept until their source
+/// changes.
 #[derive(Debug, Default)]
 pub struct ErrorCache {
     source: Option<ErrorSource>,
     omega: Arc<[f64]>,
-    /// Zero at each frequency: error of the reference.
+    /// Zero at each frequency: the deviation of the reference from itself.
     zero: Arc<[f64]>,
-    /// In model order; `None` for a model without an error.
+    /// In model order; `None` for a model without a deviation.
     errors: Vec<Option<ModelError>>,
 }
 
@@ -307,19 +308,19 @@ impl ErrorCache {
         self.source = Some(source);
     }
 
-    /// Returns the error of an unchanged physics model.
+    /// Returns the deviation of an uncorrected physics model.
     fn model_shape(&self, model: usize) -> Option<ErrorShape> {
         let error = self.errors[model].as_ref()?;
         Some(error.shape.clone())
     }
 
-    /// Computes the error of a response that is not in the cache.
+    /// Computes the deviation of a response that is not in the cache.
     fn shape(&self, response: &FrequencyResponse) -> Option<ErrorShape> {
         self.source.as_ref()?.shape(response, &self.omega)
     }
 }
 
-/// Creates the line of a delay in a phase-error panel.
+/// Creates a line at a delay \[s\] in a phase-error panel.
 fn delay_rule(
     kind: ReferenceKind,
     label: String,
@@ -333,13 +334,13 @@ fn delay_rule(
     ReferenceLine::new(Pane::Phase, kind, label, level)
 }
 
-/// Creates the line of a gain in a magnitude-error panel.
+/// Creates a line at a gain \[-\] in a magnitude-error panel.
 fn gain_rule(kind: ReferenceKind, label: String, gain: f64) -> ReferenceLine {
     let level = Level::Constant(ratio_to_db(gain));
     ReferenceLine::new(Pane::Magnitude, kind, label, level)
 }
 
-/// Formats a value with one decimal and a true minus sign.
+/// Formats a value with one decimal and a typographic minus sign.
 fn signed(value: f64) -> String {
     with_minus_sign(&format!("{value:.1}"))
 }
@@ -361,7 +362,7 @@ fn delta_rules(
         let label = format!("D {} ms", signed(s_to_ms(delay_s)));
         let mut line = delay_rule(ReferenceKind::Delta, label, delay_s, unit);
         if delay_s < 0.0 {
-            line.note = ": lead is missing".to_owned();
+            line.note = ": lead is needed".to_owned();
         }
         lines.push(line);
     }
@@ -382,8 +383,8 @@ fn bound_rules(analysis: &ConditionAnalysis, unit: PhaseErrorUnit) -> Vec<Refere
     ]
 }
 
-/// Returns lines at the quantiles `q` and `1 - q` of a response's error: the values of M7 for this
-/// response alone.
+/// Returns lines at the quantiles `q` and `1 - q` of a response's deviation: the quantiles of M7,
+/// for this response alone.
 fn quantile_rules(curve: &BodeCurve, q: f64, unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
     let mut ratios_db = curve.magnitude_db.to_vec();
     let mut delays_s = Vec::new();
@@ -393,7 +394,7 @@ fn quantile_rules(curve: &BodeCurve, q: f64, unit: PhaseErrorUnit) -> Vec<Refere
             PhaseErrorUnit::Millisecond => 1e-3 * phase,
         });
     }
-    // Frequencies that do not count have no error.
+    // Frequencies that do not count have NaN as their deviation.
     ratios_db.retain(|ratio| ratio.is_finite());
     delays_s.retain(|delay| delay.is_finite());
     let mut lines = Vec::new();
@@ -420,7 +421,7 @@ mod tests {
 
     use super::*;
 
-    /// Returns a response with a gain \[dB\] and a lead \[s\] at every frequency.
+    /// Returns a response with a constant gain \[dB\] and a constant lead \[s\].
     fn polar(omega: &[f64], gain_db: f64, lead_s: f64) -> PolarCurve {
         PolarCurve {
             magnitude_db: vec![gain_db; omega.len()],
@@ -430,13 +431,13 @@ mod tests {
 
     #[test]
     fn the_right_gain_and_delay_bring_an_error_to_zero_on_its_branch() {
-        // At 12 rad/s the lead is 1.15 turns: the phases themselves wrap.
+        // At 12 rad/s, a lead of 0.6 s is 1.15 turns: the individual phases wrap.
         let omega: Vec<f64> = (1..=120).map(|k| 0.1 * f64::from(k)).collect();
         let simulated = polar(&omega, 2.0, 0.6);
         let reference = polar(&omega, 0.0, 0.0);
         let error = ErrorShape::new(&simulated, &reference, &omega, None).unwrap();
         let before = error.drawn(GainDelay::NONE, &omega, PhaseErrorUnit::Millisecond);
-        // Rounding errors of angles in turns, divided by 0.1 rad/s.
+        // Tolerance for rounding errors of angles of several turns, divided by 0.1 rad/s.
         assert!(
             before
                 .phase

@@ -1,4 +1,4 @@
-//! Contributions to the scatter in net gains (M13.5).
+//! Contributions to the scatter of net gains (M13.5).
 
 use gdcm_method::uncertainty::VarianceDecomposition;
 use gdcm_model::dataset::Pair;
@@ -14,22 +14,23 @@ use super::marks::{Bars, DotShape, Dots, Intervals, Note, Place};
 
 /// Bar width; positions on the axis are 1 apart.
 const BAR: f64 = 0.56;
-/// Offset between dots of the same position.
+/// Offset between dots at the same axis position.
 const APART: f64 = 0.24;
 /// Confidence interval of the unexplained part.
 const INTERVAL: Stroke = Stroke::solid(Color::of(Hue::Nominal).tint(50), 2.4);
-/// The axis includes interval ends up to this multiple of the largest scatter.
+/// Interval ends are shown up to this multiple of the largest scatter.
 const MOST_SEEN: f64 = 4.0;
-/// Range of the variance axis \[%\]: the shares end at 100 %, with room for the ratios above.
+/// Range of the variance axis \[%\]: the shares end at 100, and the ratios are written above.
 const SHARES: Range = Range {
     min: 0.0,
     max: 118.0,
 };
-/// Heights of the ratios above the shares, and of the note on a missing split \[%\].
+/// Positions \[%\] of the ratios above the shares, and of the note on a missing decomposition.
 const ABOVE: f64 = 109.0;
 const MIDDLE: f64 = 50.0;
 
-/// Reference of each scatter, in axis order.
+/// Names of the axis positions: scatter between conditions at equal airspeed, and scatter about the
+/// schedule.
 const ABOUT: [&str; 2] = ["airspeed", "schedule"];
 
 /// A share of the variance, with its colour; in print, shares differ in darkness.
@@ -38,7 +39,7 @@ struct Share {
     hue: Hue,
 }
 
-/// From the bottom up, in the same order as [`VarianceDecomposition::shares`].
+/// Stacking order, from the bottom up; the same as in [`VarianceDecomposition::shares`].
 const STACK: [Share; 3] = [
     Share {
         name: "trim",
@@ -55,8 +56,8 @@ const STACK: [Share; 3] = [
 ];
 
 /// Plots the contributions to the scatter for each pair, at equal airspeed and about the schedule:
-/// variance shares as stacked bars; below, the scatter, its expected value, and the unexplained
-/// part with its interval. `None` without error bars, or if no pair has a scatter.
+/// variance shares as stacked bars; below them, the scatter, its expected value, and the
+/// unexplained part with its interval. `None` without error bars, or if no pair has a scatter.
 pub fn evidence_figure(analysis: &Analysis, pairs: &[Pair]) -> Option<Figure> {
     let uncertainty = analysis.uncertainty.as_ref()?;
     let mut plots = Vec::new();
@@ -72,7 +73,7 @@ pub fn evidence_figure(analysis: &Analysis, pairs: &[Pair]) -> Option<Figure> {
     if plots.is_empty() {
         return None;
     }
-    let figure = Figure::new("What the scatter of the net gains is made of")
+    let figure = Figure::new("Contributions to the scatter of the net gains")
         .caption(caption(analysis, uncertainty))
         .plots(plots)
         .columns(5)
@@ -82,7 +83,7 @@ pub fn evidence_figure(analysis: &Analysis, pairs: &[Pair]) -> Option<Figure> {
     Some(figure)
 }
 
-/// A split at its position on the axis.
+/// Decomposition of a variance, at its position on the axis.
 struct PlacedSplit<'a> {
     x: f64,
     split: Option<&'a VarianceDecomposition>,
@@ -120,7 +121,7 @@ fn shares_panel(scatter: &PairScatter) -> Panel {
     let mut missing = Vec::new();
     for PlacedSplit { x, split } in placed_splits(scatter) {
         let Some(split) = split else {
-            missing.push(note(x, MIDDLE, "no freedom".to_owned(), true));
+            missing.push(note(x, MIDDLE, "no degrees of freedom".to_owned(), true));
             continue;
         };
         if let Some(shares) = split.shares() {
@@ -151,7 +152,7 @@ fn note(x: f64, y: f64, text: String, upright: bool) -> Note {
 }
 
 /// Plots standard deviations of `ln k_o k_i` in percent: the scatter, its expected value, and the
-/// unexplained part with its interval at this confidence level.
+/// unexplained part with its interval at the confidence level `level`.
 fn deviations_panel(scatter: &PairScatter, level: f64) -> Panel {
     let mut total = empty_dots("scatter", DotShape::Circle, Color::INK);
     let mut expected = empty_dots("expected", DotShape::Diamond, Color::of(Hue::Perturbed));
@@ -178,7 +179,7 @@ fn deviations_panel(scatter: &PairScatter, level: f64) -> Panel {
     let mut panel = Panel::new(axis(), y);
     if !ends.is_empty() {
         panel = panel.with(Intervals {
-            name: format!("unexplained, interval of {:.0} %", 100.0 * level),
+            name: format!("unexplained, {:.0} % interval", 100.0 * level),
             stroke: INTERVAL,
             ends,
         });
@@ -195,12 +196,15 @@ fn percent(variance: f64) -> f64 {
     100.0 * variance.sqrt()
 }
 
-/// Describes how large the differences are, their parts, the schedule and the settings.
+/// Summarises the differences at equal airspeed, explains the plot, and describes the schedule and
+/// the settings.
 fn caption(analysis: &Analysis, uncertainty: &Uncertainty) -> String {
     let settings = &analysis.study.settings;
     format!(
-        "{} Of ln(k_o k_i), about the mean of each airspeed and about the schedule ({}): shares of the variance, and standard \
-         deviations. Trim, identification: expected from the bundles; unexplained: what neither makes. Above the bars: scatter, × expected. {}",
+        "{} Scatter of ln(k_o k_i) about the mean at each airspeed, and about the schedule ({}): \
+        shares of the variance, and standard deviations. Trim and identification: expected from \
+        the bundles; unexplained: the remainder. Above the bars: ratio of the scatter to its \
+        expected value. {}",
         differences_summary(uncertainty),
         schedule_words(&settings.schedule),
         settings_words(&analysis.study.dataset, settings)

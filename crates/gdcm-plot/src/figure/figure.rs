@@ -1,5 +1,5 @@
-//! Description of a figure: plots side by side; each has panels below one another, with two axes
-//! and marks. Nothing here depends on paper or screen.
+//! Description of a figure: plots side by side, each with panels below one another; a panel has two
+//! axes and marks. Nothing here depends on paper or screen.
 
 use super::axis::{Axis, Range};
 use super::legend::{Entry, entries};
@@ -7,28 +7,28 @@ use super::marks::Mark;
 
 pub use super::marks::{Along, Bars, Curve, Dot, DotShape, Dots, Note, Place, Rule, Spans};
 
-/// A figure: plots in a table, a title above, a legend and a caption below.
+/// A figure: plots in a table, with a title above and a legend and a caption below.
 ///
-/// Contents and styles are fixed here. Open ranges follow from the marks ([`Panel::shown`],
-/// [`Self::with_ranges`]); positions follow from paper or screen.
+/// Contents and styles are fixed here. Ranges that are not set follow from the marks
+/// ([`Panel::shown`], [`Self::with_ranges`]); positions follow from paper or screen.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Figure {
     pub title: String,
     /// Dataset, condition and settings needed to read the figure. Without a date, so that the same
     /// analysis produces the same file.
     pub caption: String,
-    /// Row by row.
+    /// In reading order, row by row.
     pub plots: Vec<Plot>,
-    /// Maximum number of plots side by side.
+    /// Maximum number of plots in a row.
     pub columns: usize,
     pub shared: Shared,
     /// Total height of the frames of a plot, relative to the frame width.
     pub aspect: f64,
-    /// Whether plots may shrink to the limit of readability, for large tables of plots.
+    /// Whether plots may shrink to the limit of readability, as in large tables of plots.
     pub dense: bool,
 }
 
-/// Axes with the same range in all plots; only the outer plots show tick labels.
+/// Which axes have the same range in all plots; only the outer plots then show tick labels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Shared {
     pub x: bool,
@@ -36,7 +36,7 @@ pub struct Shared {
 }
 
 impl Figure {
-    /// Creates a figure without plots: a single column, axes not shared.
+    /// Creates a figure without plots, with a single column and without shared axes.
     pub fn new(title: impl Into<String>) -> Self {
         Self {
             title: title.into(),
@@ -117,7 +117,7 @@ impl Figure {
         self
     }
 
-    /// Returns the smallest range that contains every panel's range; `None` without panels.
+    /// Returns the smallest range that contains the ranges of all panels; `None` without panels.
     fn common_range(&self, along: Along) -> Option<Range> {
         self.panels()
             .map(|(_, panel)| panel.shown(along))
@@ -131,7 +131,7 @@ impl Figure {
             .flat_map(|plot| plot.panels.iter().map(|panel| (plot.title.as_str(), panel)))
     }
 
-    /// Returns the legend: an entry for each different key among all marks.
+    /// Returns the legend: an entry for each distinct key among all marks.
     pub fn legend(&self) -> Vec<Entry> {
         entries(self.panels().flat_map(|(_, panel)| &panel.marks))
     }
@@ -142,7 +142,7 @@ impl Figure {
 pub struct Panel {
     pub x: Axis,
     pub y: Axis,
-    /// Later marks are drawn over earlier ones.
+    /// In drawing order: later marks cover earlier ones.
     pub marks: Vec<Mark>,
     /// Height relative to the other panels in its plot.
     pub weight: f64,
@@ -159,19 +159,19 @@ impl Panel {
         }
     }
 
-    /// Returns the panel with another mark, drawn over the present ones.
+    /// Returns the panel with another mark, drawn over the existing marks.
     pub fn with(mut self, mark: impl Into<Mark>) -> Self {
         self.marks.push(mark.into());
         self
     }
 
-    /// Returns the panel with more marks, drawn over the present ones.
+    /// Returns the panel with more marks, drawn over the existing marks.
     pub fn with_all<M: Into<Mark>>(mut self, marks: impl IntoIterator<Item = M>) -> Self {
         self.marks.extend(marks.into_iter().map(Into::into));
         self
     }
 
-    /// Returns the panel with another mark, drawn below the present ones.
+    /// Returns the panel with another mark, drawn below the existing marks.
     pub fn over(mut self, ground: impl Into<Mark>) -> Self {
         self.marks.insert(0, ground.into());
         self
@@ -190,8 +190,8 @@ impl Panel {
         })
     }
 
-    /// Returns the range of an axis: the given range, otherwise the range fitted to the marks of
-    /// this panel.
+    /// Returns the range of an axis: the fixed range if there is one, otherwise the range fitted to
+    /// the marks of this panel.
     pub fn shown(&self, along: Along) -> Range {
         let axis = match along {
             Along::X => &self.x,
@@ -206,7 +206,7 @@ impl Panel {
 pub struct Plot {
     /// Subject: `LON → Q`. May be empty.
     pub title: String,
-    /// From top to bottom.
+    /// In order from top to bottom.
     pub panels: Vec<Panel>,
 }
 

@@ -29,7 +29,7 @@ impl ColumnWidth {
         }
     }
 
-    /// Returns the name with the width, for a list of choices.
+    /// Returns the name with the width, for display in a list.
     pub fn words(self) -> &'static str {
         match self {
             Self::Single => "single column (84 mm)",
@@ -64,13 +64,13 @@ impl FigureFormat {
         }
     }
 
-    /// Returns the name with its purpose, for a tooltip.
+    /// Returns the name of the format with its purpose, for a tooltip.
     pub fn words(self) -> &'static str {
         match self {
             Self::Svg => "SVG, for documents and drawing programs",
-            Self::Png => "PNG, 300 dots to the inch",
-            Self::Pdf => "PDF, one page",
-            Self::Csv => "CSV, the numbers",
+            Self::Png => "PNG, 300 dots per inch",
+            Self::Pdf => "PDF, a single page",
+            Self::Csv => "CSV, the values of all curves",
         }
     }
 }

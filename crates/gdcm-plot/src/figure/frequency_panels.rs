@@ -15,7 +15,7 @@ use super::reference_line::{Level, ReferenceKind, ReferenceLine};
 use super::responses::BodeBand;
 use super::role::Role;
 
-/// Background of frequencies at which a pilot notices the remaining mismatch (MUAD).
+/// Background of the frequencies at which a pilot would notice the remaining mismatch (MUAD).
 const NOTICED: Color = Color::of(Hue::Warning).tint(20);
 /// Confidence band about an identified model.
 const UNCERTAIN: Color = Color::of(Hue::Identified).tint(22);
@@ -39,12 +39,12 @@ impl FrequencyPanels<'_> {
         self.converted_panel(pane, axis, |value| value)
     }
 
-    /// Builds a panel whose values are converted to the unit of its vertical axis.
+    /// Builds a panel; `convert` converts its values to the unit of its vertical axis.
     pub(super) fn converted_panel(&self, pane: Pane, axis: Axis, convert: fn(f64) -> f64) -> Panel {
         let strips = self.strips.iter().map(|&(from, to)| Band {
             range: self.options.in_unit(from, to),
             color: NOTICED,
-            key: "what is left would be noticed".to_owned(),
+            key: "remaining error would be noticed".to_owned(),
         });
         let bands = self
             .bands
@@ -57,7 +57,7 @@ impl FrequencyPanels<'_> {
             .with_all(self.reference_marks(pane, convert))
     }
 
-    /// Returns the visible curves, the most important last.
+    /// Returns the visible curves in drawing order, the most important curve last.
     fn visible_curves(&self, pane: Pane, convert: fn(f64) -> f64) -> Vec<Curve> {
         let mut visible: Vec<&BodeCurve> =
             self.curves.iter().filter(|curve| !curve.hidden).collect();
@@ -81,8 +81,8 @@ impl FrequencyPanels<'_> {
         drawn
     }
 
-    /// Returns the reference lines of a panel. A line without its own frequencies uses those of the
-    /// first curve.
+    /// Returns the reference lines of a panel. A line without its own frequencies uses the
+    /// frequencies of the first curve.
     fn reference_marks(&self, pane: Pane, convert: fn(f64) -> f64) -> Vec<Mark> {
         let omega: &[f64] = match self.curves.first() {
             Some(curve) => &curve.omega,
@@ -106,7 +106,7 @@ impl FrequencyPanels<'_> {
             points.push([x, convert(*low), convert(*high)]);
         }
         Envelope {
-            name: "band of 95 %".to_owned(),
+            name: "95 % band".to_owned(),
             color: UNCERTAIN,
             edge: None,
             points,
@@ -114,8 +114,8 @@ impl FrequencyPanels<'_> {
     }
 }
 
-/// Frequencies of the last curve in the displayed unit; curves that share their frequencies also
-/// share the converted values.
+/// Cache of the previous curve's frequencies in the displayed unit; curves that share their
+/// frequencies also share the converted values.
 #[derive(Default)]
 struct SharedFrequencies {
     omega: Arc<[f64]>,
@@ -133,8 +133,8 @@ impl SharedFrequencies {
     }
 }
 
-/// Draws a reference line: a labelled rule for a constant target or bound, otherwise a curve over
-/// its own frequencies or over `omega` \[rad/s\].
+/// Draws a reference line: a labelled straight line for a constant target or bound, otherwise a
+/// curve over its own frequencies or over `omega` \[rad/s\].
 fn reference_mark(
     line: &ReferenceLine,
     omega: &[f64],
@@ -186,8 +186,8 @@ pub(super) fn figure_of_pairs(
     side_by_side(source.dataset(), pairs, title, plot).caption(source.caption())
 }
 
-/// Builds a figure with a plot for each pair, side by side. A single plot has no title and a
-/// flatter frame.
+/// Builds a figure with a plot for each pair, side by side. A single plot has no title and a lower
+/// height.
 pub(super) fn side_by_side(
     dataset: &Dataset,
     pairs: &[Pair],

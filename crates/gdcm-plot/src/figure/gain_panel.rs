@@ -20,25 +20,25 @@ use super::role::Role;
 
 /// Line at the value without correction.
 const NULL: Stroke = Stroke::dashed(Color::DIM, 0.6, Dash::Short);
-/// Lines of an error bar, and of its part due to identification.
+/// Lines of an error bar, and of its part due to identification alone.
 const BAR: Stroke = Stroke::solid(Color::of(Hue::Perturbed), 0.6);
 const INNER_BAR: Stroke = Stroke::solid(Color::of(Hue::Perturbed).tint(50), 2.4);
-/// Maximum extension of the axis by error bars, relative to the range of the dots.
+/// Maximum extension of the axis to show error bars, relative to the range of the dots.
 const BARS_EXTENSION: f64 = 0.5;
-/// Brackets of differences at the same airspeed.
+/// Brackets between net gains at the same airspeed.
 const SIGNIFICANT_BRACKET: Stroke = Stroke::solid(Color::of(Hue::Warning), 0.7);
 const OTHER_BRACKET: Stroke = Stroke::solid(Color::DIM, 0.4);
 /// Names of both kinds of bracket, in the legend and in the tables.
 pub(super) const SIGNIFICANT: &str = "significant difference, × expected";
 const NOT_SIGNIFICANT: &str = "difference, not significant";
-/// Background of the bounds.
+/// Background that marks the bounds.
 const BOUNDS: Color = Color::of(Hue::Accent).tint(16);
-/// Width of that background over airspeed \[kt\].
+/// Width of the background on an airspeed axis \[kt\].
 const BOUNDS_WIDTH_KT: f64 = 3.0;
-/// Width of that background over conditions.
+/// Width of the background on an axis of conditions.
 const BOUNDS_WIDTH: f64 = 0.7;
 
-/// A gain or a delay in an analysis, with its uncertainty if available.
+/// A gain or a delay from an analysis, with its uncertainty if available.
 pub(super) struct GainPanel<'a> {
     pub(super) quantity: GainQuantity,
     pub(super) analysis: &'a Analysis,
@@ -47,7 +47,7 @@ pub(super) struct GainPanel<'a> {
 }
 
 impl GainPanel<'_> {
-    /// Builds the panel; `label` names the vertical axis.
+    /// Builds the panel; `label` is the label of the vertical axis.
     pub(super) fn panel(&self, label: &str) -> Panel {
         let measure = self.quantity.measure();
         let bars = self.bars();
@@ -115,12 +115,12 @@ impl GainPanel<'_> {
         };
         let level = uncertainty.level;
         let whole = Intervals {
-            name: format!("bar of {:.0} %", 100.0 * level),
+            name: format!("{:.0} % error bar", 100.0 * level),
             stroke: BAR,
             ends: self.bar_ends(uncertainty, Bar::interval),
         };
         let inner = Intervals {
-            name: "identification in it".to_owned(),
+            name: "identification part of the error bar".to_owned(),
             stroke: INNER_BAR,
             ends: self.bar_ends(uncertainty, Bar::inner_interval),
         };
@@ -129,7 +129,7 @@ impl GainPanel<'_> {
         bars
     }
 
-    /// Returns `[x, lower end, upper end]` for each condition with a bar, in the unit of the
+    /// Returns `[x, lower end, upper end]` for each condition with an error bar, in the unit of the
     /// measure.
     fn bar_ends(
         &self,
@@ -142,7 +142,7 @@ impl GainPanel<'_> {
             if let Some(bar) = uncertainty.bar(placed.state.id, scalar)
                 && let Some(interval) = interval(bar, uncertainty.level)
             {
-                // Intervals of gains are given in logarithms.
+                // Intervals of gains are stored as logarithms.
                 let [low, high] = interval.map(|end| {
                     if scalar.is_delay() {
                         s_to_ms(end)
@@ -156,8 +156,8 @@ impl GainPanel<'_> {
         ends
     }
 
-    /// Returns brackets at each airspeed between the two net gains with the largest ratio of
-    /// difference to expected value (M13.4); significant differences come first.
+    /// Returns a bracket for each airspeed, between the two net gains whose difference is largest
+    /// relative to its expected value (M13.4); brackets of significant differences come first.
     fn brackets(&self) -> Vec<Brackets> {
         let (Some(uncertainty), GainQuantity::NetGain(pair), Across::Airspeed) =
             (self.uncertainty, self.quantity, self.across)
@@ -214,7 +214,8 @@ impl GainPanel<'_> {
         })
     }
 
-    /// Returns both bands about the samples of the schedule.
+    /// Returns the confidence band and the scatter band about samples `[airspeed, value]` of the
+    /// schedule; empty without an uncertainty.
     fn bands(&self, schedule: &Schedule, samples: &[[f64; 2]]) -> Vec<Envelope> {
         let Some(bands) = self.uncertainty.and_then(|found| found.bands.as_ref()) else {
             return Vec::new();
@@ -245,7 +246,7 @@ impl GainPanel<'_> {
         vec![confidence, scatter]
     }
 
-    /// Returns the search bounds of each optimum.
+    /// Returns the search bounds of each optimum; `None` for a quantity without bounds.
     fn bounds(&self) -> Option<Spans> {
         let mut spans = Vec::new();
         for placed in self.results() {
@@ -268,8 +269,8 @@ impl GainPanel<'_> {
         })
     }
 
-    /// Returns a group for each condition class; conditions outside the schedule have their own
-    /// groups.
+    /// Returns a group of dots for each condition class; conditions outside the schedule have
+    /// separate groups.
     fn dots(&self) -> Vec<Dots> {
         let classes = Classes::of(&self.analysis.study.dataset);
         let mut groups: Vec<Dots> = Vec::new();
@@ -289,8 +290,8 @@ impl GainPanel<'_> {
         groups
     }
 
-    /// Returns the optimum of a condition, labelled with the condition's number unless the axis
-    /// shows it.
+    /// Returns the optimum of a condition as a dot, labelled with the condition's number unless the
+    /// axis shows it.
     fn dot(&self, placed: &PlacedResult<'_>) -> Dot {
         let id = placed.state.id;
         let label = match self.across {
@@ -305,7 +306,7 @@ impl GainPanel<'_> {
         }
     }
 
-    /// Returns an empty group in the style of a condition's class.
+    /// Returns an empty group of dots in the style of a condition's class.
     fn empty_group(&self, placed: &PlacedResult<'_>, classes: &Classes, name: &str) -> Dots {
         let choice = self.analysis.study.choice(placed.state.id);
         let shape = if classes.is_first_altitude(placed.state) {
@@ -324,7 +325,7 @@ impl GainPanel<'_> {
     }
 }
 
-/// Sample of the schedule with the half-widths of its bands.
+/// Sample of the schedule, with the half-widths of its bands.
 struct BandSample {
     x: f64,
     value: f64,
@@ -332,7 +333,7 @@ struct BandSample {
     widths: BandWidths,
 }
 
-/// Returns `[x, lower end, upper end]` at each sample.
+/// Returns `[x, lower end, upper end]` of a band at each sample.
 fn band_points(samples: &[BandSample], half: fn(&BandWidths) -> f64) -> Vec<[f64; 3]> {
     let mut points = Vec::new();
     for BandSample { x, value, widths } in samples {

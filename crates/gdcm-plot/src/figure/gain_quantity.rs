@@ -12,7 +12,7 @@ use gdcm_study::results::analysis::{Analysis, ConditionAnalysis};
 /// Number of intervals between the samples of a schedule.
 const SAMPLES: usize = 120;
 
-/// Kind of a quantity.
+/// Kind of a scheduled or fitted quantity.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Measure {
     /// Ratio; 1 without correction.
@@ -31,7 +31,7 @@ impl Measure {
         }
     }
 
-    /// Returns the value without correction.
+    /// Returns the value that means no correction: 1 for a gain, 0 for a delay.
     pub fn null(self) -> f64 {
         match self {
             Self::Gain => 1.0,
@@ -39,7 +39,7 @@ impl Measure {
         }
     }
 
-    /// Returns the minimum height of the range, in the unit of the measure.
+    /// Returns the minimum height of the displayed range, in the unit of the measure.
     pub fn least_height(self) -> f64 {
         match self {
             Self::Gain => 0.1,
@@ -47,8 +47,8 @@ impl Measure {
         }
     }
 
-    /// Returns the schedule if it can be drawn: over airspeed, and only if it contains this
-    /// measure.
+    /// Returns the schedule if it can be drawn: it contains this measure, and the horizontal axis
+    /// is the airspeed.
     pub fn schedule_of(self, analysis: &Analysis, across: Across) -> Option<&Schedule> {
         let schedule = analysis.schedule.as_ref().ok()?;
         let has_values = self == Self::Gain || schedule.has_delays();
@@ -59,7 +59,7 @@ impl Measure {
         }
     }
 
-    /// Returns the axis label of channel values.
+    /// Returns the axis label: quantity and unit.
     pub fn axis_label(self) -> &'static str {
         match self {
             Self::Gain => "Gain [-]",
@@ -88,7 +88,7 @@ pub enum GainQuantity {
 }
 
 impl GainQuantity {
-    /// Returns a channel's gain or delay.
+    /// Returns the gain or the delay of a channel, as `measure` requires.
     pub fn of_channel(channel: Channel, measure: Measure) -> Self {
         match measure {
             Measure::Gain => Self::Gain(channel),
@@ -104,7 +104,7 @@ impl GainQuantity {
         }
     }
 
-    /// Returns the value in a correction, in the unit of the measure.
+    /// Returns the value of the quantity in a correction, in the unit of the measure.
     pub fn of(self, correction: &ChannelCorrection) -> f64 {
         match self {
             Self::NetGain(pair) => correction.net_gain(pair),
@@ -149,7 +149,7 @@ impl GainQuantity {
     }
 }
 
-/// Result of a condition at its position on the horizontal axis.
+/// Result of a condition, with its position on the horizontal axis.
 pub(super) struct PlacedResult<'a> {
     pub(super) x: f64,
     pub(super) state: &'a FlightState,

@@ -17,7 +17,7 @@ use super::gain_quantity::placed_results;
 use super::marks::{Curve, DotShape, Dots, Mark, MarkId};
 use super::role::Role;
 
-/// Ratio of plot height to width, without and with bars and brackets.
+/// Ratio of plot height to width, without and with error bars.
 const ASPECT: f64 = 0.95;
 const ASPECT_WITH_BARS: f64 = 1.3;
 /// Size of the dots of an overlaid variant, relative to the usual dot.
@@ -99,7 +99,7 @@ fn caption(analysis: &Analysis, across: Across, measure: Measure) -> String {
         caption.push_str(&format!(" Schedule: {schedule}."));
     }
     if across == Across::Airspeed {
-        caption.push_str(" Numbers are those of the conditions.");
+        caption.push_str(" Numbers identify the conditions.");
     }
     caption.push_str(" Dashed: no correction.");
     caption
@@ -112,8 +112,9 @@ pub fn all_channels(dataset: &Dataset) -> Vec<Channel> {
     inputs.chain(outputs).collect()
 }
 
-/// Overlays the optima and the schedule of a variant on plots against airspeed, behind the existing
-/// dots: small open dots and a dotted line. `quantities` lists the quantity of each plot, in order.
+/// Overlays the optima and the schedule of a variant on plots against airspeed: small open dots
+/// behind the existing dots, and a dotted line. `quantities` lists the quantity of each plot, in
+/// order.
 pub fn add_variant(
     figure: &mut Figure,
     quantities: &[GainQuantity],
@@ -135,7 +136,7 @@ pub fn add_variant(
     }
 }
 
-/// Returns a variant's schedule, if any, and its optima.
+/// Returns the schedule of a variant, if any, and its optima, as marks.
 fn variant_marks(quantity: GainQuantity, analysis: &Analysis, name: &str) -> Vec<Mark> {
     let across = Across::Airspeed;
     let stroke = Role::Variant.stroke(false);
@@ -158,9 +159,9 @@ fn variant_marks(quantity: GainQuantity, analysis: &Analysis, name: &str) -> Vec
     marks
 }
 
-/// Simplifies net-gain plots for the screen, where labels appear under the pointer. Only the label
-/// of the condition `selected` remains and, if differences are shown, the brackets of significant
-/// differences with the labels at their ends.
+/// Removes labels and brackets from net-gain plots for the screen, where labels appear under the
+/// pointer. Kept are the label of the condition `selected` and, if `shows_differences` is set, the
+/// brackets of significant differences with the labels of the dots at their ends.
 pub fn quieten(figure: &mut Figure, selected: &MarkId, shows_differences: bool) {
     for panel in figure.plots.iter_mut().flat_map(|plot| &mut plot.panels) {
         panel.marks.retain(|mark| match mark {

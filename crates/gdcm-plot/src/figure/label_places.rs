@@ -2,29 +2,29 @@
 //!
 //! ```text
 //! three times, for each dot:
-//!     try 8 sides at 6 distances; take the cheapest place, given the other labels:
-//!         area over other labels, dots, bars and the outside
-//!         leaders across labels
-//!         the line under the label
-//!         other dots nearer to the label than its own
-//!         later side, larger distance
-//! leave out labels that cover too much, the worst first
+//!     try 8 directions at 6 distances; keep the cheapest place. Cost, given the other labels:
+//!         area over other labels, dots, bars, and outside the bounds
+//!         length of leaders across labels
+//!         length of the path under the label
+//!         number of other dots that are nearer to the label than the labelled dot
+//!         rank of the direction, and distance
+//! remove labels that cover too much, the worst first
 //! ```
 //!
-//! Screen and paper use the same method, in points; y runs downwards.
+//! The screen and paper use the same method, in points; y runs downwards.
 
 use super::drawing::Area;
 
 /// Direction of a label from its dot.
 #[derive(Clone, Copy)]
 struct Direction {
-    /// Fractions of the label's width and height before its anchor.
+    /// Fractions of the label's width and height that lie to the left of its anchor and above it.
     before: [f64; 2],
-    /// Offset of the anchor from the dot, relative to the distance.
+    /// Offset of the anchor from the centre of the dot, relative to the distance between them.
     offset: [f64; 2],
 }
 
-/// Directions tried around a dot, in order of preference.
+/// Directions of a label from its dot, in order of preference.
 const DIRECTIONS: [Direction; 8] = [
     Direction {
         before: [0.0, 1.0],
@@ -59,42 +59,44 @@ const DIRECTIONS: [Direction; 8] = [
         offset: [0.0, 1.0],
     },
 ];
-/// Distances tried, beyond the radius of the dot \[pt\]; for all but the first, a leader connects
-/// the dot to its label.
+/// Tried distances from the edge of the dot \[pt\]; at all but the first, a leader connects the dot
+/// to its label.
 const GAPS: [f64; 6] = [1.5, 8.0, 15.0, 22.0, 30.0, 40.0];
-/// Number of passes; each places every label again, given the other labels.
+/// Number of passes; each pass places every label again, given the other labels.
 const SWEEPS: usize = 3;
-/// Maximum number of labels; with more, none is placed: they would be unreadable and slow to place.
+/// Maximum number of labels; if there are more, no label is placed, because they would be
+/// unreadable and slow to place.
 const MOST_LABELS: usize = 300;
 
-/// Cost per square point that a label shares with another label, a dot, a bar or the outside.
+/// Cost per square point of a label over another label, a dot, a bar, or outside the bounds.
 const ON_LABEL: f64 = 40.0;
 const ON_DOT: f64 = 40.0;
 const ON_BAR: f64 = 8.0;
 const OUTSIDE: f64 = 30.0;
-/// Cost per point along the path under a label.
+/// Cost per point of the length of the path under a label.
 const ON_PATH: f64 = 1.0;
-/// Cost per point along a leader across a label.
+/// Cost per point of the length of a leader across a label.
 const LEADER_ON_LABEL: f64 = 20.0;
-/// Cost of each dot that is nearer to a label than its own dot.
+/// Cost of each other dot that is nearer to a label than the labelled dot.
 const AMBIGUOUS: f64 = 6.0;
 /// Cost of each direction that precedes the chosen direction in [`DIRECTIONS`], and cost per point
 /// of distance from the dot.
 const LATER_DIRECTION: f64 = 0.2;
 const FARTHER: f64 = 0.6;
-/// Maximum fraction of a label over other labels, dots or the outside: beyond it, the label and
-/// those below it are unreadable.
+/// Maximum fraction of a label's area over other labels, over dots, or outside the bounds. A label
+/// that covers more is removed as unreadable.
 const MOST_COVERED: f64 = 0.12;
 /// Side of the square that approximates a dot, relative to the radius of the dot.
 const DOT_SIDE: f64 = 1.9;
-/// Space kept around other labels \[pt\].
+/// Margin around other labels \[pt\].
 const LABEL_MARGIN: f64 = 1.0;
 /// Distance between sampled points along a line \[pt\].
 const STEP: f64 = 2.0;
-/// Another dot that is nearer to a label by less than this is not mistaken for its dot \[pt\].
+/// Tolerance \[pt\]: another dot that is nearer to a label by less than this is not mistaken for
+/// the labelled dot.
 const SLACK: f64 = 0.5;
 
-/// Area of a label, with the end of its leader.
+/// Area of a label, and the end of its leader.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LabelPlace {
     /// Area of the text.
@@ -103,7 +105,7 @@ pub struct LabelPlace {
     pub leader: Option<[f64; 2]>,
 }
 
-/// A dot to be labelled.
+/// A dot, with the size of the label to be placed beside it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LabelledDot {
     pub center: [f64; 2],
@@ -114,7 +116,7 @@ pub struct LabelledDot {
 }
 
 impl LabelledDot {
-    /// Approximates the covered area by a square.
+    /// Returns a square that approximates the area covered by the dot.
     fn area(&self) -> Area {
         let width = DOT_SIDE * self.radius;
         Area::new(
@@ -125,24 +127,23 @@ impl LabelledDot {
         )
     }
 
-    /// Returns the distance from the dot's edge to a label; negative if the label covers its
-    /// centre.
+    /// Returns the distance from the edge of the dot to a label; negative if they overlap.
     fn distance_to(&self, label: &Area) -> f64 {
         label.distance(self.center) - self.radius
     }
 }
 
-/// Obstacles to labels, besides the dots.
+/// Obstacles to labels, in addition to the dots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surroundings {
-    /// The area for labels.
+    /// Area in which labels should lie.
     pub bounds: Area,
     /// A line that labels should not cover.
     pub path: Vec<[f64; 2]>,
     pub bars: Vec<Area>,
 }
 
-/// Places the labels of `dots`, in the same order; `None` for a label without room.
+/// Returns the places of the labels of `dots`, in the same order; `None` for a label without room.
 pub fn place_labels(dots: &[LabelledDot], around: &Surroundings) -> Vec<Option<LabelPlace>> {
     let mut placing = Placing {
         dots,
@@ -160,7 +161,7 @@ pub fn place_labels(dots: &[LabelledDot], around: &Surroundings) -> Vec<Option<L
             placing.places[index] = placing.best_place(index);
         }
     }
-    // The most covering label goes first: labels that it covered may then stay.
+    // The label that covers most is removed first: labels that it covered may then remain.
     while let Some(worst) = placing.most_covering(&labelled) {
         placing.places[worst] = None;
     }
@@ -171,18 +172,18 @@ pub fn place_labels(dots: &[LabelledDot], around: &Surroundings) -> Vec<Option<L
 struct Placing<'a> {
     dots: &'a [LabelledDot],
     around: &'a Surroundings,
-    /// In the order of the dots.
+    /// In the order of `dots`.
     places: Vec<Option<LabelPlace>>,
 }
 
-/// The label of another dot.
+/// Label of another dot, at its present place.
 struct OtherLabel {
     place: LabelPlace,
-    /// Centre of its dot.
+    /// Centre of the dot that it labels.
     center: [f64; 2],
 }
 
-/// A place to try, and its cost.
+/// A possible place of a label, and its cost.
 struct Candidate {
     place: LabelPlace,
     cost: f64,
@@ -194,7 +195,8 @@ impl Placing<'_> {
         let others = self.other_labels(index);
         let mut best: Option<Candidate> = None;
         for candidate in candidates(self.dots[index]) {
-            // Most places are already worse than the best by their direction and distance.
+            // `candidate.cost` is the cost of direction and distance alone; it already rules out
+            // most places.
             if !is_better(candidate.cost, &best) {
                 continue;
             }
@@ -230,7 +232,7 @@ impl Placing<'_> {
         candidate.cost + ambiguity + leaders + self.obstruction(&place.area, others)
     }
 
-    /// Returns the cost of everything under a label.
+    /// Returns the cost of everything that a label covers, and of its part outside the bounds.
     fn obstruction(&self, area: &Area, others: &[OtherLabel]) -> f64 {
         let on_labels: f64 = others
             .iter()
@@ -250,12 +252,12 @@ impl Placing<'_> {
             + ON_PATH * on_path
     }
 
-    /// Returns the area that a label shares with dots.
+    /// Returns the area \[pt²\] of a label over dots.
     fn on_dots(&self, label: &Area) -> f64 {
         self.dots.iter().map(|dot| label.overlap(&dot.area())).sum()
     }
 
-    /// Returns the part of a label's area outside the bounds.
+    /// Returns the area \[pt²\] of a label outside the bounds.
     fn outside(&self, label: &Area) -> f64 {
         label.size() - label.overlap(&self.around.bounds)
     }
@@ -270,7 +272,8 @@ impl Placing<'_> {
             .count()
     }
 
-    /// Returns the dot whose label covers the largest part of its area, if above [`MOST_COVERED`].
+    /// Returns the index of the dot whose label has the largest covered part; `None` if no part
+    /// exceeds [`MOST_COVERED`].
     fn most_covering(&self, labelled: &[usize]) -> Option<usize> {
         let mut worst = None;
         let mut most = MOST_COVERED;
@@ -284,7 +287,7 @@ impl Placing<'_> {
         worst
     }
 
-    /// Returns the part of a label's area over other labels, dots and the outside.
+    /// Returns the fraction of a label's area over other labels, over dots, and outside the bounds.
     fn covered_part(&self, index: usize) -> f64 {
         let Some(place) = self.places[index] else {
             return 0.0;
@@ -308,7 +311,7 @@ fn is_better(cost: f64, best: &Option<Candidate>) -> bool {
     }
 }
 
-/// Returns the places to try around a dot, each with the cost of its direction and distance.
+/// Returns the possible places of a dot's label, each with the cost of its direction and distance.
 fn candidates(dot: LabelledDot) -> Vec<Candidate> {
     let mut candidates = Vec::new();
     for (ring, gap) in GAPS.into_iter().enumerate() {
@@ -328,8 +331,8 @@ fn candidates(dot: LabelledDot) -> Vec<Candidate> {
     candidates
 }
 
-/// Returns the cost of leaders across labels: of this leader across other labels, and of other
-/// leaders across this label.
+/// Returns the cost of leaders across labels: this leader across other labels, and other leaders
+/// across this label.
 fn leaders_on_labels(place: &LabelPlace, center: [f64; 2], others: &[OtherLabel]) -> f64 {
     let mut length = 0.0;
     for other in others {
@@ -346,7 +349,7 @@ fn leaders_on_labels(place: &LabelPlace, center: [f64; 2], others: &[OtherLabel]
     LEADER_ON_LABEL * length
 }
 
-/// Estimates how long a segment runs inside `area` \[pt\], from points along it.
+/// Estimates the length \[pt\] of a segment inside `area`, from points sampled along it.
 fn length_inside(area: &Area, from: [f64; 2], to: [f64; 2]) -> f64 {
     let is_left_or_right = from[0].max(to[0]) < area.left || from[0].min(to[0]) > area.right();
     let is_above_or_below = from[1].max(to[1]) < area.top || from[1].min(to[1]) > area.bottom();
@@ -416,7 +419,8 @@ mod tests {
 
     #[test]
     fn labels_of_the_example_do_not_overlap() {
-        // PED to NY: conditions 1, 4, 8 and 2, 9 nearly coincide.
+        // Net gains from PED to NY in the example: conditions 1, 4 and 8, and 2 and 9, nearly
+        // coincide.
         let dots = [
             [120.0, 128.0],
             [136.0, 134.0],

@@ -26,23 +26,23 @@ const COLUMN_GAP: f64 = 9.0;
 const ROW_GAP: f64 = 5.0;
 /// Space between the panels of a plot \[pt\].
 const PANEL_GAP: f64 = 4.0;
-/// Room right of the frames for half a tick label \[pt\].
+/// Space to the right of the frames, for half a tick label \[pt\].
 const RIGHT: f64 = 6.0;
-/// Minimum plot width, including the tick labels at its left \[pt\].
+/// Minimum plot width, including the tick labels to the left \[pt\].
 const LEAST_WIDTH: f64 = 88.0;
-/// Minimum plot width in a dense figure \[pt\].
+/// Minimum plot width, including tick labels, in a dense figure \[pt\].
 const LEAST_DENSE_WIDTH: f64 = 40.0;
 /// Minimum width, and minimum total height, of the frames of a plot \[pt\].
 const LEAST_FRAME: f64 = 22.0;
-/// Maximum height of all plots, which leaves room for a caption on an A4 page \[pt\].
+/// Maximum total height of the plots, which leaves room for a caption on an A4 page \[pt\].
 const MOST_HEIGHT: f64 = 640.0;
 /// Minimum distance between tick labels on a vertical axis \[pt\].
 const VERTICAL_GAP: f64 = 11.0;
 /// Minimum distance between the centres of tick labels on a horizontal axis \[pt\].
 const HORIZONTAL_GAP: f64 = 12.0;
-/// Minimum space between tick labels on a horizontal axis \[pt\].
+/// Minimum space between neighbouring tick labels on a horizontal axis \[pt\].
 const NUMBER_SPACE: f64 = 5.0;
-/// Axis range of a figure without panels.
+/// Axis range used if a figure has no panels.
 const EMPTY: Range = Range { min: 0.0, max: 1.0 };
 
 /// Panels at their positions.
@@ -105,7 +105,7 @@ impl<'f> PlotTable<'f> {
         }
     }
 
-    /// Returns the total height of the frames of a plot.
+    /// Returns the total height of the frames of a plot \[pt\].
     fn plot_height(&self, frame_width: f64) -> f64 {
         let rows = self.rows as f64;
         let around: f64 = (0..self.rows)
@@ -117,7 +117,7 @@ impl<'f> PlotTable<'f> {
             .max(LEAST_FRAME)
     }
 
-    /// Returns the room for titles above the frames of a row.
+    /// Returns the height \[pt\] of the titles above the frames of a row.
     fn above(&self, row: usize) -> f64 {
         let has_title = self
             .row(row)
@@ -125,7 +125,7 @@ impl<'f> PlotTable<'f> {
         if has_title { LABEL_LINE + 2.0 } else { 3.0 }
     }
 
-    /// Returns the room for tick labels and axis labels below the frames of a row.
+    /// Returns the height \[pt\] of the tick labels and axis labels below the frames of a row.
     fn below(&self, row: usize) -> f64 {
         let has_numbers = self.row(row).any(|index| self.has_x_numbers(index));
         if has_numbers {
@@ -154,7 +154,7 @@ impl<'f> PlotTable<'f> {
     }
 
     /// Returns whether the vertical axis of a panel has a label: in the first plot of each row, and
-    /// in each plot whose label differs from that of the first.
+    /// in each plot whose label differs from the label of the first plot.
     fn has_y_label(&self, index: usize, panel: usize) -> bool {
         let first = index - index % self.columns;
         index == first || self.y_label(index, panel) != self.y_label(first, panel)
@@ -165,7 +165,7 @@ impl<'f> PlotTable<'f> {
         Some(&panel.y.label)
     }
 
-    /// Returns the plots that share their range with a plot, itself included.
+    /// Returns the plots that share an axis range with a plot, including the plot itself.
     fn sharing(&self, index: usize, is_shared: bool) -> &'f [Plot] {
         if is_shared {
             &self.figure.plots
@@ -174,7 +174,7 @@ impl<'f> PlotTable<'f> {
         }
     }
 
-    /// Returns the common horizontal range of all panels of a plot.
+    /// Returns the horizontal range of all panels of a plot.
     fn x_range(&self, index: usize) -> Range {
         self.sharing(index, self.figure.shared.x)
             .iter()
@@ -184,7 +184,7 @@ impl<'f> PlotTable<'f> {
             .unwrap_or(EMPTY)
     }
 
-    /// Returns the vertical range of a panel, counted from the top of its plot.
+    /// Returns the vertical range of a panel; `panel` counts from the top of the plot.
     fn y_range(&self, index: usize, panel: usize) -> Range {
         self.sharing(index, self.figure.shared.y)
             .iter()
@@ -194,7 +194,7 @@ impl<'f> PlotTable<'f> {
             .unwrap_or(EMPTY)
     }
 
-    /// Returns the heights of the frames of a plot.
+    /// Returns the height of each frame of a plot \[pt\].
     fn heights(&self, index: usize, plot_height: f64) -> Vec<f64> {
         let panels = &self.figure.plots[index].panels;
         let room = plot_height - PANEL_GAP * panels.len().saturating_sub(1) as f64;
@@ -230,7 +230,7 @@ impl<'f> PlotTable<'f> {
         let is_lowest = panel + 1 == plot.panels.len();
         let range = self.x_range(index);
         let has_numbers = is_lowest && self.has_x_numbers(index);
-        // On narrow frames, only the first plot of a row shows the label.
+        // If the frames are too narrow for the label, only the first plot of a row shows it.
         let has_room = LABEL_PT * width(&axis.label) <= frame_width + COLUMN_GAP;
         Side {
             range,
@@ -241,7 +241,8 @@ impl<'f> PlotTable<'f> {
         }
     }
 
-    /// Returns the room left of each column, for tick labels and axis labels.
+    /// Returns the width \[pt\] of the space to the left of each column, for tick labels and axis
+    /// labels.
     fn gutters(&self, frame_width: f64) -> Vec<f64> {
         let plot_height = self.plot_height(frame_width);
         (0..self.columns)
@@ -305,7 +306,7 @@ impl<'f> PlotTable<'f> {
     }
 }
 
-/// Returns the width of the widest label, relative to the font size.
+/// Returns the width of the widest tick label, relative to the font size.
 fn widest(ticks: &[Tick]) -> f64 {
     ticks
         .iter()
@@ -320,7 +321,7 @@ fn horizontal_ticks(axis: &Axis, range: Range, length_pt: f64) -> Vec<Tick> {
     let close = axis.ticks(range, length_pt, HORIZONTAL_GAP);
     let ticks = axis.ticks(range, length_pt, label_gap(&close));
     match &axis.names {
-        // Names have a fixed width: the first iteration includes all names.
+        // The texts of named ticks do not depend on their spacing: a single iteration suffices.
         Some(_) => ticks,
         None => axis.ticks(range, length_pt, label_gap(&ticks)),
     }

@@ -1,5 +1,5 @@
-//! Delays and leads of each channel in a condition, up to ten times the upper end of the band: the
-//! limit of the model's validity, and the cost of leads.
+//! Delay and lead of each channel in a condition, up to ten times the upper end of the band, with
+//! the validity limit of the model and the cost of the leads.
 
 use gdcm_method::correction::lead_price::ABOVE_BAND;
 use gdcm_method::correction::{Channel, ChannelCorrection, LeadPrice};
@@ -23,13 +23,14 @@ const INPUT: Stroke = Stroke::dashed(Color::of(Hue::Perturbed), 1.6, Dash::DashD
 const LIMIT: Stroke = Stroke::solid(Color::of(Hue::Warning), 1.2);
 const BEYOND: Color = Color::of(Hue::Warning).tint(14);
 
-/// Plots gain and phase of the delay or lead in each channel, without the gains k, from the band to
-/// ten times its upper end: a row of two plots for each of `pairs`. The two channels of the pair,
-/// and their product, are emphasised.
+/// Plots gain and phase of the delay or lead in each channel, without the channel gains k, up to
+/// ten times the upper end of the band: a row of two plots for each of `pairs`. The two channels of
+/// the pair, and their product, are emphasised.
 pub fn leads_figure(source: &ConditionSource<'_>, pairs: &[Pair]) -> Figure {
     let title = format!("Leads · {}", source.condition_words());
     let caption = format!(
-        "{} What delay or lead adds to each channel, without the gains k; thin: the other channels.",
+        "{} Effect of delay or lead in each channel, without the gains k; thin lines: other \
+        channels.",
         source.caption()
     );
     let mut figure = Figure::new(title).caption(caption).columns(2).aspect(0.62);
@@ -45,7 +46,7 @@ pub fn leads_figure(source: &ConditionSource<'_>, pairs: &[Pair]) -> Figure {
 /// Delay or lead of a channel, or of two channels in series, as drawn.
 struct LeadCurve {
     name: String,
-    /// Entry in the legend.
+    /// Text of its entry in the legend.
     key: String,
     stroke: Stroke,
     dynamics: GainDelay,
@@ -57,7 +58,8 @@ struct PairLeads {
     pair_name: String,
     /// Frequencies \[rad/s\].
     omega: Vec<f64>,
-    /// Curves of the other channels, of input and output, and of both in series.
+    /// Curves of the other channels, of the input and the output, and of input and output in
+    /// series.
     curves: Vec<LeadCurve>,
     /// Cost of the leads; `None` without leads.
     price: Option<LeadPrice>,
@@ -105,7 +107,7 @@ impl PairLeads {
         }
     }
 
-    /// Plots gain and phase.
+    /// Plots the gain and the phase of each curve.
     fn plots(&self) -> [Plot; 2] {
         let zeros = vec![0.0; self.omega.len()];
         let gain_axis = Axis::linear("Gain [dB]").including(0.0).at_least(3.0);
@@ -135,7 +137,7 @@ impl PairLeads {
         }
     }
 
-    /// Builds a panel with a curve of the `values` of each delay or lead.
+    /// Builds a panel with a curve for each delay or lead; `values` computes the drawn values.
     fn panel(&self, y: Axis, values: impl Fn(GainDelay) -> Vec<f64>) -> Panel {
         let mut panel = Panel::new(Axis::logarithmic("Frequency [rad/s]"), y);
         for curve in &self.curves {
@@ -164,7 +166,8 @@ fn dynamics(correction: &ChannelCorrection, channels: &[Channel]) -> GainDelay {
     ])
 }
 
-/// Adds the background above the band, with an entry in the legend, and the line at the limit.
+/// Returns the panel with a shaded background above the validity limit, which has an entry in the
+/// legend, and a line at the limit.
 fn with_limit(panel: Panel, price: &LeadPrice) -> Panel {
     let ground = Band {
         range: Range::new(price.limit_rad_s, price.above_rad_s()),

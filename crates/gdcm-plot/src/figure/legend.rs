@@ -1,4 +1,4 @@
-//! Legend of a figure: an entry for each different key among its marks.
+//! Legend of a figure: an entry for each distinct key among its marks.
 
 use gdcm_study::results::requirement_role::RequirementRole;
 
@@ -6,14 +6,14 @@ use super::drawing::{Color, Stroke};
 use super::marks::{DotShape, Mark};
 use super::role::Role;
 
-/// An entry of a legend: a sample followed by a text.
+/// An entry of a legend: a sample and a text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
     pub text: String,
     pub sample: Sample,
 }
 
-/// Sample in the style of a mark.
+/// Sample in the style of the mark that it explains.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sample {
     Line(Stroke),
@@ -26,8 +26,8 @@ pub enum Sample {
     Ground(Color),
 }
 
-/// Returns an entry for each different key among `marks`: roles in the order of [`Role::ALL`], then
-/// the other keys as they appear.
+/// Returns an entry for each distinct key among `marks`: roles in the order of [`Role::ALL`], then
+/// the other keys in order of appearance.
 pub(super) fn entries<'m>(marks: impl Iterator<Item = &'m Mark>) -> Vec<Entry> {
     let mut entries: Vec<Entry> = Vec::new();
     for entry in marks.filter_map(entry) {
@@ -35,7 +35,7 @@ pub(super) fn entries<'m>(marks: impl Iterator<Item = &'m Mark>) -> Vec<Entry> {
             entries.push(entry);
         }
     }
-    // Stable: entries without a role keep their order.
+    // The sort is stable: entries without a role keep their order.
     entries.sort_by_key(|entry| rank(&entry.text));
     entries
 }
@@ -86,9 +86,9 @@ fn entry(mark: &Mark) -> Option<Entry> {
     }
 }
 
-/// Returns the rank of a text in the legend; texts that name no role come after all roles.
+/// Returns the rank of an entry in the legend; texts that do not name a role come after all roles.
 fn rank(text: &str) -> usize {
-    // A single physics model has the rank of the nominal model.
+    // The single physics model of a requirement figure has the rank of the nominal model.
     let text = if text == RequirementRole::Physics.name() {
         Role::Nominal.key(false)
     } else {
@@ -100,8 +100,8 @@ fn rank(text: &str) -> usize {
         .unwrap_or(Role::ALL.len())
 }
 
-/// Returns whether a text names a role. A rejected nominal model has its own entry, with the rank
-/// of the nominal role; other rejected models share the entry of the rejected role.
+/// Returns whether a text names a role. A rejected nominal model has a separate entry with the rank
+/// of the nominal role; all other rejected models share the entry of the rejected role.
 fn names_role(text: &str, role: Role) -> bool {
     text == role.key(false) || (role == Role::Nominal && text == role.key(true))
 }

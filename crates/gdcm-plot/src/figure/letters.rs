@@ -1,12 +1,12 @@
-//! Glyphs of the fonts with their widths, and text broken into lines.
+//! Glyphs of the fonts with their widths, and the division of text into lines.
 
 use skrifa::instance::{LocationRef, Size};
 use skrifa::{FontRef, GlyphId, MetadataProvider};
 
 use gdcm_model::message_text::sanitized;
 
-/// Fonts, with the names by which an SVG viewer may find them. A later font supplies the characters
-/// missing in the earlier font.
+/// Fonts, each with the name by which an SVG viewer may find it. A later font supplies characters
+/// that are missing in the earlier fonts.
 pub const FONTS: [(&str, &[u8]); 2] = [
     ("Ubuntu", epaint_default_fonts::UBUNTU_LIGHT),
     ("Hack", epaint_default_fonts::HACK_REGULAR),
@@ -21,7 +21,7 @@ pub struct Letter {
     pub character: char,
     /// Font index in [`FONTS`].
     pub font: usize,
-    /// Glyph index in that font; 0 for a character that no font has.
+    /// Glyph index in that font; 0 for a character that is in neither font.
     pub glyph: u16,
     /// Distance to the next letter, relative to the font size.
     pub advance: f64,

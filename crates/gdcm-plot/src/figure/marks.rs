@@ -24,7 +24,7 @@ use gdcm_model::dataset::{ConditionId, ModelId};
 use super::axis::Range;
 use super::drawing::{Color, Stroke};
 
-/// Content drawn in a panel; later marks lie over earlier marks.
+/// A mark drawn in a panel; later marks cover earlier marks.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mark {
     Curve(Curve),
@@ -40,10 +40,10 @@ pub enum Mark {
     Note(Note),
 }
 
-/// A line through points.
+/// A line through points, in axis units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// Name, used as a column heading in the tables.
+    /// Name, used as a heading in the tables.
     pub name: String,
     /// Text in the legend, if any; marks with the same text share an entry.
     pub key: Option<String>,
@@ -53,7 +53,7 @@ pub struct Curve {
     pub y: Arc<[f64]>,
 }
 
-/// Dots of the same style.
+/// Dots with a common style.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dots {
     /// Name, used as a heading in the tables.
@@ -62,14 +62,14 @@ pub struct Dots {
     pub key: Option<String>,
     pub shape: DotShape,
     pub color: Color,
-    /// Whether a dot is a filled shape or an outline on the background.
+    /// Whether the dots are filled; otherwise they are outlines.
     pub filled: bool,
-    /// Diameter relative to the usual dot.
+    /// Diameter relative to a dot of usual size.
     pub size: f64,
     pub dots: Vec<Dot>,
 }
 
-/// Identity by which the window recognises the dot under the pointer.
+/// Identity of the object that a dot represents, for the pointer in the window.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum MarkId {
     Condition(ConditionId),
@@ -83,11 +83,11 @@ pub struct Dot {
     pub y: f64,
     /// Short text beside the dot. May be empty.
     pub label: String,
-    /// `None` for a dot that does not react to the pointer.
+    /// Object that the dot represents; `None` if the dot does not react to the pointer.
     pub id: Option<MarkId>,
 }
 
-/// Shape of a dot.
+/// Symbol with which a dot is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum DotShape {
     #[default]
@@ -101,7 +101,7 @@ pub enum DotShape {
     Plus,
 }
 
-/// Vertical bars of the same style.
+/// Vertical bars with a common style.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bars {
     /// Heading in the tables, and entry in the legend.
@@ -111,13 +111,13 @@ pub struct Bars {
     pub width: f64,
     /// `[x, height]`; a negative height points downwards.
     pub bars: Vec<[f64; 2]>,
-    /// Lower ends, for stacking; missing entries are 0.
+    /// Lower ends, for stacked bars; missing entries are 0.
     pub feet: Vec<f64>,
     /// Offset from x, in x units, to make room for other bars at the same x.
     pub beside: f64,
 }
 
-/// A shaded horizontal range, over the full panel height.
+/// A shaded range along the horizontal axis, over the full panel height.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Band {
     pub range: Range,
@@ -126,7 +126,7 @@ pub struct Band {
     pub key: String,
 }
 
-/// Shaded vertical ranges, each at an x: the search ranges of values.
+/// Shaded vertical ranges, each at an x, such as the search bounds of values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spans {
     /// Heading in the tables, and entry in the legend.
@@ -161,7 +161,7 @@ pub struct Intervals {
     pub ends: Vec<[f64; 3]>,
 }
 
-/// Brackets, each between two different values at the same x.
+/// Brackets, each between two values at the same x.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Brackets {
     /// Heading in the tables, and entry in the legend.
@@ -183,7 +183,7 @@ pub struct Bracket {
 /// A straight line across the panel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rule {
-    /// Axis of the value `at`: a value along y makes a horizontal line.
+    /// Axis on which `at` is a value: `Y` gives a horizontal line.
     pub along: Along,
     pub at: f64,
     pub stroke: Stroke,
@@ -191,7 +191,7 @@ pub struct Rule {
     pub label: String,
 }
 
-/// A line for reading values, such as constant damping ratio.
+/// A grid line with a label, such as a line of constant damping ratio.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Guide {
     pub points: Vec<[f64; 2]>,
@@ -199,14 +199,14 @@ pub struct Guide {
     pub label: String,
 }
 
-/// Text in a panel.
+/// A text in a panel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Note {
     pub at: Place,
     pub text: String,
 }
 
-/// Position of a note.
+/// Position of a note in its panel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place {
     /// Centred on a point in axis units.
@@ -220,7 +220,7 @@ pub enum Place {
     LowerLeft,
 }
 
-/// Direction of an axis.
+/// Axis along which a coordinate is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Along {
     X,
@@ -281,14 +281,14 @@ impl Curve {
         }
     }
 
-    /// Iterates over `[x, y]`; a non-finite y marks a gap.
+    /// Iterates over the points `[x, y]`; a non-finite y marks a gap.
     pub fn points(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
         self.x.iter().zip(self.y.iter()).map(|(x, y)| [*x, *y])
     }
 }
 
 impl Dots {
-    /// Creates an empty group with this style: filled, in the usual size, without an entry in the
+    /// Creates an empty group with this style: filled dots of usual size, without an entry in the
     /// legend.
     pub fn new(name: impl Into<String>, shape: DotShape, color: Color) -> Self {
         Self {
@@ -310,7 +310,7 @@ impl Dots {
         }
     }
 
-    /// Returns the dots, filled or as outlines.
+    /// Returns the dots, filled or as outlines as requested.
     pub fn filled(self, filled: bool) -> Self {
         Self { filled, ..self }
     }
@@ -328,7 +328,7 @@ impl Dots {
 }
 
 impl Envelope {
-    /// Returns the lower and the upper line; none for an area without lines.
+    /// Returns the lower and the upper line; empty for an area without lines.
     pub(super) fn edges(&self) -> Vec<Curve> {
         match self.edge {
             Some(stroke) => vec![self.edge_curve(stroke, 1), self.edge_curve(stroke, 2)],
@@ -344,7 +344,7 @@ impl Envelope {
 }
 
 impl Bars {
-    /// Iterates over the `[lower, upper]` ends of the bars, including stacking.
+    /// Iterates over the lower and upper ends of the bars, taking the stacking into account.
     pub(super) fn ends(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
         let feet = self.feet.iter().copied().chain(std::iter::repeat(0.0));
         self.bars
@@ -385,7 +385,7 @@ impl Rule {
 }
 
 impl Along {
-    /// Returns a point's coordinate in this direction.
+    /// Returns the coordinate of a point along this axis.
     fn coordinate(self, [x, y]: [f64; 2]) -> f64 {
         match self {
             Self::X => x,
@@ -395,8 +395,8 @@ impl Along {
 }
 
 impl Mark {
-    /// Returns the values that an axis must include for this mark; the axis ignores non-finite
-    /// values.
+    /// Returns the values that the axis must include to show this mark; they may be non-finite,
+    /// which the axis ignores.
     pub(super) fn values(&self, along: Along) -> Vec<f64> {
         match self {
             Mark::Curve(curve) => curve

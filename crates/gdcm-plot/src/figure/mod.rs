@@ -64,7 +64,7 @@ pub mod error;
 mod evidence;
 #[expect(
     clippy::module_inception,
-    reason = "the room is named by what it makes"
+    reason = "the folder and the file of its main type have the same name"
 )]
 pub mod figure;
 mod figure_format;
@@ -113,13 +113,13 @@ use leads::leads_figure;
 use poles::{couplings_figure, poles_figure, zeros_of_model};
 use requirements::{record_history_figure, requirements_figure, test_answers_figure};
 
-/// Kind of figure.
+/// Kinds of figure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum FigureKind {
     /// Responses in a condition (Figures 2 and 5).
     #[default]
     Bode,
-    /// Errors used by the fit in these responses.
+    /// Deviations of these responses from the reference, as used by the fit.
     Error,
     /// Overview of all responses in a condition.
     Overview,
@@ -127,17 +127,17 @@ pub enum FigureKind {
     NetGain,
     /// Channel gains or delays (Figures 3 and 4).
     Channels,
-    /// Contributions to the scatter in net gains.
+    /// Contributions to the scatter of net gains.
     Evidence,
-    /// Change of J by the correction (Figures 8 to 19).
+    /// Change in J due to the correction (Figures 8 to 19).
     Assessment,
     /// Poles of all models in a condition.
     Poles,
     /// Delay or lead of each channel in a condition, up to ten times the upper end of the band.
     Leads,
-    /// Effect of couplings on their loop, and on the poles in a condition.
+    /// Effect of couplings on the loop that they close, and on the poles in a condition.
     Couplings,
-    /// Phase delay over bandwidth of attitude responses, or models over time.
+    /// Phase delay over bandwidth of attitude responses, or model responses over time.
     Requirements,
     /// A response in every condition, coloured by airspeed.
     Airspeeds,
@@ -177,12 +177,12 @@ impl FigureKind {
         }
     }
 
-    /// Returns whether the figure requires error bars, which are then computed for it.
+    /// Returns whether the figure requires error bars, so that they must be computed for it.
     pub fn needs_bars(self) -> bool {
         matches!(self, Self::Evidence | Self::Requirements)
     }
 
-    /// Returns whether the figure shows error bars if they are available.
+    /// Returns whether the figure shows error bars if these are available.
     pub fn takes_bars(self) -> bool {
         matches!(self, Self::NetGain | Self::Channels)
     }
@@ -196,12 +196,12 @@ impl FigureKind {
     }
 }
 
-/// Model responses over time.
+/// Model responses over time, with their excitation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum OverTime {
-    /// To a test input.
+    /// Responses to a test input.
     Test(Arc<TestAnswers>),
-    /// To a flight record; the index selects the drawn input.
+    /// Responses to the inputs of a flight record; the index selects the drawn input.
     Record(Arc<RecordHistory>, usize),
 }
 
@@ -212,18 +212,18 @@ pub struct FigureRequest {
     pub kind: FigureKind,
     pub pairs: Vec<Pair>,
     pub channels: Vec<Channel>,
-    /// Channel quantity.
+    /// Quantity drawn for each channel: gain or delay.
     pub measure: Measure,
-    /// Horizontal axis for channels.
+    /// Quantity on the horizontal axis of a figure of channels.
     pub across: Across,
-    /// [`usual_choice`] if `None`.
+    /// Choice for [`FigureKind::Assessment`]; [`usual_choice`] if `None`.
     pub assessed: Option<AssessmentChoice>,
     /// Role of the model drawn for each condition in [`FigureKind::Airspeeds`].
     pub across_role: AcrossRole,
     pub bode: BodeOptions,
     pub couplings: Option<Arc<CouplingsAssessment>>,
     pub requirements: Option<Arc<Requirements>>,
-    /// Shown in [`FigureKind::Requirements`] instead of bandwidths.
+    /// Model responses that [`FigureKind::Requirements`] shows instead of bandwidths.
     pub over_time: Option<OverTime>,
 }
 
@@ -238,8 +238,8 @@ impl FigureRequest {
         }
     }
 
-    /// Describes the figure from the analysis or, for a figure that shows a single condition, from
-    /// the condition's source; `None` if the source or the contents are missing.
+    /// Returns the figure, described from the analysis or, if it shows a single condition, from the
+    /// condition's source. `None` if the source or the contents are missing.
     pub fn figure(
         &self,
         analysis: Option<&Analysis>,
@@ -297,7 +297,7 @@ impl FigureRequest {
         Some(poles_figure(source, &modes, &self.bode, (&zeros, &shifts)))
     }
 
-    /// Plots models over time if requested, otherwise bandwidths.
+    /// Plots model responses over time if requested, otherwise bandwidths.
     fn requirements_figure(&self, analysis: &Analysis) -> Option<Figure> {
         let study = &analysis.study;
         match &self.over_time {

@@ -1,5 +1,5 @@
-//! Envelopes of maximum unnoticeable added dynamics (MUAD, MIL-STD-1797A): about a response, among
-//! its errors, and the frequencies at which a mismatch leaves them.
+//! Envelopes of maximum unnoticeable added dynamics (MUAD, MIL-STD-1797A), drawn about a response
+//! or in an error plot, and the frequencies at which a deviation leaves them.
 //!
 //! The envelopes are defined for the ratio of model to reference.
 
@@ -17,9 +17,9 @@ use super::role::Role;
 const LOWER: usize = 0;
 const UPPER: usize = 1;
 
-/// Returns the envelopes about the identified representative among `drawn`, hidden or not: a pilot
-/// does not notice a deviation from the identified response that stays between them. Empty unless
-/// enabled in the options.
+/// Returns the envelopes about the identified representative in `drawn`, whether its curve is
+/// hidden or not: a pilot does not notice a deviation from the identified response that stays
+/// between them. Empty unless the options show MUAD.
 pub fn muad_about(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<ReferenceLine> {
     let identified = drawn
         .iter()
@@ -32,8 +32,8 @@ pub fn muad_about(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<ReferenceLi
     }
     let mut lines = Vec::new();
     for (end, label) in [
-        (LOWER, "unnoticed above, MUAD"),
-        (UPPER, "unnoticed below, MUAD"),
+        (LOWER, "unnoticeable above (MUAD)"),
+        (UPPER, "unnoticeable below (MUAD)"),
     ] {
         let mut magnitude = Vec::new();
         let mut phase = Vec::new();
@@ -48,14 +48,14 @@ pub fn muad_about(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<ReferenceLi
     lines
 }
 
-/// Returns the envelopes among errors, over the frequencies `omega` \[rad/s\]. Magnitude errors are
-/// drawn as the ratio of reference to model, so the magnitude envelopes are mirrored; phase errors
-/// are drawn as model minus reference.
+/// Returns the envelopes for an error plot at the frequencies `omega` \[rad/s\]. Magnitude errors
+/// are drawn as the ratio of reference to model, so that the magnitude envelopes are mirrored;
+/// phase errors are drawn as model minus reference.
 pub(super) fn muad_among_errors(omega: &[f64], unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
     let mut lines = Vec::new();
     for (end, label) in [
-        (LOWER, "unnoticed below, MUAD"),
-        (UPPER, "unnoticed above, MUAD"),
+        (LOWER, "unnoticeable below (MUAD)"),
+        (UPPER, "unnoticeable above (MUAD)"),
     ] {
         let mut magnitude = Vec::new();
         let mut phase = Vec::new();
@@ -80,8 +80,8 @@ fn envelope(pane: Pane, label: &str, points: Vec<[f64; 2]>) -> ReferenceLine {
     ReferenceLine::new(pane, ReferenceKind::Envelope, label, Level::Sampled(points))
 }
 
-/// Returns the frequency ranges \[rad/s\] at which the error of the corrected curve among `drawn`
-/// leaves the envelopes. Empty unless enabled in the options.
+/// Returns the frequency ranges \[rad/s\] in which the corrected curve in `drawn`, a deviation from
+/// the reference, leaves the envelopes. Empty unless the options show MUAD.
 pub fn noticed(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<(f64, f64)> {
     let corrected = drawn.iter().find(|curve| curve.id == CurveId::Corrected);
     let Some(curve) = corrected else {
@@ -96,7 +96,7 @@ pub fn noticed(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<(f64, f64)> {
     for (k, &at) in curve.omega.iter().enumerate() {
         let error_db = curve.magnitude_db[k];
         if !error_db.is_finite() {
-            // A frequency that does not count has no error.
+            // The deviation is NaN at frequencies that do not count.
             continue;
         }
         let phase = curve.phase_deg[k];

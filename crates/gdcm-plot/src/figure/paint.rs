@@ -17,7 +17,7 @@ use super::paint_marks::{envelope_areas, grounds, mark_lines};
 use super::paint_words::{mark_words, rule_label};
 use super::placed::{Placed, Side};
 
-/// Margin around everything \[pt\].
+/// Margin around the whole figure \[pt\].
 const MARGIN: f64 = 3.0;
 /// Space above the legend and above the caption \[pt\].
 const LEGEND_GAP: f64 = 3.0;
@@ -44,7 +44,7 @@ const CAPTION: TextStyle = TextStyle {
     color: Color::DIM,
 };
 
-/// Style of a text block.
+/// Font size, line height and colour of a text block.
 struct TextStyle {
     size_pt: f64,
     /// Line height \[pt\].
@@ -75,29 +75,26 @@ impl Figure {
         }
     }
 
-    /// Returns the caption, with the number of omitted labels, if any.
+    /// Returns the caption; if labels were omitted, their number is appended.
     fn printed_caption(&self, labels_left_out: usize) -> String {
         match labels_left_out {
             0 => self.caption.clone(),
-            count => format!(
-                "{} Without room, and left out: {count} of the labels.",
-                self.caption
-            ),
+            count => format!("{} Labels omitted for lack of room: {count}.", self.caption),
         }
     }
 }
 
-/// A page under construction, from the top down.
+/// A page under construction; content is added from the top down.
 struct Page {
     shapes: Vec<Shape>,
     /// Width between the margins \[pt\].
     inner_pt: f64,
-    /// Lower end so far \[pt\].
+    /// Lower end of the content so far \[pt\].
     bottom: f64,
 }
 
 impl Page {
-    /// Writes a text in lines as wide as the page.
+    /// Writes a text, broken into lines as wide as the page.
     fn write(&mut self, words: &str, style: TextStyle) {
         let lines = wrapped(words, self.inner_pt / style.size_pt);
         let top = self.bottom;
@@ -110,7 +107,7 @@ impl Page {
         }
     }
 
-    /// Paints the panels of a figure; returns the number of labels without room.
+    /// Paints the panels of a figure; returns the number of labels omitted for lack of room.
     fn paint_panels(&mut self, figure: &Figure) -> usize {
         let layout = Layout::new(figure, self.inner_pt, self.bottom);
         let mut labels_left_out = 0;
@@ -124,7 +121,7 @@ impl Page {
         labels_left_out
     }
 
-    /// Paints the legend in lines as wide as the page.
+    /// Paints the legend, broken into lines as wide as the page.
     fn paint_legend(&mut self, entries: &[Entry]) {
         if entries.is_empty() {
             return;
@@ -182,10 +179,10 @@ fn sample_shapes(sample: Sample, [start, y]: [f64; 2], sample_width: f64) -> Vec
     }
 }
 
-/// Shapes for a panel.
+/// Shapes of a painted panel.
 struct PaintedPanel {
     shapes: Vec<Shape>,
-    /// Number of labels without room.
+    /// Number of labels omitted for lack of room.
     labels_left_out: usize,
 }
 
@@ -239,8 +236,8 @@ fn paint_over_lines(placed: &Placed<'_>, mut shapes: Vec<Shape>) -> PaintedPanel
 
 impl Panel {
     /// Paints the marks in `frame` \[pt\] with these x and y ranges and this font size \[pt\]; also
-    /// returns the number of labels without room. Intended for a canvas that draws frame, axes and
-    /// grid itself and shades areas with edges.
+    /// returns the number of labels omitted for lack of room. Intended for a canvas that draws
+    /// frame, axes and grid itself and shades areas with edges.
     pub fn shapes(&self, frame: Area, [x, y]: [Range; 2], letters_pt: f64) -> (Vec<Shape>, usize) {
         let placed = Placed {
             panel: self,

@@ -32,7 +32,7 @@ pub(super) fn grid(placed: &Placed<'_>) -> Vec<Shape> {
     lines
 }
 
-/// Paints ticks, tick labels and axis label below a frame.
+/// Paints ticks, tick labels and the axis label below a frame.
 pub(super) fn horizontal_axis(side: &Side, axis: &Axis, frame: Area) -> Vec<Shape> {
     let mut shapes = Vec::new();
     for tick in &side.ticks {
@@ -68,7 +68,7 @@ pub(super) fn horizontal_axis(side: &Side, axis: &Axis, frame: Area) -> Vec<Shap
     shapes
 }
 
-/// Paints ticks, tick labels and axis label left of a frame.
+/// Paints ticks, tick labels and the axis label to the left of a frame.
 pub(super) fn vertical_axis(side: &Side, axis: &Axis, frame: Area) -> Vec<Shape> {
     let mut shapes = Vec::new();
     for tick in &side.ticks {

@@ -10,9 +10,9 @@ use super::placed::{HOOK, Placed};
 const DOT: f64 = 2.1;
 /// Line width of an open dot, a cross or a plus in the usual size \[pt\].
 const DOT_LINE: f64 = 0.9;
-/// Line from a dot to a label away from it.
+/// Line between a dot and a label that is not next to it.
 const LEADER: Stroke = Stroke::solid(Color::DIM.tint(60), 0.4);
-/// Height of digits relative to the font size: they have no descenders.
+/// Height of digits, which have no descenders, relative to the font size.
 const DIGIT_HEIGHT: f64 = 0.74;
 
 const DIAMOND: [[f64; 2]; 4] = [[0.0, -1.3], [1.3, 0.0], [0.0, 1.3], [-1.3, 0.0]];
@@ -21,7 +21,6 @@ const TRIANGLE: [[f64; 2]; 3] = [[0.0, -1.3], [1.2, 0.9], [-1.2, 0.9]];
 const CROSS: [[[f64; 2]; 2]; 2] = [[[-1.0, -1.0], [1.0, 1.0]], [[-1.0, 1.0], [1.0, -1.0]]];
 const PLUS: [[[f64; 2]; 2]; 2] = [[[-1.3, 0.0], [1.3, 0.0]], [[0.0, -1.3], [0.0, 1.3]]];
 
-/// Style of a dot.
 #[derive(Clone, Copy)]
 pub(super) struct DotStyle {
     pub(super) shape: DotShape,
@@ -60,7 +59,8 @@ impl DotStyle {
                 stroke: None,
             }
         } else {
-            // The outer edge of the line is as far out as the edge of a filled dot.
+            // The line is centred on its path: its outer edge then coincides with the edge of a
+            // filled dot.
             DotPen {
                 radius: self.radius() - 0.5 * DOT_LINE,
                 fill: Some(Color::WHITE),
@@ -77,7 +77,7 @@ impl DotStyle {
         Stroke::solid(self.color, DOT_LINE * self.size.sqrt())
     }
 
-    /// Paints a polygon with these corners, relative to the radius.
+    /// Paints a polygon; `corners` are relative to the radius.
     fn polygon(self, center: [f64; 2], corners: &[[f64; 2]]) -> Shape {
         let pen = self.pen();
         Shape::Path {
@@ -91,9 +91,8 @@ impl DotStyle {
         }
     }
 
-    /// Paints two crossing lines with these ends, relative to the radius. They are separate shapes:
-    /// a single polyline would double back on itself, and its corner could not be drawn on the
-    /// screen.
+    /// Paints two crossing lines; their ends are relative to the radius. They are separate shapes:
+    /// a single polyline would double back on itself, and the screen cannot draw such a corner.
     fn lines(self, center: [f64; 2], lines: [[[f64; 2]; 2]; 2]) -> Vec<Shape> {
         let mut shapes = Vec::new();
         for ends in lines {
@@ -111,12 +110,12 @@ struct DotPen {
     stroke: Option<Stroke>,
 }
 
-/// Returns the point at an offset from `center`, relative to `radius`.
+/// Returns `center` moved by an offset, which is relative to `radius`.
 fn moved([x, y]: [f64; 2], [dx, dy]: [f64; 2], radius: f64) -> [f64; 2] {
     [x + radius * dx, y + radius * dy]
 }
 
-/// Paints a dot with a shape and a size relative to the usual dot.
+/// Paints a dot; `size` is relative to the usual dot.
 pub fn dot_shapes(
     center: [f64; 2],
     (shape, size): (DotShape, f64),
@@ -135,19 +134,19 @@ pub fn dot_shapes(
 /// Painted dots and labels.
 pub(super) struct PaintedDots {
     pub(super) shapes: Vec<Shape>,
-    /// Number of labels without room.
+    /// Number of labels omitted for lack of room.
     pub(super) labels_left_out: usize,
 }
 
-/// A label to be placed.
+/// A label to be placed, with its dot or bracket.
 struct Label<'m> {
     dot: LabelledDot,
     words: &'m str,
     color: Color,
 }
 
-/// Paints the dots whose centre is in the frame, uncut by the frame, with their labels around them,
-/// and the labels beside brackets. Leaders lie below the dots, texts above.
+/// Paints the dots whose centres are in the frame, without clipping them, and the labels beside
+/// dots and brackets. Leaders lie below the dots, texts above.
 pub(super) fn dots_and_labels(placed: &Placed<'_>) -> PaintedDots {
     let mut dots = Vec::new();
     let mut labels = Vec::new();
@@ -235,7 +234,7 @@ fn labelled_dot(placed: &Placed<'_>, center: [f64; 2], radius: f64, label: &str)
     }
 }
 
-/// Returns the obstacles to labels.
+/// Collects the obstacles to labels: the curve on which the dots lie, error bars and brackets.
 fn surroundings(placed: &Placed<'_>) -> Surroundings {
     let mut path = Vec::new();
     let mut bars = Vec::new();
@@ -271,7 +270,7 @@ fn surroundings(placed: &Placed<'_>) -> Surroundings {
     }
 }
 
-/// Returns whether dots may belong to a curve: a solid line with an entry in the legend.
+/// Returns whether a curve is one on which dots may lie: a solid line with an entry in the legend.
 fn is_subject_of_dots(curve: &Curve) -> bool {
     curve.key.is_some() && curve.stroke.dash == Dash::Solid
 }

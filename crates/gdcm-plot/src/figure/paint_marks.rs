@@ -12,7 +12,7 @@ const FINEST: Pixel = Pixel {
     width: TOLERANCE,
     tolerance: TOLERANCE,
 };
-/// Maximum absolute coordinate \[pt\]; positions farther out count as gaps.
+/// Maximum absolute coordinate \[pt\]; points beyond it leave a gap.
 const FAR_OUT: f64 = 1e6;
 const GUIDE: Stroke = Stroke::solid(Color::DIM.tint(40), 0.4);
 /// Line around a bar.
@@ -59,7 +59,8 @@ fn span_areas(placed: &Placed<'_>, spans: &Spans) -> Vec<Shape> {
     shapes
 }
 
-/// Paints an envelope's area between gaps: along the lower line, and back along the upper line.
+/// Paints the area of an envelope between gaps: a polygon along the lower line and back along the
+/// upper line.
 pub(super) fn envelope_areas(placed: &Placed<'_>, envelope: &Envelope) -> Vec<Shape> {
     let ends: Vec<Option<[[f64; 2]; 2]>> = envelope
         .points
@@ -80,7 +81,7 @@ pub(super) fn envelope_areas(placed: &Placed<'_>, envelope: &Envelope) -> Vec<Sh
     areas
 }
 
-/// Returns the sequences of at least two values between gaps.
+/// Returns the runs of at least two values between gaps.
 fn runs<T: Copy>(values: &[Option<T>]) -> Vec<Vec<T>> {
     values
         .split(Option::is_none)
@@ -99,7 +100,7 @@ fn rectangle(from: [f64; 2], to: [f64; 2], color: Color, stroke: Option<Stroke>)
     }
 }
 
-/// Paints a mark's lines, which lie over the grid.
+/// Paints the lines of a mark, which lie above the grid.
 pub(super) fn mark_lines(placed: &Placed<'_>, mark: &Mark) -> Vec<Shape> {
     match mark {
         Mark::Curve(curve) => curve_lines(placed, curve),

@@ -6,7 +6,8 @@ use super::letters::{HALF_HEIGHT, width};
 use super::marks::{Along, Guide, Mark, Note, Place, Rule};
 use super::placed::Placed;
 
-/// Paints the label of a rule at its upper or right end, on white, so that curves may pass behind.
+/// Paints the label of a rule at its upper or right end, on a white background that hides curves
+/// behind it.
 pub(super) fn rule_label(placed: &Placed<'_>, rule: &Rule) -> Vec<Shape> {
     if rule.label.is_empty() {
         return Vec::new();
@@ -37,7 +38,7 @@ pub(super) fn rule_label(placed: &Placed<'_>, rule: &Rule) -> Vec<Shape> {
     ]
 }
 
-/// Paints the label of a guide, or a note; `None` for other marks and for a text without room.
+/// Paints the label of a guide, or a note; `None` for other marks, and for a text without room.
 pub(super) fn mark_words(placed: &Placed<'_>, mark: &Mark) -> Option<Shape> {
     let text = match mark {
         Mark::Guide(guide) => guide_label(placed, guide)?,

@@ -16,11 +16,11 @@ pub(super) struct Placed<'f> {
     pub(super) panel: &'f Panel,
     /// Title above the frame. May be empty.
     pub(super) title: &'f str,
-    /// Where the axes and marks are drawn \[pt\].
+    /// Area in which the axes and marks are drawn \[pt\].
     pub(super) frame: Area,
     pub(super) x: Side,
     pub(super) y: Side,
-    /// Font size in the panel \[pt\].
+    /// Font size of the texts in the panel \[pt\].
     pub(super) letters_pt: f64,
 }
 
@@ -31,7 +31,7 @@ pub(super) struct Side {
     pub(super) ticks: Vec<Tick>,
     pub(super) has_numbers: bool,
     pub(super) has_label: bool,
-    /// Room for the tick labels across the axis \[pt\].
+    /// Room for the tick labels, perpendicular to the axis \[pt\].
     pub(super) depth: f64,
 }
 
@@ -65,7 +65,7 @@ impl Placed<'_> {
         Some(self.frame.at(x, y))
     }
 
-    /// Returns the ends of the line at a value, across the whole frame.
+    /// Returns the ends of a line at a value, across the whole frame.
     pub(super) fn across(&self, along: Along, value: f64) -> Option<[[f64; 2]; 2]> {
         match along {
             Along::X => {
@@ -102,7 +102,8 @@ impl Placed<'_> {
         })
     }
 
-    /// Returns whether a position is in the frame, or on its edge up to rounding.
+    /// Returns whether a position is in the frame, including its edge with a tolerance of half a
+    /// point.
     pub(super) fn shows(&self, position: [f64; 2]) -> bool {
         self.frame.expanded(0.5).contains(position)
     }

@@ -19,7 +19,8 @@ use super::figure::{Figure, Panel, Plot};
 use super::marks::{Dot, DotShape, Dots, Mark, MarkId, Rule};
 use super::role::Role;
 
-/// Real and imaginary ranges of slow modes \[rad/s\]: the rigid-body modes of a helicopter.
+/// Real and imaginary ranges \[rad/s\] of the plot of slow modes: the rigid-body modes of a
+/// helicopter.
 const SLOW: [Range; 2] = [
     Range {
         min: -1.2,
@@ -30,18 +31,18 @@ const SLOW: [Range; 2] = [
         max: 2.2,
     },
 ];
-/// Margins of the whole s-plane along the real and the imaginary axis, relative to the range.
+/// Margins of the plot of all poles, along the real and the imaginary axis, relative to the range.
 const MARGINS: [f64; 2] = [0.06, 0.08];
-/// Minimum width and height of the whole s-plane \[rad/s\].
+/// Minimum width and height of the plot of all poles \[rad/s\].
 const LEAST: f64 = 1.0;
 
-/// Function that returns the zeros of a model for the selected response.
+/// Function that returns the zeros of a model in the selected response.
 type ZerosOf<'a> = &'a dyn Fn(&ModelId) -> Vec<Complex<f64>>;
 
-/// Plots the poles of every model of a condition: all poles, and the region of the slow modes;
-/// physics models ×, identified models +. `zeros_of` returns the zeros of a model for the response
-/// selected in the options, if any; `shifts` are the pole shifts of the physics representative due
-/// to couplings.
+/// Plots the poles of every model of a condition, in the whole s-plane and in the region of the
+/// slow modes; × marks physics models, + identified models. `zeros_of` returns the zeros of a model
+/// in the response that the options select, if any; `shifts` are the pole shifts of the physics
+/// representative due to couplings.
 pub fn poles_figure(
     source: &ConditionSource<'_>,
     modes: &ConditionModes,
@@ -62,7 +63,10 @@ pub fn poles_figure(
         marks.extend(pole_shift_marks(shifts));
     }
     Figure::new(format!("Poles · {}", source.condition_words()))
-        .caption(format!("{} Rays: equal damping ratio ζ.", source.caption()))
+        .caption(format!(
+            "{} Rays: constant damping ratio ζ.",
+            source.caption()
+        ))
         .plot(plane_plot("s-plane", whole, marks.clone()))
         .plot(plane_plot("slow modes", SLOW, marks))
         .columns(2)
@@ -94,7 +98,7 @@ fn whole_plane(poles: &[Dots]) -> [Range; 2] {
     ]
 }
 
-/// Returns the visible models, the most important last.
+/// Returns the visible models in drawing order, the most important last.
 fn shown_models(source: &ConditionSource<'_>, options: &BodeOptions) -> Vec<SourceModel> {
     let mut shown = Vec::new();
     for kind in BundleKind::BOTH {
@@ -105,7 +109,7 @@ fn shown_models(source: &ConditionSource<'_>, options: &BodeOptions) -> Vec<Sour
     shown
 }
 
-/// Returns a model's poles; none if they could not be computed.
+/// Returns the poles of a model as dots; empty if they could not be computed.
 fn pole_dots(model: &SourceModel, modes: &ConditionModes) -> Dots {
     let shape = match model.id.bundle {
         BundleKind::Physics => DotShape::Cross,
@@ -129,8 +133,8 @@ fn model_dot(model: &SourceModel, value: Complex<f64>) -> Dot {
     }
 }
 
-/// Returns the finite transmission zeros of a response for a model in the condition; none for an
-/// unknown model.
+/// Returns the finite transmission zeros of a response of a model in the condition; empty if the
+/// condition does not have the model.
 pub fn zeros_of_model(source: &ConditionSource<'_>, pair: Pair, id: &ModelId) -> Vec<Complex<f64>> {
     match source.curves.condition.model(id.bundle, &id.name) {
         Some(model) => finite_zeros(&model.dynamics, pair),
@@ -138,7 +142,8 @@ pub fn zeros_of_model(source: &ConditionSource<'_>, pair: Pair, id: &ModelId) ->
     }
 }
 
-/// Returns whether a model's zeros are shown: for the nominal model and both representatives.
+/// Returns whether the zeros of a model are shown: only for the nominal model and both
+/// representatives.
 fn has_zeros(role: Role) -> bool {
     matches!(
         role,
@@ -146,7 +151,7 @@ fn has_zeros(role: Role) -> bool {
     )
 }
 
-/// Returns a model's zeros, as circles; they may lie outside the plotted ranges.
+/// Returns the zeros of a model as circles; they may lie outside the displayed ranges.
 fn zero_dots(model: &SourceModel, pair_name: &str, zeros_of: ZerosOf<'_>) -> Dots {
     let key = format!("zeros of {pair_name}, {}", model.role.key(model.rejected));
     let color = model.role.stroke(model.rejected).color;

@@ -8,7 +8,7 @@ pub struct Range {
 }
 
 impl Range {
-    /// The whole real line: no limit.
+    /// The whole real line, used as a range without limits.
     pub const ALL: Self = Self {
         min: f64::NEG_INFINITY,
         max: f64::INFINITY,
@@ -59,13 +59,13 @@ impl Range {
         }
     }
 
-    /// Returns the smallest range that contains both.
+    /// Returns the smallest range that contains both ranges.
     pub fn union(self, other: Self) -> Self {
         self.including(other.min).including(other.max)
     }
 
-    /// Returns this range widened by `fraction` times its width on either side, and to a width of
-    /// at least `least`, about the same middle.
+    /// Returns this range, extended by `fraction` of its width at both ends and to a width of at
+    /// least `least`; the middle is unchanged.
     pub fn with_margin(self, fraction: f64, least: f64) -> Self {
         let half = (0.5 * self.width() * (1.0 + 2.0 * fraction)).max(0.5 * least);
         Self {
@@ -82,11 +82,11 @@ impl Range {
         }
     }
 
-    /// Returns this range zoomed in by `factor` about `fixed`, which keeps its position on the
-    /// axis.
+    /// Returns this range zoomed in by `factor` about the value `fixed`, which keeps its position
+    /// on the axis.
     pub fn zoomed(self, factor: f64, fixed: f64) -> Self {
         if factor == 1.0 {
-            // Exact, without rounding.
+            // Without this exception, rounding would change the ends.
             return self;
         }
         Self {
@@ -95,8 +95,8 @@ impl Range {
         }
     }
 
-    /// Returns this range if its width lies in `widths`, otherwise the range with the same middle
-    /// and the nearest width that does. `None` for a range that is not finite.
+    /// Returns this range if its width lies in `widths`, otherwise a range with the same middle and
+    /// the nearest permitted width. `None` if the range is not finite.
     ///
     /// Prevents zooming and panning to widths at which floating-point values lose their precision.
     pub fn limited(self, widths: Self) -> Option<Self> {

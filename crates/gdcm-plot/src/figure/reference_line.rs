@@ -1,4 +1,4 @@
-//! Reference lines of responses and errors: targets, bounds, quantiles and envelopes.
+//! Reference lines in plots of responses and deviations: targets, bounds, quantiles and envelopes.
 
 use super::bode_curve::Pane;
 use super::drawing::{Color, Dash, Hue, Stroke};
@@ -11,7 +11,7 @@ const POINTS: usize = 80;
 pub enum Level {
     /// The same value at every frequency.
     Constant(f64),
-    /// Slope times omega \[rad/s\], such as the phase of a delay.
+    /// Slope times omega \[rad/s\]; for example, the phase of a delay.
     PerOmega(f64),
     /// `[omega, value]` with omega \[rad/s\] ascending.
     Sampled(Vec<[f64; 2]>),
@@ -48,21 +48,21 @@ impl Level {
     }
 }
 
-/// Meaning of a reference line, in the order in which labels are placed.
+/// Meaning of a reference line, in the order in which the labels are placed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ReferenceKind {
     /// Delta gain G or delta delay D, the targets of the fit.
     Delta,
     /// Lower or upper channel bound.
     Bound,
-    /// Quantile of the error over the band.
+    /// Quantile of the deviation over the band.
     Quantile,
     /// Envelope of maximum unnoticeable added dynamics.
     Envelope,
 }
 
 impl ReferenceKind {
-    /// Returns the line style in the window.
+    /// Returns the line style used in the window.
     pub fn line(self) -> Stroke {
         match self {
             Self::Delta => Stroke::dashed(Color::INK, 0.9, Dash::Dotted),
@@ -72,23 +72,23 @@ impl ReferenceKind {
         }
     }
 
-    /// Returns the entry in the legend, for lines without a label in the plot.
+    /// Returns the text in the legend, for lines without a label in the plot.
     pub fn key(self) -> &'static str {
         match self {
             Self::Delta => "delta gain, delta delay",
             Self::Bound => "bounds",
             Self::Quantile => "quantiles",
-            Self::Envelope => "unnoticed within, MUAD",
+            Self::Envelope => "unnoticeable within (MUAD)",
         }
     }
 }
 
-/// A labelled line across a panel, for reading curves against it.
+/// A labelled line across a panel, with which curves are compared.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReferenceLine {
     pub pane: Pane,
     pub kind: ReferenceKind,
-    /// `G 0.83 (−1.7 dB)`.
+    /// Meaning and value: `G 0.83 (−1.7 dB)`.
     pub label: String,
     /// Continuation of the label, shown if there is room: `, median over the band`. May be empty.
     pub note: String,

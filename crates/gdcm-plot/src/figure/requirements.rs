@@ -23,8 +23,8 @@ const INTERVAL: Stroke = Stroke::solid(Color::DIM, 0.7);
 const LEVEL: Stroke = Stroke::dashed(Color::of(Hue::Warning), 1.0, Dash::Short);
 /// Upper end of shaded areas \[ms\], above every drawn phase delay.
 const BEYOND_MS: f64 = 1e4;
-/// Strength \[%\] of the widest shaded area, and its increase for each narrower area, up to the
-/// maximum.
+/// Strength \[%\] of the widest shaded area, by which each narrower area is stronger, and the
+/// maximum strength.
 const BEYOND_TINT: usize = 12;
 const MOST_BEYOND_TINT: usize = 48;
 /// Strength \[%\] of a dot whose bandwidth or phase delay depends on the model above the band.
@@ -34,8 +34,8 @@ const RESTS_TINT: u8 = 45;
 const BANDWIDTH: &str = "omega_bw_rad_s";
 const PHASE_DELAY: &str = "phase_delay_s";
 
-/// Returns a response's position in the plot, bandwidth \[rad/s\] and phase delay \[ms\], if both
-/// are defined.
+/// Returns the position of a response in the plot: bandwidth \[rad/s\] and phase delay \[ms\];
+/// `None` unless both are defined.
 pub fn bandwidth_place(finding: &BandwidthFinding) -> Option<[f64; 2]> {
     let omega_bw_rad_s = finding.omega_bw_rad_s?;
     let phase_delay_s = finding.phase_delay_s?;
@@ -76,8 +76,9 @@ pub fn requirements_figure(
     }
     let level = 100.0 * requirements.interval_level;
     let caption = format!(
-        "Bars: {level:.0} % intervals. Grey: rests on the model beyond the band. Arrows lead from physics to corrected of a condition. \
-         These numbers are no qualification."
+        "Bars: {level:.0} % intervals. Pale dots: depend on the model beyond the band. Arrows lead \
+        from the physics model to the corrected model of a condition. These values are not a \
+        qualification."
     );
     Figure::new("Bandwidth and phase delay")
         .caption(caption)
@@ -86,8 +87,8 @@ pub fn requirements_figure(
         .plots(plots)
 }
 
-/// Shades the areas beyond the boundaries (lower bandwidth, higher phase delay): the widest first,
-/// narrower areas darker. A boundary whose bandwidths do not ascend is not shaded.
+/// Shades the areas beyond the boundaries (lower bandwidth, higher phase delay), wide areas first
+/// and narrow areas darker. A boundary whose bandwidths do not ascend is not shaded.
 fn areas_beyond(levels: &LevelBoundaries, axis: &str) -> Vec<Envelope> {
     let mut rising: Vec<&LevelBoundary> = levels
         .of_axis(axis)
@@ -117,7 +118,7 @@ fn area_beyond(boundary: &LevelBoundary, tint: u8) -> Envelope {
     }
 }
 
-/// Draws the boundaries for an axis as lines.
+/// Draws the boundaries of an attitude axis as lines.
 fn boundaries(levels: &LevelBoundaries, axis: &str) -> Vec<Curve> {
     let mut lines = Vec::new();
     for boundary in levels.of_axis(axis) {
@@ -130,7 +131,7 @@ fn boundaries(levels: &LevelBoundaries, axis: &str) -> Vec<Curve> {
     lines
 }
 
-/// Findings on a response in all conditions.
+/// Bandwidths and phase delays of a response in all conditions.
 struct PairFindings<'a> {
     requirements: &'a Requirements,
     pair: Pair,
@@ -221,8 +222,8 @@ impl<'a> PairFindings<'a> {
         lines
     }
 
-    /// Draws the models with this role: either those with a bandwidth or phase delay that depends
-    /// on the model above the band, or the others.
+    /// Draws the models in a role: either the models whose bandwidth or phase delay depends on the
+    /// model above the band, or the others.
     fn dots(&self, role: RequirementRole, rests_beyond_band: bool) -> Dots {
         let (shape, color) = dot_style(role);
         let mut dots = if rests_beyond_band {
@@ -235,7 +236,8 @@ impl<'a> PairFindings<'a> {
             if rests == rests_beyond_band
                 && let Some([x, y]) = bandwidth_place(finding)
             {
-                // The condition's number at the corrected model suffices.
+                // To avoid clutter, only the dot of the corrected model shows the condition's
+                // number.
                 let label = if role == RequirementRole::Corrected {
                     finding.condition.to_string()
                 } else {

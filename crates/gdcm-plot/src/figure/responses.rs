@@ -1,5 +1,5 @@
-//! Curves of a response, for every model of a condition or for a model in every condition, and the
-//! uncertainty bands about the curves.
+//! Curves of a response, for every model of a condition or for one model in every condition, and
+//! the uncertainty bands about them.
 
 use std::sync::Arc;
 
@@ -24,13 +24,13 @@ use super::bode_options::BodeOptions;
 use super::condition_source::ConditionSource;
 use super::role::Role;
 
-/// Margin on either side of a fitted range for values outside the band, relative to the height of
-/// the range within the band.
+/// Maximum extension of a fitted range at either end for values outside the band, relative to the
+/// range within the band.
 const OUTSIDE_PART: f64 = 0.4;
 
 impl ConditionSource<'_> {
     /// Returns every curve of a response, including hidden curves; phases are aligned with the
-    /// reference. `cache` keeps the computed values, and their addresses, until their sources
+    /// reference. `cache` keeps the computed slices, at the same address, until their sources
     /// change.
     pub fn response_curves(
         &self,
@@ -74,7 +74,7 @@ impl ConditionSource<'_> {
     }
 }
 
-/// Presentation of a response in a condition.
+/// Settings for the display of a response in a condition.
 struct Presentation<'a> {
     condition: ConditionId,
     pair: Pair,
@@ -84,7 +84,7 @@ struct Presentation<'a> {
 }
 
 impl Presentation<'_> {
-    /// Returns a curve with the values of a shape, its phase displayed as chosen and shifted by
+    /// Returns a curve with the values of a shape; its phase is displayed as chosen, and shifted by
     /// whole turns.
     fn curve(&self, curve: BodeCurve, shape: &ResponseShape) -> BodeCurve {
         let key = (self.condition, self.pair, curve.id.clone());
@@ -94,8 +94,8 @@ impl Presentation<'_> {
     }
 }
 
-/// Returns a continuous phase \[deg\] as drawn, shifted up by `turns`. A wrapped phase has a gap at
-/// each jump, instead of a line across the plot.
+/// Returns the phase \[deg\] as drawn. An unwrapped phase is shifted up by `turns`; a wrapped phase
+/// has a gap at each jump, which avoids a line across the plot.
 fn displayed_phase(phase_deg: &Arc<[f64]>, unit: PhaseUnit, turns: i32) -> Arc<[f64]> {
     match (unit, turns) {
         (PhaseUnit::Unwrapped, 0) => Arc::clone(phase_deg),
@@ -107,7 +107,7 @@ fn displayed_phase(phase_deg: &Arc<[f64]>, unit: PhaseUnit, turns: i32) -> Arc<[
     }
 }
 
-/// Adds the shift of the phase by `turns` to the detail of a curve.
+/// Adds a note on the phase shift by `turns` to the detail of a curve.
 fn noted_turns(mut curve: BodeCurve, turns: i32) -> BodeCurve {
     if turns != 0 {
         let moved = format!("phase {}°", signed(360.0 * f64::from(turns), 0));
@@ -157,7 +157,8 @@ pub struct ResponseCache {
 
 impl ResponseCache {
     /// Computes the shapes of a response. Phases are aligned with the reference up to the limit of
-    /// the displayed band. Identified models end there, because they carry no information beyond.
+    /// the displayed band. The curves of identified models end there, because they carry no
+    /// information beyond.
     fn refresh(&mut self, source: ResponseSource, band: BandOfComparison) {
         if let Some(known) = &self.source
             && known.is_same(&source)
@@ -260,17 +261,17 @@ fn band_about(curve: &BodeCurve, deviations: &ModelBands, pair: Pair) -> BodeBan
     band
 }
 
-/// Position of a frequency between two neighbours on a grid.
+/// Position of a frequency between two neighbouring grid points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct GridPlace {
     /// Index of the lower neighbour.
     lower: usize,
-    /// Distance from the lower neighbour in `log omega`, relative to the interval.
+    /// Distance from the lower neighbour in `log omega`, as a fraction of the grid interval.
     part: f64,
 }
 
 impl GridPlace {
-    /// Finds `omega` in a grid of ascending frequencies; `None` outside.
+    /// Finds `omega` in a grid of ascending frequencies; `None` outside the grid.
     fn find(grid: &[f64], omega: f64) -> Option<Self> {
         let upper = grid.partition_point(|at| *at <= omega);
         let lower = upper.checked_sub(1)?;
@@ -279,7 +280,7 @@ impl GridPlace {
                 lower,
                 part: (omega / grid[lower]).ln() / (next / grid[lower]).ln(),
             }),
-            // The last frequency belongs to the last interval.
+            // The last frequency of the grid counts as the end of the last interval.
             None if grid[lower] == omega && lower > 0 => Some(Self {
                 lower: lower - 1,
                 part: 1.0,
@@ -288,14 +289,14 @@ impl GridPlace {
         }
     }
 
-    /// Interpolates values given on the grid linearly.
+    /// Interpolates linearly between values given on the grid.
     fn interpolate(self, values: &[f64]) -> f64 {
         let low = values[self.lower];
         low + self.part * (values[self.lower + 1] - low)
     }
 }
 
-/// Shape of a response of the model in a condition.
+/// Shape of a response of a model, in one of the conditions.
 #[derive(Debug)]
 struct ModelShape {
     id: ModelId,
@@ -345,8 +346,8 @@ impl AirspeedCache {
     }
 }
 
-/// Returns a response of one model in each condition, coloured by airspeed, with the correction
-/// that `role` selects. Conditions without the model or the correction are skipped.
+/// Returns a response in each condition, coloured by airspeed; `role` selects the model and its
+/// correction. Conditions without the model or the correction are skipped.
 pub fn airspeed_curves(
     (dataset, analysis): (&Dataset, Option<&Analysis>),
     role: AcrossRole,
@@ -381,9 +382,9 @@ pub fn airspeed_curves(
     drawn
 }
 
-/// Returns the range of all values within the frequency band \[rad/s\], extended to values outside
-/// the band by at most 40 % of its height on either side; of all values if none lies in the band;
-/// `None` without finite values.
+/// Returns a range that contains all values within the frequency band \[rad/s\]. It is extended to
+/// values outside the band, by at most 40 % of its height at either end. If no value lies in the
+/// band, all values are fitted; `None` without finite values.
 pub fn fitted_values(curves: &[BodeCurve], pane: Pane, (min, max): (f64, f64)) -> Option<Range> {
     let mut all = Vec::new();
     let mut inside = Vec::new();
@@ -414,7 +415,7 @@ mod tests {
             PhaseUnit::Wrapped,
             0,
         );
-        // Two rounding errors of angles below 360 degrees.
+        // Tolerance: two rounding errors of angles below 360 degrees.
         assert!((wrapped[1] + 170.0).abs() < 1e-12 && (wrapped[3] - 160.0).abs() < 1e-12);
         assert!(wrapped[2].is_nan(), "{wrapped:?}");
     }

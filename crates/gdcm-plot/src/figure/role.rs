@@ -1,4 +1,4 @@
-//! Role of a curve, and its appearance, the same in every figure.
+//! Roles of curves, and their appearance in every figure.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,7 +6,7 @@ use gdcm_model::dataset::BundleKind;
 
 use super::drawing::{Color, Dash, Hue, Stroke};
 
-/// Role of a curve.
+/// Role of a curve in a figure; it determines the style.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Role {
     /// Physics model at the unperturbed trim.
@@ -31,12 +31,12 @@ pub enum Role {
     Variant,
     /// Excluded model.
     Rejected,
-    /// Model in one of several conditions, from 0 at the lowest airspeed to 255 at the highest.
+    /// Model in one of several conditions; 0 at the lowest airspeed, 255 at the highest.
     OfAirspeed(u8),
 }
 
 impl Role {
-    /// Roles in a single condition, in legend order.
+    /// Roles that occur in a single condition, in legend order.
     pub const ALL: [Self; 11] = [
         Self::Nominal,
         Self::Perturbed,
@@ -61,7 +61,8 @@ impl Role {
         Self::OfAirspeed((255.0 * part.clamp(0.0, 1.0)).round() as u8)
     }
 
-    /// Returns the role of an unchanged model.
+    /// Returns the role of an uncorrected model; `represents` states whether it represents its
+    /// bundle.
     pub fn of_model(kind: BundleKind, is_nominal: bool, represents: bool) -> Self {
         match (kind, is_nominal, represents) {
             (BundleKind::Physics, true, _) => Self::Nominal,
@@ -72,7 +73,7 @@ impl Role {
         }
     }
 
-    /// Returns the name in the window's legend.
+    /// Returns the name displayed in the window's legend.
     pub fn name(self) -> &'static str {
         match self {
             Self::Nominal => "nominal",
@@ -136,7 +137,7 @@ impl Role {
         }
     }
 
-    /// Returns the line style on paper: that of the window, thinner.
+    /// Returns the line style on paper: as in the window, but thinner.
     pub fn stroke(self, rejected: bool) -> Stroke {
         self.line(rejected).printed()
     }
@@ -149,7 +150,8 @@ impl Role {
         }
     }
 
-    /// Returns the rank in the drawing order: the most important roles come last, on top.
+    /// Returns the rank in the drawing order: the most important roles have the highest rank and
+    /// are drawn on top.
     pub fn layer(self, rejected: bool) -> usize {
         match self.shown(rejected) {
             Self::Rejected => 0,

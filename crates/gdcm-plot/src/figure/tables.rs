@@ -1,4 +1,4 @@
-//! Values of a figure at full precision: one long table for programs, or a table for each panel for
+//! Values of a figure at full precision: a single long table for programs, or a table per panel for
 //! readers.
 
 use std::sync::Arc;
@@ -26,15 +26,15 @@ pub const LONG_COLUMNS: [&str; 8] = [
 impl Figure {
     /// Returns all values as rows under [`LONG_COLUMNS`], a row for each point: title of the
     /// figure, panel (plot title, quantity), curve, text beside the point, and both coordinates,
-    /// each after its axis label. A labelled horizontal line has no x.
+    /// each preceded by its axis label. A labelled horizontal line has no x.
     pub fn long_rows(&self) -> impl Iterator<Item = [String; 8]> + '_ {
         self.panels()
             .flat_map(|(title, panel)| panel.long_rows(&self.title, title))
     }
 
     /// Returns a table for each panel: a column for each curve if all have the same x, otherwise a
-    /// row for each point. Areas over other x have separate tables, after all others. Tables
-    /// without rows are omitted.
+    /// row for each point. Areas sampled at other x have separate tables at the end. Tables without
+    /// rows are omitted.
     pub fn tables(&self) -> Vec<Table> {
         let mut tables = Vec::new();
         let mut tables_of_areas = Vec::new();
@@ -127,7 +127,7 @@ impl Series {
         ]
     }
 
-    /// Returns the series of a mark; none for a mark without values.
+    /// Returns the series of a mark; empty for a mark without values.
     fn from_mark(mark: &Mark) -> Vec<Self> {
         match mark {
             Mark::Curve(curve) => vec![Self::from_curve(curve)],
@@ -174,7 +174,7 @@ impl<'m> Constant<'m> {
 }
 
 impl Panel {
-    /// Returns the name in the tables, for a plot with this title.
+    /// Returns the name of the panel in the tables: plot title, if any, and quantity.
     fn name(&self, plot_title: &str) -> String {
         if plot_title.is_empty() {
             self.y.label.clone()
@@ -183,7 +183,7 @@ impl Panel {
         }
     }
 
-    /// Returns the rows in the long table.
+    /// Returns the rows of the panel in the long table.
     fn long_rows(&self, figure_title: &str, plot_title: &str) -> Vec<[String; 8]> {
         let name = self.name(plot_title);
         let mut rows = Vec::new();
@@ -244,7 +244,7 @@ fn rows_of_points(
 /// The tables of a panel.
 struct PanelTables {
     main: Table,
-    /// Areas over other x than the first curve.
+    /// Areas that are sampled at other x than the first curve; `None` if there are none.
     areas: Option<Table>,
 }
 
@@ -342,7 +342,7 @@ fn unit_of(label: &str) -> &str {
     label.rfind(" [").map(|at| &label[at..]).unwrap_or_default()
 }
 
-/// Formats an x: the nearest name on an axis with names, otherwise the value.
+/// Formats an x value: on an axis with names the nearest name, otherwise the value.
 fn x_cell(axis: &Axis, value: f64) -> String {
     let mut names = axis.names.iter().flatten();
     match names.find(|(at, _)| (at - value).abs() < 0.5) {

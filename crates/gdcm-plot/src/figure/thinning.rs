@@ -12,14 +12,14 @@ pub struct Pixel {
 }
 
 impl Pixel {
-    /// Splits points, ascending in x, by pixel column.
+    /// Splits points, ascending in x, into pixel columns.
     fn columns(self, points: &[[f64; 2]]) -> impl Iterator<Item = &[[f64; 2]]> {
         let mut rest = points;
         std::iter::from_fn(move || {
             let first = rest.first()?;
             let end = ((first[0] / self.width).floor() + 1.0) * self.width;
             let inside = rest.iter().position(|point| point[0] >= end);
-            // By rounding, the end may fall on the first point itself.
+            // `max(1)`: due to rounding, the end may coincide with the first point.
             let count = inside.unwrap_or(rest.len()).max(1);
             let (column, others) = rest.split_at(count);
             rest = others;
@@ -28,9 +28,9 @@ impl Pixel {
     }
 }
 
-/// Returns the points of `run` that must be drawn: the extremes in each pixel column, and as many
-/// others as keep the lines between them within tolerance at every omitted point. Both ends remain;
-/// a `run` that does not ascend in x is returned whole.
+/// Returns the points of `run` that must be drawn: the extremes in each pixel column, reduced to
+/// the points that keep the connecting lines within tolerance of every omitted point. Both ends
+/// remain; a `run` that does not ascend in x is returned unchanged.
 pub fn thinned(run: &[[f64; 2]], pixel: Pixel) -> Vec<[f64; 2]> {
     if !run.is_sorted_by(|point, next| point[0] < next[0]) {
         return run.to_vec();
@@ -39,9 +39,9 @@ pub fn thinned(run: &[[f64; 2]], pixel: Pixel) -> Vec<[f64; 2]> {
 }
 
 /// Returns the first, the minimum, the maximum and the last point in each pixel column, in their
-/// order.
+/// original order.
 fn column_extremes(run: &[[f64; 2]], pixel: Pixel) -> Cow<'_, [[f64; 2]]> {
-    // Usually no column contains three points, so that no point can be omitted.
+    // This is the usual case: no column contains three points, so that none can be omitted.
     if run
         .windows(3)
         .all(|points| points[2][0] - points[0][0] >= pixel.width)
@@ -68,7 +68,7 @@ fn extremes_of_column(points: &[[f64; 2]]) -> impl Iterator<Item = usize> {
         if point[1].total_cmp(&points[least][1]).is_lt() {
             least = index;
         }
-        // Among equal values: the first minimum, the last maximum.
+        // `is_ge`: among equal values, the last counts as the maximum, the first as the minimum.
         if point[1].total_cmp(&points[greatest][1]).is_ge() {
             greatest = index;
         }
@@ -79,7 +79,7 @@ fn extremes_of_column(points: &[[f64; 2]]) -> impl Iterator<Item = usize> {
     indices.into_iter()
 }
 
-/// Range of slopes with which a line from the last kept point passes all later points within
+/// Range of slopes for which a line from the last kept point passes all later points within
 /// tolerance.
 struct Wedge {
     apex: [f64; 2],
@@ -88,7 +88,7 @@ struct Wedge {
 }
 
 impl Wedge {
-    /// Starts at a kept point; any slope is possible.
+    /// Creates a wedge at a kept point; it initially contains every slope.
     fn new(apex: [f64; 2]) -> Self {
         Self {
             apex,
@@ -97,7 +97,8 @@ impl Wedge {
         }
     }
 
-    /// Returns whether the line to this point passes all earlier points within tolerance.
+    /// Returns whether the line from the apex to this point passes all intermediate points within
+    /// tolerance.
     fn contains(&self, [x, y]: [f64; 2]) -> bool {
         (self.least_slope..=self.greatest_slope).contains(&self.slope_to(x, y))
     }
@@ -152,7 +153,7 @@ mod tests {
 
     use super::*;
 
-    /// Returns the value at `x` on the lines between `kept`.
+    /// Returns the ordinate at `x` of the polyline through `kept`.
     fn drawn_at(kept: &[[f64; 2]], x: f64) -> f64 {
         let after = kept
             .partition_point(|point| point[0] < x)
@@ -162,7 +163,7 @@ mod tests {
         y0 + (y1 - y0) * (x - x0) / (x1 - x0)
     }
 
-    /// Returns the maximum vertical distance of `points` from the lines between `kept`.
+    /// Returns the maximum vertical distance of `points` from the polyline through `kept`.
     fn error(points: &[[f64; 2]], kept: &[[f64; 2]]) -> f64 {
         points
             .iter()
@@ -170,7 +171,7 @@ mod tests {
             .fold(0.0, f64::max)
     }
 
-    /// Returns the minimum and the maximum of the values of some points.
+    /// Returns the minimum and the maximum ordinate of points.
     fn extremes(points: &[[f64; 2]]) -> (f64, f64) {
         let start = (f64::INFINITY, f64::NEG_INFINITY);
         points.iter().fold(start, |(least, greatest), point| {
@@ -178,7 +179,7 @@ mod tests {
         })
     }
 
-    /// Returns pixels a hundred times narrower than the spacing of points at 0, 1, 2 …
+    /// Returns a pixel that is a hundred times narrower than the spacing of points at 0, 1, 2, …
     fn fine(tolerance: f64) -> Pixel {
         Pixel {
             width: 0.01,
@@ -186,8 +187,8 @@ mod tests {
         }
     }
 
-    /// Generates points with spacings from far below to far above a pixel, and with upward,
-    /// downward and level steps.
+    /// Generates points with spacings from far below to far above the width of a pixel, and with
+    /// upward, downward and level steps.
     fn run() -> impl Strategy<Value = Vec<[f64; 2]>> {
         let step = (
             0.01..1.0f64,

@@ -14,11 +14,11 @@ pub enum Scale {
     Logarithmic,
 }
 
-/// A tick on an axis.
+/// A tick on an axis, with a label or without.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tick {
     pub value: f64,
-    /// `None` for a minor tick.
+    /// Text at the tick; `None` for a minor tick.
     pub label: Option<String>,
 }
 
@@ -32,31 +32,31 @@ impl Tick {
     }
 }
 
-/// Minimum distances between ticks \[pt\].
+/// Minimum distances \[pt\] at which ticks are drawn or labelled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TickGaps {
-    /// Between labels.
+    /// Minimum distance between labels.
     pub labels: f64,
-    /// Between labels at equal steps on a logarithmic axis.
+    /// Minimum distance between labels at equal steps on a logarithmic axis.
     pub equal_steps: f64,
-    /// Between grid lines within a decade.
+    /// Minimum distance between grid lines within a decade.
     pub lines: f64,
 }
 
-/// Maximum width \[decades\] of a logarithmic axis labelled at equal steps.
+/// Maximum width \[decades\] of a logarithmic axis that may be labelled at equal steps.
 const LINEAR_BELOW: f64 = 0.9;
 /// Round steps for angles \[deg\].
 const DEGREE_STEPS: [f64; 13] = [
     5.0, 10.0, 15.0, 30.0, 45.0, 60.0, 90.0, 180.0, 360.0, 720.0, 1800.0, 3600.0, 7200.0,
 ];
-/// Maximum step \[deg\] of the decimal steps of angles; wider steps come from [`DEGREE_STEPS`].
+/// Maximum step \[deg\] that is chosen as a decimal number; wider steps come from [`DEGREE_STEPS`].
 const DECIMAL_DEGREES: f64 = 2.0;
 /// `log10(10 / 9)`: the smallest distance between lines in a decade \[decades\].
 const NINE_TO_TEN: f64 = 0.045_757_490_560_675_115;
-/// Minimum distance from 9 to 10 at which all nine lines of a decade are labelled \[pt\]: many
-/// labels close together are hard to read.
+/// Minimum distance from 9 to 10 \[pt\] at which all nine lines of a decade are labelled; labels
+/// that are closer together are hard to read.
 const NINE_LABELS_GAP: f64 = 44.0;
-/// Part of a step by which a tick may exceed the range due to rounding.
+/// Tolerance for rounding: fraction of a step by which a tick may lie outside the range.
 const STEP_SLACK: f64 = 1e-6;
 
 /// Returns the ticks of `range` on an axis `length_pt` long, in ascending order.
@@ -97,7 +97,7 @@ pub(super) fn step_above(least: f64) -> f64 {
     }
     let power = 10f64.powf(least.log10().floor());
     for factor in [1.0, 2.0, 5.0] {
-        // `least` may exceed a round step by a rounding error.
+        // The factor allows for `least` to exceed a round step by a rounding error.
         if factor * power >= least * (1.0 - 1e-9) {
             return factor * power;
         }
@@ -105,13 +105,13 @@ pub(super) fn step_above(least: f64) -> f64 {
     10.0 * power
 }
 
-/// Returns ticks of a logarithmic axis: within decades, or at equal steps if the range is a small
-/// part of a decade and equal steps have more labels.
+/// Returns ticks of a logarithmic axis: within decades, or at equal steps if the range is below
+/// [`LINEAR_BELOW`] and equal steps give more labels.
 fn logarithmic_ticks(range: Range, length_pt: f64, gaps: TickGaps) -> Vec<Tick> {
     let decades = range.max.log10() - range.min.log10();
     let decade_pt = length_pt / decades;
     let in_decades = DecadeLabels::new(decade_pt, gaps).ticks(range);
-    // Equal steps are closest together at the upper end.
+    // The step follows from the upper end of the axis, where equal steps are closest together.
     let in_steps = equal_steps(
         range,
         step_above(gaps.equal_steps * range.max * std::f64::consts::LN_10 / decade_pt),
@@ -131,16 +131,16 @@ fn logarithmic_ticks(range: Range, length_pt: f64, gaps: TickGaps) -> Vec<Tick> 
 struct DecadeLabels {
     /// Whether there is room for labels at 2 and 5.
     has_two_and_five: bool,
-    /// Whether there is room for labels at 3, 4, 6, 7, 8 and 9.
+    /// Whether there is room for labels at 3, 4, 6, 7, 8 and 9 as well.
     has_nine: bool,
     /// Whether there is room for lines without labels.
     has_lines: bool,
-    /// Decades from each labelled power to the next.
+    /// Number of decades from each labelled power of ten to the next.
     every: i64,
 }
 
 impl DecadeLabels {
-    /// Chooses the density for decades `decade_pt` long.
+    /// Chooses the density of labels; a decade is `decade_pt` long.
     fn new(decade_pt: f64, gaps: TickGaps) -> Self {
         Self {
             has_two_and_five: decade_pt * 2f64.log10() >= gaps.labels,

@@ -15,18 +15,18 @@ use super::marks::{Curve, Envelope, Mark};
 use super::role::Role;
 
 const INPUT: Stroke = Stroke::solid(Color::of(Hue::Text), 1.2);
-/// Flight data and their corridor.
+/// Styles of the flight data and of the corridor about them.
 const FLOWN: Stroke = Stroke::solid(Color::of(Hue::Text), 1.0);
 const CORRIDOR: Color = Color::of(Hue::Text).tint(14);
-/// Height of the panel for the difference from flight, relative to 1 for the record.
+/// Height of the panel with the difference from flight; the panel with the record has height 1.
 const DIFFERENCE_WEIGHT: f64 = 0.55;
-/// Additional line width outside the corridor \[pt\].
+/// Additional width of a curve where it is outside the corridor \[pt\].
 const OUTSIDE_PT: f64 = 1.8;
 /// Ratio of plot height to width.
 const ASPECT: f64 = 0.4;
 
-/// Returns the line of a model over time: as in a Bode plot, except that the identified line is as
-/// thin as the others.
+/// Returns the line style of a model over time: as in a Bode plot, except that the identified line
+/// is as thin as the others.
 fn model_line(role: RequirementRole) -> Stroke {
     let role = match role {
         RequirementRole::Physics => Role::Representative,
@@ -52,7 +52,7 @@ pub fn test_answers_figure(answers: &TestAnswers, dataset: &Dataset) -> Figure {
         let curves = answer_curves(answers, &time_s, index);
         plots.push(answer_plot(&output.name, &output.unit, curves));
     }
-    let mut caption = "Linear models from rest; there is no flight here.".to_owned();
+    let mut caption = "Linear models, starting at rest; no flight data.".to_owned();
     for (role, answer) in &answers.models {
         if let Err(why) = answer {
             caption.push_str(&format!(" No {} model: {why}.", role.name()));
@@ -102,9 +102,9 @@ fn answer_curves(answers: &TestAnswers, time_s: &[f64], output: usize) -> Vec<Cu
     curves
 }
 
-/// Plots an input of a record, then each quantity with a tolerance: flight data with their corridor
-/// and the response of each model; below, the difference between model and flight. Curves are thick
-/// outside the corridor. The simulation restarts at each window.
+/// Plots an input of a record, then each quantity with a tolerance: the flight data with their
+/// corridor and the response of each model; below, the difference between model and flight. Curves
+/// are thick where they are outside the corridor. The simulation restarts at each window.
 pub fn record_history_figure(history: &RecordHistory, dataset: &Dataset, input: usize) -> Figure {
     let mut plots = vec![record_input_plot(history, dataset, input)];
     for quantity in &history.quantities {
@@ -119,8 +119,10 @@ pub fn record_history_figure(history: &RecordHistory, dataset: &Dataset, input: 
         .map(|why| format!(" {why}."))
         .collect();
     let caption = format!(
-        "Windows of at most 10 s, each from an estimated state; attitudes are integrals of rates from the start of each window. Below: \
-         less flight. Wide: outside the corridor. No qualification: the tests of the table are steps and doublets at given conditions.{missing}"
+        "Windows of at most 10 s, each starting from an estimated state; attitudes are integrals \
+        of rates from the start of each window. Below: simulated minus flight. Thick lines: \
+        outside the corridor. This is not a qualification: the tests in the table of tolerances \
+        are steps and doublets at specified conditions.{missing}"
     );
     let title = format!(
         "Condition {}: {}{held_out}",
@@ -146,7 +148,7 @@ fn record_input_plot(history: &RecordHistory, dataset: &Dataset, input: usize) -
 fn quantity_plot(history: &QuantityHistory) -> Plot {
     let tolerance = &history.tolerance;
     let label = format!("{} [{}]", tolerance.quantity, history.unit);
-    let less = format!("less flight [{}]", history.unit);
+    let less = format!("minus flight [{}]", history.unit);
     let record = empty_panel(&label).with_all(history_marks(history, Shown::Recorded));
     let difference = empty_panel(&less).with_all(history_marks(history, Shown::LessFlight));
     let title = format!("{}, {}", tolerance.quantity, tolerance.words());
@@ -155,7 +157,7 @@ fn quantity_plot(history: &QuantityHistory) -> Plot {
         .panel(difference.weight(DIFFERENCE_WEIGHT))
 }
 
-/// Presentation of a quantity.
+/// Value of a quantity that a panel shows.
 #[derive(Clone, Copy, PartialEq)]
 enum Shown {
     Recorded,
@@ -163,7 +165,7 @@ enum Shown {
     LessFlight,
 }
 
-/// A sample of a window.
+/// A sample in a window of a record.
 #[derive(Clone, Copy)]
 struct Sample<'a> {
     window: &'a ToleranceCheck,
@@ -189,7 +191,7 @@ impl Sample<'_> {
         }
     }
 
-    /// Returns the half-width of the corridor.
+    /// Returns the half-width of the corridor at the sample.
     fn width(self) -> f64 {
         self.window.width[self.index]
     }
@@ -202,8 +204,8 @@ impl Sample<'_> {
     }
 }
 
-/// A time in a record \[s\], with its sample. Each window ends with a time without a sample, which
-/// leaves a gap.
+/// A time in a record \[s\], with its sample. Each window is followed by a time without a sample,
+/// which leaves a gap in the curve.
 struct Instant<'a> {
     time_s: f64,
     sample: Option<Sample<'a>>,
@@ -229,7 +231,7 @@ fn instants(check: &RecordCheck) -> Vec<Instant<'_>> {
     instants
 }
 
-/// Returns `[time, value]` over all windows.
+/// Returns the points `[time, value]` of all windows.
 fn values(check: &RecordCheck, value: impl Fn(Sample<'_>) -> f64) -> Vec<[f64; 2]> {
     let mut values = Vec::new();
     for instant in instants(check) {
@@ -243,7 +245,7 @@ fn values(check: &RecordCheck, value: impl Fn(Sample<'_>) -> f64) -> Vec<[f64; 2
 }
 
 /// Draws the corridor, the flight data, and each model with its parts outside the corridor. The
-/// corridor is that of the corrected model, otherwise that of the first model.
+/// corridor is taken from the corrected model or, without it, from the first model.
 fn history_marks(history: &QuantityHistory, shown: Shown) -> Vec<Mark> {
     let corrected = history
         .models

@@ -26,7 +26,7 @@ const QUARTER: f64 = 0.552_284_749_830_793_4;
 /// Returns the bytes of a PDF file.
 ///
 /// # Errors
-/// If a font cannot be reduced to the letters used, or a stream cannot be compressed.
+/// Fails if a font cannot be reduced to the used letters, or if a stream cannot be compressed.
 pub fn pdf(drawing: &Drawing) -> io::Result<Vec<u8>> {
     let [catalog, pages, page, content, info] = [1, 2, 3, 4, 5].map(Ref::new);
     let drawn = Page::paint(drawing);
@@ -56,7 +56,7 @@ pub fn pdf(drawing: &Drawing) -> io::Result<Vec<u8>> {
     Ok(pdf.finish())
 }
 
-/// A page under construction, with coordinates upwards from its lower left corner.
+/// A page under construction; its coordinates run upwards from the lower left corner.
 struct Page {
     content: Content,
     /// Page height \[pt\].
@@ -80,7 +80,7 @@ impl Page {
         page
     }
 
-    /// Returns a position in page coordinates.
+    /// Converts a position in the drawing to page coordinates.
     fn at(&self, [x, y]: [f64; 2]) -> [f32; 2] {
         [x as f32, (self.height - y) as f32]
     }
@@ -144,7 +144,7 @@ impl Page {
         self.content.move_to(start_x, start_y);
         let starts: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
         for [dx, dy] in starts {
-            // (dx, dy) turned by a quarter is (-dy, dx).
+            // A quarter turn maps (dx, dy) to (-dy, dx).
             let quarter = [
                 [dx - QUARTER * dy, dy + QUARTER * dx],
                 [QUARTER * dx - dy, QUARTER * dy + dx],
@@ -157,7 +157,7 @@ impl Page {
         self.content.close_path();
     }
 
-    /// Sets the colours and the line for the next path.
+    /// Sets the fill colour and the line style of the next path.
     fn take_paint(&mut self, fill: Option<Color>, stroke: Option<Stroke>) {
         if let Some(color) = fill {
             let [red, green, blue] = parts(color);
@@ -209,7 +209,7 @@ impl Page {
         self.content.end_text();
     }
 
-    /// Writes letters in a single font.
+    /// Writes a run of letters that are all in the same font.
     fn run(&mut self, run: &[Letter], size_pt: f64) {
         let Some(first) = run.first() else { return };
         let codes: Vec<u8> = run
@@ -235,10 +235,10 @@ const IDENTITY: SystemInfo<'static> = SystemInfo {
     supplement: 0,
 };
 
-/// The letters used, numbered in each font by their first use.
+/// The used letters, numbered in each font in the order of their first use.
 #[derive(Default)]
 struct UsedLetters {
-    /// In the same order as [`FONTS`].
+    /// Used letters of each font, in the order of [`FONTS`].
     fonts: [Used; FONTS.len()],
 }
 
@@ -251,7 +251,7 @@ struct Used {
 }
 
 impl UsedLetters {
-    /// Returns a letter's number in its font.
+    /// Returns the number of a letter in its font, assigned at its first use.
     fn code(&mut self, letter: &Letter) -> u16 {
         let Used { numbers, letters } = &mut self.fonts[letter.font];
         let is_new = numbers.get(letter.glyph).is_none();
@@ -262,7 +262,8 @@ impl UsedLetters {
         code
     }
 
-    /// Writes the used fonts as objects from `first` on; returns the name and the object of each.
+    /// Writes the used fonts as PDF objects, numbered from `first` on; returns the name and the
+    /// object of each font.
     fn write(&self, pdf: &mut Pdf, first: Ref) -> io::Result<Vec<(&'static str, Ref)>> {
         let mut next = first;
         let mut written = Vec::new();
@@ -342,7 +343,7 @@ impl Used {
     }
 }
 
-/// Writes a font descriptor.
+/// Writes the descriptor of a font, which contains its metrics.
 fn describe(pdf: &mut Pdf, objects: &FontObjects, name: Name<'_>, face: &FontRef<'_>) {
     let metrics = face.metrics(Size::new(UNITS as f32), LocationRef::default());
     let bounds = metrics.bounds.unwrap_or_default();
@@ -359,7 +360,7 @@ fn describe(pdf: &mut Pdf, objects: &FontObjects, name: Name<'_>, face: &FontRef
         .ascent(metrics.ascent)
         .descent(metrics.descent)
         .cap_height(metrics.cap_height.unwrap_or(metrics.ascent))
-        // Required by the format; readers ignore it for an embedded font.
+        // The format requires this value; readers ignore it for an embedded font.
         .stem_v(80.0)
         .font_file2(objects.file);
 }

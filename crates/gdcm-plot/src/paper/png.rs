@@ -18,17 +18,17 @@ use crate::figure::letters::{FONTS, letters, width};
 
 /// Dots per inch, as journals require.
 const DOTS_PER_INCH: f64 = 300.0;
-/// Dots per point.
+/// Number of dots per point.
 const SCALE: f64 = DOTS_PER_INCH / 72.0;
 /// Inches per metre.
 const INCHES_PER_METRE: f64 = 1.0 / 0.0254;
 /// Maximum distance between a drawn circle and a true circle \[pt\].
 const TOLERANCE: f64 = 0.01;
 
-/// Writes the drawing at 300 dots per inch.
+/// Writes the drawing as a PNG file at 300 dots per inch.
 ///
 /// # Errors
-/// If the file cannot be written.
+/// Fails if the file cannot be written.
 pub fn write_png(drawing: &Drawing, file: &mut dyn Write) -> io::Result<()> {
     let [width, height] = drawing
         .size
@@ -49,7 +49,7 @@ pub fn write_png(drawing: &Drawing, file: &mut dyn Write) -> io::Result<()> {
     writer.finish().map_err(unpacked)
 }
 
-/// Returns the underlying I/O error, so that a full disk is reported as such.
+/// Returns the underlying I/O error, so that causes such as a full disk are reported as such.
 fn unpacked(error: EncodingError) -> io::Error {
     match error {
         EncodingError::IoError(error) => error,
@@ -59,7 +59,7 @@ fn unpacked(error: EncodingError) -> io::Error {
 
 /// Returns red, green and blue at each dot, row by row.
 fn pixels(drawing: &Drawing, width: u16, height: u16) -> Vec<u8> {
-    // Without processor-specific instructions, so that the dots are the same everywhere.
+    // Without processor-specific instructions, the dots are the same on every machine.
     let settings = RenderSettings {
         level: Level::baseline(),
         num_threads: 0,
@@ -82,7 +82,7 @@ fn pixels(drawing: &Drawing, width: u16, height: u16) -> Vec<u8> {
     context.flush();
     let mut pixmap = Pixmap::new(width, height);
     context.render(&mut pixmap, &mut Resources::new());
-    // The background is opaque white, so that premultiplied colours are the colours themselves.
+    // The background is opaque white, so that premultiplied and plain colours are equal.
     pixmap
         .data_as_u8_slice()
         .chunks_exact(4)
@@ -163,7 +163,7 @@ fn take_color(context: &mut RenderContext, color: Color) {
     context.set_paint(AlphaColor::from_rgb8(red, green, blue));
 }
 
-/// Fills the letters' outlines.
+/// Draws a text by filling the outlines of its letters.
 fn write(context: &mut RenderContext, text: &Text, fonts: &[FontRef<'_>]) {
     let turn = if text.upright {
         -std::f64::consts::FRAC_PI_2
@@ -194,10 +194,10 @@ fn write(context: &mut RenderContext, text: &Text, fonts: &[FontRef<'_>]) {
     context.fill_path(&(place * pen.path));
 }
 
-/// Collects outlines side by side, y downwards.
+/// Collects the outlines of letters side by side; y runs downwards.
 struct Pen {
     path: BezPath,
-    /// Where the letter starts.
+    /// Horizontal position at which the next letter starts.
     x: f64,
 }
 

@@ -1,4 +1,4 @@
-//! A drawing as SVG 1.1: lines as paths, text as text, lengths in points.
+//! A drawing as SVG 1.1, with lines as paths, text as text, and lengths in points.
 
 use std::fmt::Write;
 
@@ -20,8 +20,8 @@ pub fn svg(drawing: &Drawing) -> String {
     element(drawing, &head, "frame")
 }
 
-/// Returns the drawing as an element of an HTML page, which needs no name space. `name` is the
-/// prefix of its internal references and must be unique on the page.
+/// Returns the drawing as an element for an HTML page, where the namespace is not needed. `name` is
+/// the prefix of its internal references and must be unique on the page.
 pub fn inline_svg(drawing: &Drawing, name: &str) -> String {
     let label = escaped(&sanitized(&drawing.title));
     let head = format!(
@@ -75,7 +75,7 @@ struct Svg<'a> {
 }
 
 impl Svg<'_> {
-    /// Adds a line to the text.
+    /// Appends a line to the SVG text.
     fn line(&mut self, line: &str) {
         self.text.push_str(line);
         self.text.push('\n');
@@ -151,7 +151,7 @@ impl Svg<'_> {
         } else {
             String::new()
         };
-        // Keeps the width of the layout, whatever font the viewer has.
+        // `textLength` keeps the width of the layout, whatever font the viewer uses.
         let length = number(size_pt * width(words));
         let length = format!(" textLength=\"{length}\" lengthAdjust=\"spacingAndGlyphs\"");
         let color = hex(*color);
@@ -162,7 +162,7 @@ impl Svg<'_> {
     }
 }
 
-/// Returns path data for a polyline.
+/// Returns the path data of a polyline.
 fn path(points: &[[f64; 2]], closed: bool) -> String {
     let mut text = String::new();
     for (index, [x, y]) in points.iter().enumerate() {
@@ -212,8 +212,8 @@ fn hex(color: Color) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
-/// Formats a length \[pt\] with two decimals, finer than any printer; without trailing zeros and
-/// without a minus sign before zero.
+/// Formats a length \[pt\] with at most two decimals, finer than any printer resolves; without
+/// trailing zeros, and without a minus sign before zero.
 fn number(value: f64) -> String {
     let text = format!("{value:.2}");
     let text = text.trim_end_matches('0').trim_end_matches('.');

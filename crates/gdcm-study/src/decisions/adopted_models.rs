@@ -1,4 +1,4 @@
-//! Models identified from flight records that a condition adopts instead of those of its file.
+//! Models identified from flight records that a condition adopts instead of the models in its file.
 
 use gdcm_model::dataset::condition::{ConditionError, ConditionRecord};
 use gdcm_model::dataset::model::Origin;
@@ -20,13 +20,14 @@ pub struct OfferedModels {
 }
 
 impl OfferedModels {
-    /// The bundle that M14 passes to M5.
+    /// The refined model, the models of neighbouring orders, and those fitted without one record
+    /// each (M14, section 5).
     pub const REFINED: Self = Self {
         refined: true,
         unrefined: false,
         measured: false,
     };
-    /// The bundle that M14 passes to M5, and CT-PBSID without refinement.
+    /// The models of [`Self::REFINED`], and the CT-PBSID model without refinement.
     pub const WITH_UNREFINED: Self = Self {
         refined: true,
         unrefined: true,
@@ -40,7 +41,7 @@ impl OfferedModels {
     };
 }
 
-/// Models identified from flight records, with these records.
+/// Models identified from flight records, together with these records.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AdoptedModels {
     pub models: Vec<Model>,
@@ -81,7 +82,7 @@ impl AdoptedModels {
     /// records are added to the records of the condition.
     ///
     /// # Errors
-    /// [`EditRefusal::NoCondition`], and [`EditRefusal::Models`] where the models do not fit the
+    /// [`EditRefusal::NoCondition`], and [`EditRefusal::Models`] if the models do not fit the
     /// condition.
     pub fn put_into(&self, dataset: &Dataset, id: ConditionId) -> Result<Dataset, EditRefusal> {
         let before = dataset

@@ -15,7 +15,7 @@ use super::signs::{SignRole, Signs, TurnedChannel, turned};
 use super::study::Study;
 
 impl Study {
-    /// Returns the file's dataset, without adopted models and reversed signs.
+    /// Returns the dataset of the file, without adopted models and with the original signs.
     pub fn file_dataset(&self) -> &Arc<Dataset> {
         self.file.as_ref().unwrap_or(&self.dataset)
     }

@@ -34,7 +34,7 @@ pub struct ConditionChoice {
     pub identified: BundleChoice,
     pub scheduled: bool,
     /// Whether the condition is held out: it is analysed and assessed, but not used in the fit of
-    /// the schedule, so that it can validate the schedule.
+    /// the schedule, which it can therefore validate.
     pub held_out: bool,
 }
 
@@ -92,7 +92,7 @@ impl ConditionChoice {
 }
 
 impl BundleChoice {
-    /// Drops the decisions about models that are absent.
+    /// Drops the decisions about models for whose name `is_there` is false.
     pub(crate) fn retain(&mut self, is_there: impl Fn(&str) -> bool) {
         self.rejected.retain(|name| is_there(name));
         self.reasons.retain(|name, _| is_there(name));

@@ -47,7 +47,7 @@ pub enum Difference {
 pub struct Inventory(pub Vec<ConditionInventory>);
 
 impl Inventory {
-    /// Takes a dataset's inventory.
+    /// Creates the inventory of a dataset, with a fingerprint of every model.
     pub fn of(dataset: &Dataset) -> Self {
         let conditions = dataset.conditions().iter();
         Self(
@@ -109,7 +109,7 @@ impl ConditionInventory {
         }
     }
 
-    /// Returns a bundle's models.
+    /// Returns the models of a bundle: their fingerprints by name.
     pub fn bundle(&self, kind: BundleKind) -> &BTreeMap<String, String> {
         kind.pick(&self.physics, &self.identified)
     }

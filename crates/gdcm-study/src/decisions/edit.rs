@@ -17,7 +17,6 @@ use super::study::Study;
 #[derive(Clone, Debug, PartialEq)]
 pub enum Edit {
     Reject(ModelId),
-    /// Rejects a model, with a reason.
     RejectBecause {
         model: ModelId,
         reason: String,
@@ -43,19 +42,19 @@ pub enum Edit {
         condition: ConditionId,
         scheduled: bool,
     },
-    /// Excludes a condition from the fit of the schedule, so that it can validate the schedule, or
+    /// Excludes a condition from the fit of the schedule, so that it can validate the schedule; or
     /// includes it again.
     SetHeldOut {
         condition: ConditionId,
         held_out: bool,
     },
-    /// Constrains exactly the dataset's on-axis responses.
+    /// Constrains the on-axis responses of the dataset, and releases all others.
     ConstrainOnAxis,
     /// Constrains or releases a response.
     Hold(Pair, bool),
     /// Fits a response, or ignores it in the objective.
     Fit(Pair, bool),
-    /// Changes a setting ([`Setting::to`]).
+    /// Changes a setting; built by [`Setting::to`].
     Set(&'static Setting, Value),
     /// Reverses the sign of a channel in the models, or restores it. As a decision about the data,
     /// it is common to all variants.
@@ -64,7 +63,7 @@ pub enum Edit {
         /// The models in which the sign is reversed; `None` restores the sign in all.
         of: Option<SignRole>,
     },
-    /// Adopts models identified from flight records in place of the identified bundles of
+    /// Adopts models identified from flight records instead of the identified bundles of
     /// conditions.
     TakeModels(Vec<(ConditionId, Arc<AdoptedModels>)>),
     ReturnModels {
@@ -113,7 +112,7 @@ impl Edit {
         match self {
             Edit::Reject(id) => format!("reject {}", name_of(id)),
             Edit::RejectBecause { model, .. } => format!("reject {}", name_of(model)),
-            Edit::SetReason(id, _) => format!("reason of {}", name_of(id)),
+            Edit::SetReason(id, _) => format!("reason for rejecting {}", name_of(id)),
             Edit::Restore(id) => format!("restore {}", name_of(id)),
             Edit::RestoreAll { condition } => format!("restore all (condition {condition})"),
             Edit::RejectEach(models) => format!("reject {} models", models.len()),
@@ -125,8 +124,11 @@ impl Edit {
             Edit::SetScheduled {
                 condition,
                 scheduled: true,
-            } => format!("schedule condition {condition}"),
-            Edit::SetScheduled { condition, .. } => format!("leave condition {condition} out"),
+            } => format!("use condition {condition} in the schedule"),
+            Edit::SetScheduled { condition, .. } => format!(
+                "leave condition {condition} out of \
+                the schedule"
+            ),
             Edit::SetHeldOut {
                 condition,
                 held_out: true,
@@ -147,8 +149,8 @@ impl Edit {
             Edit::SetSign { channel, of } => {
                 let name = channel.name_in(&study.dataset);
                 match of {
-                    Some(role) => format!("turn {name} ({})", role.word()),
-                    None => format!("turn {name} back"),
+                    Some(role) => format!("reverse the sign of {name} ({})", role.word()),
+                    None => format!("restore the sign of {name}"),
                 }
             }
             Edit::TakeModels(taken) => match taken.as_slice() {
@@ -156,7 +158,7 @@ impl Edit {
                 _ => format!("use identified models ({} conditions)", taken.len()),
             },
             Edit::ReturnModels { condition } => {
-                format!("put the file's identified models back (condition {condition})")
+                format!("restore the identified models of the file (condition {condition})")
             }
             Edit::SetRequirements(what, _) => format!("requirements: {what}"),
             Edit::KeepVariant { name } => format!("keep variant {name}"),

@@ -10,7 +10,7 @@ use gdcm_model::units::number;
 pub enum EditRefusal {
     #[error(
         "condition {condition}: \"{model}\" is the last model kept in its bundle; at least one \
-         must stay"
+        must remain"
     )]
     LastModel {
         condition: ConditionId,
@@ -24,7 +24,10 @@ pub enum EditRefusal {
         condition: ConditionId,
         model: String,
     },
-    #[error("condition {condition}: \"{model}\" is not rejected; a reason goes with a rejection")]
+    #[error(
+        "condition {condition}: \"{model}\" is not rejected; only a rejected model can have a \
+        reason"
+    )]
     ReasonOfKept {
         condition: ConditionId,
         model: String,
@@ -40,7 +43,7 @@ pub enum EditRefusal {
     Models { condition: ConditionId, why: String },
     #[error("a variant needs a name")]
     VariantWithoutName,
-    #[error("there is a variant \"{name}\" already")]
+    #[error("variant \"{name}\" already exists; choose another name")]
     VariantExists { name: String },
     #[error("there is no variant \"{name}\"")]
     NoVariant { name: String },
@@ -53,7 +56,7 @@ pub enum EditRefusal {
     /// The limits of the band are invalid.
     #[error(transparent)]
     Band(#[from] BandError),
-    #[error("{setting}: this is not one of its values")]
+    #[error("{setting}: this value is not permitted")]
     NotAValue { setting: &'static str },
     #[error("the dataset has no condition {condition}")]
     NoCondition { condition: ConditionId },
@@ -69,7 +72,7 @@ pub enum EditRefusal {
     NoResponse { pair: Pair },
 }
 
-/// Checks the length of a text, in characters.
+/// Returns an error if `text` has more than `most` characters.
 pub(crate) fn check_length(what: &'static str, text: &str, most: usize) -> Result<(), EditRefusal> {
     let found = text.chars().count();
     if found > most {

@@ -31,7 +31,7 @@ pub struct Decisions {
 }
 
 impl Decisions {
-    /// Collects a study's decisions.
+    /// Collects the decisions of a study, with channels, conditions and models by name.
     pub fn of(study: &Study) -> Self {
         let mut variants = Vec::new();
         for variant in &study.variants {
@@ -89,19 +89,19 @@ impl CarriedDecisions {
         });
     }
 
-    /// Applies an edit, or reports why it is refused.
+    /// Applies an edit, or adds it to `not_applied` with the reason for its refusal.
     fn apply(&mut self, edit: &Edit) {
         if let Err(refusal) = self.study.apply(edit) {
             self.refuse(edit.label(&self.study), &refusal.to_string());
         }
     }
 
-    /// Adopts the requirement settings. Settings for channels that the dataset lacks are kept, and
-    /// reported.
+    /// Takes over the requirement settings. Settings for channels that the dataset lacks are kept,
+    /// and added to `not_applied`.
     fn take_requirements(&mut self, requirements: &Arc<RequirementSettings>) {
         self.study.requirements = Arc::clone(requirements);
         for decision in requirements.without_channel(&self.study.dataset) {
-            self.refuse(decision, "it stays in the study for another dataset");
+            self.refuse(decision, "kept in the study for use with another dataset");
         }
     }
 
@@ -109,7 +109,7 @@ impl CarriedDecisions {
         self.study.settings = settings.with_responses(|verb, names| self.marked(verb, names));
     }
 
-    /// Returns the listed responses as a table; reports those that the dataset lacks.
+    /// Returns the listed responses as a table; adds those that the dataset lacks to `not_applied`.
     fn marked(&mut self, verb: &str, names: &ResponseNames) -> PairTable<bool> {
         let mut table = self.study.settings.constrained.map(|_, _| false);
         for (output, input) in &names.0 {
@@ -131,7 +131,7 @@ impl CarriedDecisions {
                 of: Some(turned.of),
             }),
             None => self.refuse(
-                format!("turn {}", turned.channel),
+                format!("reverse the sign of {}", turned.channel),
                 "the dataset has no such channel",
             ),
         }

@@ -20,10 +20,10 @@ pub struct RequirementSettings {
     pub attitude_command: BTreeSet<String>,
     #[serde(skip_serializing_if = "is_default")]
     pub levels: LevelBoundaries,
-    /// Tolerances of simulated time histories about the measured ones.
+    /// Tolerances on simulated time histories, relative to the measured ones.
     #[serde(skip_serializing_if = "is_default")]
     pub tolerances: ToleranceTable,
-    /// Tolerances of the modes of the physics models about the identified ones.
+    /// Tolerances on the modes of the physics models, relative to the identified modes.
     #[serde(skip_serializing_if = "is_default")]
     pub mode_tolerances: ModeToleranceTable,
     /// Limits beyond which the overview marks a corrected model as inadequate.
@@ -35,11 +35,12 @@ pub struct RequirementSettings {
 }
 
 /// Limits of the difference between a corrected and the identified model, beyond which the overview
-/// marks the corrected model. They are chosen by this program, not by a standard.
+/// marks the corrected model. They are not taken from a standard.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct OverviewLimits {
-    /// Maximum relative difference of the bandwidth from that of the identified model.
+    /// Maximum relative difference between the bandwidths of the corrected and the identified
+    /// model.
     pub bandwidth: f64,
     pub phase_delay_s: f64,
     /// Minimum share of time inside a tolerance, 0 to 1.

@@ -141,18 +141,24 @@ pub static ALPHA_DELAY: Setting = row(
 )
 .at(Place::Slider, "α delays", "α delays");
 
-/// Phase correction.
+/// Phase correction: none, by delays, or by signed delays that lead filters realise where negative.
 pub static PHASE: Setting = row(
     ["phase correction", "phase", "--phase"],
-    "How the phase is corrected: not at all, by delays, or by a delay or a lead filter a channel",
+    "How the phase is corrected: not at all, by delays, or by a delay or lead filter for each \
+    channel",
     choice(
         &[
-            ["none", "none", "Gains alone"],
-            ["delay", "delay", "Each channel gets a delay, eq. (11) (the paper)"],
+            ["none", "none", "Gains only"],
+            [
+                "delay",
+                "delay",
+                "Each channel gets a delay, eq. (11) (the paper)",
+            ],
             [
                 "lead",
                 "delay or lead",
-                "Each channel gets one signed delay; a negative one is a filter that acts as a faster servo (M15)",
+                "Each channel gets one signed delay; a negative delay becomes a lead filter, \
+                which acts like a faster servo (M15)",
             ],
         ],
         |of| of.phase.index(),
@@ -161,14 +167,24 @@ pub static PHASE: Setting = row(
 )
 .at(Place::Top, "Phase", "Phase correction");
 
-/// The D to which the delays are fitted.
+/// Source of the D to which the delays are fitted: median of phase over frequency, or line over the
+/// band (M15.2).
 pub static DELAY_FROM: Setting = row(
     ["delay estimate", "delay_from", "--delay-from"],
-    "Which D the delays are fitted to: the median of phase over frequency, or a straight line over the band",
+    "Definition of the D to which delays are fitted: median of phase over frequency, or straight \
+    line over the band",
     choice(
         &[
-            ["median", "median", "Median of Δφ/ω over the band, eq. (9) (the paper)"],
-            ["band", "line over the band", "Straight line of least squares through Δφ over the band (M15.2)"],
+            [
+                "median",
+                "median",
+                "Median of Δφ/ω over the band, eq. (9) (the paper)",
+            ],
+            [
+                "band",
+                "line over the band",
+                "Least-squares line through Δφ over the band (M15.2)",
+            ],
         ],
         |of| of.delay_from.index(),
         |of, index| of.delay_from = DelayFrom::ALL[index],
@@ -177,7 +193,8 @@ pub static DELAY_FROM: Setting = row(
 .at(Place::Beside, "Delay estimate", "Delay estimate")
 .where_it(|study| study.settings.phase == PhaseCorrection::Delay);
 
-/// Order of the lead filters.
+/// Order of the lead filters: 2 leaves the gain within the band nearly unchanged, 1 raises it
+/// (M15.3).
 pub static LEAD_ORDER: Setting = row(
     ["order of the lead filters", "lead.order", "--lead-order"],
     "Order of every lead filter (M15.3)",
@@ -186,7 +203,7 @@ pub static LEAD_ORDER: Setting = row(
             [
                 "2",
                 "2",
-                "Butterworth damping: the gain within the band stays",
+                "Butterworth damping: leaves the gain within the band nearly unchanged",
             ],
             [
                 "1",
@@ -208,8 +225,13 @@ fn has_leads(study: &Study) -> bool {
 /// Parameter `n` of the lead filters: their lag time constant is `1 / (n omega_B)` (M15.3).
 pub static LEAD_POLE: Setting = row(
     ["n of the lead filters", "lead.n", "--lead-n"],
-    "Lag of every lead filter: 1/(n ω_B), ω_B the top of the band; smaller: less noise, and more lead in reach",
-    real([2.0, 10.0], |of| of.lead.pole, |of, pole| of.lead.pole = pole),
+    "Parameter of the lag of every lead filter, 1/(n ω_B), where ω_B is the top of the band; a \
+    smaller n gives less noise and permits more lead",
+    real(
+        [2.0, 10.0],
+        |of| of.lead.pole,
+        |of, pole| of.lead.pole = pole,
+    ),
 )
 .at(Place::Beside, "n", "n of the lead filters")
 .digits(0.05, Digits::Significant)
@@ -218,26 +240,41 @@ pub static LEAD_POLE: Setting = row(
 /// Maximum gain of a lead filter at high frequency, as a factor; its range is 0 to 40 dB.
 pub static LEAD_LIMIT: Setting = row(
     ["R_max of the lead filters", "lead.r_max", "--lead-r-max"],
-    "Greatest gain of one channel's filter far above the band (10 is 20 dB): it bounds the lead of a channel",
-    real([1.0, 100.0], |of| of.lead.limit, |of, limit| of.lead.limit = limit),
+    "Maximum gain of a channel's lead filter far above the band (10 is 20 dB); it limits the lead \
+    of the channel",
+    real(
+        [1.0, 100.0],
+        |of| of.lead.limit,
+        |of, limit| of.lead.limit = limit,
+    ),
 )
 .at(Place::Beside, "R_max", "R_max of the lead filters")
 .digits(0.1, Digits::Significant)
 .where_it(has_leads);
 
-/// How couplings and modes are corrected.
+/// Correction of couplings and modes: none, mixing, or mixing and feedback (M16).
 pub static COUPLINGS: Setting = row(
     ["couplings", "couplings", "--couplings"],
-    "What corrects couplings and modes, the same for all conditions, before the channels are corrected: nothing, a mixing of the \
-     inputs, or a mixing and a feedback of outputs to inputs (M16)",
+    "Correction of couplings and modes, common to all conditions and applied before the channel \
+    correction: none, a mixing of the inputs, or a mixing and a feedback of outputs to inputs \
+    (M16)",
     choice(
         &[
-            ["none", "none", "Gains, delays and leads of the channels alone (the paper)"],
-            ["mixing", "mixing", "Each input takes constant shares of the others (M16)"],
+            [
+                "none",
+                "none",
+                "Only gains, delays and leads of the channels (the paper)",
+            ],
+            [
+                "mixing",
+                "mixing",
+                "Each input receives constant shares of the other inputs (M16)",
+            ],
             [
                 "feedback",
                 "mixing and feedback",
-                "Each input takes constant shares of the others and of the outputs: moves the modes too (M16)",
+                "Each input receives constant shares of the other inputs and of the outputs, \
+                which also moves the modes (M16)",
             ],
         ],
         |of| of.couplings.index(),
@@ -246,10 +283,10 @@ pub static COUPLINGS: Setting = row(
 )
 .at(Place::Top, "Couplings", "Couplings");
 
-/// The comparison band.
+/// Comparison band \[rad/s\].
 pub static BAND: Setting = row(
     ["frequency band", "band_rad_s", "--band"],
-    "Band of comparison [rad/s]; drag its lines in the plot too",
+    "Comparison band [rad/s]; in the window, its limits can also be dragged in the plot",
     Kind::Range {
         range: [LEAST_OMEGA, GREATEST_OMEGA],
         nothing: None,
@@ -265,7 +302,7 @@ pub static BAND: Setting = row(
 .unit("rad/s", "rad/s", 1.0)
 .at(Place::Line, "Band", "Band");
 
-/// Number of frequencies in the band.
+/// Number of logarithmically spaced frequencies in the band.
 pub static POINTS: Setting = row(
     ["number of frequencies", "points", "--points"],
     "Number of logarithmically spaced frequencies in the band",
@@ -295,7 +332,8 @@ pub static QUANTILE: Setting = row(
 /// Manual gain bounds, -120 to 120 dB; no value restores the quantiles.
 pub static GAIN_BOUNDS: Setting = row(
     ["gain bounds", "gain_bounds", "--gain-bounds"],
-    "Least and greatest gain of every channel set by hand, for every condition; auto: from the quantiles of each",
+    "Minimum and maximum gain of every channel, common to all conditions; auto: from the \
+    quantiles of each condition",
     Kind::Range {
         range: [1e-6, 1e6],
         nothing: Some(["auto", "by the quantile"]),
@@ -313,7 +351,8 @@ pub static GAIN_BOUNDS: Setting = row(
 /// Manual upper delay bound \[s\]; no value restores the quantile.
 pub static DELAY_UPPER: Setting = row(
     ["upper delay bound", "delay_upper_s", "--delay-bound"],
-    "Greatest delay of every channel set by hand, for every condition; auto: from the quantiles of each",
+    "Maximum delay of every channel, common to all conditions; auto: from the quantiles of each \
+    condition",
     Kind::Optional {
         range: [0.0, 1e3],
         nothing: ["auto", "by the quantile"],
@@ -329,7 +368,7 @@ pub static DELAY_UPPER: Setting = row(
 /// Maximum mismatch around a loop \[dB\] up to which constrained gains count as consistent.
 pub static AGREEMENT: Setting = row(
     ["loop tolerance", "agreement_db", "--agreement"],
-    "A loop of held gains that disagrees by no more than this [dB] counts as agreeing",
+    "Maximum mismatch around a loop of held gains up to which they count as consistent",
     real(
         [0.0, 3.0],
         |of| of.agreement_db,
@@ -348,12 +387,12 @@ pub static COST_AVERAGE: Setting = row(
             [
                 "median",
                 "J median",
-                "J takes the median over frequency (the paper)",
+                "J uses the median over frequency (the paper)",
             ],
             [
                 "mean",
                 "J mean",
-                "J takes the mean over frequency (Tischler)",
+                "J uses the mean over frequency (Tischler)",
             ],
         ],
         |of| of.cost_average.index(),
@@ -362,14 +401,14 @@ pub static COST_AVERAGE: Setting = row(
 )
 .at(Place::Line, "Method", "Average in J");
 
-/// The gain objective.
+/// Gain objective: squared errors of the ratios, eq. (7), or squared errors in dB.
 pub static GAIN_OBJECTIVE: Setting = row(
     [
         "objective of the gains",
         "gain_objective",
         "--gain-objective",
     ],
-    "What the gains minimise",
+    "Objective that the gains minimise",
     choice(
         &[
             [
@@ -380,7 +419,7 @@ pub static GAIN_OBJECTIVE: Setting = row(
             [
                 "dB",
                 "dB",
-                "Gains minimise squared errors in dB: up and down count alike",
+                "Gains minimise squared errors in dB: a factor and its inverse count alike",
             ],
         ],
         |of| of.gain_objective.index(),
@@ -389,10 +428,10 @@ pub static GAIN_OBJECTIVE: Setting = row(
 )
 .at(Place::Beside, "", "Objective of the gains");
 
-/// The models from which G is computed.
+/// Models from which G is computed: the two representatives, or all pairs of kept models.
 pub static GAIN_SOURCE: Setting = row(
     ["source of G", "gain_from", "--gain-from"],
-    "What G is taken from: the two representatives, or the mean over all pairs of kept models",
+    "Source of G: the two representatives, or the mean over all pairs of kept models",
     choice(
         &[
             [
@@ -429,18 +468,31 @@ pub static LEVEL: Setting = row(
 /// Maximum degrees of freedom that the identification part of a condition's error bar borrows from
 /// the other conditions.
 pub static POOLING: Setting = row(
-    ["pooling (degrees of freedom borrowed)", "error_bars.prior_degrees", "--pooling"],
-    "Degrees of freedom that a condition's identification part borrows from the other conditions at most; 0 trusts the condition \
-     alone",
-    real([0.0, 100.0], |of| of.uncertainty.prior_degrees, |of, degrees| of.uncertainty.prior_degrees = degrees),
+    [
+        "pooling (degrees of freedom borrowed)",
+        "error_bars.prior_degrees",
+        "--pooling",
+    ],
+    "Maximum degrees of freedom that the identification part of a condition's error bar borrows \
+    from the other conditions; 0 uses the condition's own data only",
+    real(
+        [0.0, 100.0],
+        |of| of.uncertainty.prior_degrees,
+        |of, degrees| of.uncertainty.prior_degrees = degrees,
+    ),
 )
-.at(Place::Beside, "pooling", "Pooling (degrees of freedom borrowed)")
+.at(
+    Place::Beside,
+    "pooling",
+    "Pooling (degrees of freedom borrowed)",
+)
 .digits(0.1, Digits::Significant);
 
-/// Minimum coherence of the frequencies that count.
+/// Minimum coherence of the frequencies that count in J, G and D.
 pub static COHERENCE: Setting = row(
     ["coherence threshold", "coherence_threshold", "--coherence"],
-    "Least coherence γ² of measured responses that is used: off, on, or the least (on is 0.6); off: every frequency counts alike",
+    "Minimum coherence γ² of the frequencies of measured responses that count: off, on (0.6), or \
+    a value; off: every frequency counts alike",
     Kind::Optional {
         range: [0.0, 1.0],
         nothing: ["off", "not used"],
@@ -459,10 +511,10 @@ pub static AVERAGES: Setting = row(
         "error_bars.averages",
         "--averages",
     ],
-    "Number of independent averages of measured responses whose files do not say it",
+    "Number of independent averages of measured responses whose files do not state it",
     Kind::Optional {
         range: limits::AVERAGES,
-        nothing: ["auto", "as the files say"],
+        nothing: ["auto", "as stated in the files"],
         on: None,
         get: |of| of.uncertainty.averages,
         set: |of, averages| of.uncertainty.averages = averages,
@@ -476,10 +528,10 @@ pub static WINDOW: Setting = row(
         "error_bars.window_s",
         "--averaging-window",
     ],
-    "Length of the windows of measured responses whose files do not say it",
+    "Length of the windows of measured responses whose files do not state it",
     Kind::Optional {
         range: limits::WINDOW_S,
-        nothing: ["auto", "as the files say"],
+        nothing: ["auto", "as stated in the files"],
         on: None,
         get: |of| of.uncertainty.window_s,
         set: |of, window_s| of.uncertainty.window_s = window_s,
@@ -494,7 +546,8 @@ pub static HALF_OVERLAP: Setting = row(
         "error_bars.half_overlap",
         "--half-overlap",
     ],
-    "The windows of measured responses overlap by half",
+    "Assumes that the windows of measured responses overlap by half, if their files do not state \
+    it",
     Kind::Flag {
         words: ["not", "by half"],
         get: |of| of.uncertainty.half_overlap,
@@ -502,7 +555,7 @@ pub static HALF_OVERLAP: Setting = row(
     },
 );
 
-/// Form of the schedule.
+/// Form of the schedule in airspeed: a polynomial of degree 0 to 3, or a lookup table.
 pub static SCHEDULE: Setting = row(
     ["schedule", "schedule.kind", "--degree"],
     "Degree of the schedule's polynomial in airspeed, 0 to 3, or a lookup table",
@@ -515,7 +568,7 @@ pub static SCHEDULE: Setting = row(
             [
                 "table",
                 "table",
-                "Mean of each cluster of airspeeds, linear between",
+                "Mean of each cluster of airspeeds, with linear interpolation between them",
             ],
         ],
         |of| of.schedule.kind.index(),
@@ -524,18 +577,19 @@ pub static SCHEDULE: Setting = row(
 )
 .at(Place::Top, "Schedule", "Schedule");
 
-/// Quantity scheduled with airspeed.
+/// Scheduled quantity: `ln k`, or the gain itself.
 pub static SCHEDULED_QUANTITY: Setting = row(
     ["scheduled quantity", "schedule.of", "--schedule-of"],
-    "What is regressed on airspeed",
+    "Quantity regressed on airspeed: ln k, or the gain k itself",
     choice(
         &[
             [
                 "ln-k",
                 "of ln k",
-                "The product of regressions is the regression of the product",
+                "Regresses ln k: the product of two scheduled gains is the schedule of their \
+                product",
             ],
-            ["k", "of k", "Regresses the gain itself"],
+            ["k", "of k", "Regresses the gain k itself"],
         ],
         |of| of.schedule.quantity.index(),
         |of, index| of.schedule.quantity = ScheduledQuantity::ALL[index],
@@ -543,7 +597,7 @@ pub static SCHEDULED_QUANTITY: Setting = row(
 )
 .at(Place::Beside, "", "Scheduled quantity");
 
-/// Whether delays are scheduled too.
+/// Whether the schedule has delays too: never, always, or automatically (M11).
 pub static SCHEDULE_DELAYS: Setting = row(
     ["delays over airspeed", "schedule_delays", "--schedule-delays"],
     "Schedule the delays of the channels too, clamped to their bounds (M11); without a value: always",
@@ -552,10 +606,11 @@ pub static SCHEDULE_DELAYS: Setting = row(
             [
                 "automatic",
                 "delays automatic",
-                "With the gains, where a held response has a net delay above 0.5 ms in a scheduled condition",
+                "Delays are scheduled with the gains if a held response has a net delay above 0.5 \
+                ms in a scheduled condition",
             ],
             ["always", "delays too", "Delays are scheduled with the gains"],
-            ["never", "no delays", "Gains alone (the paper)"],
+            ["never", "no delays", "Gains only (the paper)"],
         ],
         |of| of.schedule_delays.index(),
         |of, index| of.set_delay_scheduling(DelayScheduling::ALL[index]),
@@ -567,14 +622,20 @@ pub static SCHEDULE_DELAYS: Setting = row(
 
 /// Degree of the polynomials for the signed delays.
 pub static TAU_DEGREE: Setting = row(
-    ["degree of the signed delays", "schedule.tau_degree", "--tau-degree"],
-    "Degree of the polynomial of signed delays in airspeed; 0: lags of servos and sensors do not depend on it (M15.5)",
+    [
+        "degree of the signed delays",
+        "schedule.tau_degree",
+        "--tau-degree",
+    ],
+    "Degree of the polynomial of signed delays in airspeed; 0 assumes that lags of servos and \
+    sensors do not depend on airspeed (M15.5)",
     choice(
         &[
             [
                 "0",
                 "τ constant",
-                "One signed delay for all airspeeds: lags of servos and sensors do not depend on them (M15.5)",
+                "One signed delay for all airspeeds: lags of servos and sensors do not depend on \
+                airspeed (M15.5)",
             ],
             ["1", "τ degree 1", "Polynomial of degree 1 in airspeed"],
             ["2", "τ degree 2", "Polynomial of degree 2 in airspeed"],
@@ -584,7 +645,11 @@ pub static TAU_DEGREE: Setting = row(
         |of, degree| of.schedule.tau_degree = degree,
     ),
 )
-.at(Place::Line, "Over airspeed", "Schedule of the signed delays")
+.at(
+    Place::Line,
+    "Over airspeed",
+    "Schedule of the signed delays",
+)
 .where_it(has_leads);
 
 /// Maximum difference between consecutive airspeeds that count as equal \[kt\].
@@ -594,7 +659,8 @@ pub static AIRSPEED_TOLERANCE: Setting = row(
         "schedule.airspeed_tolerance_kt",
         "--airspeed-tolerance",
     ],
-    "Airspeeds this close to the next one [kt] count as one, for the table and for the degree",
+    "Maximum difference between consecutive airspeeds that count as one, for the lookup \
+    table and for the permitted degree",
     real(
         [0.0, 100.0],
         |of| of.schedule.airspeed_tolerance_kt,
@@ -605,26 +671,26 @@ pub static AIRSPEED_TOLERANCE: Setting = row(
 .at(Place::Line, "One airspeed", "Airspeed tolerance")
 .digits(0.1, Digits::Decimals(1));
 
-/// Scheduling variable besides airspeed.
+/// Scheduling variable besides airspeed: none, altitude or mass.
 pub static SECOND_VARIABLE: Setting = row(
     [
         "second variable",
         "schedule.second_variable",
         "--second-variable",
     ],
-    "Schedule gains with a second variable beside airspeed",
+    "Schedule gains with a second variable in addition to airspeed",
     choice(
         &[
-            ["none", "airspeed only", "The paper"],
+            ["none", "airspeed only", "Airspeed only, as in the paper"],
             [
                 "altitude",
                 "and altitude",
-                "Only where the view Evidence says that it is needed",
+                "Recommended only if the Evidence view shows that it is needed",
             ],
             [
                 "mass",
                 "and mass",
-                "Only where the view Evidence says that it is needed",
+                "Recommended only if the Evidence view shows that it is needed",
             ],
         ],
         |of| of.schedule.second.index(),
@@ -671,10 +737,10 @@ pub static SETTINGS: [&Setting; 29] = [
 ];
 
 impl Settings {
-    /// Refuses values outside their ranges: returns the first, with its setting.
+    /// Checks every value against the range of its setting.
     ///
     /// # Errors
-    /// The setting, and why its value is refused.
+    /// The first setting with an invalid value, and why the value is refused.
     pub fn check(&self) -> Result<(), (&'static Setting, EditRefusal)> {
         for setting in SETTINGS {
             setting

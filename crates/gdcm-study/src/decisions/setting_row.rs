@@ -59,7 +59,7 @@ pub enum Kind {
         range: [f64; 2],
         /// The words for no value: on the command line, and in a sentence.
         nothing: [&'static str; 2],
-        /// The number that "on" stands for; `None` where "on" is not accepted.
+        /// Number that the argument "on" sets; `None` if "on" is not accepted.
         on: Option<f64>,
         get: fn(&Settings) -> Option<f64>,
         set: fn(&mut Settings, Option<f64>),
@@ -123,7 +123,7 @@ pub enum Place {
     Line,
     /// On the line of the previous setting.
     Beside,
-    /// In the view of its subject.
+    /// Outside the settings panel, in the view that the setting concerns.
     Elsewhere,
 }
 
@@ -141,10 +141,10 @@ pub enum Value {
 
 /// A type whose values are a setting's choices.
 pub trait Choice: Copy + PartialEq + 'static {
-    /// All values, in the order of [`Kind::Choice`]'s words.
+    /// All values, in the same order as the words of [`Kind::Choice`].
     const ALL: &'static [Self];
 
-    /// Returns its index among all values.
+    /// Returns the index of the value in [`Self::ALL`].
     fn index(self) -> usize {
         Self::ALL
             .iter()

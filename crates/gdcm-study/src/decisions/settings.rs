@@ -22,7 +22,7 @@ const DEFAULT_AGREEMENT_DB: f64 = 0.05;
 /// Default of the minimum coherence (M4a).
 pub const DEFAULT_COHERENCE: f64 = 0.6;
 
-/// Phase correction.
+/// Method of the phase correction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PhaseCorrection {
@@ -36,7 +36,8 @@ pub enum PhaseCorrection {
     Lead,
 }
 
-/// Correction of the physics models' couplings and modes, before that of the channels (M16).
+/// Correction of the couplings and modes of the physics models, applied before the channel
+/// correction (M16).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CouplingCorrection {
@@ -70,7 +71,8 @@ impl CouplingCorrection {
     }
 }
 
-/// The D to which the delays are fitted. Leads are always fitted to the band delay (M15.5).
+/// Definition of the D to which the delays are fitted. Leads are always fitted to the band delay
+/// (M15.5).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DelayFrom {
@@ -136,7 +138,6 @@ pub struct Settings<R = PairTable<bool>> {
     /// coherence then also weights J, G and D. `None` ignores coherence (M4a).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub coherence_threshold: Option<f64>,
-    /// The gain objective.
     pub gain_objective: GainObjective,
     /// Manual bounds on every channel gain, instead of the quantiles.
     pub gain_bounds: Option<GainBounds>,
@@ -145,7 +146,7 @@ pub struct Settings<R = PairTable<bool>> {
     /// Phase correction (M9, M15).
     #[serde(default)]
     pub phase: PhaseCorrection,
-    /// The D to which the delays are fitted (M15.2).
+    /// Definition of the D to which the delays are fitted (M15.2).
     #[serde(default)]
     pub delay_from: DelayFrom,
     /// Parameters common to all lead filters (M15.3).
@@ -231,7 +232,7 @@ impl<R> Settings<R> {
 }
 
 impl Settings {
-    /// Returns a dataset's initial settings.
+    /// Returns the settings of a new study of `dataset`.
     pub fn of(dataset: &Dataset) -> Self {
         let none = PairTable::filled(dataset.outputs().len(), dataset.inputs().len(), false);
         Self {
@@ -283,8 +284,8 @@ impl Settings {
         let words = self.gain_source.words();
         if self.gain_source == GainSource::MeanOfPairs && self.phase == PhaseCorrection::Lead {
             return format!(
-                "{words}, without effect: with leads, G is that of what they leave of the \
-                 representatives"
+                "{words}, without effect: with leads, G is computed from the difference between \
+                the representatives that remains after the leads"
             );
         }
         words.to_owned()

@@ -37,7 +37,7 @@ impl SignRole {
         }
     }
 
-    /// Returns a description of the models.
+    /// Returns the models in words, for sentences: "the identified models".
     pub fn models(self) -> &'static str {
         match self {
             Self::Identified => "the identified models",
@@ -52,7 +52,7 @@ impl SignRole {
     }
 }
 
-/// The channels with reversed sign.
+/// Channels with reversed sign, with the models in which it is reversed.
 pub type Signs = BTreeMap<Channel, SignRole>;
 
 /// A channel with reversed sign, as stored in files.

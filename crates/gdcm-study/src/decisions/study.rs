@@ -1,4 +1,4 @@
-//! Studies: a dataset with every decision of the engineer about it.
+//! Studies: a dataset with every decision that the engineer has made about it.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, LazyLock};
@@ -53,7 +53,7 @@ impl PartialEq for Study {
 }
 
 impl Study {
-    /// Creates a dataset's study, before any decision.
+    /// Creates a study of `dataset` without any decision: default settings, no rejections.
     pub fn new(dataset: Arc<Dataset>) -> Self {
         let settings = Settings::of(&dataset);
         let choices = dataset

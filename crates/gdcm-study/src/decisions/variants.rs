@@ -9,7 +9,7 @@ use super::study::{Study, Variant};
 pub const LONGEST_VARIANT_NAME: usize = 60;
 
 impl Study {
-    /// Returns the variant with this name.
+    /// Returns the variant with this name; `None` if there is none.
     pub fn variant(&self, name: &str) -> Option<&Variant> {
         self.variants
             .iter()
@@ -46,7 +46,7 @@ impl Study {
         Ok(())
     }
 
-    /// Replaces the present decisions by those of a variant.
+    /// Replaces the present decisions with the decisions of a variant.
     pub(crate) fn take_variant(&mut self, name: &str) -> Result<(), EditRefusal> {
         let index = self.variant_index(name)?;
         let Variant {

@@ -21,8 +21,8 @@ use crate::stages::coupling_costs::with_couplings;
 use crate::stages::engine::Engine;
 use crate::stages::optima::solved;
 
-/// Complete proof of eq. (7) for a condition, where the budget of the interactive analysis was too
-/// small.
+/// Complete proof of optimality for eq. (7) in a condition, if the budget of the interactive
+/// analysis was too small.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProofJob {
     pub problem: Arc<Problem>,
@@ -64,7 +64,7 @@ impl PartialEq for TogglesJob {
 
 impl Job for TogglesJob {
     type Tools = ();
-    /// `None` where a problem has no solution.
+    /// `None` if a problem has no solution.
     type Output = Option<Toggles>;
 
     fn run(&self, (): &mut (), progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
@@ -100,7 +100,7 @@ pub struct Toggles {
 }
 
 impl Toggles {
-    /// Returns a response's toggles, in gain and in delay.
+    /// Returns the toggles of a response: in the gain problem, and in the delay problem.
     pub fn of_pair(&self, pair: Pair) -> (Option<&Toggle>, Option<&Toggle>) {
         let gain = self.gains.iter().find(|toggle| toggle.pair == pair);
         (gain, self.delays.iter().find(|toggle| toggle.pair == pair))

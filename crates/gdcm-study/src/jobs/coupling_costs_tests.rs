@@ -61,7 +61,7 @@ fn costs_without_and_with_couplings_are_those_of_the_two_studies() {
         tolerance,
     );
     let [own, scheduled] = own_and_scheduled(&EXAMPLE.analysis);
-    // The same sums in another order.
+    // 1e-9: both sides add the same terms, in a different order.
     assert_close("own, without", &both(costs.own.without), &own, 1e-9);
     assert_close(
         "scheduled, without",
@@ -121,7 +121,7 @@ fn poles_margins_and_what_happens_above_the_band_are_of_every_condition() {
             "feedback moves poles"
         );
         let margin = of.margin.unwrap();
-        // M16.4: 0.87 in the band of another dataset of the same helicopter.
+        // M16.4 states 0.87 in the band, for another dataset of the same helicopter.
         assert!(
             margin.least > 0.8 && margin.omega_rad_s >= band.min(),
             "{margin:?}"
@@ -198,8 +198,8 @@ fn aircraft(outputs: usize, inputs: usize, response: impl Fn(Pair) -> bool) -> S
     StateSpace::new(a, b, c, DMatrix::zeros(outputs, inputs)).unwrap()
 }
 
-/// Builds a study of such aircraft: the flight models add a little mixing and feedback, and the
-/// channels are corrected by gains only.
+/// Builds a study of models from [`aircraft`]: the flight models add a little mixing and feedback,
+/// and the channels are corrected by gains only.
 fn small_study(
     outputs: usize,
     inputs: usize,
@@ -314,7 +314,7 @@ fn a_response_that_nobody_has_is_left_alone_and_the_couplings_of_the_others_come
     let study = small_study(2, 2, 3, |pair| pair != Pair::new(0, 1));
     let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
     let matrices = analysis.fitted_couplings().unwrap().matrices();
-    // The ridge term shifts entries by a thousandth.
+    // 1e-3: the ridge term of the fit shifts the entries by about a thousandth.
     assert!(
         (matrices.normalised_mixing(60.0)[(1, 0)] - 0.08).abs() < 1e-3,
         "{matrices:?}"

@@ -36,7 +36,7 @@ use crate::stages::engine::Engine;
 pub(crate) static REFERENCE: LazyLock<Value> = LazyLock::new(|| {
     serde_json::from_str(include_str!("../../../../tests/data/reference/mixing.json")).unwrap()
 });
-/// A dataset with delays or leads, without rejections.
+/// A dataset with its analysis, with delays or leads and without rejections.
 pub(crate) struct Example {
     pub(crate) dataset: Arc<Dataset>,
     pub(crate) analysis: Analysis,
@@ -327,8 +327,8 @@ fn the_embedded_example_reads_as_what_was_put_in() {
         .normalised_mixing(fit.matrices.airspeeds().mean_kt);
     let (inputs, _) = example.dataset.names_of_channels();
     let at = |name: &str| inputs.iter().position(|of| of == name).unwrap();
-    // True values: from LON to LAT a swashplate phase of 1.8 degrees plus a coupling, then 0.03,
-    // and 0.03.
+    // True values: from LON to LAT, a swashplate phase of 1.8 degrees plus a coupling; 0.03 for the
+    // other two entries.
     for (from, to, expected) in [
         ("LON", "LAT", 0.047),
         ("COL", "LAT", 0.027),
@@ -556,7 +556,8 @@ fn a_condition_held_out_does_not_enter_the_fit() {
         result.before_couplings(),
         "but it is coupled too"
     );
-    // Another identified model of the condition does not change the fit.
+    // If another identified model of the held-out condition represents its bundle, the fit does not
+    // change.
     let mut other = result
         .condition
         .bundle(BundleKind::Identified)
@@ -596,7 +597,7 @@ fn couplings_that_cannot_be_fitted_are_refused_in_words_and_leave_the_models_as_
     assert!(
         refusal
             .to_string()
-            .starts_with("no response of the 0 conditions"),
+            .starts_with("no coupling fit: none of the 0 conditions"),
         "{refusal}"
     );
     let result = analysis.condition(ConditionId(1)).unwrap();

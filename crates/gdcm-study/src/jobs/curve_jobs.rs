@@ -18,7 +18,7 @@ use crate::shared::Shared;
 use crate::stages::condition_curves::ConditionCurves;
 use crate::stages::engine::Engine;
 
-/// A condition's frequency responses, for drawing.
+/// Computation of the frequency responses of all models of a condition, for drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurvesJob {
     pub dataset: Shared<Dataset>,
@@ -38,7 +38,7 @@ impl Job for CurvesJob {
     }
 }
 
-/// A condition's modes.
+/// Computation of the modes of all models of a condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModesJob {
     pub condition: Shared<Condition>,
@@ -143,7 +143,7 @@ impl AcrossRole {
         Self::Identified,
     ];
 
-    /// Returns the role's name.
+    /// Returns the name of the role in lists and captions: "corrected".
     pub fn name(self) -> &'static str {
         match self {
             Self::Nominal => "nominal",
@@ -215,7 +215,7 @@ impl ConditionModes {
         })
     }
 
-    /// Returns a bundle's modes.
+    /// Returns the modes of the models of a bundle, in file order.
     pub fn bundle(&self, kind: BundleKind) -> &[ModelModes] {
         kind.pick(&self.physics, &self.identified)
     }

@@ -18,9 +18,12 @@ use crate::shared::Shared;
 /// Why no model can be identified.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NothingToIdentify {
-    #[error("there is no record to identify from: add some, or use those that are there")]
+    #[error(
+        "there is no record from which to identify models: add records, or mark records as \
+        used"
+    )]
     NoRecord,
-    #[error("every record is held out: at least one has to be left to identify from")]
+    #[error("every record is held out: leave at least one for the identification")]
     AllHeldOut,
 }
 
@@ -33,7 +36,7 @@ pub struct IdentificationRequest {
 }
 
 impl IdentificationRequest {
-    /// Builds the request from the `records` in use; those whose guess has `held_out` set are
+    /// Builds the request from those `records` that are in use. Records marked as held out are
     /// excluded from the identification and used for validation.
     ///
     /// # Errors
@@ -69,7 +72,7 @@ impl IdentificationRequest {
         })
     }
 
-    /// Identifies models.
+    /// Identifies models from the records of the request.
     ///
     /// # Errors
     /// The errors of [`identify`].
@@ -103,7 +106,7 @@ pub struct IdentifyJob {
 }
 
 impl IdentifyJob {
-    /// Creates this request's job.
+    /// Creates the job that identifies the models of `condition`.
     pub fn new(condition: ConditionId, request: IdentificationRequest) -> Self {
         Self {
             condition,

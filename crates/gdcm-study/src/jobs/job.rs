@@ -4,8 +4,8 @@ use gdcm_model::progress::{Cancelled, Progress};
 
 /// A long computation with progress and cancellation, run beside the interactive analysis.
 ///
-/// Two jobs are equal where they have the same output: a running job is cancelled only when no
-/// equal job is requested any more.
+/// Two jobs are equal if they have the same output: a running job is cancelled only when no equal
+/// job is requested any more.
 pub trait Job: Clone + PartialEq + Send + 'static {
     /// Resources kept from one job to the next.
     type Tools;

@@ -1,4 +1,4 @@
-//! Units of background work.
+//! Long computations that run beside the interactive analysis.
 
 pub mod analysis_jobs;
 #[cfg(test)]

@@ -181,7 +181,7 @@ fn what_is_not_compared_is_said() {
     let others = found
         .missing
         .iter()
-        .filter(|of| of.why == "no flight record of it was given")
+        .filter(|of| of.why == "no flight record of this condition was given")
         .count();
     assert_eq!(others, analysis.conditions.len() - 1);
 
@@ -236,7 +236,8 @@ fn a_corrected_model_answers_with_the_couplings_of_the_study() {
     let correction = result.correction.on(pair).unwrap();
     for (k, omega) in grid.omega().iter().enumerate() {
         let expected = coupled.curve(pair)[k] * correction.at(*omega);
-        // Allows for the phase error in the band of a Pade approximant for delays of tens of ms.
+        // 1e-4 allows for the phase error in the band of a Pade approximant of delays of tens of
+        // ms.
         assert!(
             (answered.curve(pair)[k] - expected).norm() < 1e-4 * expected.norm(),
             "{omega}"

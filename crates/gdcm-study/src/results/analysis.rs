@@ -39,7 +39,7 @@ pub enum NotAssessed {
 }
 
 impl NotAssessed {
-    /// Returns the stable code.
+    /// Returns the stable code, for programs and tests.
     pub fn code(&self) -> &'static str {
         match self {
             Self::NotAnalysed => "not-analysed",
@@ -50,7 +50,7 @@ impl NotAssessed {
     }
 }
 
-/// A study's complete result.
+/// Complete result of a study: conditions, couplings, schedule, assessment and uncertainty.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Analysis {
     pub study: Study,
@@ -118,7 +118,8 @@ impl Analysis {
     }
 }
 
-/// A condition's result.
+/// Result of the analysis of a condition: comparison of its models, optimal gains and delays,
+/// cautions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionAnalysis {
     /// The analysed condition; the order of its models applies to all results below.
@@ -130,9 +131,9 @@ pub struct ConditionAnalysis {
     /// Representatives, G and D, with the couplings on the physics models where there are any
     /// (M16.3).
     pub comparison: Arc<Comparison>,
-    /// The gain problem.
+    /// Optimisation problem of the gains, eq. (7).
     pub gain_problem: Arc<Problem>,
-    /// The delay problem, with signed delays if requested.
+    /// Optimisation problem of the delays, eq. (11), or of signed delays, if requested (M15.4).
     pub delay_problem: Arc<Problem>,
     /// Optimal gains, eq. (7).
     pub gains: Arc<Solution>,
@@ -153,8 +154,8 @@ pub struct ConditionAnalysis {
 }
 
 impl ConditionAnalysis {
-    /// Returns the comparison of the models without couplings; the comparison itself where there
-    /// are none.
+    /// Returns the comparison of the models without couplings, which is [`Self::comparison`] if
+    /// there are none.
     pub fn before_couplings(&self) -> &Comparison {
         match &self.coupled {
             Some(coupled) => &coupled.before,
@@ -268,8 +269,8 @@ pub enum ConditionFailure {
     /// The two representatives have no response in common that is defined over the whole band.
     #[error(
         "no response of \"{physics}\" can be compared with \"{identified}\" over the whole band: \
-         each is zero, not finite or out of the range of gains somewhere; choose another \
-         representative, or another band"
+        each is zero, not finite or outside the range of computable gains at some frequency; \
+        choose another representative, or another band"
     )]
     NothingToCompare {
         physics: String,
@@ -279,8 +280,8 @@ pub enum ConditionFailure {
     },
     /// Every kept model is set aside (M5b).
     #[error(
-        "no {bundle} model is left to compare: each one kept lacks a measuring response that \
-         another model of the bundle has; restore one that has them all, or narrow the band"
+        "no {bundle} model is left to compare: each kept model lacks a compared response that \
+        another model of the bundle has; restore a model that has them all, or narrow the band"
     )]
     AllSetAside { bundle: BundleKind },
     #[error("the gains could not be computed: {0}")]

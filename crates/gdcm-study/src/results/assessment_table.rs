@@ -88,7 +88,7 @@ impl AssessmentChoice {
     }
 }
 
-/// A condition's assessment.
+/// Assessment of a condition: J before and after the correction, response by response.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssessedCondition {
     pub condition: ConditionId,
@@ -98,7 +98,7 @@ pub struct AssessedCondition {
     /// J against the identified representative before and after the correction, response by
     /// response.
     pub changes: PairTable<Option<CostChange>>,
-    /// Why a response has no J.
+    /// Responses without J, each with the reason.
     pub missing: Vec<(Pair, MissingCost)>,
 }
 
@@ -114,7 +114,7 @@ pub enum MissingCost {
 }
 
 impl MissingCost {
-    /// Returns the stable code.
+    /// Returns the stable code, for programs and tests.
     pub fn code(self) -> &'static str {
         match self {
             Self::NetGainNotPositive => "net-gain-not-positive",

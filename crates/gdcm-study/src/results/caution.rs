@@ -22,7 +22,8 @@ pub enum Caution {
     /// A model is excluded from distances, suggestions and representatives (M5b).
     SetAside {
         model: BundleModel,
-        /// The measuring responses that the model lacks and another model of its bundle has.
+        /// On-axis responses (any responses if none is on-axis) that the model lacks and another
+        /// model of its bundle has.
         lacks: Vec<Pair>,
         /// The missing responses that are zero wherever they have values.
         zero: Vec<Pair>,
@@ -88,7 +89,7 @@ impl Caution {
         }
     }
 
-    /// Returns the stable code.
+    /// Returns the stable code, for programs and tests.
     pub fn code(&self) -> &'static str {
         match self {
             Caution::HeldButUndefined { .. } => "held-but-undefined",
@@ -105,12 +106,13 @@ impl Caution {
         }
     }
 
-    /// Returns whether the caution reports a model set aside.
+    /// Returns whether the caution states that this model is set aside.
     pub fn is_set_aside(&self, bundle: BundleKind, name: &str) -> bool {
         matches!(self, Caution::SetAside { model, .. } if model.bundle == bundle && model.name == name)
     }
 
-    /// Returns the response to consider ignoring in the objective.
+    /// Returns the response that the caution suggests ignoring in the objective; `None` if it
+    /// suggests none.
     pub fn offers_to_ignore(&self) -> Option<Pair> {
         match self {
             Caution::UnusualGain { pair, .. } => Some(*pair),
@@ -128,7 +130,7 @@ pub struct GainOutOfRange {
 }
 
 impl GainOutOfRange {
-    /// Returns the gains of two models that are outside the computable range.
+    /// Returns the responses in which the gain between two models is outside the computable range.
     pub(crate) fn of_models(physics: &PolarResponse, identified: &PolarResponse) -> Vec<Self> {
         physics
             .curves()
@@ -205,7 +207,7 @@ pub enum Undefined {
 }
 
 impl Undefined {
-    /// Returns the stable code.
+    /// Returns the stable code, for programs and tests.
     pub fn code(self) -> &'static str {
         match self {
             Self::Zero(_) => "response-zero",
@@ -235,7 +237,7 @@ pub enum NotFinite {
     Sampled {
         /// Sample time \[s\].
         sample_time_s: f64,
-        /// Upper end of its response, `pi / T` \[rad/s\].
+        /// Nyquist frequency `pi / T`, up to which the model has a response \[rad/s\].
         nyquist_rad_s: f64,
     },
     /// A pole on the imaginary axis, or an overflow.

@@ -44,7 +44,7 @@ const MOST_LEFT: f64 = 0.2;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChannelTimeSkew {
     pub role: ChannelSide,
-    /// Index, counted from 0.
+    /// Index of the channel among the inputs or outputs, counted from 0.
     pub index: usize,
     /// Delay \[s\]; negative when the channel is early.
     pub delay_s: f64,

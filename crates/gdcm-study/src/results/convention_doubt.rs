@@ -19,16 +19,16 @@ pub struct ConventionDoubt {
     pub convention: Convention,
     /// The responsible channel.
     pub channel: Channel,
-    /// The measuring responses with the difference.
+    /// On-axis responses (any responses if none is on-axis) with the difference.
     pub pairs: Vec<Pair>,
-    /// Whether every response of the channel supports the difference, not only `pairs`.
+    /// Whether every response of the channel shows the difference, not only `pairs`.
     pub all_responses: bool,
     /// The conditions with the difference, in file order.
     pub conditions: Vec<ConditionId>,
 }
 
 impl ConventionDoubt {
-    /// Returns the channel to reverse, where the sign is in doubt.
+    /// Returns the channel whose sign should be reversed; `None` if the unit is in doubt.
     pub fn turns(&self) -> Option<Channel> {
         match self.convention {
             Convention::Sign => Some(self.channel),

@@ -51,8 +51,8 @@ impl ConditionAnalysis {
     }
 
     /// Returns the matrices of a physics model with the couplings; the model itself without
-    /// couplings. Its own input and output delays lie inside the feedback loop and become states:
-    /// `pade` approximants, or delays by whole samples in discrete time.
+    /// couplings. The input and output delays of the model lie inside the feedback loop and become
+    /// states: `pade` approximants, or delays by whole samples in discrete time.
     ///
     /// # Errors
     /// [`CoupledModelError`] where the loop through the feed-through is singular or

@@ -34,7 +34,7 @@ pub struct CouplingEntry {
 pub struct ConditionCouplings {
     /// True airspeed \[kt\].
     pub airspeed_kt: f64,
-    /// Poles of the physics representative before and after, or why they are unknown.
+    /// Poles of the physics representative before and after, or why they are unavailable.
     pub poles: Result<Vec<PoleShift>, String>,
     /// Minimum singular value of `I - K H` at each frequency in [`CouplingsAssessment::omega`].
     pub singular_values: Vec<f64>,
@@ -43,10 +43,10 @@ pub struct ConditionCouplings {
     pub margin: Option<LoopMargin>,
     /// `20 log10 |H~ - H| / |H|` at ten times the upper end of the band, response by response.
     pub above_band_db: PairTable<Option<f64>>,
-    /// J on-axis and off-axis when the condition is left out; `None` where it is in no fit.
+    /// J on-axis and off-axis when the condition is left out; `None` if it is not used in the fit.
     pub left_out: Option<CouplingCost>,
-    /// Other kept physics models with matrices in which the feedback loop cannot be closed, with
-    /// the reason.
+    /// Names of the other kept physics models with matrices for which the feedback loop cannot be
+    /// closed, each with the reason.
     pub refused: Vec<(String, String)>,
 }
 
@@ -207,7 +207,7 @@ pub struct CouplingCosts {
 }
 
 impl CouplingCost {
-    /// Maximum ratio of the off-axis J with couplings to that without, at which couplings are
+    /// Maximum ratio of off-axis J with couplings to off-axis J without, at which couplings are
     /// worthwhile.
     const WORTH: f64 = 0.9;
 

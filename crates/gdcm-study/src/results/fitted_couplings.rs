@@ -8,7 +8,7 @@ use gdcm_model::dataset::ConditionId;
 
 use super::comparison::Comparison;
 
-/// A study's couplings.
+/// Couplings of a study: the problem of the fit, and its solution.
 #[derive(Clone, Debug)]
 pub struct FittedCouplings {
     /// Problem of the fit, built from the representatives of the conditions that are analysed and
@@ -18,8 +18,8 @@ pub struct FittedCouplings {
 }
 
 impl PartialEq for FittedCouplings {
-    /// Two fits with equal matrices have the same effect on every model, whatever data they are
-    /// based on.
+    /// Compares the fits only: equal fits have the same effect on every model, whatever data they
+    /// are based on.
     fn eq(&self, other: &Self) -> bool {
         self.fit == other.fit
     }
@@ -43,7 +43,7 @@ impl FittedCouplings {
 /// Changes that the couplings make in a condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoupledCondition {
-    /// Comparison of the models without couplings; the representatives are selected by it.
+    /// Comparison of the models without couplings, by which the representatives are selected.
     pub before: Arc<Comparison>,
     pub fitted: Arc<FittedCouplings>,
 }

@@ -59,9 +59,9 @@ impl LeadOffer {
     /// Maximum ratio of J with leads to J without, at which leads are recommended.
     const WORTH: f64 = 0.9;
 
-    /// Returns the two J if these leads would reduce J over the constrained responses by at least a
-    /// tenth. `mismatch` contains the constrained responses only; `now` is J under the present
-    /// correction.
+    /// Returns J without and with these leads if they would reduce J over the constrained responses
+    /// by at least a tenth. `mismatch` contains the constrained responses only; `now` is J under
+    /// the present correction.
     pub(crate) fn new(
         leads: ChannelLeads,
         mismatch: &Mismatches,

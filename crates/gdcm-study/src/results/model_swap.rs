@@ -16,7 +16,7 @@ pub struct ModelSwap {
     pub figures: Option<Arc<Figures>>,
 }
 
-/// A condition's swaps.
+/// Results of a condition after every swap of a representative.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionSubstitutions {
     /// Spread of the gains and delays over the swaps.

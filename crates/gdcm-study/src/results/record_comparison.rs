@@ -53,7 +53,7 @@ impl Trend {
         }
     }
 
-    /// Returns the trend's name.
+    /// Returns the trend in a word: "correct" or "opposite".
     pub fn name(self) -> &'static str {
         match self {
             Self::Correct => "correct",

@@ -1,5 +1,5 @@
-//! Errors that the identified representative itself reports, by its coherence or its standard
-//! deviations (M13.2).
+//! Standard errors of the identified representative, from its coherence or its standard deviations
+//! (M13.2).
 
 use gdcm_method::uncertainty::spread::{CoherenceError, ReportedUncertainty};
 use gdcm_method::uncertainty::{IdentificationSource, Scalar, VarianceComponent};
@@ -19,14 +19,14 @@ struct ReportedError {
     degrees_of_freedom: f64,
 }
 
-/// An identified representative's errors by response, from each source.
+/// Standard errors of the responses of an identified representative, by source.
 pub(crate) struct ReportedErrors {
     by_coherence: Option<PairTable<Option<ReportedError>>>,
     by_bands: Option<PairTable<Option<ReportedError>>>,
 }
 
 impl ReportedErrors {
-    /// Collects the identified representative's errors in a condition.
+    /// Collects the standard errors of the identified representative of a condition.
     pub(crate) fn new(analysis: &Analysis, result: &ConditionAnalysis) -> Self {
         Self {
             by_coherence: errors_by_coherence(analysis, result),
@@ -71,10 +71,12 @@ impl ReportedErrors {
     }
 }
 
-/// Returns whether the error reported by the identified representative enters the error bar of a
-/// value. It does for G, D and the net gains that are constrained and matched, which equal G
-/// (M13.2). For other net gains and for channels only the spread of the models counts: the effect
-/// of a single response's error on them is unknown without the joint errors of all responses.
+/// Returns whether the standard error of the identified representative enters the error bar of a
+/// value.
+///
+/// It does for G, D and the net gains that are constrained and matched, which equal G (M13.2). For
+/// other net gains and for channels only the spread of the models counts: the effect of the
+/// standard error of a single response is unknown without the joint errors of all responses.
 pub fn takes_reported_error(result: &ConditionAnalysis, scalar: Scalar) -> bool {
     match scalar {
         Scalar::Gain(_) | Scalar::Delay(_) | Scalar::BandDelay(_) => true,
@@ -85,13 +87,14 @@ pub fn takes_reported_error(result: &ConditionAnalysis, scalar: Scalar) -> bool 
     }
 }
 
-/// Returns whether a condition's identified representative reports its own error.
+/// Returns whether a standard error of the identified representative of a condition is available,
+/// from its standard deviations or from its coherence.
 pub fn reports_error(analysis: &Analysis, result: &ConditionAnalysis) -> bool {
     errors_by_bands(analysis, result).is_some() || errors_by_coherence(analysis, result).is_some()
 }
 
-/// Returns the errors of the identified representative from its coherence; `None` where coherence
-/// or the number of averages is not available, or coherence is not used.
+/// Returns the standard errors of the identified representative from its coherence; `None` where
+/// coherence or the number of averages is not available, or coherence is not used.
 fn errors_by_coherence(
     analysis: &Analysis,
     result: &ConditionAnalysis,
@@ -116,8 +119,8 @@ fn errors_by_coherence(
     }))
 }
 
-/// Returns the errors of the identified representative from its own standard deviations: medians
-/// over the comparison band. The standard deviations are treated as exact.
+/// Returns the standard errors of the identified representative from the standard deviations of its
+/// model: medians over the comparison band. The standard deviations are treated as exact.
 fn errors_by_bands(
     analysis: &Analysis,
     result: &ConditionAnalysis,

@@ -139,7 +139,8 @@ impl BandwidthFinding {
         self.phase_delay_s = phase_delay;
         self.rule = bandwidth.rule;
         self.gain_limited = bandwidth.is_gain_limited();
-        // Where leads invalidate the phase delay, the line behind it is invalid too.
+        // If leads invalidate the phase delay, the line from which it would be computed is not
+        // stored.
         if let (Some(line), Some(_)) = (bandwidth.phase_line, phase_delay) {
             self.phase_departure_deg = Some(line.departure_deg);
             self.phase_delay_of_line = !line.is_straight();
@@ -164,7 +165,8 @@ impl BandwidthFinding {
         }
     }
 
-    /// Adds intervals from standard deviations: normal, and not below zero.
+    /// Adds intervals from standard deviations, by the normal distribution; the lower end is at
+    /// least zero.
     fn add_deviation_intervals(&mut self, bandwidth: &Bandwidth, level: f64) {
         let factor = student_quantile(level, f64::INFINITY);
         for (name, metric) in METRICS.into_iter().zip(metrics(bandwidth)) {
@@ -237,7 +239,7 @@ impl PairCorrection {
         has_leads: false,
     };
 
-    /// Returns `None` where the net gain is not positive.
+    /// Returns the effect of a correction on a response; `None` where the net gain is not positive.
     fn from_correction(correction: &ChannelCorrection, pair: Pair) -> Option<Self> {
         let has_leads = Channel::of(pair)
             .into_iter()
@@ -279,7 +281,7 @@ struct ConditionBandwidths<'a> {
     physics: usize,
     /// The physics representative and the models that replace it in swaps.
     plain: BTreeMap<usize, EvaluatedModel<'a>>,
-    /// The same models with the couplings, where they have matrices; empty without couplings.
+    /// The models in `plain` with the couplings, where they have matrices; empty without couplings.
     coupled: BTreeMap<usize, EvaluatedModel<'a>>,
     identified: EvaluatedModel<'a>,
     swaps: &'a [ModelSwap],
@@ -378,7 +380,7 @@ impl<'a> ConditionBandwidths<'a> {
         }
         self.coupled
             .get(&index)
-            .ok_or("the physics model has no matrices that couplings can be put into")
+            .ok_or("the physics model has no matrices to which couplings can be applied")
     }
 
     /// Computes a response's bandwidth and phase delay under a correction.
@@ -433,15 +435,24 @@ impl<'a> ConditionBandwidths<'a> {
         let why = match finding.role {
             RequirementRole::Physics | RequirementRole::Corrected => {
                 self.add_swap_intervals(finding, bandwidth, level);
-                "no other model of the bundles gives a spread"
+                "the bundles contain no other model from which to compute a spread"
             }
-            RequirementRole::Scheduled => "the schedule is not made again for each swap of models",
+            RequirementRole::Scheduled => "the schedule is not refitted for each swap of models",
             RequirementRole::Identified => {
                 finding.add_deviation_intervals(bandwidth, level);
                 match (&*self.identified.dynamics, self.identified.bands) {
-                    (_, Some(_)) => "the band of the identified model does not reach so far",
-                    (Dynamics::Measured(_), None) => "the measured response carries no band",
-                    (Dynamics::StateSpace(_), None) => "the identified model carries no band",
+                    (_, Some(_)) => {
+                        "the standard deviations of the identified model do not \
+                        extend to this frequency"
+                    }
+                    (Dynamics::Measured(_), None) => {
+                        "the measured response has no standard \
+                        deviations"
+                    }
+                    (Dynamics::StateSpace(_), None) => {
+                        "the identified model has no standard \
+                        deviations"
+                    }
                 }
             }
         };

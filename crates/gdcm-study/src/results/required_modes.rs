@@ -1,5 +1,5 @@
-//! Modes of the physics representative, without and with the study's couplings, compared with those
-//! of the identified representative, where both models have matrices (M17.3).
+//! Modes of the physics representative, without and with the study's couplings, compared with the
+//! modes of the identified representative, where both models have matrices (M17.3).
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ use gdcm_model::response::pole_estimate::PoleEstimate;
 
 use super::asked_condition::AskedCondition;
 
-/// Poles of identified models with their uncertainty, which a dataset does not store.
+/// Poles of identified models with their uncertainty, by condition; a dataset does not store them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct KnownPoles(BTreeMap<ConditionId, Vec<PoleEstimate>>);
 
@@ -89,7 +89,7 @@ impl ModeNumbers {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ModeFinding {
     pub condition: ConditionId,
-    /// Its true airspeed \[kt\].
+    /// True airspeed of the condition \[kt\].
     pub airspeed_kt: f64,
     /// Index of the mode in this condition, counted from 1 in order of increasing frequency.
     pub number: usize,
@@ -100,8 +100,8 @@ pub struct ModeFinding {
     /// Verdict on the physics mode.
     pub verdict: ModeVerdict,
     pub identified: ModeNumbers,
-    /// Standard deviations of the identified values; `None` where the identification is not
-    /// available.
+    /// Standard deviations of the identified values; `None` if the model has no pole uncertainty,
+    /// for example because it was read from a file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub identified_deviation: Option<ModeValues>,
     /// The physics representative's matching mode, if any.

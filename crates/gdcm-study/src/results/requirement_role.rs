@@ -12,7 +12,7 @@ use gdcm_model::dataset::{BundleKind, Model, StateSpace};
 use super::analysis::{Analysis, ConditionAnalysis};
 use super::assessment_table::AssessedCorrection;
 
-/// Role of a model in the requirements on a condition.
+/// Model version that is checked against the requirements in a condition.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RequirementRole {
@@ -44,7 +44,7 @@ impl RequirementRole {
         }
     }
 
-    /// Returns the role's name.
+    /// Returns the name of the role in files, tables and captions: "physics".
     pub fn name(self) -> &'static str {
         match self {
             Self::Physics => "physics",
@@ -58,11 +58,11 @@ impl RequirementRole {
 /// Why the model of a role cannot be simulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RoleModelError {
-    /// The model is a measured response.
-    #[error("\"{model}\" is a measured response: without matrices it answers to no record")]
+    /// The model is a measured response, without matrices.
+    #[error("\"{model}\" is a measured response: without matrices it cannot be simulated")]
     Measured { model: String },
-    /// The model is discrete-time.
-    #[error("\"{model}\" acts in discrete time: records are simulated in continuous time")]
+    /// The model is discrete-time; only continuous-time models are simulated.
+    #[error("\"{model}\" is a discrete-time model: only continuous-time models can be simulated")]
     Discrete { model: String },
     #[error(transparent)]
     NoSchedule(#[from] ScheduleError),

@@ -22,7 +22,7 @@ use crate::execution::Execution;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SummaryFinding {
     pub condition: ConditionId,
-    /// Its true airspeed \[kt\].
+    /// True airspeed of the condition \[kt\].
     pub airspeed_kt: f64,
     pub role: RequirementRole,
     pub model: String,
@@ -71,7 +71,7 @@ pub struct RequirementCaution {
 /// Qualification requirements on every condition's models, in the export's format.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Requirements {
-    /// The identified band \[rad/s\].
+    /// Comparison band \[rad/s\].
     pub band_rad_s: [f64; 2],
     pub interval_level: f64,
     /// Names of the outputs with attitude command; all other outputs have rate command.
@@ -111,8 +111,11 @@ impl Requirements {
 }
 
 /// Computes the requirements without flight records on every condition with a result (M17.1, M17.3,
-/// M17.4). Each condition is a step. Intervals are based on the error bars of the analysis
-/// ([`Analysis::uncertainty`]), and the `known` poles decide whether flight determines a mode.
+/// M17.4). Each condition is a step.
+///
+/// Intervals are based on the error bars of the analysis ([`Analysis::uncertainty`]). The
+/// uncertainty of the `known` poles determines whether the flight data suffice for a verdict on a
+/// mode.
 ///
 /// # Errors
 /// [`Cancelled`] where `execution` is cancelled.
@@ -261,8 +264,8 @@ fn reversed_phases(analysis: &Analysis, findings: &[BandwidthFinding]) -> Vec<Re
             condition: phase.condition,
             text: format!(
                 "{} ({}): the phase of the attitude at the lowest frequency of the band lies \
-                 within 45 deg of +90 deg, as where the stick or the output counts the other way \
-                 round; the bandwidth is then wrong",
+                within 45 deg of +90 deg, which suggests that the stick or the output has the \
+                opposite sign; the bandwidth is then wrong",
                 analysis.study.dataset.pair_name(phase.pair),
                 phase.roles.join(", ")
             ),

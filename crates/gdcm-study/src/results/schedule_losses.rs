@@ -24,7 +24,6 @@ pub struct DelayedChannel {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OwnDelay {
     pub condition: ConditionId,
-    /// The delay \[s\].
     pub delay_s: f64,
 }
 

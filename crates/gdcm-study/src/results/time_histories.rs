@@ -56,7 +56,7 @@ pub struct HistoryRecords {
 }
 
 impl HistoryRecords {
-    /// Collects the `records` in use.
+    /// Collects those `records` of a condition that are in use, with their preparation.
     pub fn of<'r>(
         condition: ConditionId,
         records: impl IntoIterator<Item = &'r LaidOutRecord>,
@@ -129,7 +129,7 @@ impl ToleranceFinding {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HistoryFinding {
     pub condition: ConditionId,
-    /// Its true airspeed \[kt\].
+    /// True airspeed of the condition \[kt\].
     pub airspeed_kt: f64,
     pub record: String,
     /// Whether the record was excluded from the models' identification.
@@ -142,12 +142,12 @@ pub struct HistoryFinding {
     pub samples: usize,
     /// Number of windows that contain these samples.
     pub windows: usize,
-    /// Longest window \[s\].
+    /// Length of the longest window \[s\].
     pub window_s: f64,
     /// Weighted rms error (M17.4) \[deg, deg/s, ft/s, ft/s^2\]; `None` where no output has such a
     /// unit.
     pub j_rms: Option<f64>,
-    /// Outputs excluded from `j_rms`, because they are no angle, speed or acceleration.
+    /// Outputs excluded from `j_rms`, because they have no such unit.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub j_rms_left_out: Vec<String>,
     /// Theil's coefficient by output name, 0 to 1; constant outputs have none.
@@ -260,12 +260,12 @@ impl TimeHistories {
             .collect()
     }
 
-    /// Returns the applied tolerance rows, in the table's order.
+    /// Returns the quantities of the applied tolerance rows, in the order of the table.
     pub fn quantities(&self) -> impl Iterator<Item = &str> {
         self.applied_rows().map(|row| row.quantity.as_str())
     }
 
-    /// Returns the applied tolerance rows except those for integrated outputs.
+    /// Returns the quantities of the applied tolerance rows without integrated outputs.
     pub fn measured_quantities(&self) -> impl Iterator<Item = &str> {
         self.quantities().filter(|quantity| {
             let rows = self.tolerance_table.rows();
@@ -352,7 +352,8 @@ fn missing_history(condition: Option<ConditionId>, why: String) -> MissingFindin
     }
 }
 
-/// Reports the analysed conditions without records.
+/// Returns the analysed conditions without records, or a single entry for all if there are no
+/// records.
 fn without_records(analysis: &Analysis, records: &[HistoryRecords]) -> Vec<MissingFinding> {
     if records.iter().all(|condition| condition.records.is_empty()) {
         return vec![missing_history(
@@ -368,7 +369,7 @@ fn without_records(analysis: &Analysis, records: &[HistoryRecords]) -> Vec<Missi
         if analysis.condition(id).is_some() && !has_records {
             missing.push(missing_history(
                 Some(id),
-                "no flight record of it was given".to_owned(),
+                "no flight record of this condition was given".to_owned(),
             ));
         }
     }

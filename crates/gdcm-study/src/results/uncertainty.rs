@@ -13,7 +13,7 @@ use gdcm_model::dataset::{ConditionId, Pair, PairTable};
 
 use super::model_swap::ConditionSubstitutions;
 
-/// Airspeeds with no larger difference count as equal \[kt\] (M13.4).
+/// Maximum difference between airspeeds that count as equal \[kt\] (M13.4).
 pub(crate) const EQUAL_AIRSPEED_KT: f64 = 1.0;
 
 /// Uncertainty of the results of an analysis.

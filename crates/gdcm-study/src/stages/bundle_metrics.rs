@@ -18,8 +18,9 @@ use crate::execution::Execution;
 use crate::results::comparison::BundleMetrics;
 
 impl BundleMetrics {
-    /// Computes the distances over the responses marked in `measuring`, two steps for each model.
-    /// Measured models are compared with coherence weights if a minimum coherence is set (M4a).
+    /// Computes the distances within both bundles over the responses marked in `measuring`, and the
+    /// discontinuity ratios; reports two progress steps per model. Measured models are compared
+    /// with coherence weights if a minimum coherence is set (M4a).
     ///
     /// # Errors
     /// [`Cancelled`] where `execution` is cancelled.
@@ -74,7 +75,7 @@ pub(crate) struct MeasuredBundle {
 
 impl MeasuredBundle {
     /// Selects the marked responses of every model, or all responses if no model has a marked
-    /// response; one step for each model.
+    /// response; reports one progress step per model.
     ///
     /// # Errors
     /// [`Cancelled`] where `execution` is cancelled.
@@ -99,7 +100,8 @@ impl MeasuredBundle {
     }
 }
 
-/// Computes the distances between all pairs of models of a bundle, two steps for each model.
+/// Computes the distances between all pairs of models of a bundle; reports two progress steps per
+/// model.
 fn bundle_distance(
     responses: &[Arc<FrequencyResponse>],
     coherence_weights: &[Option<PairTable<CoherenceWeights>>],

@@ -53,7 +53,7 @@ pub(crate) struct ComparedModel {
 }
 
 impl ComparedModel {
-    /// Prepares a model of a bundle; an identified model with coherence weights if a minimum
+    /// Prepares a model of a bundle. An identified model gets coherence weights if a minimum
     /// coherence is set (M4a).
     pub(crate) fn new(
         condition: &Condition,

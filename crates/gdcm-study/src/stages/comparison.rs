@@ -83,7 +83,8 @@ impl ComparisonInput<'_> {
         ModelMismatch { mismatch, cost }
     }
 
-    /// Returns the caution about gains between the representatives outside the computable range.
+    /// Returns the caution about gains between the representatives that are outside the computable
+    /// range.
     fn out_of_range(&self, compared: &ComparedPair<'_>, delta: &Delta) -> Option<Caution> {
         let mut responses =
             GainOutOfRange::of_models(&compared.physics.polar, &compared.identified.polar);

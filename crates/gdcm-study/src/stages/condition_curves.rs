@@ -81,7 +81,7 @@ impl ConditionCurves {
         response
     }
 
-    /// Returns a bundle's responses.
+    /// Returns the responses of the models of a bundle, in file order.
     pub fn bundle(&self, kind: BundleKind) -> &[Arc<FrequencyResponse>] {
         kind.pick(&self.physics, &self.identified)
     }

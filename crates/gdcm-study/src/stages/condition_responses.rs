@@ -93,7 +93,7 @@ impl ConditionResponses {
         models.responses(Purpose::Comparison, key, &grid, execution)
     }
 
-    /// Returns a bundle's responses.
+    /// Returns the responses of the models of a bundle, in file order.
     pub fn bundle(&self, kind: BundleKind) -> &[Arc<FrequencyResponse>] {
         kind.pick(&self.physics, &self.identified)
     }
@@ -131,7 +131,7 @@ impl ModelResponses {
 }
 
 /// Responses of the models in use, keyed by the content of the model: a model keeps its responses
-/// when it is renamed or moved. Engines that share them
+/// when it is renamed or moved to another condition. Engines that share them
 /// ([`Engine::sharing`](super::engine::Engine::sharing)) compute and store each response only once.
 #[derive(Clone, Debug, Default)]
 pub struct KnownModels {
@@ -195,7 +195,6 @@ impl ConditionModels {
         }
     }
 
-    /// Returns the condition.
     pub(crate) fn condition(&self) -> &Arc<Condition> {
         &self.condition
     }
@@ -225,7 +224,7 @@ impl ConditionModels {
                 .all(|(a, b)| a.name == b.name && a.origin == b.origin)
     }
 
-    /// Computes the responses of every model in turn; each model is a step.
+    /// Computes the responses of every model in turn; reports one progress step per model.
     pub(crate) fn responses(
         &self,
         purpose: Purpose,

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! 1  responses of every model                                    (dynamics of the model, grid)
-//! 2  distances within each bundle                                (measuring responses, coherence)
+//! 2  distances within each bundle                                (compared responses, coherence)
 //! 3  representatives, G and D                                    (rejections, pins, averages)
 //! 4  with couplings: responses of the coupled physics models, and stage 3 again
 //! 5  optimal delays and gains                                    (constraints, weights, bounds)
@@ -34,15 +34,15 @@ use crate::results::comparison::{BundleMetrics, Comparison};
 use crate::results::fitted_couplings::{CoupledCondition, FittedCouplings};
 use crate::results::model_swap::ConditionSubstitutions;
 
-/// Proof budget for the gains after a swap: that of the interactive analysis, without a search for
-/// other minima.
+/// Proof budget for the gains after a swap: the work limit of the interactive analysis, without a
+/// search for other minima.
 pub(crate) const SUBSTITUTION_PROOF: ProofBudget = ProofBudget {
     work: 1_000_000,
     listing: 0,
     bytes: 64_000_000,
 };
 
-/// Dependencies of the distances, besides the models.
+/// Inputs on which the distances depend, besides the models.
 #[derive(Clone, Debug, PartialEq)]
 struct MetricsKey {
     grid: GridKey,
@@ -60,7 +60,7 @@ impl MetricsKey {
     }
 }
 
-/// Dependencies of the representatives' comparison, besides the models.
+/// Inputs on which the comparison of the representatives depends, besides the models.
 #[derive(Clone, Debug, PartialEq)]
 struct ComparisonKey {
     metrics: MetricsKey,
@@ -70,7 +70,7 @@ struct ComparisonKey {
     couplings: Option<Arc<FittedCouplings>>,
 }
 
-/// Dependencies of the responses of coupled models, besides the models.
+/// Inputs on which the responses of coupled models depend, besides the models.
 #[derive(Clone, Debug, PartialEq)]
 struct CoupledKey {
     grid: GridKey,
@@ -101,7 +101,8 @@ struct ComparedStages {
 struct Measured<'a> {
     run: Run<'a>,
     condition: Arc<Condition>,
-    /// The responses from which distances and bounds are computed.
+    /// The responses from which distances and bounds are computed: the on-axis responses, or all
+    /// responses if none is on-axis.
     measuring: PairTable<bool>,
     responses: ConditionResponses,
     metrics: Arc<BundleMetrics>,
@@ -134,12 +135,11 @@ impl ConditionStages {
         3 * model_count(condition) + 1
     }
 
-    /// Returns the models with their responses.
     pub(crate) fn models(&self) -> &ConditionModels {
         &self.models
     }
 
-    /// Replaces the cached gains for the same problem.
+    /// Replaces the cached gains if they solve this problem.
     pub(crate) fn take_gains(&mut self, problem: &Arc<Problem>, solution: &Arc<Solution>) {
         self.plain.problems.take_gains(problem, solution);
         self.coupled.problems.take_gains(problem, solution);

@@ -166,8 +166,8 @@ struct LeftOutCondition {
 }
 
 impl LeftOutCondition {
-    /// Returns `None` where couplings or schedule cannot be fitted to the other conditions, or the
-    /// condition cannot be assessed.
+    /// Collects the results of the condition; `None` where couplings or schedule cannot be fitted
+    /// to the other conditions, or the condition cannot be assessed.
     fn new(condition: ConditionId, without: &Analysis, held_out: &Analysis) -> Option<Self> {
         let fit = LeftOutFit {
             condition,
@@ -297,12 +297,12 @@ fn condition_effect(
 
 /// Poles of a condition's kept physics models, without and with couplings.
 struct ConditionPoles {
-    /// Poles of the representative, or why they are unknown.
+    /// Poles of the representative, or why they are unavailable.
     representative: Result<Vec<PoleShift>, String>,
     /// Newly unstable poles of every kept model.
     unstable: Vec<UnstablePole>,
-    /// Other kept models with matrices in which the feedback loop cannot be closed, with the
-    /// reason.
+    /// Names of the other kept models with matrices for which the feedback loop cannot be closed,
+    /// each with the reason.
     refused: Vec<(String, String)>,
 }
 

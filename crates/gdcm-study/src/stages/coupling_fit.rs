@@ -58,7 +58,7 @@ impl CouplingSource {
     }
 }
 
-/// Dependencies of the fit on a condition.
+/// Inputs from a condition on which the fit depends.
 #[derive(Clone, Debug, PartialEq)]
 struct ConditionKey {
     id: ConditionId,
@@ -69,7 +69,7 @@ struct ConditionKey {
     bands: Option<Arc<ModelBands>>,
 }
 
-/// Number of averages assumed for measured responses that do not state it.
+/// Averaging assumed for measured responses that do not state it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Averaging {
     averages: Option<f64>,
@@ -79,7 +79,7 @@ struct Averaging {
     half_overlap: bool,
 }
 
-/// All dependencies of the fit. The weight and the bounds of the gains are not among them.
+/// All inputs on which the fit depends. The weight and the bounds of the gains are not among them.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct CouplingFitKey {
     kind: CouplingKind,

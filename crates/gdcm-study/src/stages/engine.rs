@@ -37,7 +37,7 @@ use crate::results::uncertainty::Uncertainty;
 ///
 /// ```text
 /// responses                      (dynamics of the model, band, points)
-/// distances                      (measuring responses, coherence)
+/// distances                      (compared responses, coherence)
 /// representatives, G, D          (rejections, pins, average)
 /// couplings, where requested: all later stages use the coupled physics models
 /// gains, delays                  (constraints, weights, alpha, bounds)
@@ -99,7 +99,6 @@ impl Engine {
         }
     }
 
-    /// Returns the executor.
     pub(crate) fn executor(&self) -> &dyn Executor {
         self.executor.as_ref()
     }
@@ -110,7 +109,7 @@ impl Engine {
     }
 
     /// Shares the responses of models with other engines. Only the last response of each model is
-    /// cached: this pays for engines with the same band and number of points.
+    /// cached, so that engines should have the same band and number of points.
     pub fn sharing(self, known: &KnownModels) -> Self {
         Self {
             known: known.clone(),
@@ -135,8 +134,8 @@ impl Engine {
         self.analyze_first(study, None, progress)
     }
 
-    /// Works as [`Engine::analyze`], but computes the result of one condition first and reports it
-    /// before the other conditions are started.
+    /// Works as [`Engine::analyze`], but computes the result of one condition first and passes it
+    /// on before the analysis of the other conditions starts.
     pub fn analyze_first(
         &mut self,
         study: &Study,

@@ -1,7 +1,7 @@
 //! Uncertainty of an analysis, computed from swaps of its models (M13).
 //!
 //! ```text
-//! 1  error bar of every gain and delay, from swaps and reported errors             (M13.2, M13.3)
+//! 1  error bar of every gain and delay, from swaps and standard errors             (M13.2, M13.3)
 //! 2  differences of net gains between conditions at equal airspeed, Holm's correction    (M13.4)
 //! 3  components of the scatter over the scheduled conditions                             (M13.5)
 //! 4  confidence bands of the schedule                                                    (M13.6)
@@ -32,7 +32,7 @@ use crate::results::uncertainty::{
     SecondVariableTest, Uncertainty,
 };
 
-/// Maximum number of compared differences.
+/// Maximum number of differences that are computed.
 const MOST_DIFFERENCES: usize = 20_000;
 
 impl Uncertainty {
@@ -91,8 +91,8 @@ fn condition_bars(
     conditions
 }
 
-/// Collects the results of a condition with their spread over the swaps, and with the errors that
-/// the identified representative reports.
+/// Collects the results of a condition with their spread over the swaps, and with the standard
+/// errors of the identified representative.
 fn bar_source<'a>(
     analysis: &Analysis,
     result: &ConditionAnalysis,
@@ -155,8 +155,8 @@ impl<'a> ScheduleEvidence<'a> {
         }
     }
 
-    /// Returns the error bars of a value in the scheduled conditions; `None` where one has no error
-    /// bar.
+    /// Returns the error bars of a value in the scheduled conditions; `None` if one of them is
+    /// missing.
     fn bars(&self, scalar: Scalar) -> Option<Vec<Bar>> {
         self.conditions
             .iter()

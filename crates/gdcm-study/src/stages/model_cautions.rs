@@ -12,7 +12,7 @@ use crate::decisions::study::Study;
 use crate::execution::Execution;
 use crate::results::caution::{BundleModel, Caution, GainOutOfRange, NotFinite};
 
-/// A bundle of a condition with the choices about it.
+/// Bundle of a condition and the data from which its cautions are derived.
 pub(crate) struct BundleCautions<'a> {
     pub(crate) condition: &'a Condition,
     pub(crate) kind: BundleKind,

@@ -51,7 +51,7 @@ pub(crate) struct SwapInput<'a> {
     pub(crate) couplings: Option<&'a Arc<FittedCouplings>>,
 }
 
-/// Correction of a pair of models, with G and both D \[s\].
+/// Optimal correction of a pair of models, with its G and D.
 #[derive(Clone, Debug)]
 pub(crate) struct SwapOptimum {
     pub(crate) correction: ChannelCorrection,
@@ -94,13 +94,13 @@ pub(crate) fn representative_figures(analysis: &ConditionAnalysis) -> Figures {
     optimum.figures()
 }
 
-/// Dependencies of a swap, besides the two models.
+/// Inputs on which a swap depends, besides the two models.
 #[derive(Clone, Debug, PartialEq)]
 struct SwapKey {
     /// Settings of the analysis, except those that affect no swap.
     settings: Settings,
     measuring: PairTable<bool>,
-    /// Representatives: the reference for phase branches.
+    /// The representatives, which determine the phase branches.
     representatives: ModelPair,
     couplings: Option<Arc<FittedCouplings>>,
 }
@@ -149,7 +149,7 @@ impl SwapInput<'_> {
         }
     }
 
-    /// Returns the dependencies of the swaps.
+    /// Returns the inputs on which the swaps depend, besides the two models.
     fn key(&self) -> SwapKey {
         let mut settings = self.run.study.settings.clone();
         settings.schedule = Default::default();
@@ -198,8 +198,8 @@ impl SwapMemo {
             }
         }
         let representatives = input.representatives();
-        // With the mean over all pairs, the values of the representatives differ from those of the
-        // analysis: the pair of representatives is computed too, as the reference of the changes.
+        // With the mean over all pairs, the values of the pair of representatives differ from the
+        // values of the analysis: this pair is computed too, as the reference of the changes.
         let is_mean = input.run.study.settings.gain_source == GainSource::MeanOfPairs;
         let mut wanted: Vec<ModelPair> = swaps
             .iter()
@@ -292,8 +292,8 @@ fn swap_figures(
             let other = input.compared(BundleKind::Identified, pair.identified);
             physics.mismatches(&other)
         };
-        // As for pinned models, each phase difference is on the branch nearest to that of the
-        // representatives (M13.1).
+        // As for pinned models, each phase difference is on the branch nearest to the phase
+        // difference of the representatives (M13.1).
         for (pair, entry) in mismatch.iter_mut() {
             if let Some(median_phase) = median_phases[pair] {
                 *entry = entry

@@ -92,7 +92,7 @@ pub(crate) struct SolvedProblems {
 }
 
 impl SolvedProblems {
-    /// Replaces the cached gains for the same problem.
+    /// Replaces the cached gains if they solve this problem.
     pub(crate) fn take_gains(&mut self, problem: &Arc<Problem>, solution: &Arc<Solution>) {
         if self.gains.holds(problem) {
             self.gains = Memo::with(Arc::clone(problem), Ok(Arc::clone(solution)));
@@ -195,7 +195,8 @@ fn delay_failure(error: &ProblemError) -> ConditionFailure {
 /// Inputs of a condition's optimisation problems.
 pub(crate) struct SolveInput<'a> {
     run: Run<'a>,
-    /// Responses from which the bounds are computed.
+    /// Responses from which the bounds are computed: the on-axis responses, or all responses if
+    /// none is on-axis.
     measuring: &'a PairTable<bool>,
     mismatch: &'a Mismatches,
     delta: &'a Delta,

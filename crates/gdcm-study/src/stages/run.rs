@@ -8,7 +8,7 @@ use super::condition_responses::GridKey;
 use crate::decisions::study::Study;
 use crate::execution::Execution;
 
-/// Context of an analysis.
+/// Study, grid, proof budget and execution of an analysis.
 #[derive(Clone, Copy)]
 pub(crate) struct Run<'a> {
     pub(crate) study: &'a Study,

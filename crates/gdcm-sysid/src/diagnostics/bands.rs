@@ -130,7 +130,6 @@ fn pair_places(model: &BlockModel, pair: Pair) -> Vec<usize> {
 
 /// Responses of a model at a frequency, with the factors of their gradients.
 struct ResponsePoint {
-    /// \[rad/s\].
     omega: f64,
     /// `H`, outputs x inputs.
     response: DMatrix<Complex<f64>>,
@@ -138,7 +137,7 @@ struct ResponsePoint {
     output_resolvent: DMatrix<Complex<f64>>,
     /// `R B`, n x inputs.
     states: DMatrix<Complex<f64>>,
-    /// Mean squares of `Re ln(H_n'/H_n)` and `Im ln(H_n'/H_n)`.
+    /// Mean squares of `Re ln(H_n'/H_n)` (real part) and `Im ln(H_n'/H_n)` (imaginary part).
     order_variance: DMatrix<Complex<f64>>,
 }
 
@@ -295,7 +294,7 @@ mod tests {
         let progress = Shares::new(&Unobserved);
         let data = PreparedData::new(&records, &options, &Sequential, &progress).unwrap();
         // The reference code uses all lines around the band, including the first line of a record,
-        // which is not used otherwise (M14.12).
+        // which this crate does not use (M14.12).
         let [lowest, highest] = [0.5 * band[0], 4.0 / 3.0 * band[1]];
         let between = |lines: Spectrum| lines.between(lowest / 1.3, 1.3 * highest);
         let wide: Vec<Spectrum> = spectra(&data.unfiltered, 1.3 * highest, &Sequential)
@@ -348,7 +347,7 @@ mod tests {
             for (Pair { output, input }, found) in found.iter() {
                 for (k, found) in found.iter().enumerate() {
                     let expected = matrix(&expected[name][k])[(output, input)];
-                    // Independent numpy code; its file states the tolerance.
+                    // Reference results from independent numpy code; the file states the tolerance.
                     assert!(
                         (found / expected - 1.0).abs() < tolerance,
                         "{name} {k}: {found}, not {expected}"

@@ -22,8 +22,9 @@ pub enum IdentificationCaution {
     Records(#[from] RecordCaution),
     /// The longest record is shorter than recommended for the lower band end.
     #[error(
-        "the longest record lasts {longest_s:.0} s, {periods:.1} periods at {lowest:.2} rad/s: the models are less certain at the \
-         lower end of the band; {better_s:.0} s would be better"
+        "the longest record lasts {longest_s:.0} s, {periods:.1} periods at {lowest:.2} rad/s: \
+        the models are less certain at the lower end of the band; at least {better_s:.0} s are \
+        recommended"
     )]
     Short {
         longest_s: f64,
@@ -35,8 +36,8 @@ pub enum IdentificationCaution {
     },
     /// An input was not moved, or was moved only together with others.
     #[error(
-        "{signal} was not swept, or only with another input (partial coherence {partial_coherence:.2}): its column is not \
-                 identified"
+        "{signal} was not swept, or only together with another input (partial coherence \
+        {partial_coherence:.2}): the responses to this input are not identified"
     )]
     NotSwept {
         signal: Signal,
@@ -53,8 +54,8 @@ pub enum IdentificationCaution {
     },
     /// No input moves any output at an end of the band.
     #[error(
-        "{} no input moves any output enough to be seen (partial coherence below {TRUSTED_COHERENCE}): the models are unreliable \
-                 there. Narrow the band",
+        "{} no output responds measurably to any input (partial coherence below \
+        {TRUSTED_COHERENCE}): the models are unreliable there. Narrow the band",
         hidden_ends(*band, *shown)
     )]
     BandNotShown {
@@ -65,19 +66,20 @@ pub enum IdentificationCaution {
     },
     /// An output vibrates above the band; a lower cut-off was used before the projections.
     #[error(
-        "{percent:.0} % of {signal} is vibration above the band: CT-PBSID was run below {cut_off:.0} rad/s"
+        "{percent:.0} % of the variance of {signal} is vibration above the band: CT-PBSID used \
+        only frequencies below {cut_off:.0} rad/s"
     )]
     Vibration {
         signal: Signal,
         /// Share of the variance of the output above the cut-off \[%\].
         percent: f64,
-        /// \[rad/s\].
+        /// Cut-off frequency \[rad/s\].
         cut_off: f64,
     },
     /// The overall residual is larger than the noise.
     #[error(
-        "the residual is {cost:.1} times the noise, largest in {record} and in {signal}: a non-linear response, wrong time \
-         alignment, or a missing input"
+        "the residual is {cost:.1} times the noise, largest in {record} and in {signal}. Possible \
+        causes: a non-linear response, wrong time alignment, a missing input"
     )]
     Inadequate {
         /// Cost per degree of freedom; 1 is adequate.
@@ -89,8 +91,8 @@ pub enum IdentificationCaution {
     },
     /// The residual of a record is larger than the noise.
     #[error(
-        "{name} is unlike the others: its residual is {cost:.1} times the noise. Possible causes: another trim, a large amplitude, \
-         a gust. It can be left out"
+        "{name} is unlike the others: its residual is {cost:.1} times the noise. Possible causes: \
+        another trim, a large amplitude, a gust. Consider leaving the record out"
     )]
     UnlikeRecord {
         /// Index of the record, counted from 0.
@@ -107,7 +109,7 @@ pub enum IdentificationCaution {
         /// The larger `F` of the records; 1 is agreement.
         contrast: f64,
     },
-    /// Gusts and noise went into the inputs through the feedback.
+    /// The feedback carried gusts and noise into the inputs.
     #[error("{}", feedback_text(*level, *share))]
     Feedback {
         level: FeedbackLevel,
@@ -126,27 +128,29 @@ pub enum IdentificationCaution {
     LeavesPoints {
         output: Signal,
         input: Signal,
-        /// \[rad/s\].
+        /// Lower and upper frequency \[rad/s\].
         band: [f64; 2],
         /// Mean squared distance over the variance of the points; 12 is the limit.
         strength: f64,
     },
     /// The criterion still falls at the highest order tried.
     #[error(
-        "an order above {order} would fit better: the band holds more states. Narrow the band, for example to {:.1} rad/s",
+        "an order above {order} would fit better: the dynamics in the band have more states. \
+        Narrow the band, for example to {:.1} rad/s",
         narrower[1]
     )]
     OrderLimit {
-        /// The highest order.
+        /// The highest order tried.
         order: usize,
         /// A suggested narrower band \[rad/s\].
         narrower: [f64; 2],
     },
     /// The model does not predict the held-out records.
     #[error(
-        "the held-out records are not predicted: the residual is {normalised:.1} times the noise with the model free to move \
-         within its uncertainty, and {raw:.1} times without. The aircraft was flown differently, or the records contain too little \
-         excitation"
+        "the held-out records are not predicted: the residual is {normalised:.1} times the noise \
+        if the model may vary within its uncertainty, and {raw:.1} times the noise otherwise. \
+        Possible causes: the aircraft was flown differently, or the records contain too little \
+        excitation"
     )]
     HeldOut {
         /// Names of the held-out records.
@@ -156,32 +160,35 @@ pub enum IdentificationCaution {
         /// Cost per degree of freedom with the model free to move within its uncertainty.
         normalised: f64,
     },
-    /// Records were weighed by their noise; the value is the ratio of the largest to the smallest
-    /// cost per degree of freedom before.
-    #[error("the records differ in noise by a factor of {0:.1}: they were weighed accordingly")]
+    /// The records were reweighted by their noise; the value is the ratio of the largest to the
+    /// smallest cost per degree of freedom before reweighting.
+    #[error(
+        "the noise of the records differs by a factor of {0:.1}: the records were weighted \
+        accordingly"
+    )]
     Reweighed(f64),
     /// The held-out records cannot be compared with the model in time.
     #[error("the model was not compared with the held-out records in time: {0}")]
     NotValidated(ValidationError),
-    /// An unstable pole above the lines used.
+    /// The model has an unstable pole above the highest spectral line used.
     #[error(
-        "the model has an unstable pole of {:.0} rad/s, above the lines used (to {highest:.0} rad/s): it is an artefact, and the model \
-         was not simulated in time",
+        "the model has an unstable pole of {:.0} rad/s, above the highest spectral line used \
+        ({highest:.0} rad/s): the pole is an artefact, and the model was not simulated in time",
         pole.norm()
     )]
     Unstable {
-        /// \[rad/s\].
+        /// The unstable pole \[rad/s\].
         pole: Complex<f64>,
-        /// Highest line used \[rad/s\].
+        /// Highest spectral line used \[rad/s\].
         highest: f64,
     },
-    /// Outputs and inputs whose responses are not identified.
-    #[error("{} not identified: one standard deviation is over 3 dB", responses_are(.0))]
+    /// Output and input of each response that is not identified.
+    #[error("{} not identified: the standard deviation exceeds 3 dB", responses_are(.0))]
     PairsNotIdentified(Vec<[Signal; 2]>),
 }
 
 impl IdentificationCaution {
-    /// Whether the effects of some inputs cannot be separated.
+    /// Returns whether the effects of some inputs cannot be separated.
     pub(crate) fn is_of_collinear_inputs(&self) -> bool {
         matches!(
             self,
@@ -189,7 +196,7 @@ impl IdentificationCaution {
         )
     }
 
-    /// Whether another caution is a mere consequence of this one.
+    /// Returns whether another caution is a mere consequence of this one.
     ///
     /// The residual of a contradicting record is not due to its noise; and if the sign of a channel
     /// is reversed, no input seems to be swept in the mean over the records.
@@ -268,7 +275,7 @@ impl IdentificationCaution {
     }
 }
 
-/// Whether the fault of a record is a reversed sign.
+/// Returns whether the fault of a record is a reversed sign.
 fn has_turned_sign(record: &ContradictingRecord) -> bool {
     matches!(record.fault, Some(RecordFault::Gain(_, factor)) if factor < 0.0)
 }
@@ -330,9 +337,9 @@ fn responses_are(pairs: &[[Signal; 2]]) -> String {
     format!("{} {verb}", listed(&names))
 }
 
-/// Writes which records contradict each other, and their possible faults.
+/// Describes which records contradict each other, and their possible faults.
 fn contradiction_text(records: &[ContradictingRecord], contrast: f64) -> String {
-    let agreement = format!("(F {contrast:.0}; 1 is agreement)");
+    let agreement = format!("(F = {contrast:.0}; 1 means agreement)");
     match records {
         [] => String::new(),
         [record] => {
@@ -342,7 +349,8 @@ fn contradiction_text(records: &[ContradictingRecord], contrast: f64) -> String 
                 None => String::new(),
             };
             format!(
-                "{name} contradicts the other records {agreement}.{fault} Correct it, or leave the record out"
+                "{name} contradicts the other records {agreement}.{fault} Correct the record, or \
+                leave it out"
             )
         }
         records => {
@@ -364,16 +372,17 @@ fn contradiction_text(records: &[ContradictingRecord], contrast: f64) -> String 
 /// Describes the effect of the feedback, and the remedy.
 fn feedback_text(level: FeedbackLevel, share: f64) -> String {
     let percent = 100.0 * share;
-    let remedy =
-        "Sweep more strongly, or give the recorded reference that drove the loop (--reference)";
+    let remedy = "Sweep with a larger amplitude, or specify the recorded reference that drove the loop \
+        (--reference)";
     match level {
         FeedbackLevel::TooMuch => format!(
-            "do not use this model: about {percent:.0} % of the measured response is gusts and noise fed back into the inputs, not the \
-             aircraft, however well the model fits. {remedy}"
+            "do not use this model: about {percent:.0} % of the measured response is due to gusts \
+            and noise fed back into the inputs, not to the aircraft, however well the model \
+            fits. {remedy}"
         ),
         FeedbackLevel::Some | FeedbackLevel::None => format!(
-            "about {percent:.0} % of the measured response is gusts and noise fed back into the inputs: the models are off by a few tenths \
-             of a dB. {remedy}"
+            "about {percent:.0} % of the measured response is due to gusts and noise fed back \
+            into the inputs: the models have errors of a few tenths of a dB. {remedy}"
         ),
     }
 }

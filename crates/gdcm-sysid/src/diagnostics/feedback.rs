@@ -31,7 +31,7 @@ use crate::spectra::local_polynomial::local_polynomial;
 use crate::spectra::response_estimate::ResponseEstimate;
 use crate::spectra::spectrum::{LineRange, Spectrum};
 
-/// Sample time of the predictor times the upper band end \[rad\].
+/// Product of the predictor's sample time and the upper band end \[rad\].
 const STEP: f64 = 0.25;
 /// Minimum number of past samples in the predictor.
 const LEAST_PAST: usize = 6;
@@ -51,7 +51,8 @@ const SURE: f64 = 0.4;
 const LEAST_SHARE: f64 = 0.05;
 /// Fed-back share from which the bands are widened (M14.17).
 const WIDENED: f64 = 0.04;
-/// Segments are used if their sample time differs from that of the first by less than this share.
+/// Segments are used if their sample time differs from the first segment's by less than this
+/// share.
 const ALIKE: f64 = 0.01;
 
 /// Minimum `b` and `z` of a feedback level.
@@ -76,7 +77,7 @@ pub struct Feedback {
     pub share: f64,
     /// `z`, the median of `|G_b|^2` over its variance; 0.7 without feedback.
     pub significance: f64,
-    /// \[rad/s\], ascending.
+    /// Frequencies \[rad/s\], ascending.
     omega: Vec<f64>,
     /// `|G_b / G|` at each frequency, outputs x inputs.
     ratios: Vec<DMatrix<f64>>,
@@ -95,10 +96,10 @@ pub enum FeedbackLevel {
 
 /// The records that are examined for feedback.
 pub(crate) struct FeedbackRecords<'a> {
-    /// Scaled segments without a filter.
+    /// Scaled segments, not filtered.
     pub(crate) segments: &'a [Segment],
     pub(crate) lines: LineRange,
-    /// \[rad/s\].
+    /// Lower and upper band end \[rad/s\].
     pub(crate) band: [f64; 2],
 }
 
@@ -196,7 +197,7 @@ impl Feedback {
     }
 }
 
-/// `G_b` of a response at a frequency.
+/// `G_b` of a response at a frequency, compared with `G`.
 #[derive(Clone, Copy)]
 struct ComparedPoint {
     /// `|G_b / G|`.
@@ -239,8 +240,8 @@ fn counted_points(moduli: &[DMatrix<f64>], fed_back: &ResponseEstimate) -> Vec<C
     }
 }
 
-/// Returns every `step`-th sample less the means; columns are instants, rows are the inputs, then
-/// the outputs.
+/// Returns every `step`-th sample after subtraction of the means; columns are instants, rows are
+/// the inputs, then the outputs.
 fn thin(segment: &Segment, step: usize) -> DMatrix<f64> {
     let inputs = segment.inputs.ncols();
     let outputs = segment.outputs.ncols();
@@ -344,8 +345,8 @@ impl Predictor {
         error
     }
 
-    /// Converts the lines of the errors to the effect of noise and gusts on the outputs (step 3);
-    /// `None` where the predictor is singular.
+    /// Converts the spectral lines of the prediction errors to the effect of noise and gusts on the
+    /// outputs (step 3); `None` where the predictor is singular.
     fn add_memory(&self, spectrum: &mut Spectrum, step_s: f64) -> Option<()> {
         let outputs = self.coefficients.ncols();
         let channels = self.inputs + outputs;

@@ -18,8 +18,8 @@ use crate::spectra::spectrum::Spectrum;
 
 /// Cost per degree of freedom above which a model is not adequate.
 const ADEQUATE: f64 = 1.5;
-/// A record is unlike the others if its cost per degree of freedom exceeds this many times the one
-/// of all records.
+/// A record is unlike the others if its cost per degree of freedom exceeds this multiple of the
+/// cost per degree of freedom over all records.
 const UNLIKE: f64 = 1.5;
 /// Limits on the held-out cost per degree of freedom, with the model free to move within its
 /// uncertainty: up to the first, records are predicted well; above the second, they are not
@@ -61,7 +61,8 @@ impl Diagnostics<'_> {
             .map_or_else(String::new, |record| record.name.clone())
     }
 
-    /// Compares the costs of all records, of each record and of the held-out records with limits.
+    /// Returns cautions about costs beyond their limits: of all records, of each record and of the
+    /// held-out records.
     pub(crate) fn adequacy(&self, fits: &RecordFits) -> Vec<IdentificationCaution> {
         let (held_out, fitted): (Vec<&RecordFit>, Vec<&RecordFit>) =
             fits.records.iter().partition(|fit| fit.held_out);
@@ -102,7 +103,7 @@ impl Diagnostics<'_> {
         cautions
     }
 
-    /// Reports the responses that are not identified; `pairs` are outputs and inputs.
+    /// Returns the caution about responses that are not identified; `pairs` are outputs and inputs.
     pub(crate) fn unidentified_pairs(
         &self,
         pairs: &[(usize, usize)],
@@ -120,7 +121,7 @@ impl Diagnostics<'_> {
         Some(IdentificationCaution::PairsNotIdentified(signals))
     }
 
-    /// Reports the responses that depart from their measured points.
+    /// Returns a caution for each response that departs from its measured points.
     pub(crate) fn departures(&self) -> Vec<IdentificationCaution> {
         let (outputs, inputs) = self.fit.model.d.shape();
         let predicted = predict_points(&self.fit.model, &self.data, self.options);
@@ -212,14 +213,14 @@ fn predict_lines(model: &BlockModel, lines: &Spectrum) -> Spectrum {
 pub(crate) struct Departure {
     /// Maximum of `T`.
     pub(crate) greatest: f64,
-    /// The band in which the model departs from the points.
+    /// The band in which the model departs from the points; `None` if it does not.
     pub(crate) band: Option<DepartureBand>,
 }
 
 /// A band in which a model departs from its measured points.
 #[derive(Clone, Copy)]
 pub(crate) struct DepartureBand {
-    /// \[rad/s\].
+    /// Lower and upper frequency \[rad/s\].
     pub(crate) ends: [f64; 2],
     /// Maximum of `T` in the band.
     pub(crate) strength: f64,

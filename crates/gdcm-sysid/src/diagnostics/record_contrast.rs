@@ -43,8 +43,8 @@ const MOST_KNOWN: f64 = 0.98;
 const FREE_SCALE: f64 = 1e-9;
 /// `F` above which a record contradicts the others.
 const CONTRADICTS: f64 = 4.0;
-/// `F` above which a record contradicts the others if gusts are fed back: these differ between
-/// flights.
+/// `F` above which a record contradicts the others if gusts are fed back, because gusts differ
+/// between flights.
 const CONTRADICTS_IN_GUSTS: f64 = 12.0;
 /// Ratio of the largest `F` to the second largest from which only the worst record is reported.
 const ALONE: f64 = 1.5;
@@ -61,7 +61,7 @@ pub struct RecordContrast {
     pub contrast: f64,
 }
 
-/// The records behind a fit that minimises their likelihood.
+/// Comparison of the records of a fit at its optimum.
 pub(crate) struct RecordContrasts<'a> {
     likelihood: &'a Likelihood<'a>,
     /// Lines of each segment in scaled units, not whitened.
@@ -126,8 +126,8 @@ impl<'a> RecordContrasts<'a> {
         })
     }
 
-    /// Reports the record that contradicts the others, or two that contradict each other, each with
-    /// its most likely fault.
+    /// Returns the caution about the record that contradicts the others, or about two records that
+    /// contradict each other, each with its most likely fault.
     pub(crate) fn caution(
         &self,
         is_in_gusts: bool,

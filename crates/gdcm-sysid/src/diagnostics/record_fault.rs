@@ -50,7 +50,7 @@ impl RecordFault {
         }
     }
 
-    /// Returns the delay of a timing fault \[s\].
+    /// Returns the delay of a timing fault \[s\]; `None` for a wrong gain.
     #[must_use]
     pub fn delay_s(&self) -> Option<f64> {
         match self {

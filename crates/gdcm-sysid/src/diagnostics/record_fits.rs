@@ -31,8 +31,8 @@ pub(crate) struct HeldOutCost {
 
 /// Fit of a model to all records, each record and each output.
 pub(crate) struct RecordFits {
-    /// Fits of the records that have degrees of freedom, in record order. Those of fitted records
-    /// are corrected for the number of parameters: `J_r / dof_r  N / (N - k)` (M14.13).
+    /// Fits of the records that have degrees of freedom, in record order. The cost of a fitted
+    /// record is corrected for the number of parameters: `J_r / dof_r  N / (N - k)` (M14.13).
     pub(crate) records: Vec<RecordFit>,
     /// `J` per degree of freedom of each output over the fitted records.
     pub(crate) outputs: Vec<f64>,

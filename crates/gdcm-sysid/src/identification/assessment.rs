@@ -25,8 +25,8 @@ use crate::options::Options;
 
 /// Number of frequencies in the bands.
 const BAND_POINTS: usize = 60;
-/// Upper end of the suggested narrower band over the present end, used if the highest order is too
-/// low.
+/// Ratio of the upper end of the suggested band to the present upper end; the band is suggested if
+/// the highest order is too low.
 const NARROWER: f64 = 0.7;
 /// Standard deviation above which a response is not identified \[dB\].
 const NOT_IDENTIFIED_DB: f64 = 3.0;
@@ -50,7 +50,7 @@ impl Uncertainty {
     }
 }
 
-/// Assesses the recommended model.
+/// The recommended model, with the data for its assessment.
 pub(super) struct Assessment<'a> {
     pub(super) records: &'a [FlightRecord],
     pub(super) options: &'a Options,
@@ -61,7 +61,7 @@ pub(super) struct Assessment<'a> {
 /// The recommended model with its uncertainty, its fits and all doubts.
 pub(super) struct AssessedModel {
     pub(super) uncertainty: Uncertainty,
-    /// Models without each record.
+    /// Models fitted without one record each.
     pub(super) without: Vec<ModelWithoutRecord>,
     pub(super) fits: RecordFits,
     /// Contradiction between each fitted record and the others (M14.16).
@@ -71,7 +71,8 @@ pub(super) struct AssessedModel {
 }
 
 impl Assessment<'_> {
-    /// Computes covariance, bands, models without each record, fits, doubts and the validation.
+    /// Computes covariance, bands, models fitted without one record each, fits, doubts and the
+    /// validation.
     pub(super) fn assess(&self, progress: &Shares) -> Result<AssessedModel, IdentificationError> {
         let Refinement {
             fit, likelihood, ..
@@ -81,7 +82,7 @@ impl Assessment<'_> {
             .systems(likelihood)
             .ok_or_else(|| self.data.no_model())?;
         let uncertainty = self.uncertainty(&systems)?;
-        progress.next(0.88, "models without each record")?;
+        progress.next(0.88, "models fitted without one record each")?;
         let without = without_each_record(likelihood, fit, &systems);
         progress.next(0.93, "validation")?;
         let covariance = &uncertainty.covariance;
@@ -105,8 +106,8 @@ impl Assessment<'_> {
         })
     }
 
-    /// Whether no reference was used. With a reference there is no feedback to measure, and all
-    /// records are measured through the same reference.
+    /// Returns whether no reference was used. With a reference there is no feedback to measure, and
+    /// all records are measured through the same reference.
     fn is_direct(&self) -> bool {
         self.options.references == 0
     }
@@ -175,7 +176,7 @@ impl Assessment<'_> {
 
     /// Compares the records with each other; `None` with a reference.
     ///
-    /// The fit before reweighing is used, because the weights hide which record is wrong.
+    /// The fit before reweighting is used, because the weights hide which record is wrong.
     fn contrasts(&self) -> Result<Option<RecordContrasts<'_>>, IdentificationError> {
         if !self.is_direct() {
             return Ok(None);
@@ -233,7 +234,7 @@ impl Assessment<'_> {
         cautions
     }
 
-    /// Returns an unstable pole above the lines used.
+    /// Returns an unstable pole above the highest spectral line used, if there is one.
     fn unstable_pole(&self) -> Option<Complex<f64>> {
         fast_unstable_pole(&self.refinement.fit.model, self.options.highest())
     }
@@ -266,7 +267,8 @@ impl Assessment<'_> {
     }
 }
 
-/// Reports gusts and noise that the feedback brought into the inputs.
+/// Returns the caution about gusts and noise that the feedback carried into the inputs; `None`
+/// without a visible effect.
 fn feedback_caution(feedback: Option<&Feedback>) -> Option<IdentificationCaution> {
     let feedback = feedback?;
     let level = feedback.level();

@@ -26,7 +26,7 @@ const KEPT: usize = 2;
 const FASTEST: f64 = 8.0;
 /// Share of the total progress that the candidates take.
 const SHARE: f64 = 0.2;
-/// Ridge of the predictor over unit columns.
+/// Ridge of the predictor, relative to columns of unit length.
 const RIDGE: f64 = 1e-8;
 
 /// CT-PBSID settings.
@@ -51,7 +51,7 @@ pub(crate) struct Candidate {
     pub(crate) pole: f64,
     /// Past window.
     pub(crate) past: usize,
-    /// Cost of the model with the order that is compared.
+    /// Cost of the model at the order at which candidates are compared.
     cost: f64,
     subspace: Subspace,
 }
@@ -133,7 +133,7 @@ impl SubspaceSettings {
     }
 }
 
-/// Compares Laguerre poles and past windows.
+/// Comparison of Laguerre poles and past windows.
 struct Ranking<'r> {
     settings: &'r SubspaceSettings,
     segments: &'r [Segment],
@@ -180,7 +180,7 @@ impl<'r> Ranking<'r> {
     fn rank_pole(&self, number: usize) -> Result<Vec<Candidate>, Cancelled> {
         let executor = self.likelihood.executor;
         let poles = &self.settings.poles;
-        let step = format!("pole {} of {}", number + 1, poles.len());
+        let step = format!("Laguerre pole {} of {}", number + 1, poles.len());
         self.progress
             .advance(self.share, &format!("{step}, projections"))?;
         let projections = Projections {

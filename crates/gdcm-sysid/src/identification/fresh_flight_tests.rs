@@ -35,7 +35,7 @@ fn calm(seed: u64) -> Flown {
     Flown::calm(seed, 0)
 }
 
-/// Flies `count` times for a minute, with fresh seeds.
+/// Simulates `count` flights of a minute, with fresh seeds.
 fn flights(count: u64, seed: u64, flown: impl Fn(u64) -> Flown) -> Vec<FlightRecord> {
     let file = known();
     (0..count)
@@ -43,7 +43,7 @@ fn flights(count: u64, seed: u64, flown: impl Fn(u64) -> Flown) -> Vec<FlightRec
         .collect()
 }
 
-/// Flies `count` times; the outputs of the last flight are logged four samples late.
+/// Simulates `count` flights; the outputs of the last flight are logged four samples late.
 fn last_late(count: u64, seed: u64) -> Vec<FlightRecord> {
     let mut records = flights(count, seed, calm);
     let last = Flown::calm(10_000 + 10 * seed + count - 1, 4)
@@ -140,7 +140,7 @@ const TRAPS: [Trap; 11] = [
         follows: &[],
         flown: |seed| {
             let mut records = flights(3, seed, calm);
-            // From 20 s on for 3 s, at 50 Hz.
+            // The output is held for 3 s from 20 s on, at 50 Hz.
             let held = records[0].outputs[(1000, 0)];
             records[0].outputs.rows_mut(1000, 150).fill(held);
             Flights {
@@ -279,7 +279,7 @@ fn assert_cautions_over(seeds: Range<u64>) {
 }
 
 impl Trap {
-    /// Whether a code is neither the one of the trap nor a consequence.
+    /// Returns whether a code is neither the code of the trap nor one of its consequences.
     fn is_other(&self, code: &str) -> bool {
         !code.starts_with(self.code) && !self.follows.contains(&code)
     }
@@ -308,7 +308,7 @@ fn an_input_at_its_limit_is_a_fact_and_no_caution() {
     records[0].inputs.apply(|u| *u = u.clamp(-0.9, 0.9));
     let facts = facts(&records);
     assert!(
-        matches!(&facts[..], [fact] if fact.contains("LON is at its limit for") && fact.ends_with("used as it is")),
+        matches!(&facts[..], [fact] if fact.contains("LON is at its limit for") && fact.ends_with("used as logged")),
         "{facts:?}"
     );
 }
@@ -338,8 +338,8 @@ fn aircraft(inputs: usize, outputs: usize, random: &mut Generator) -> StateSpace
     StateSpace::new(a, b, c, DMatrix::zeros(outputs, inputs)).unwrap()
 }
 
-/// Flies a sweep of a minute in each input in turn, the others moving a little; the noise on every
-/// output has a fiftieth of the amplitude.
+/// Simulates a one-minute sweep of each input in turn while the others move a little; the noise of
+/// every output has a fiftieth of the output's amplitude.
 fn sweeps(model: &StateSpace, random: &mut Generator) -> Vec<FlightRecord> {
     const STEP_S: f64 = 0.02;
     let time_s: Vec<f64> = (0..3000).map(|k| STEP_S * f64::from(k)).collect();

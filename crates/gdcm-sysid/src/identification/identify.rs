@@ -37,9 +37,10 @@ pub struct Identification {
     pub refined: Model,
     /// CT-PBSID without refinement, with the same order.
     pub unrefined: Model,
-    /// The bundle around the recommended model: the neighbouring orders, then without each record.
+    /// The bundle around the recommended model: models of neighbouring orders, then models fitted
+    /// without one record each.
     pub bundle: Vec<Model>,
-    /// The response measured without a model.
+    /// The response estimated from the records without a model.
     pub measured: ResponseEstimate,
     /// Poles of the recommended model.
     pub poles: Vec<PoleEstimate>,
@@ -66,9 +67,9 @@ pub struct Identification {
     pub record_fits: Vec<RecordFit>,
     /// Cost per degree of freedom of each output, over the fitted records.
     pub output_costs: Vec<f64>,
-    /// The recommended model against the held-out records in time.
+    /// Comparison of the recommended model with the held-out records in time.
     pub validation: Option<Validation>,
-    /// Used parts of every record.
+    /// Parts of every record that were used.
     pub record_uses: Vec<RecordUse>,
     /// Indices of output and input of each response with a standard deviation over 3 dB in the
     /// middle of the band.
@@ -175,7 +176,7 @@ impl Models<'_> {
         self.model(name, method, model, None)
     }
 
-    /// Returns the neighbouring orders, then the models without each record.
+    /// Returns the models of neighbouring orders, then the models fitted without one record each.
     fn bundle(&self, refinement: &Refinement, without: &[ModelWithoutRecord]) -> Vec<Model> {
         let mut bundle = Vec::new();
         for neighbour in refinement.search.neighbours() {

@@ -1,4 +1,4 @@
-//! Known answers for the tests of this module: synthetic systems, computed by independent numpy
+//! Reference results for the tests of this module: synthetic systems, computed by independent numpy
 //! code.
 
 use nalgebra::{Complex, DMatrix};
@@ -10,7 +10,7 @@ use gdcm_model::executor::Sequential;
 use crate::likelihood::cost::{Likelihood, SpectralLines};
 use crate::spectra::spectrum::Spectrum;
 
-/// Reads the file of known answers.
+/// Reads the file of reference results.
 pub(crate) fn answers() -> Value {
     serde_json::from_str(include_str!(
         "../../../../tests/data/identification-known-answers.json"

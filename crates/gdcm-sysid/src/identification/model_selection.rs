@@ -16,7 +16,7 @@ use crate::subspace::stabilisation::{StabilisationPoint, stabilisation};
 
 /// Maximum number of further steps at the chosen order, after the comparison of orders.
 const FURTHER_STEPS: usize = 15;
-/// Maximum number of steps after records were reweighed.
+/// Maximum number of steps after the records were reweighted.
 const STEPS_AFTER_REWEIGHING: usize = 3;
 /// Maximum ratio of the largest to the smallest cost per degree of freedom at which records keep
 /// their weights.
@@ -34,14 +34,14 @@ pub(crate) struct Proposal {
     pub(crate) stabilisation: Vec<StabilisationPoint>,
 }
 
-/// The refined model of the chosen order, with the search behind it.
+/// The refined model of the chosen order, and the search for that order.
 pub(crate) struct Refinement<'a> {
     /// The orders that were compared.
     pub(crate) search: OrderSearch,
     /// The recommended model.
     pub(crate) fit: Fit,
-    /// The model before records were reweighed, if they were: the minimum of the cost with the
-    /// measured noise.
+    /// The model before the reweighting, if the records were reweighted: the minimum of the cost
+    /// with the measured noise.
     pub(crate) before_reweighing: Option<Fit>,
     /// The cost that `fit` minimises.
     pub(crate) likelihood: Likelihood<'a>,
@@ -74,7 +74,8 @@ pub(crate) fn propose(
     })
 }
 
-/// Chooses the order, refines its model further, and reweighs records once if they differ in noise.
+/// Chooses the order, refines its model further, and reweights the records once if they differ in
+/// noise.
 pub(crate) fn refine<'a>(
     data: &PreparedData<'a>,
     proposal: &Proposal,
@@ -120,7 +121,7 @@ struct Reweighing<'a> {
     likelihood: Likelihood<'a>,
     /// The model at the new weights.
     start: Fit,
-    /// Ratio of the largest to the smallest cost per degree of freedom, before the reweighing.
+    /// Ratio of the largest to the smallest cost per degree of freedom, before the reweighting.
     ratio: f64,
 }
 

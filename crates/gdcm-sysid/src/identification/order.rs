@@ -39,8 +39,8 @@ const NEAR: f64 = 0.01;
 /// An order without a fast unstable pole is preferred if its criterion is worse by at most this
 /// share.
 const NEAR_UNSTABLE: f64 = 0.03;
-/// Cost of a neighbouring order over that of the chosen order, above which it is left out of the
-/// uncertainty.
+/// Ratio of the cost of a neighbouring order to the cost of the chosen order above which the
+/// neighbouring order does not enter the uncertainty.
 const STARVED: f64 = 1.5;
 
 /// Thoroughness of the comparison between orders.
@@ -200,7 +200,7 @@ impl PreparedData<'_> {
     }
 }
 
-/// A running comparison between orders.
+/// State of the comparison between orders.
 struct Comparison<'s> {
     data: &'s PreparedData<'s>,
     /// The unrefined models.
@@ -261,8 +261,8 @@ impl Comparison<'_> {
         Ok(())
     }
 
-    /// Removes a real pole from the model of the next order, or a pair from that of the order after
-    /// it, and returns the result with the lower cost.
+    /// Removes a real pole from the model one order higher, or a complex pair from the model two
+    /// orders higher, and returns the result with the lower cost.
     fn cheapest_from_above(&self, order: usize) -> Option<Fit> {
         let mut starts = Vec::new();
         for size in [1, 2] {
@@ -300,7 +300,7 @@ impl Comparison<'_> {
         order_of_least(&held_out_costs).unwrap_or(best)
     }
 
-    /// Whether the model of an order has no fast unstable pole.
+    /// Returns whether the model of an order exists and has no fast unstable pole.
     fn is_sound(&self, order: usize) -> bool {
         self.fits
             .get(&order)

@@ -31,14 +31,14 @@ use crate::subspace::search_extent::{Extent, FIGURES_AN_UNKNOWN, parameters_of_o
 
 /// Number of frequencies of the measured response.
 const MEASURED_POINTS: usize = 40;
-/// Upper limit of the lines of the measured response, over the highest line used.
+/// Ratio of the highest line of the measured response to the highest line used in the fit.
 const BEYOND: f64 = 1.3;
 /// Condition number of the correlation matrix of the inputs above which they depend on each other.
 const COPY: f64 = 1e9;
 /// An input is involved in a dependence if its entry in the eigenvector exceeds this share of the
 /// largest.
 const INVOLVED: f64 = 0.1;
-/// Upper band end over the highest line used.
+/// Ratio of the upper band end to the highest line used.
 const BAND_END: f64 = 0.75;
 /// Minimum length of the longest record, in periods at the lower band end (M14.12).
 const LEAST_PERIODS: f64 = 1.5;
@@ -49,9 +49,9 @@ const PERIODS_AN_INPUT: f64 = 3.0;
 
 /// Records, prepared, transformed and weighted.
 pub(crate) struct PreparedData<'a> {
-    /// Used parts of every record.
+    /// Parts of every record that are used.
     pub(crate) record_uses: Vec<RecordUse>,
-    /// Record units over scaled units.
+    /// Factors from scaled units to record units.
     pub(crate) scales: Scales,
     /// Segments to fit, low-passed for the projections.
     pub(crate) segments: Vec<Segment>,
@@ -153,8 +153,8 @@ impl<'a> PreparedData<'a> {
         })
     }
 
-    /// Returns the settings of CT-PBSID: the options, completed by those that the amount of data
-    /// allows (M14.13).
+    /// Returns the settings of CT-PBSID: the options, with unset orders and past windows
+    /// chosen by the amount of data (M14.13).
     pub(crate) fn subspace_settings(&self, options: &Options) -> SubspaceSettings {
         let outputs = self.scales.outputs.len();
         let highest = options.band[1];
@@ -184,8 +184,8 @@ impl<'a> PreparedData<'a> {
         }
     }
 
-    /// Converts a model to record units: each response is multiplied by the scale of the output
-    /// over that of the input. `None` if the model is not finite.
+    /// Converts a model to record units: each response is multiplied by the ratio of its output's
+    /// scale to its input's scale. `None` if the model is not finite.
     pub(crate) fn in_units(&self, model: &BlockModel) -> Option<StateSpace> {
         let mut scaled = model.clone();
         for (input, scale) in self.scales.inputs.iter().enumerate() {
@@ -208,7 +208,7 @@ impl<'a> PreparedData<'a> {
         }
     }
 
-    /// Returns the error that no model was found.
+    /// Returns the error for the case that no model was found.
     pub(crate) fn no_model(&self) -> IdentificationError {
         IdentificationError::NoModel {
             lines: self.line_count(),
@@ -398,7 +398,7 @@ impl Lines {
     }
 }
 
-/// Weighs lines by the measured noise.
+/// Weights lines by the measured noise.
 fn weigh<'a>(
     spectra: &[Spectrum],
     measured: &ResponseEstimate,
@@ -432,8 +432,10 @@ fn check_sampling(segments: &[Segment], options: &Options) -> Result<(), Identif
     })
 }
 
+/// Returns a caution for records that are shorter than recommended (M14.12).
+///
 /// Returns an error for records that are too short for the lower band end or for a first-order
-/// model, and reports records that are shorter than recommended (M14.12).
+/// model.
 fn check_length(
     segments: &[Segment],
     lines: &[Spectrum],
@@ -516,7 +518,8 @@ fn check_inputs(segments: &[Segment], options: &Options) -> Result<(), Identific
     Err(IdentificationError::InputsDepend(involved))
 }
 
-/// Keeps the cautions about model channels: a reference may move like an input.
+/// Keeps only the cautions about channels of the model: a reference may move together with an
+/// input.
 fn model_cautions(cautions: Vec<RecordCaution>, options: &Options) -> Vec<IdentificationCaution> {
     let mut kept = Vec::new();
     for caution in cautions {
@@ -536,7 +539,7 @@ fn model_cautions(cautions: Vec<RecordCaution>, options: &Options) -> Vec<Identi
     kept
 }
 
-/// Reports an end of the band at which the records show no response.
+/// Returns the caution about the ends of the band at which the records show no response.
 fn band_caution(measured: &ResponseEstimate, options: &Options) -> Option<IdentificationCaution> {
     let shown = measured.shown_band(options.band)?;
     Some(IdentificationCaution::BandNotShown {
@@ -557,7 +560,7 @@ fn vibration_cautions(cut_off: &CutOff, options: &Options) -> Vec<Identification
     cautions
 }
 
-/// Reports inputs that were not moved, or not by themselves.
+/// Returns cautions about inputs that were not moved, or moved only together with others.
 fn excitation_cautions(
     measured: &ResponseEstimate,
     options: &Options,

@@ -1,5 +1,5 @@
-//! Known answers of M14.12 to M14.18 for flights of one axis by a stated generator, computed by
-//! independent numpy code.
+//! Reference results of M14.12 to M14.18 for flights of one axis, which a stated generator
+//! produces; computed by independent numpy code.
 
 use nalgebra::{Complex, DMatrix};
 use serde_json::Value;
@@ -30,7 +30,7 @@ use crate::spectra::response_estimate::EstimatePoint;
 use crate::spectra::scales::Scales;
 use crate::spectra::spectrum::spectra;
 
-/// Reads the file of known answers.
+/// Reads the file of reference results.
 pub(crate) fn known() -> Value {
     serde_json::from_str(include_str!(
         "../../../../tests/data/identification-real-known-answers.json"
@@ -343,7 +343,7 @@ fn a_model_of_too_low_an_order_leaves_its_points() {
     );
 }
 
-/// Flies once for each seed of the known answers.
+/// Simulates a flight for each seed of the reference results.
 fn flown_with_seeds(file: &Value, answers: &Value) -> Vec<FlightRecord> {
     let mut records = Vec::new();
     for seed in numbers(&answers["seeds"]) {
@@ -421,7 +421,8 @@ fn bands_are_widened_from_a_fed_back_share_of_0_04_on() {
                 input: 0,
             };
             let more = widened.sd_db()[pair][k].powi(2) - plain.sd_db()[pair][k].powi(2);
-            // (8.686 / sqrt 2 |G_b / G|)^2 dB^2 (M14.17); rounding of squares.
+            // (8.686 / sqrt 2 |G_b / G|)^2 dB^2 (M14.17); the tolerance covers the rounding of
+            // squares.
             let expected = if is_widened {
                 0.5 * (8.685_889_6 * feedback.ratio(*omega, (0, 0))).powi(2)
             } else {
@@ -580,10 +581,10 @@ fn a_reference_frees_the_response_from_feedback() {
         for (k, omega) in numbers(&file["generator"]["w"]).into_iter().enumerate() {
             let error_db =
                 20.0 * (response_at(model, omega)[(0, 0)].norm() / truth[k].norm()).log10();
-            // The file states the error where the reference excites (M14.15). At 1.5 rad/s in
-            // gusts, where the chirp has just begun, it does not: its coherence with the input is
-            // 0.2, which the views hatch; the error of the independent code is 2.3 dB there, and
-            // here 5.6 dB.
+            // The file states the error where the reference excites the aircraft (M14.15). In the
+            // gusty flight it does not at 1.5 rad/s, where the chirp has just begun: the coherence
+            // with the input is 0.2, and the error is 2.3 dB with the independent code and 5.6 dB
+            // here.
             let excites = nearest(omega).partial_coherence[(0, 0)] >= TRUSTED_COHERENCE;
             assert_eq!(
                 excites,
@@ -656,7 +657,7 @@ fn the_quadrotor_is_identified_from_its_binary_sequence() {
         &Unobserved,
     )
     .unwrap();
-    // Independent numpy code (M14.14): 35.9, 30.8 and 22.6 dB.
+    // Reference results from independent numpy code (M14.14): 35.9, 30.8 and 22.6 dB.
     for (found, expected) in magnitudes_db(&found).into_iter().zip([35.9, 30.8, 22.6]) {
         assert!((found - expected).abs() < 0.7, "{found} dB, not {expected}");
     }
@@ -729,7 +730,7 @@ fn the_quadrotors_sweep_shows_its_feedback_and_the_reference_mends_that() {
             "{at} rad/s: {found}, not {expected}, sd {sd} dB"
         );
     }
-    // Where the reference does not excite, the uncertainty is large.
+    // Where the reference does not excite the aircraft, the uncertainty is large.
     let coherence = |omega: &f64| {
         let nearest = |point: &&EstimatePoint| (point.omega / omega).ln().abs();
         let near = mended

@@ -15,7 +15,8 @@ use gdcm_model::response::schur_form::SchurForm;
 
 use super::linear_model::LinearModel;
 
-/// Maximum imaginary part over modulus of a real eigenvalue: the error of the Schur iteration.
+/// Maximum ratio of imaginary part to modulus of an eigenvalue that counts as real: the error of
+/// the Schur iteration.
 const REAL: f64 = 1e-9;
 
 /// The free parameters of a block.
@@ -79,7 +80,7 @@ pub(crate) struct BlockModel {
 }
 
 impl BlockModel {
-    /// Counts the parameters: n (1 + inputs + outputs) + outputs x inputs.
+    /// Returns the number of parameters: n (1 + inputs + outputs) + outputs x inputs.
     pub(crate) fn parameters(&self) -> usize {
         self.order() * (1 + self.b.ncols() + self.c.nrows()) + self.d.len()
     }
@@ -159,8 +160,8 @@ impl BlockModel {
         StateSpace::new(a, self.b.clone(), self.c.clone(), self.d.clone()).ok()
     }
 
-    /// Returns the model after a step in its parameters: those of the blocks, then `B`, `C`, `D`
-    /// row by row.
+    /// Returns the model after a step in its parameters: the parameters of the blocks, then `B`,
+    /// `C`, `D` row by row.
     pub(crate) fn stepped(&self, step: &DVector<f64>) -> Self {
         let mut stepped = self.clone();
         let mut steps = step.iter();
@@ -300,7 +301,7 @@ impl Modes {
             let pole = schur.t[(at, at)];
             let vector = schur.eigenvector(at);
             let largest = vector[vector.icamax()];
-            // Rotated so that its largest entry is real.
+            // Rotate the vector so that its largest entry is real.
             let vector = vector * (largest.conj() / largest.norm());
             if pole.im.abs() <= REAL * pole.norm() {
                 modes.real.push(RealMode {

@@ -34,7 +34,7 @@ pub(crate) const DEPENDENT: f64 = 1e-12;
 pub(crate) struct SpectralLines {
     /// Index of the record, counted from 0.
     pub(crate) record: usize,
-    /// \[rad/s\].
+    /// Frequencies \[rad/s\].
     pub(crate) omega: Vec<f64>,
     /// `U`, inputs x lines.
     pub(crate) inputs: DMatrix<Complex<f64>>,
@@ -383,7 +383,7 @@ impl<'a> Likelihood<'a> {
         records
     }
 
-    /// Returns the segments without those of a record.
+    /// Returns the likelihood without the segments of a record.
     pub(crate) fn without(&self, record: usize) -> Self {
         let segments = self
             .segments

@@ -25,7 +25,7 @@ const UNKNOWN: f64 = 1e3;
 /// Maximum standard deviation of a determined pole, relative to its modulus.
 const DETERMINED: f64 = 0.5;
 
-/// Parameter covariance.
+/// Covariance of the model parameters, and their information matrix.
 #[derive(Clone, Debug)]
 pub(crate) struct ParameterCovariance {
     /// `phi G^+`.
@@ -63,7 +63,7 @@ impl ParameterCovariance {
         Self::new(&system, cost / spare as f64)
     }
 
-    /// Computes the covariance of a model from other lines than the fitted ones.
+    /// Computes the covariance of a model from lines other than the fitted lines.
     pub(crate) fn from_lines(likelihood: &Likelihood, fit: &Fit) -> Option<Self> {
         let parts = likelihood.parts(&fit.model)?;
         let systems = normal_systems(likelihood, &fit.model, &parts)?;
@@ -143,7 +143,7 @@ impl ParameterCovariance {
     }
 }
 
-/// Returns the square root of a variance, at most `most`; `most` if the variance is not finite.
+/// Returns the square root of a variance, limited to `most`; `most` if the variance is not finite.
 fn bounded_root(variance: f64, most: f64) -> f64 {
     if variance.is_finite() {
         variance.max(0.0).sqrt().min(most)

@@ -1,4 +1,4 @@
-//! Models without each record, by a damped step (M14.5).
+//! Models fitted without one record each, by a damped step (M14.5).
 
 use gdcm_model::executor::each;
 
@@ -14,7 +14,8 @@ pub(crate) struct ModelWithoutRecord {
     pub(crate) model: BlockModel,
 }
 
-/// Computes the model without each record, by a damped step with the given normal systems.
+/// Computes a model for each record, fitted without that record, by a damped step with the given
+/// normal systems.
 ///
 /// ```text
 /// (G - G_r + lambda diag) d = g - g_r

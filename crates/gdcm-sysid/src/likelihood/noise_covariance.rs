@@ -9,7 +9,7 @@ use crate::spectra::response_estimate::{EstimatePoint, ResponseEstimate};
 const SMOOTHING: [f64; 5] = [1.0, 2.0, 3.0, 2.0, 1.0];
 /// Share added to the diagonal, which keeps the covariance of dependent outputs regular (M14.2).
 const ADDED: f64 = 1e-4;
-/// Minimum noise variance over output power; even exact data have rounding errors.
+/// Minimum noise variance relative to the output power; even exact data have rounding errors.
 const FLOOR: f64 = 1e-16;
 
 /// `Cv` at a frequency.
@@ -99,7 +99,7 @@ fn smoothed(points: &[EstimatePoint], k: usize) -> DMatrix<f64> {
     let mut sum = points[k].noise.scale(0.0);
     let mut weights = 0.0;
     for (weight, neighbour) in SMOOTHING.iter().zip(k..) {
-        // Neighbours before the first point do not exist.
+        // Skip neighbours before the first point, which do not exist.
         let Some(neighbour) = neighbour.checked_sub(reach) else {
             continue;
         };

@@ -51,7 +51,7 @@ impl NormalSystem {
         sum
     }
 
-    /// Subtracts another system.
+    /// Returns this system minus another.
     pub(crate) fn without(&self, other: &Self) -> Self {
         Self {
             matrix: &self.matrix - &other.matrix,
@@ -93,7 +93,7 @@ pub(crate) fn normal_systems(
     .collect()
 }
 
-/// Sums the normal systems of a record; `systems` holds those of all segments.
+/// Sums the normal systems of a record; `systems` holds the normal systems of all segments.
 pub(crate) fn system_of_record(
     likelihood: &Likelihood,
     record: usize,
@@ -514,7 +514,7 @@ impl<'a> Gram<'a> {
         }
     }
 
-    /// Adds `J'e`.
+    /// Adds the gradient `J'e`.
     fn add_gradient(&mut self) {
         let order = self.model.order();
         let inputs = self.model.b.ncols();
@@ -616,7 +616,8 @@ mod tests {
     fn cost_gradient_and_diagonal_match_independent_code() {
         let known = &answers()["likelihood_noise_free"];
         let (cost, system) = total(&known_records(known), &known_start(known));
-        // Independent numpy code; its file states the tolerance. The cost agrees as well.
+        // Reference results from independent numpy code; the file states the tolerance. The cost
+        // agrees as well.
         assert!(
             (cost / number(&known["cost_at_start"]) - 1.0).abs() < 1e-8,
             "{cost}"
@@ -671,7 +672,7 @@ mod tests {
                 SpectralLines::weighted(&spectrum, (0..segment.omega.len()).map(weight).collect());
         }
         let mut model = known_start(known);
-        // A single pole beside the pairs.
+        // Add a single pole to the pairs.
         model.blocks.push(Block::Single(-0.9));
         model.b = model.b.insert_row(4, 0.3);
         model.c = model.c.insert_column(4, -0.4);
@@ -757,7 +758,7 @@ mod tests {
         for (i, &p) in places.iter().enumerate() {
             for (j, &q) in places.iter().enumerate() {
                 let expected = columns[i].dot(&columns[j]);
-                // Normal equations of columns of length 10: rounding errors of 1e2.
+                // Products of columns of length 10: rounding errors of numbers up to 1e2.
                 assert!((system.matrix[(p, q)] - expected).abs() < 1e-10, "{p} {q}");
             }
         }

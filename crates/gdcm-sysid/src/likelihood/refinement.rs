@@ -87,7 +87,7 @@ impl Fit {
         normal_systems(likelihood, &self.model, &self.parts)
     }
 
-    /// Counts the parameters, without those that only change the state basis.
+    /// Returns the number of parameters, without those that only change the state basis.
     pub(crate) fn effective_parameters(&self) -> usize {
         parameters_of_order(
             self.model.order(),
@@ -193,7 +193,7 @@ mod tests {
         let start = StateSpace::new(a, b, c, d).unwrap();
         let likelihood = known_records(known);
         let fit = Fit::start(&likelihood, BlockModel::from_state_space(&start).unwrap()).unwrap();
-        // Independent numpy code; its file states the tolerances.
+        // Reference results from independent numpy code; the file states the tolerances.
         assert!(
             (fit.cost / number(&known["cost_at_start"]) - 1.0).abs() < 1e-8,
             "{}",

@@ -22,11 +22,14 @@ pub struct SaidChannel {
     pub column: Option<String>,
 }
 
-/// Reasons why a text is not a channel list.
+/// Reasons why a string is not a channel list.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ChannelListError {
     /// Text between commas that is not a channel.
-    #[error("expected CHANNEL or CHANNEL=COLUMN, as P or P [deg/s]=roll_rate, found \"{0}\"")]
+    #[error(
+        "expected CHANNEL or CHANNEL=COLUMN, for example P or P [deg/s]=roll_rate, found \
+        \"{0}\""
+    )]
     NoChannel(String),
     /// Duplicate channel.
     #[error("duplicate channel {0}")]
@@ -75,7 +78,7 @@ impl FromStr for SaidChannel {
     }
 }
 
-/// Whether the text in a bracket is an index, as in `xyz[0]`, and not a unit.
+/// Returns whether the text in a bracket is an index, as in `xyz[0]`, and not a unit.
 fn is_index(inside: &str) -> bool {
     inside.bytes().all(|byte| byte.is_ascii_digit())
 }

@@ -151,9 +151,9 @@ impl ColumnSearch<'_> {
         })
     }
 
-    /// Whether a field of a topic may be the channel because it has the same name. In logs with
-    /// documented columns the field has another meaning, unless the user names it: "PIDR.P" is not
-    /// a roll rate.
+    /// Returns whether a field of a topic may be the channel because it has the same name. In logs
+    /// with documented columns the field has another meaning, unless the user names it: "PIDR.P" is
+    /// not a roll rate.
     fn may_be_field(&self) -> bool {
         let is_documented = self
             .table
@@ -167,7 +167,7 @@ impl ColumnSearch<'_> {
         self.columns(|column| names.iter().any(|name| column.field() == *name))
     }
 
-    /// Returns the columns whose unit can be converted to that of the channel.
+    /// Returns the columns whose unit can be converted to the channel's unit.
     fn convertible(&self, columns: &[usize]) -> Vec<usize> {
         let mut found = Vec::new();
         for column in columns {
@@ -191,9 +191,9 @@ const LARGEST_RELATIVE_CHANGE: f64 = 0.02;
 /// movement of any stick in flight.
 const LARGEST_RELATIVE_CHANGE_OF_NAMESAKE: f64 = 0.002;
 
-/// Whether a column is a latitude or a longitude, whose names resemble input names: an angle that
-/// hardly changes. Without a unit in the file, the table must have a latitude and a longitude that
-/// are both nearly constant.
+/// Returns whether a column is a latitude or a longitude, whose names resemble input names: an
+/// angle that hardly changes. Without a unit in the file, the table must have a latitude and a
+/// longitude that are both nearly constant.
 fn is_position(table: &RecordTable, column: usize, rule: &ChannelRule) -> bool {
     let own = &table.columns[column];
     if !has_folded_name(own, &LATITUDE) && !has_folded_name(own, &LONGITUDE) {
@@ -215,7 +215,7 @@ fn has_folded_name(column: &RecordColumn, names: &[&str]) -> bool {
     names.contains(&folded_name(&column.name).as_str())
 }
 
-/// Whether samples, times `factor` in degrees, are within ±180° and change little.
+/// Returns whether samples, converted to degrees by `factor`, are within ±180° and change little.
 fn is_place_angle(column: &RecordColumn, factor: f64) -> bool {
     let Some((least, most)) = column.range() else {
         return false;
@@ -224,8 +224,8 @@ fn is_place_angle(column: &RecordColumn, factor: f64) -> bool {
         && least.abs().max(most.abs()) * factor <= 180.0
 }
 
-/// Whether a column with a folded name from `names` changes, but by less than `largest_change`
-/// relative to its largest absolute value.
+/// Returns whether a column with a folded name from `names` changes, but by less than
+/// `largest_change` relative to its largest absolute value.
 fn has_near_constant_angle(table: &RecordTable, names: &[&str], largest_change: f64) -> bool {
     table.columns.iter().any(|column| {
         let Some((least, most)) = column.range() else {

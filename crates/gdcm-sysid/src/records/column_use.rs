@@ -11,7 +11,6 @@ use super::record_table::{RecordColumn, RecordTable};
 /// A record's column, used as a channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColumnUse {
-    /// Column index.
     pub column: usize,
     /// Channel units per column unit; negative for the opposite sign.
     pub factor: f64,
@@ -67,7 +66,7 @@ impl ColumnUse {
         }
     }
 
-    /// Uses the column in the unit `said` for a channel with the unit `unit`.
+    /// Converts the column from the unit `said` to the channel's unit `unit`.
     #[must_use]
     pub fn in_unit(self, said: &str, unit: &str) -> Self {
         Self {
@@ -99,8 +98,8 @@ impl ColumnUse {
     }
 
     /// Returns the remedy to store with the dataset: the remedy of the record, times the part of
-    /// the factor that cannot be derived from the file again. The file gives its unit, or else the
-    /// unit of the dataset applies, and its column name may have a sign mark.
+    /// the factor that cannot be derived again from the unit (of the file, or else of the dataset)
+    /// and from the sign mark in the column name.
     pub(super) fn kept_remedy(&self, table: &RecordTable, rule: &ChannelRule) -> ChannelRemedy {
         let from_file = match table.columns.get(self.column) {
             Some(column) => factor_from_file(column, rule),

@@ -41,8 +41,8 @@ pub fn dataset_of_records(
     )?;
     let header = DatasetHeader {
         name: name.to_owned(),
-        description: "Created from flight records; a placeholder with zero response stands in \
-                      for the physics model."
+        description: "Created from flight records; a placeholder with zero response replaces the \
+            physics model."
             .to_owned(),
         on_axis: on_axis(&inputs, &outputs),
         inputs,

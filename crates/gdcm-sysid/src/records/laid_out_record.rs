@@ -29,7 +29,7 @@ pub struct LaidOutRecord {
     /// Columns of the file.
     pub table: Arc<RecordTable>,
     pub layout: RecordLayout,
-    /// Information from the record's name, or from the user instead.
+    /// Information from the record's name, or given by the user instead.
     pub guess: RecordGuess,
     pub used: bool,
     /// Problems that prevent the use of the record.
@@ -88,8 +88,8 @@ impl LaidOutRecord {
         (record, notes)
     }
 
-    /// Creates a record with its channels. A record named by the dataset follows the dataset: in
-    /// its units if the file gives none, with the factors and delays stored there. A user-defined
+    /// Creates a record with its channels. A record named by the dataset is read with the factors
+    /// and delays stored there, and in the dataset's units if the file gives none. A user-defined
     /// conversion replaces the stored factor.
     pub fn as_dataset_says(
         table: RecordTable,
@@ -110,7 +110,7 @@ impl LaidOutRecord {
             }
             if remedy != ChannelRemedy::NONE {
                 notes.push(format!(
-                    "{name}: times {}, delay of {} s removed, from the dataset",
+                    "{name}: multiplied by {}, delay of {} s removed, as stored in the dataset",
                     remedy.factor, remedy.delay_s
                 ));
                 remedies.insert(name.clone(), remedy);
@@ -123,7 +123,7 @@ impl LaidOutRecord {
         (record.as_said(&entry, &channels), notes)
     }
 
-    /// Returns the first and the last time of the record \[s\], on its own clock; `None` while
+    /// Returns the first and the last time of the record \[s\], on the record's clock; `None` while
     /// there are problems, or without finite stamps.
     pub fn span_s(&self) -> Option<[f64; 2]> {
         let flight = self.flight.as_ref()?;
@@ -160,7 +160,7 @@ impl LaidOutRecord {
     }
 
     /// Returns the varying columns that are neither the time nor a channel: these may have driven
-    /// the loop from outside (M14.15). The flag of a column tells whether it is named like a
+    /// the loop from outside (M14.15). The flag states whether the column is named like a
     /// reference; flagged columns come first.
     pub fn possible_references(&self) -> Vec<(&str, bool)> {
         let mut taken = Vec::new();
@@ -205,7 +205,8 @@ impl LaidOutRecord {
     }
 }
 
-/// Whether a word in a name marks a recorded reference: "pos_ref", "RATE.RDes", "SIDD.Targ".
+/// Returns whether a word in a name marks a recorded reference: "pos_ref", "RATE.RDes",
+/// "SIDD.Targ".
 fn is_reference_name(name: &str) -> bool {
     name.to_lowercase()
         .split(|letter: char| !letter.is_alphanumeric())
@@ -250,7 +251,7 @@ fn original_of<'r>(
     })
 }
 
-/// Whether all samples agree to the last bit; the clocks may differ.
+/// Returns whether all samples agree to the last bit; the clocks may differ.
 fn is_copy(a: &FlightRecord, b: &FlightRecord) -> bool {
     has_same_bits(&a.inputs, &b.inputs) && has_same_bits(&a.outputs, &b.outputs)
 }

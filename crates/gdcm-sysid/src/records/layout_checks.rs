@@ -144,8 +144,8 @@ fn stamp_problems(time: TimeBase, table: &RecordTable, column: usize) -> Vec<Lay
     problems
 }
 
-/// Returns the problem that stamps repeat or decrease, with the number of such stamps and the first
-/// of them.
+/// Returns a problem if stamps repeat or decrease; it states the number of such stamps and the
+/// first of them.
 fn order_problem(times_s: &[f64], column: &str) -> Option<LayoutProblem> {
     let mut previous: Option<f64> = None;
     let mut problem: Option<LayoutProblem> = None;
@@ -199,7 +199,7 @@ fn channel_problem(
     open_unit(table, rule, used).or_else(|| implausible_magnitude(table, rule, used))
 }
 
-/// Returns the problem that neither the file nor the samples determine the unit.
+/// Returns a problem if neither the file nor the samples determine the unit.
 fn open_unit(table: &RecordTable, rule: &ChannelRule, used: ColumnUse) -> Option<LayoutProblem> {
     let units = used.open_units(table, &rule.unit);
     let (last, rest) = units.split_last()?;
@@ -211,9 +211,9 @@ fn open_unit(table: &RecordTable, rule: &ChannelRule, used: ColumnUse) -> Option
     })
 }
 
-/// Returns the problem that samples are implausible in the channel's unit. Columns identified
-/// by a system's documentation are not checked: they are not guesses, and quadrotors turn faster
-/// than helicopters.
+/// Returns a problem if samples are implausible in the channel's unit. Columns identified by a
+/// system's documentation are not checked: they are not guesses, and quadrotors turn faster than
+/// helicopters.
 fn implausible_magnitude(
     table: &RecordTable,
     rule: &ChannelRule,
@@ -245,7 +245,7 @@ fn implausible_magnitude(
     })
 }
 
-/// Returns the caution that some, but not all, samples are missing.
+/// Returns a caution if some, but not all, samples are missing.
 fn missing_samples(
     table: &RecordTable,
     channel: &ChosenColumn,

@@ -25,11 +25,10 @@ pub enum LayoutProblem {
         number(*after), number(*before)
     )]
     TimeOrder {
-        /// In quotation marks.
+        /// Column name in quotation marks.
         column: String,
         /// Number of repeated or decreasing stamps.
         count: usize,
-        /// Number of samples.
         samples: usize,
         /// The first repeated or decreasing stamp, counted from 1.
         sample: usize,
@@ -44,7 +43,7 @@ pub enum LayoutProblem {
         telling(*step_s, 3)
     )]
     TimeStep {
-        /// In quotation marks.
+        /// Column name in quotation marks.
         column: String,
         /// The median step \[s\].
         step_s: f64,
@@ -61,7 +60,7 @@ pub enum LayoutProblem {
         found: String,
     },
     /// Several columns match this channel.
-    #[error("several columns can be the {side} {channel}: {found}; choose one")]
+    #[error("several columns match the {side} {channel}: {found}; choose one")]
     SeveralColumns {
         side: ChannelSide,
         channel: String,
@@ -70,7 +69,8 @@ pub enum LayoutProblem {
     },
     /// The columns have no names.
     #[error(
-        "the file has {found} columns without names; give the column number of each channel, as in {channel}=#2"
+        "the file has {found} columns without names; give the column number of each channel, for \
+        example {channel}=#2"
     )]
     Unnamed {
         /// Name of the first channel, for the example in the message.
@@ -91,16 +91,16 @@ pub enum LayoutProblem {
     },
     /// Neither file nor samples determine the unit.
     #[error(
-        "the file does not give the unit of {channel} (column {column}), and its samples can be in {units}; choose it \
-         with --unit \"{channel}={unit}\" or on page Columns"
+        "the file does not give the unit of {channel} (column {column}), and its samples can be \
+        in {units}; choose the unit with --unit \"{channel}={unit}\" or on page Columns"
     )]
     UnsaidUnit {
         channel: String,
-        /// In quotation marks.
+        /// Column name in quotation marks.
         column: String,
         /// The channel's unit.
         unit: String,
-        /// Units that fit the samples, as a list.
+        /// List of the units in which the samples are plausible.
         units: String,
     },
     /// The unit in the file has another dimension than the channel's unit.
@@ -109,7 +109,7 @@ pub enum LayoutProblem {
     )]
     Conversion {
         channel: String,
-        /// In quotation marks.
+        /// Column name in quotation marks.
         column: String,
         /// Unit in the file.
         from: String,
@@ -124,14 +124,14 @@ pub enum LayoutProblem {
         first: String,
         /// The other channel, or "the time".
         second: String,
-        /// In quotation marks.
+        /// Column name in quotation marks.
         column: String,
     },
     /// The column has no finite values.
     #[error("{channel}: column {column} has no numeric sample; choose another column")]
     Empty {
         channel: String,
-        /// In quotation marks.
+        /// Column name in quotation marks.
         column: String,
     },
     /// The factor is zero or not finite.
@@ -143,11 +143,7 @@ pub enum LayoutProblem {
     },
     /// The delay is not plausible for a sensor or a bus.
     #[error("{channel}: the delay of {} s exceeds the limit of 10 s", number(*delay_s))]
-    Delay {
-        channel: String,
-        /// Delay \[s\].
-        delay_s: f64,
-    },
+    Delay { channel: String, delay_s: f64 },
     /// Samples exceed the plausible range of a helicopter in this unit.
     #[error(
         "{channel} (column {column}) reaches {} {unit}, above the limit of {} {unit} for a helicopter: the column or its unit is wrong{hint}",
@@ -155,7 +151,7 @@ pub enum LayoutProblem {
     )]
     Magnitude {
         channel: String,
-        /// In quotation marks.
+        /// Column name in quotation marks.
         column: String,
         /// Maximum absolute sample, in the channel's unit.
         value: f64,
@@ -172,7 +168,7 @@ pub enum LayoutProblem {
 }
 
 impl LayoutProblem {
-    /// Whether a channel has no column.
+    /// Returns whether a channel has no column.
     pub fn is_missing(&self) -> bool {
         matches!(self, Self::NoColumn { .. } | Self::Unnamed { .. })
     }
@@ -185,27 +181,26 @@ pub enum LayoutCaution {
     #[error("{channel} (column {column}) does not change in this record")]
     Constant {
         channel: String,
-        /// In quotation marks.
+        /// Column name in quotation marks.
         column: String,
     },
     /// Two channels have the same samples.
     #[error("{first} and {second} have the same samples")]
     Same { first: String, second: String },
     /// The record repeats another record under a different name.
-    #[error("same samples as {first}: left out, because evidence counts once")]
+    #[error("same samples as {first}: left out, so that no measurement counts twice")]
     Copy {
-        /// The earlier record's name.
+        /// Name of the earlier record.
         first: String,
     },
     /// Samples are missing.
     #[error("{channel} (column {column}): {count} of {samples} samples are missing")]
     Missing {
         channel: String,
-        /// In quotation marks.
+        /// Column name in quotation marks.
         column: String,
         /// Number of missing samples.
         count: usize,
-        /// Number of samples.
         samples: usize,
     },
     /// Stamps are missing.
@@ -213,7 +208,6 @@ pub enum LayoutCaution {
     MissingTime {
         /// Number of missing stamps.
         count: usize,
-        /// Number of samples.
         samples: usize,
     },
 }

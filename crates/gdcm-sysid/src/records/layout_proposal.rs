@@ -45,9 +45,10 @@ impl RecordLayout {
     /// 1  time     topic stamps; the user's sample time or column; the column named like
     ///             a time; the file's sample time
     /// 2  channel  by name, or by aliases if it has some (column_candidates); if no input has a
-    ///             candidate and the file marks as many inputs, those in order (outputs likewise)
+    ///             candidate and the file marks equally many inputs: the marked columns in order
+    ///             (the same for outputs)
     /// 3  factor   the user's; from the file's unit; from the rule's unit for files without units;
-    ///             from the only unit that fits the samples; else open
+    ///             from the only unit in which the samples are plausible; else open
     /// 4  sign     by the mark in the alias or in the column name: -R, az (down); a channel NZ from
     ///             a column az needs the user's decision
     /// ```
@@ -197,7 +198,7 @@ impl Proposer<'_> {
         let mut uses = Vec::with_capacity(rules.len());
         if is_unmatched && marked.len() == rules.len() && !rules.is_empty() {
             self.notes.push(format!(
-                "the file marks {} columns as {side}s under other names: taken in order",
+                "the file marks {} columns with other names as {side}s: assigned in order",
                 rules.len()
             ));
             for (rule, column) in rules.iter().zip(marked) {
@@ -211,7 +212,7 @@ impl Proposer<'_> {
         uses
     }
 
-    /// Uses the only candidate; no candidate or several are a problem.
+    /// Returns the only candidate; adds a problem if there is no candidate, or more than one.
     fn only_candidate(
         &mut self,
         side: ChannelSide,
@@ -259,7 +260,7 @@ impl Proposer<'_> {
         let reason = if marked_alias.is_some() {
             "as requested"
         } else {
-            "by its name"
+            "as its name indicates"
         };
         self.notes.push(format!(
             "{}: sign of column {} reversed, {reason}",
@@ -364,8 +365,8 @@ impl Proposer<'_> {
                     format!(" (× {})", number(used.factor))
                 };
                 format!(
-                    "column {quoted}, taken to be in {only}: the file does not say, \
-                     and no other unit is possible{factor}"
+                    "column {quoted}, assumed to be in {only}: the file gives no unit, and the \
+                    samples are plausible in no other unit{factor}"
                 )
             }
             _ => format!("column {quoted} unchanged: the file gives no unit"),
@@ -380,7 +381,7 @@ impl Proposer<'_> {
     }
 }
 
-/// Whether a name has a sign mark: "-az", "az (down)".
+/// Returns whether a name has a sign mark: "-az", "az (down)".
 fn has_sign_mark(name: &str) -> bool {
     without_sign_mark(name) != name.trim()
 }

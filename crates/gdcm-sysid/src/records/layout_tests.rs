@@ -85,7 +85,7 @@ fn channels_are_found_by_synonyms_and_converted_with_notes() {
         proposal.notes,
         [
             "time from column \"Time (s)\", in s",
-            "LON: column \"delta_b\", taken to be in %: the file does not say, and no other unit is possible",
+            "LON: column \"delta_b\", assumed to be in %: the file gives no unit, and the samples are plausible in no other unit",
             "LAT: column \"lateral\", in %",
             "P: column \"roll rate\", rad/s → deg/s (× 57.29577951308232)",
             "NZ: column \"nz\", g → m/s² (× 9.80665)",
@@ -169,7 +169,7 @@ fn a_unit_that_fits_only_one_way_is_taken_and_an_ambiguous_unit_is_a_problem() {
     );
     let taken = with_roll_rate("", 7.1, "deg/s");
     assert!(
-        taken.notes[3].ends_with("and no other unit is possible"),
+        taken.notes[3].ends_with("and the samples are plausible in no other unit"),
         "{:?}",
         taken.notes
     );
@@ -179,7 +179,7 @@ fn a_unit_that_fits_only_one_way_is_taken_and_an_ambiguous_unit_is_a_problem() {
         // No helicopter turns at 40 rad/s: the samples are in degrees per second.
         ("", 40.0, "rad/s", degree),
         ("deg/s", 6.9, "deg/s", 1.0),
-        // Zero has no unit.
+        // Samples of zero do not determine a unit.
         ("", 0.0, "deg/s", 1.0),
         // An unknown unit is not converted.
         ("", 6.9, "furlong", 1.0),
@@ -221,7 +221,7 @@ fn the_user_s_unit_of_a_channel_applies_to_files_without_units() {
     );
 }
 
-/// Problems with another time column.
+/// Problems of the record with this column as its time.
 fn problems_with_time(time: RecordColumn) -> Vec<LayoutProblem> {
     let mut table = record();
     table.columns[1] = time;

@@ -10,8 +10,8 @@
 //! | checks | `layout_checks`, `plausible_units`, [`layout_problem`] |
 //! | flight record | `layout_samples`, `resampling`, [`laid_out_record`] |
 //!
-//! Samples are the file's, times a factor, without filtering or detrending. Channels with
-//! separate clocks are resampled to a common clock (M14.11), and this is reported.
+//! Samples are read from the file and multiplied by a factor, never filtered or detrended. Channels
+//! with separate clocks are resampled to a common clock (M14.11), and this is reported.
 
 pub mod channel_list;
 mod column_candidates;

@@ -30,9 +30,7 @@ pub struct ResamplingWish {
 /// channel with aliases is searched only by its aliases.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordChannels {
-    /// Inputs, in order.
     pub inputs: Vec<ChannelRule>,
-    /// Outputs, in order.
     pub outputs: Vec<ChannelRule>,
     /// User-defined conversions by channel.
     pub said: BTreeMap<String, SaidConversion>,

@@ -36,12 +36,13 @@ const VALIDATION: [&str; 5] = [
     "holdout",
     "heldout",
 ];
-/// Further words for validation, matched as whole words only, because others contain them ("value",
-/// "testbed").
+/// Further words for validation, matched as whole words only, because other words contain them
+/// ("value", "testbed").
 const VALIDATION_WORDS: [&str; 4] = ["val", "valid", "check", "verif"];
 
 impl RecordGuess {
-    /// Reads the names of a record, of its file, and of its variable or its file in an archive.
+    /// Derives the information from the names of a record, of its file, and of its variable or its
+    /// file in an archive.
     pub fn from_table(table: &RecordTable, patterns: &[NamePattern]) -> Self {
         let mut names = vec![table.source.file.as_str()];
         names.extend(table.source.variable.as_deref());
@@ -49,7 +50,7 @@ impl RecordGuess {
         Self::from_name(&names.join("/"), patterns)
     }
 
-    /// Reads a name such as "c03_045kt/sweep_LON_1.csv" by these patterns.
+    /// Derives the information from a name such as "c03_045kt/sweep_LON_1.csv" by these patterns.
     pub fn from_name(name: &str, patterns: &[NamePattern]) -> Self {
         // "3-2-1-1" and "hold_out" become "3211" and "holdout".
         let joined = folded_name(name);

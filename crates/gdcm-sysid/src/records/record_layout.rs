@@ -97,8 +97,8 @@ impl RecordLayout {
     }
 
     /// Applies the changes between two layouts of `from` to this layout of `table`, channel by
-    /// channel: transfers the user's edits to another record with the same column names.
-    /// Remedies, which belong to one record, stay as they are.
+    /// channel: transfers the user's edits to another record with the same column names. Remedies,
+    /// which belong to one record, are not changed.
     #[must_use]
     pub fn following(
         &self,
@@ -209,7 +209,7 @@ impl RecordChannels {
     }
 }
 
-/// Returns the unit of a channel's samples: the user's, else the one in the file; `None` if
+/// Returns the unit of a channel's samples: given by the user, or else by the file; `None` if
 /// unknown, as after a user-defined factor other than ±1.
 fn unit_of_samples(
     conversion: Option<&SaidConversion>,

@@ -14,7 +14,7 @@ pub struct RecordColumn {
     pub name: String,
     /// Unit in the file.
     pub unit: Option<String>,
-    /// Side in the file.
+    /// Input or output, if the file states it.
     pub side: Option<ChannelSide>,
     /// Samples, in the file's unit; NaN where missing.
     pub values: Vec<f64>,
@@ -76,7 +76,7 @@ impl RecordColumn {
         }
     }
 
-    /// Whether the finite samples differ.
+    /// Returns whether the finite samples differ.
     pub(super) fn varies(&self) -> bool {
         self.range().is_some_and(|(least, most)| least < most)
     }
@@ -87,7 +87,7 @@ impl RecordColumn {
         Some(least.abs().max(most.abs()))
     }
 
-    /// Whether name, unit and samples are equal; samples are compared bit for bit.
+    /// Returns whether name, unit and samples are equal; samples are compared bit for bit.
     fn is_same(&self, other: &Self) -> bool {
         let bits = self.values.iter().map(|value| value.to_bits());
         let other_bits = other.values.iter().map(|value| value.to_bits());
@@ -154,7 +154,7 @@ impl RecordTable {
             .unwrap_or(0)
     }
 
-    /// Whether columns have separate clocks.
+    /// Returns whether columns have separate clocks.
     pub(super) fn has_topics(&self) -> bool {
         self.columns.iter().any(|column| column.topic.is_some())
     }
@@ -225,8 +225,8 @@ impl RecordTable {
         None
     }
 
-    /// Whether both are the same record: the same variable and part of a file, or equal samples
-    /// under the same name. A table with equal samples under another name is a copy
+    /// Returns whether both are the same record: the same variable and part of a file, or equal
+    /// samples under the same name. A table with equal samples under another name is a copy
     /// ([`leave_out_copies`](super::leave_out_copies)).
     pub fn is_same_record(&self, other: &Self) -> bool {
         let is_same_file = self.source.sha256 == other.source.sha256
@@ -246,7 +246,7 @@ impl RecordTable {
                 .all(|(column, other)| column.is_same(other))
     }
 
-    /// Returns the part of the record between two times on its own clock \[s\].
+    /// Returns the part of the record between two times \[s\] on the record's clock.
     #[must_use]
     pub fn part_of_time(&self, part_s: [f64; 2]) -> RecordTable {
         let mut part = self.clone();
@@ -296,7 +296,7 @@ pub(super) fn shortened_list(names: &[&str]) -> String {
     }
 }
 
-/// Whether samples are equal, with missing samples in the same places.
+/// Returns whether samples are equal, with missing samples in the same places.
 pub(super) fn same_samples(first: &[f64], second: &[f64]) -> bool {
     first.len() == second.len()
         && first

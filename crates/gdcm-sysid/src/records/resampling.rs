@@ -12,29 +12,30 @@ use super::record_table::{RecordColumn, RecordTable};
 use super::time_base::median_step;
 use super::topics::{CommonClock, Topic, TopicError, is_held};
 
-/// A table counts as a join of several clocks if more than this share of a column's samples are
-/// followed by a missing sample.
+/// Share of a column's samples that are followed by a missing sample, above which the table is
+/// taken to combine several clocks.
 const SHARE_OF_HOLES: f64 = 0.1;
-/// Maximum deviation of an even step from a multiple of the median step, over the median step.
+/// Maximum deviation of an even step from a multiple of the median step, relative to the median
+/// step.
 const JITTER: f64 = 0.2;
-/// Minimum share of even steps in an even clock.
+/// Minimum share of even steps for a clock to count as even.
 const SHARE_OF_EVEN_STEPS: f64 = 0.95;
 
-/// Chosen columns, and their common clock.
+/// Chosen columns, and the clock to which they are resampled.
 pub(super) struct Resampling {
     /// Topics of the inputs, then of the outputs.
     topics: Vec<Topic>,
-    /// Number of inputs.
+    /// Number of leading topics that are inputs.
     inputs: usize,
-    /// Names of held inputs.
+    /// Names of the inputs that are held constant between their samples.
     held: Vec<String>,
     clock: CommonClock,
 }
 
-/// A channel with its column.
+/// A channel, and the column from which its samples are taken.
 struct ChannelColumn<'r> {
     channel: ChannelUse<'r>,
-    /// Total factor, including the remedy.
+    /// Factor from column values to channel values, including sign and the chosen remedy.
     gain: f64,
     /// Logging delay to remove \[s\].
     delay_s: f64,
@@ -42,16 +43,18 @@ struct ChannelColumn<'r> {
 }
 
 impl RecordLayout {
-    /// Whether the chosen columns have several clocks, or a rate is requested; the record then has
-    /// a new clock.
+    /// Whether the chosen columns have several clocks, or a rate is requested; the record is then
+    /// resampled to a common clock.
     pub fn is_resampled(&self, table: &RecordTable, channels: &RecordChannels) -> bool {
         Resampling::new(self, table, channels).is_some()
     }
 }
 
 impl Resampling {
-    /// Chooses a common clock for the chosen columns; `None` if they already have a common clock,
-    /// or if a column or the time is still open.
+    /// Chooses a common clock for the chosen columns.
+    ///
+    /// Returns `None` if no resampling is needed, or if the time or the column of a channel is not
+    /// yet chosen.
     ///
     /// # Errors
     /// The reason why the columns cannot be resampled.
@@ -98,7 +101,7 @@ impl Resampling {
         }))
     }
 
-    /// Returns notes on rates, low-pass and held inputs.
+    /// Returns notes on the sample rates, the low-pass filter and the held inputs.
     pub(super) fn notes(&self) -> Vec<String> {
         let rates: Vec<String> = self
             .topics
@@ -106,14 +109,15 @@ impl Resampling {
             .map(|topic| format!("{} {} Hz", topic.name, telling(topic.rate_hz, 1)))
             .collect();
         let mut notes = vec![format!(
-            "resampled to {} Hz, every channel through the same low-pass at {} rad/s (logged: {})",
+            "resampled to {} Hz; every channel is filtered by the same low-pass at {} rad/s \
+            (logged: {})",
             telling(self.clock.rate_hz, 2),
             telling(self.clock.cutoff, 1),
             rates.join(", ")
         )];
         if !self.held.is_empty() {
             notes.push(format!(
-                "{}: taken as held from sample to sample, so moved half a sample later",
+                "{}: treated as held between samples, and therefore moved half a sample later",
                 self.held.join(", ")
             ));
         }
@@ -132,7 +136,7 @@ impl Resampling {
         }
     }
 
-    /// Returns the low-passed samples at these times, a column for each topic.
+    /// Returns the low-pass filtered samples at `time_s`, one column per topic.
     fn samples(&self, topics: &[Topic], time_s: &[f64]) -> DMatrix<f64> {
         let values: Vec<f64> = topics
             .iter()
@@ -143,7 +147,8 @@ impl Resampling {
 }
 
 impl ChannelColumn<'_> {
-    /// Returns the stamps of the column's topic, or else those of the table, less the delay \[s\].
+    /// Returns the stamps of the column's topic, or of the table if the column has no topic, minus
+    /// the delay \[s\].
     fn stamps(&self, table_time_s: &[f64]) -> Vec<f64> {
         let stamps = match &self.column.topic {
             Some(topic) => topic.time_s.as_slice(),
@@ -152,7 +157,7 @@ impl ChannelColumn<'_> {
         stamps.iter().map(|time| time - self.delay_s).collect()
     }
 
-    /// Returns the samples in channel units.
+    /// Returns the samples in the channel's unit.
     fn values(&self) -> Vec<f64> {
         self.column
             .values
@@ -161,7 +166,8 @@ impl ChannelColumn<'_> {
             .collect()
     }
 
-    /// Whether the channel is an input that stays constant between its samples.
+    /// Whether the channel is an input that is held between its samples, by request or by its
+    /// repeated values.
     fn is_held(&self, values: &[f64], wish: &ResamplingWish) -> bool {
         self.channel.side == ChannelSide::Input
             && (wish.held.contains(&self.channel.rule.name) || is_held(values))
@@ -278,14 +284,15 @@ mod tests {
     fn topics_with_separate_clocks_become_a_record_with_a_note() {
         let table = RecordTable::new("log", vec![topic("M", 250.0, 0.3), topic("q", 100.0, 0.0)]);
         let notes = RecordLayout::proposed(&table, &channels(), &TimeWish::default()).notes;
-        let expected = "resampled to 50.93 Hz, every channel through the same low-pass at 80.0 rad/s (logged: M 250.0 Hz, q 100.0 Hz)";
+        let expected = "resampled to 50.93 Hz; every channel is filtered by the same low-pass at 80.0 rad/s (logged: M 250.0 Hz, q 100.0 Hz)";
         assert!(notes.iter().any(|note| note == expected), "{notes:?}");
         let flight = flight(&table, &channels());
         assert_eq!(flight.time_s[0], 0.3);
         let middle = flight.time_s.len() / 2;
         for (name, samples) in [("M", &flight.inputs), ("q", &flight.outputs)] {
             let error = samples[(middle, 0)] - signal(flight.time_s[middle]);
-            // 3 rad/s is far below the cut-off.
+            // The signal at 3 rad/s is far below the cut-off, so that the low-pass hardly changes
+            // it.
             assert!(error.abs() < 1e-3, "{name}: {error}");
         }
     }

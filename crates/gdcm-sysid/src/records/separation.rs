@@ -19,15 +19,15 @@ pub enum Separation {
     ByTime(usize),
 }
 
-/// Column names for record numbers.
+/// Names, without separators, of columns that contain record numbers.
 const NUMBERS: &str = "record records recordid recordno recordnumber run runid runno runnumber manoeuvre maneuver segment event \
                        testpoint experiment";
 
 impl Separation {
-    /// Minimum number of samples in a record, for a table with several.
+    /// Minimum number of samples in each record of a table that holds several.
     pub const FEWEST: usize = 20;
 
-    /// Proposes a split by column names and stamps.
+    /// Proposes a separation by a column of record numbers or, without one, by stamps that restart.
     pub fn proposed(table: &RecordTable) -> Self {
         if table.has_topics() {
             return Self::None;
@@ -42,8 +42,8 @@ impl Separation {
     }
 }
 
-/// Whether a column is named like a record number and holds several long runs of a constant
-/// integer.
+/// Whether a column is named like a record number and consists of several runs of equal integers,
+/// each of at least [`Separation::FEWEST`] samples.
 fn numbers_records(column: &RecordColumn) -> bool {
     let name = folded_name(&column.name);
     if !NUMBERS.split(' ').any(|word| word == name) {
@@ -56,7 +56,7 @@ fn numbers_records(column: &RecordColumn) -> bool {
             .all(|run| run.len() >= Separation::FEWEST && column.values[run.start].fract() == 0.0)
 }
 
-/// Whether stamps restart, with enough samples in each part.
+/// Whether stamps restart, with at least [`Separation::FEWEST`] samples in each part.
 fn restarts(stamps: &[f64]) -> bool {
     let parts = rising_parts(stamps);
     parts.len() > 1 && parts.iter().all(|part| part.len() >= Separation::FEWEST)
@@ -65,7 +65,7 @@ fn restarts(stamps: &[f64]) -> bool {
 /// Table rows that form a record.
 struct RecordPart {
     rows: Range<usize>,
-    /// Name within the table.
+    /// Name of the part within its table.
     name: String,
 }
 
@@ -127,7 +127,8 @@ impl RecordTable {
     }
 }
 
-/// Returns a part for each run; later runs with the same number are "part 2", "part 3".
+/// Returns a part for each run of equal numbers; later runs of a number are named "part 2", "part
+/// 3".
 fn parts_by_number(numbers: &RecordColumn) -> Vec<RecordPart> {
     let mut seen: Vec<f64> = Vec::new();
     let mut parts = Vec::new();
@@ -190,7 +191,7 @@ fn rising_parts(stamps: &[f64]) -> Vec<Range<usize>> {
     parts
 }
 
-/// Whether the next stamps are below `last` or missing.
+/// Whether the first stamps, half of [`Separation::FEWEST`], are all below `last` or missing.
 fn stays_below(stamps: &[f64], last: f64) -> bool {
     stamps
         .iter()

@@ -8,7 +8,7 @@ use super::record_table::{RecordColumn, RecordTable, TopicClock, same_samples};
 use super::separation::Separation;
 use super::time_base::TimeBase;
 
-/// Minimum common time of two topics, over the shorter duration.
+/// Minimum overlap of two topics, as a fraction of the shorter duration.
 const LEAST_OVERLAP: f64 = 0.5;
 
 impl RecordTable {
@@ -45,7 +45,7 @@ impl RecordTable {
             self.columns.remove(*column);
         }
         self.notes.push(format!(
-            "{} tables side by side, each behind its own stamps",
+            "{} tables side by side, each preceded by a stamp column",
             stamp_columns.len()
         ));
         self
@@ -113,7 +113,7 @@ impl TimeSpan {
     }
 }
 
-/// Assigns columns to a topic with this clock, without the rows that have no stamp.
+/// Assigns the columns to one topic with this clock, and drops the rows that have no stamp.
 fn join_to_topic(columns: &mut [RecordColumn], clock: &[f64]) {
     let rows: Vec<usize> = (0..clock.len())
         .filter(|row| clock[*row].is_finite())
@@ -128,8 +128,8 @@ fn join_to_topic(columns: &mut [RecordColumn], clock: &[f64]) {
     }
 }
 
-/// Whether stamps increase and are numerous enough for a signal, without values after the first
-/// missing stamp.
+/// Whether the stamps increase, are numerous enough for a signal, and are all missing after the
+/// first missing stamp.
 fn rises(stamps: &[f64]) -> bool {
     let count = stamps
         .iter()
@@ -154,7 +154,7 @@ mod tests {
         stamps
     }
 
-    /// A table with M, at 100 Hz, beside q with these stamps.
+    /// Returns a table with M at 100 Hz and, beside it, q with the stamps `second`.
     fn table(second: Vec<f64>) -> RecordTable {
         let columns = vec![
             RecordColumn::new("time", stamps(60, 0.01, 0.0)),

@@ -13,8 +13,8 @@ use crate::spectra::spectrum::{Spectrum, spectra};
 /// Power of a channel over time and frequency.
 ///
 /// ```text
-/// windows  Hann, 0.15 times the record, within 4 s and 20 s; an eighth of their length apart,
-///          or farther for at most 400 windows
+/// windows  Hann, 0.15 times the record, between 4 s and 20 s; one every eighth of their length,
+///          or fewer so that there are at most 400
 /// power    |U(omega_k)|^2, from the samples in the window less their mean (M14.2); missing samples
 ///          count as the mean
 /// rows     frequencies evenly in ln(omega), from two periods in a window up to `highest`: the
@@ -23,15 +23,15 @@ use crate::spectra::spectrum::{Spectrum, spectra};
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrogram {
-    /// First and last window centre \[s\].
+    /// Centres of the first and the last window \[s\].
     pub time_s: [f64; 2],
-    /// Frequency of the first and of the last row \[rad/s\].
+    /// Frequencies of the first and the last row \[rad/s\].
     pub omega: [f64; 2],
-    /// Level of each window and row \[dB\].
+    /// Level \[dB\] of each row, window by window.
     pub levels: Vec<Vec<f64>>,
 }
 
-/// Window length over the record length.
+/// Window length as a fraction of the record length.
 const WINDOW_SHARE: f64 = 0.15;
 /// Minimum and maximum window length \[s\].
 const SHORTEST_WINDOW_S: f64 = 4.0;
@@ -40,17 +40,17 @@ const LONGEST_WINDOW_S: f64 = 20.0;
 const FEWEST_SAMPLES: usize = 8;
 /// Maximum number of windows.
 const MOST_WINDOWS: usize = 400;
-/// Maximum frequency, over half the sample rate.
+/// Maximum frequency as a fraction of half the sample rate.
 const HIGHEST_OF_RATE: f64 = 0.9;
 
 impl Spectrogram {
     /// Number of frequency rows.
     pub const ROWS: usize = 64;
-    /// Minimum reported level \[dB\].
+    /// Level \[dB\] to which lower levels are raised.
     pub const FLOOR: f64 = -40.0;
 
     /// Computes the spectrogram up to `highest` \[rad/s\]; `None` if the record is shorter than a
-    /// window, or if a window resolves no frequency.
+    /// window, or if the usable frequencies span less than an octave.
     #[must_use]
     pub fn new(time_s: &[f64], samples: &[f64], highest: f64) -> Option<Self> {
         let windows = Windows::new(time_s, samples.len())?;

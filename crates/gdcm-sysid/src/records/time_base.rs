@@ -22,9 +22,9 @@ pub enum TimeBase {
     Topics,
 }
 
-/// Maximum plausible step in a manoeuvre \[s\].
+/// Maximum plausible time between two samples of a manoeuvre \[s\].
 pub(super) const LONGEST_STEP_S: f64 = 1.5;
-/// Minimum plausible step in a flight recorder \[s\].
+/// Minimum plausible time between two samples of a flight recorder \[s\].
 const SHORTEST_STEP_S: f64 = 5e-5;
 /// Minimum step accepted for a guessed unit \[s\].
 const SHORTEST_GUESSED_STEP_S: f64 = 2e-4;
@@ -33,7 +33,7 @@ const SECONDS_A_DAY: f64 = 86_400.0;
 /// Rank of a column as the time column; the smallest rank is the most likely.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct TimeRank {
-    /// Whether the column mostly repeats or decreases; such a column is a time by name only.
+    /// Whether the column mostly repeats or decreases, so that at most its name suggests a time.
     mostly_falls: bool,
     by_name: u8,
     column: usize,
@@ -78,7 +78,7 @@ impl TimeBase {
         }
     }
 
-    /// Returns the median step \[s\]; `None` without two stamps.
+    /// Returns the median step \[s\]; `None` with fewer than two stamps, and for topics.
     pub fn step_s(self, table: &RecordTable) -> Option<f64> {
         match self {
             TimeBase::SampleTime(step_s) => Some(step_s),
@@ -89,7 +89,7 @@ impl TimeBase {
         }
     }
 
-    /// Returns a time base from a stamp column.
+    /// Returns the time base of a stamp column, in the unit that [`StampUnit`] determines.
     pub(super) fn from_column(table: &RecordTable, column: usize) -> Self {
         TimeBase::Column {
             column,
@@ -104,7 +104,8 @@ impl TimeBase {
         format!("time from column {quoted}, in {}{}", unit.name, unit.reason)
     }
 
-    /// Finds the time column by its name, or as the first, rising column in a table without names.
+    /// Finds the time column by its name; in a table without column names, the first column if it
+    /// mostly increases.
     pub(super) fn find(table: &RecordTable) -> Option<usize> {
         let best = (0..table.columns.len())
             .filter_map(|column| TimeRank::new(table, column))
@@ -159,10 +160,11 @@ impl StampUnit {
         if step > 0.0 && step < SHORTEST_STEP_S && is_plausible_step(step * SECONDS_A_DAY) {
             return Self::from_steps("days", SECONDS_A_DAY, step);
         }
-        Self::seconds(" (the file does not say the unit)".to_owned())
+        Self::seconds(" (the file does not state the unit)".to_owned())
     }
 
-    /// Returns a time unit, in its usual spelling, from its name.
+    /// Returns the time unit with this name, in its usual spelling; `None` if the name is not a
+    /// time unit.
     fn from_name(name: &str) -> Option<Self> {
         let unit = PhysicalUnit::of(name)?;
         if unit.dimension != Dimension::Time {
@@ -182,7 +184,7 @@ impl StampUnit {
         Self {
             name,
             seconds,
-            reason: format!(" (its steps are {step}: s would be too {fault})"),
+            reason: format!(" (its steps are {step}: seconds would be too {fault})"),
         }
     }
 
@@ -195,7 +197,7 @@ impl StampUnit {
     }
 }
 
-/// Returns the last word in a name with several words.
+/// Returns the last word of a name; `None` if the name is a single word.
 fn last_word(name: &str) -> Option<&str> {
     name.rsplit(|c: char| !c.is_alphanumeric())
         .next()
@@ -293,7 +295,8 @@ mod tests {
         for (name, unit, step, expected) in [
             ("t", Some("ms"), 20.0, 1e-3),
             ("time_ms", None, 20.0, 1e-3),
-            // The name determines the unit; the checks reject such steps.
+            // The unit in the name applies although the steps are implausible; later checks reject
+            // them.
             ("time_s", None, 20.0, 1.0),
             ("t", None, 0.02, 1.0),
             ("t", None, 20.0, 1e-3),
@@ -317,12 +320,12 @@ mod tests {
             (
                 None,
                 0.02,
-                "time from column \"t\", in s (the file does not say the unit)",
+                "time from column \"t\", in s (the file does not state the unit)",
             ),
             (
                 None,
                 20.0,
-                "time from column \"t\", in ms (its steps are 20.000: s would be too long)",
+                "time from column \"t\", in ms (its steps are 20.000: seconds would be too long)",
             ),
         ] {
             let table = table_with("t", unit, stamps(step));

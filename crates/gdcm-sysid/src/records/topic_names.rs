@@ -6,10 +6,11 @@ use super::record_table::{RecordSource, RecordTable};
 
 /// Separators between words in a name.
 const SEPARATORS: [char; 4] = ['_', '-', '.', ' '];
-/// File extensions. An ending with digits only is not an extension: "motor.1".
+/// File extensions that are removed from names. The digit in "motor.1" is not an extension.
 const EXTENSIONS: [&str; 7] = ["csv", "txt", "tsv", "dat", "mat", "npz", "json"];
 
-/// Returns the common key of a log's topics: their file, or else their folder.
+/// Returns the key that all topics of a log share: their file if they are variables in it,
+/// otherwise their folder.
 pub(super) fn log_key(source: &RecordSource) -> String {
     if source.variable.is_some() {
         return source.file.clone();
@@ -20,8 +21,8 @@ pub(super) fn log_key(source: &RecordSource) -> String {
     }
 }
 
-/// Returns the name of each topic: the variable if all come from one file, else the file's name
-/// without its extension.
+/// Returns the name of each topic: its variable if all topics come from one file, otherwise its
+/// file name without extension.
 pub(super) fn topic_names(tables: &[RecordTable]) -> Vec<String> {
     let is_one_file = are_from_one_file(tables);
     tables
@@ -99,7 +100,8 @@ fn is_confirmed(log: &str, logs: &[String]) -> bool {
     !log.is_empty() && logs.iter().filter(|other| *other == log).count() > 1
 }
 
-/// Returns the longest name in `logs` with which a name begins, as whole words.
+/// Returns the longest of `logs` that begins `name` and ends at a separator; empty if there is
+/// none.
 fn longest_log_of(name: &str, logs: &[&String]) -> String {
     let mut longest = "";
     for log in logs {

@@ -15,7 +15,7 @@ use super::record_table::{RecordColumn, RecordSource, RecordTable, TopicClock, s
 use super::time_base::{TimeBase, median_step};
 use super::topic_names::{are_from_one_file, common_prefix, log_key, logs_of_topics, topic_names};
 
-/// Uninformative names of a topic's only column next to its stamps.
+/// Uninformative names for the only value column of a topic.
 const PLAIN: [&str; 8] = [
     "value", "values", "data", "signal", "signals", "x", "y", "val",
 ];
@@ -52,7 +52,8 @@ fn join_topics_of_log(tables: &[RecordTable], log: &str) -> RecordTable {
     joined
 }
 
-/// Combines the topics of a record side by side; tables without a time are omitted and reported.
+/// Combines the topics of a record side by side; tables without a time are omitted and listed in a
+/// note.
 fn join_topics(tables: &[RecordTable]) -> RecordTable {
     let source = common_source(tables);
     let mut joined = RecordTable {
@@ -82,7 +83,7 @@ fn join_topics(tables: &[RecordTable]) -> RecordTable {
     ));
     if !left_out.is_empty() {
         joined.notes.push(format!(
-            "left out, without a time: {}",
+            "left out, because they have no time: {}",
             shortened_list(&left_out)
         ));
     }
@@ -131,9 +132,9 @@ fn common_name(tables: &[RecordTable]) -> &str {
     if name.is_empty() { "topics" } else { name }
 }
 
-/// Combines tables that are topics in one record: in each file or folder, tables that lack a
-/// channel and have all channels together. If they come from several logs, so that channels
-/// have several columns, each log is combined separately. Other tables are unchanged.
+/// Combines tables that are topics of one record: in each file or folder, tables that each lack a
+/// channel but together have all of them. If they come from several logs, so that channels have
+/// several columns, each log is combined separately. Other tables are unchanged.
 pub fn with_topics_joined(
     tables: Vec<RecordTable>,
     channels: &RecordChannels,
@@ -193,7 +194,7 @@ impl TopicJoiner<'_> {
             .collect()
     }
 
-    /// Whether a channel has no column or several columns.
+    /// Whether a channel has no column, or several candidate columns.
     fn lacks_channels(&self, table: &RecordTable) -> bool {
         let proposal = RecordLayout::proposed(table, self.channels, self.time);
         proposal.problems.iter().any(|problem| {
@@ -206,7 +207,8 @@ impl TopicJoiner<'_> {
         })
     }
 
-    /// Joins a group to one record, or else the topics of each log to a record.
+    /// Joins a group into one record or, if that would not be complete, the topics of each log into
+    /// a record.
     fn join_group(&mut self, group: &[usize]) {
         let topics = self.tables_at(group);
         if self.keep_if_complete(group, join_topics(&topics)) {

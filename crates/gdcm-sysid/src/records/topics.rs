@@ -7,30 +7,30 @@ use gdcm_model::statistics::median;
 
 /// Maximum step without a gap, in median steps: 3 missing samples are bridged (M14.1).
 const LONGEST_STEP: f64 = 4.5;
-/// Share of repeated samples above which a channel is held.
+/// Share of repeated samples above which a channel counts as held.
 const HELD: f64 = 0.5;
 /// Minimum number of samples in a topic.
 const LEAST_SAMPLES: usize = 3;
 /// Half-length of the kernel, in half periods of its cut-off.
 const HALF_TAPS: f64 = 12.0;
-/// Relative tolerance of a time beyond the stamps of a run.
+/// Tolerance for times just outside the stamps of a run, relative to the time.
 const ROUNDING: f64 = 1e-9;
-/// Highest line used, over the band end (M14.2).
+/// Ratio of the highest spectral line used to the upper band end (M14.2).
 const HIGHEST_LINE: f64 = 4.0 / 3.0;
-/// Minimum number of samples of a topic in a period of the highest line.
+/// Minimum number of samples of a topic per period of the highest line.
 const NEEDED: f64 = 2.5;
-/// Minimum number of samples of the common clock in a period of the highest line.
+/// Minimum number of samples of the common clock per period of the highest line.
 const LEAST_ON_CLOCK: f64 = 4.0;
-/// Maximum number of samples of the common clock in a period of the highest line.
+/// Maximum number of samples of the common clock per period of the highest line.
 const MOST_ON_CLOCK: f64 = 20.0;
-/// Cut-off over the highest line.
+/// Ratio of the cut-off to the highest line.
 const CUT_OFF: f64 = 5.0;
-/// Maximum cut-off, over half the slowest rate.
+/// Maximum cut-off as a fraction of half the slowest sample rate.
 const CUT_OFF_OF_RATE: f64 = 0.8;
-/// Maximum number of samples, a day at 100 Hz; more samples come from a wrong stamp.
+/// Maximum number of samples, about a day at 100 Hz; a larger number indicates a wrong stamp.
 const MOST_SAMPLES: f64 = 1e7;
 
-/// Samples of a channel with their own stamps.
+/// Samples of a channel with separate stamps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Topic {
     /// Name for display.
@@ -46,7 +46,7 @@ pub struct Topic {
 }
 
 impl Topic {
-    /// Keeps the samples with increasing stamps and a finite value.
+    /// Creates a topic from the samples that have increasing stamps and finite values.
     ///
     /// A held command acts until the next sample: its stamps are moved later by half this time
     /// (M14.1).
@@ -151,7 +151,7 @@ fn runs(times: &[f64], longest_s: f64) -> Vec<Range<usize>> {
     runs
 }
 
-/// Counts the samples per second, without gaps; 0 if every run has a single sample.
+/// Computes the mean sample rate \[Hz\], without gaps; 0 if every run has a single sample.
 fn rate_hz(times: &[f64], runs: &[Range<usize>]) -> f64 {
     let mut steps = 0;
     let mut length_s = 0.0;
@@ -220,7 +220,7 @@ fn sample_width(time_s: &[f64], k: usize) -> f64 {
 /// The uniform clock to which topics are resampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CommonClock {
-    /// First sample \[s\].
+    /// Time of the first sample \[s\].
     pub start_s: f64,
     /// Sample rate \[Hz\].
     pub rate_hz: f64,
@@ -363,36 +363,33 @@ fn common_span_s(topics: &[Topic]) -> Result<[f64; 2], TopicError> {
 pub enum TopicError {
     #[error("{topic} has {samples} samples with a stamp; at least 3 are needed")]
     TooFew { topic: String, samples: usize },
-    /// A topic is too slow for the band.
+    /// A topic has fewer than 2.5 samples per period of the highest line.
     #[error(
         "{topic} is sampled at {rate_hz:.1} Hz, and a band to {band_end:.3} rad/s needs {needed_hz:.1} Hz: log it faster, or end \
          the band at {possible:.2} rad/s"
     )]
     TooSlow {
         topic: String,
-        /// Sample rate \[Hz\].
         rate_hz: f64,
-        /// Sample rate that the band needs \[Hz\].
+        /// Minimum sample rate for the band \[Hz\].
         needed_hz: f64,
-        /// Upper band end \[rad/s\].
+        /// Requested upper band end \[rad/s\].
         band_end: f64,
-        /// Maximum possible band end \[rad/s\].
+        /// Maximum upper band end at the sample rate \[rad/s\].
         possible: f64,
     },
-    /// Topics share no time.
     #[error(
         "{first} ends at {first_end_s:.1} s, before {second} begins at {second_start_s:.1} s: they come from different flights, or their \
          clocks differ"
     )]
     NoCommonTime {
-        /// The topic that ends first.
+        /// Name of the topic that ends first.
         first: String,
         first_end_s: f64,
-        /// The topic that begins last.
+        /// Name of the topic that begins last.
         second: String,
         second_start_s: f64,
     },
-    /// The record would be too large: a stamp is wrong, or the requested rate is too high.
     #[error(
         "the joined record would have {0:.0} samples: a stamp is wrong, or the requested rate is too high"
     )]
@@ -404,7 +401,8 @@ mod tests {
     use super::*;
     use crate::identification::known_answers_tests::{number, numbers};
 
-    /// Stamps `step k` with jitter from a linear congruential generator, as in the known answer.
+    /// Returns the stamps `step k` with jitter from the linear congruential generator that the
+    /// reference data used.
     fn shaken(count: usize, step: f64, shake: f64) -> Vec<f64> {
         let mut state = 5_u32;
         let mut stamps = Vec::with_capacity(count);
@@ -481,7 +479,7 @@ mod tests {
     #[test]
     fn a_held_command_acts_half_a_hold_later() {
         let stamps: Vec<f64> = (0..500).map(|k| 0.02 * f64::from(k)).collect();
-        // Each value is the mean of the signal until the next stamp.
+        // `t + 0.01`: each value is the mean of the signal until the next stamp, 0.02 s later.
         let values: Vec<f64> = stamps.iter().map(|t| signal(t + 0.01)).collect();
         let topic = Topic::new("u", &stamps, &values, true).unwrap();
         let asked: Vec<f64> = (0..100).map(|k| 3.0 + 0.031 * f64::from(k)).collect();
@@ -495,7 +493,7 @@ mod tests {
         assert!(is_held(&[1.0, 1.0, 1.0, 2.0, 2.0, 2.0]) && !is_held(&[1.0, 2.0, 2.0, 3.0]));
     }
 
-    /// A constant topic between two times \[s\].
+    /// Returns a constant topic between two times \[s\].
     fn topic(name: &str, rate: f64, from: f64, to: f64) -> Topic {
         let stamps: Vec<f64> = (0..((to - from) * rate) as usize)
             .map(|k| from + k as f64 / rate)

@@ -2,7 +2,7 @@
 
 use gdcm_model::simulation::Signal;
 
-/// A caution as stored in files.
+/// A caution as stored in files, with a machine-readable subject.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CautionNote {
     /// Stable code, for programs.
@@ -20,7 +20,7 @@ pub struct CautionNote {
 }
 
 impl CautionNote {
-    /// A note about all records.
+    /// Creates a note about all records, without text.
     pub(crate) fn new(code: &'static str) -> Self {
         Self {
             code,
@@ -65,14 +65,14 @@ impl CautionNote {
             "coarse" => "coarse steps",
             "held" => "steps",
             "copy" => "a copy",
-            "sign" => "other sign",
+            "sign" => "opposite sign",
             "time-skew" => "time skew",
             "vibration" => "vibrates",
             "unit" => "unit in doubt",
             "inadequate" => "poorly fitted",
             "not-swept" => "not swept",
             "collinear-inputs" => "not moved alone",
-            "points" => "leaves the points",
+            "points" => "off the measured points",
             "not-identified" => "not identified",
             "feedback" | "feedback-some" => "gusts fed back",
             "record" => "contradicts",
@@ -80,9 +80,9 @@ impl CautionNote {
             "duplicate" => "a duplicate",
             "resampled" => "resampled",
             "held-out" => "not predicted",
-            "unstable" => "unstable, above the lines",
+            "unstable" => "unstable above highest line",
             "order-limit" => "order too low",
-            "band-narrowed" => "shows nothing",
+            "band-narrowed" => "no response shown",
             "short" => "short records",
             _ => "see the caution",
         }

@@ -12,11 +12,11 @@
 use gdcm_model::simulation::{FlightRecord, Signal};
 use gdcm_model::statistics::{median, quantile};
 
-/// Maximum step between two samples of a flat run, over the mean step.
+/// Maximum step between two samples of a flat run, relative to the mean step.
 const FLAT: f64 = 1e-3;
 /// Minimum length of a run at a limit, in samples.
 const SHORTEST: f64 = 5.0;
-/// Minimum length of a run at a limit, over the usual length of flat runs elsewhere.
+/// Minimum length of a run at a limit, relative to the usual length of flat runs elsewhere.
 const OVER_USUAL: f64 = 3.0;
 /// Quantile that gives the usual length of the flat runs elsewhere.
 const USUAL: f64 = 0.9;
@@ -69,10 +69,9 @@ pub(crate) fn finite_values(record: &FlightRecord, signal: &Signal) -> Vec<f64> 
         .collect()
 }
 
-/// Share of samples at which a channel is at its limit.
+/// Share of a channel's samples at its limit, with the acceptable maximum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Clipping {
-    /// Share of the samples at a limit.
     pub(crate) share: f64,
     /// Maximum acceptable share.
     pub(crate) most: f64,
@@ -156,8 +155,8 @@ pub(crate) fn is_coarse(values: &[f64]) -> bool {
     coarseness(values).is_some_and(|steps| steps > COARSE)
 }
 
-/// Returns the smallest step between two values over the standard deviation; `None` if the channel
-/// is constant.
+/// Returns the smallest step between two values divided by the standard deviation; `None` if the
+/// channel is constant.
 pub(crate) fn coarseness(values: &[f64]) -> Option<f64> {
     let count = values.len().max(1) as f64;
     let mean = values.iter().sum::<f64>() / count;
@@ -177,7 +176,7 @@ pub(crate) fn coarseness(values: &[f64]) -> Option<f64> {
     }
 }
 
-/// Stairs in a channel.
+/// Stairs in a channel: equal consecutive samples although the channel moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stairs {
     /// Share of equal consecutive samples while the channel moves.

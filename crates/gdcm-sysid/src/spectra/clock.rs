@@ -11,7 +11,7 @@ const UNEVEN_PERCENT: f64 = 20.0;
 /// Quantile of the deviations that is compared with the limit: a single late stamp is no jitter.
 const COUNTED: f64 = 0.95;
 
-/// Stamps of a record.
+/// Stamps of a record, with their median step and their jitter.
 pub(crate) struct Clock {
     /// First stamp \[s\].
     pub start_s: f64,
@@ -20,17 +20,17 @@ pub(crate) struct Clock {
     /// 95th percentile of the deviations of stamp differences from multiples of the sample time
     /// \[%\].
     pub jitter_percent: f64,
-    /// Rows with a stamp.
+    /// Indices of the rows with a finite stamp.
     pub rows: Vec<usize>,
-    /// Stamps of these rows \[s\], relative to the first stamp.
+    /// Stamps of these rows \[s\], counted from the first stamp.
     pub times: Vec<f64>,
-    /// Maximum distance of two samples \[s\] without a gap, or with a gap that is bridged.
+    /// Maximum time between two samples \[s\] that is no gap, or a gap that is bridged.
     pub longest_step_s: f64,
 }
 
 /// Grid points `k dt` between two gaps.
 pub(crate) struct GridStretch {
-    /// First `k`; an integer.
+    /// First `k`, an integer value.
     pub first: f64,
     /// Number of points.
     pub points: usize,
@@ -65,7 +65,7 @@ impl Clock {
         })
     }
 
-    /// Whether the stamps are more than 20 % off the multiples of the sample time.
+    /// Whether the jitter exceeds 20 % of the sample time.
     pub fn is_uneven(&self) -> bool {
         // Rounded stamps may be just at the limit.
         self.jitter_percent > UNEVEN_PERCENT * (1.0 + 1e-6)
@@ -131,7 +131,8 @@ fn check_increasing(
     times: &[f64],
 ) -> Result<(), PreparationError> {
     for k in 1..times.len() {
-        // The times relative to the first stamp may be equal although the large stamps differ.
+        // Compare the times relative to the first stamp: two large stamps that differ may be equal
+        // after the subtraction.
         let step = times[k] - times[k - 1];
         if !(step > 0.0 && step.is_finite()) {
             return Err(PreparationError::TimeNotIncreasing {

@@ -5,9 +5,9 @@ use gdcm_model::simulation::{LowPass, Segment};
 
 use super::spectrum::spectra;
 
-/// Cut-off without vibration, over the highest line used (M14.1).
+/// Ratio of the cut-off to the highest line used, without vibration (M14.1).
 const USUAL: f64 = 5.0;
-/// Cut-off if an output vibrates, over the highest line used (M14.1).
+/// Ratio of the cut-off to the highest line used, if an output vibrates (M14.1).
 const VIBRATING: f64 = 2.0;
 /// An output vibrates if more than this share of its variance lies above `VIBRATING` times the
 /// highest line used.
@@ -16,7 +16,7 @@ const VIBRATION_SHARE: f64 = 0.3;
 /// The cut-off frequency, and the outputs that lowered it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CutOff {
-    /// \[rad/s\].
+    /// Cut-off frequency \[rad/s\].
     pub omega: f64,
     /// Vibrating outputs, counted from 0, each with the share of its variance above twice the
     /// highest line used.

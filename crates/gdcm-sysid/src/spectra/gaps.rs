@@ -56,9 +56,9 @@ impl Treatment {
 /// A gap in a record, between the last valid sample before it and the next after it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gap {
-    /// Start on the clock of the record \[s\].
+    /// Start \[s\], on the record's time axis.
     pub start_s: f64,
-    /// End on the clock of the record \[s\].
+    /// End \[s\], on the record's time axis.
     pub end_s: f64,
     pub cause: Cause,
     pub treatment: Treatment,

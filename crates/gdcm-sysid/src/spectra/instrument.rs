@@ -7,8 +7,8 @@
 //! 2  G = Gamma_y Gamma_u^+ (relative tolerance 1e-3),   Cv = Re([I, -G] Cov N [I, -G]')
 //! 3  the cost (M14.4) with U = Gamma_u R, Y = Gamma_y R, Gamma linear between points, on the lines
 //!    with leverage R S R' < 0.5
-//! 4  bands: standard deviations of this model from the lines as logged, over
-//!    sqrt(coherence between input and R)
+//! 4  bands: standard deviations of this model from the lines as logged,
+//!    divided by sqrt(coherence between input and R)
 //! 5  valid where the coherence between an input and R is at least 0.6: elsewhere R does not excite
 //! ```
 //!
@@ -26,9 +26,9 @@ use super::local_polynomial::{LocalFit, LocalPolynomialError, condition, local_f
 use super::response_estimate::{EstimatePoint, ResponseEstimate};
 use super::spectrum::{LineRange, Spectrum};
 
-/// Half-width of a window over its centre.
+/// Half-width of a window, relative to its centre frequency.
 const HALF_WIDTH: f64 = 0.15;
-/// Minimum singular value of `Gamma_u` that counts, over the largest.
+/// Minimum singular value of `Gamma_u` that counts, relative to the largest.
 const TOLERANCE: f64 = 1e-3;
 /// Lines with at least this leverage are left out.
 const LEVERAGE: f64 = 0.5;
@@ -44,7 +44,7 @@ struct InstrumentPoint {
     estimate: EstimatePoint,
 }
 
-/// The records as measured through the reference.
+/// Spectral lines and frequency response as measured through the reference.
 pub(crate) struct Instrument {
     /// `Gamma_u R` and `Gamma_y R`, on the lines with small leverage.
     pub(crate) spectra: Vec<Spectrum>,
@@ -93,7 +93,8 @@ impl Instrument {
 }
 
 impl InstrumentPoint {
-    /// Divides the responses of the outputs to the reference by those of the inputs (step 2).
+    /// Divides the responses of the outputs to the reference by the responses of the inputs (step
+    /// 2).
     fn new(fit: &LocalFit, outputs: usize) -> Self {
         let gamma = fit.response();
         let inputs = gamma.nrows() - outputs;
@@ -101,7 +102,7 @@ impl InstrumentPoint {
         let gamma_u = gamma.rows(outputs, inputs).into_owned();
         let inverse = pseudo_inverse(&gamma_u);
         let response = &gamma_y * &inverse;
-        // [I, -G] Cov N [I, -G]'.
+        // `left` is [I, -G] in Cv = Re([I, -G] Cov N [I, -G]').
         let mut left = DMatrix::zeros(outputs, outputs + inputs);
         left.columns_mut(0, outputs).fill_with_identity();
         left.columns_mut(outputs, inputs).copy_from(&(-&response));

@@ -1,10 +1,10 @@
 //! Linear interpolation between ascending values.
 
-/// The two neighbours of a value in an ascending list, with the weight of the second.
+/// Neighbours of a value in an ascending list, with the weight of the second neighbour.
 pub(crate) struct Neighbours {
     pub(crate) before: usize,
     pub(crate) after: usize,
-    /// From 0 at `before` to 1 at `after`.
+    /// Weight of `after`: 0 at `before`, 1 at `after`.
     pub(crate) share: f64,
 }
 

@@ -9,19 +9,21 @@ use gdcm_model::executor::{Executor, each};
 use super::response_estimate::{EstimatePoint, ResponseEstimate, TERMS};
 use super::spectrum::Spectrum;
 
-/// Number of terms if there are too few lines for three: 1, x.
+/// Number of polynomial terms (1, x) if there are too few lines for three.
 const FEWER_TERMS: usize = 2;
 /// Minimum half-width of a window \[rad/s\] (M14.2).
 const LEAST_HALF_WIDTH: f64 = 0.45;
-/// Half-width of a window over its centre (M14.2).
+/// Half-width of a window, relative to its centre frequency (M14.2).
 const HALF_WIDTH_SHARE: f64 = 0.2;
 /// First factor by which a window with too few lines is widened (M14.12).
 const FIRST_WIDENING: f64 = 1.2;
 /// Factor for each further widening (M14.12).
 const FURTHER_WIDENING: f64 = 1.05;
-/// Minimum number of lines in a window beyond unknowns and outputs, with three terms (M14.12).
+/// Number of lines that a window with three terms needs in addition to the number of unknowns and
+/// outputs (M14.12).
 const SPARE_LINES: usize = 6;
-/// Minimum number of lines in a window beyond unknowns and outputs, with two terms.
+/// Number of lines that a window with two terms needs in addition to the number of unknowns and
+/// outputs.
 const SPARE_LINES_FEWER_TERMS: usize = 4;
 /// Ridge relative to the column length; it bounds the estimate if one input is a copy of another.
 const RIDGE: f64 = 1e-9;
@@ -32,15 +34,16 @@ pub enum LocalPolynomialError {
     /// No lines, inputs or outputs.
     #[error("there are no spectral lines for a frequency response")]
     Nothing,
-    /// Index of the record, counted from 0.
+    /// A segment has other channel counts than the first; index of its record, counted from 0.
     #[error("record {} differs from the first in its number of channels", .0 + 1)]
     ChannelsDiffer(usize),
     /// A line or a frequency is not finite, or a frequency is not greater than 0.
-    #[error("the spectra hold values that are not finite")]
+    #[error("the spectra contain values that are not finite")]
     NotFinite,
     /// Fewer lines than first-degree polynomials need.
     #[error(
-        "the records have {lines} spectral lines in the band where {needed} are needed: log longer, or leave out channels"
+        "the records have {lines} spectral lines in the band, but {needed} are needed: log \
+        longer, or leave out channels"
     )]
     TooFewLines {
         /// Number of lines in all records.
@@ -61,7 +64,7 @@ pub enum LocalPolynomialError {
 ///
 /// 1  h = max(0.45, 0.2 omega), times 1.2 once and then times 1.05 until the window holds
 ///    3 inputs + 3 records + outputs + 6 lines; records with fewer than four lines there are
-///    omitted; if all lines together are too few, so are the terms in x^2
+///    omitted; if all lines together are too few, the terms in x^2 are omitted too
 /// 2  for each record A = [U, x U, x^2 U] and B = Y, less their projection on [1, x, x^2]
 /// 3  [A B] = Q R, all records stacked;    R = [R11 R12; 0 R22]
 /// 4  G0 = first columns of R11^-1 R12,    Cv = Re(R22^H R22) / freedom
@@ -82,8 +85,8 @@ pub fn local_polynomial(
     Ok(ResponseEstimate { points })
 }
 
-/// Fits local polynomials around each of `omegas` \[rad/s\]; `share` is the half width of a window
-/// over its centre. See [`local_polynomial`].
+/// Fits local polynomials around each of `omegas` \[rad/s\]; `share` is the half-width of a window
+/// relative to its centre. See [`local_polynomial`].
 pub(crate) fn local_fits(
     spectra: &[Spectrum],
     omegas: &[f64],
@@ -128,7 +131,7 @@ fn check_lines(spectra: &[Spectrum], omegas: &[f64]) -> Result<(), LocalPolynomi
 pub(crate) struct Window {
     /// Centre \[rad/s\].
     pub(crate) omega: f64,
-    /// \[rad/s\].
+    /// Half-width \[rad/s\].
     pub(crate) half_width: f64,
     /// Number of polynomial terms.
     terms: usize,
@@ -136,7 +139,7 @@ pub(crate) struct Window {
     lines: Vec<Range<usize>>,
     /// Number of spectral lines in the window, over all spectra with enough lines.
     count: usize,
-    /// Number of columns of the transients of the records.
+    /// Number of transient columns, over all records.
     transients: usize,
 }
 
@@ -390,7 +393,7 @@ fn explained(residual: f64, total: f64) -> f64 {
 
 /// The linear regression in a window.
 struct Regression {
-    /// Rows `[A B]` of all records less the transients, with the ridge below.
+    /// Rows `[A B]` of all records with the transients removed, followed by the rows of the ridge.
     rows: DMatrix<Complex<f64>>,
     /// Sum of `|Y|^2` of each output.
     power: DVector<f64>,

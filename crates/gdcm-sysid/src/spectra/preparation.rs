@@ -12,7 +12,7 @@ use super::preparation_settings::{Preparation, PreparationError};
 use super::record_cautions::{RecordCaution, channel_cautions, inputs_at_limit, stuck_caution};
 use super::track::{Track, Tracks, read_row};
 
-/// The used parts of a record, and its gaps.
+/// The parts of a record that are used, and its gaps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordUse {
     /// Record name.
@@ -23,25 +23,27 @@ pub struct RecordUse {
     pub logged_s: f64,
     /// Total segment length \[s\].
     pub used_s: f64,
-    /// Gaps, by starting time.
+    /// Gaps, sorted by their start.
     pub gaps: Vec<Gap>,
-    /// Inputs at their limit, each with its share of the samples \[%\]. This is no caution: the
-    /// position of a saturated actuator is the signal.
+    /// Inputs at their limit, each with its share of samples there \[%\]. They need no caution: a
+    /// saturated actuator position is a valid input.
     pub inputs_at_limit: Vec<(Signal, f64)>,
 }
 
 impl RecordUse {
-    /// Returns sentences about the record that are facts and not cautions.
+    /// Returns sentences about the record that are not cautions: the inputs at their limit.
     pub fn facts(&self) -> impl Iterator<Item = String> {
         self.inputs_at_limit.iter().map(|(signal, percent)| {
             format!(
-                "{}: {signal} is at its limit for {percent:.1} % of it, and used as it is",
+                "{}: {signal} is at its limit for {percent:.1} % of the record and is used as \
+                logged",
                 self.record
             )
         })
     }
 
-    /// Returns the first and the last time \[s\] of each part between the parts cut out.
+    /// Returns the first and the last time \[s\] of each part that remains after the gaps are cut
+    /// out.
     pub fn spans(&self, record: &FlightRecord) -> Vec<[f64; 2]> {
         let mut stamps = record
             .time_s
@@ -76,7 +78,7 @@ pub struct Prepared {
     pub cautions: Vec<RecordCaution>,
 }
 
-/// Cuts flight records into segments, and reports their use and their faults (M14.1).
+/// Cuts flight records into segments, and returns their use and the cautions about them (M14.1).
 ///
 /// ```text
 /// for each record
@@ -141,13 +143,14 @@ pub fn prepare(
     })
 }
 
-/// Cuts a record into segments for a comparison with a model in time, as [`prepare`] does.
+/// Cuts a record into segments for a comparison with a model in the time domain, as [`prepare`]
+/// does.
 ///
 /// Unlike in [`prepare`], a channel may be constant.
 ///
 /// # Errors
-/// Invalid settings, a record that does not fit them, time that does not increase or is
-/// uneven, no segment left.
+/// Invalid settings, a record that does not fit them, time that does not increase or is uneven, no
+/// segment left.
 pub fn segments_of(
     record: &FlightRecord,
     preparation: &Preparation,
@@ -297,7 +300,7 @@ fn check_shape(record: &FlightRecord, preparation: &Preparation) -> Result<(), P
 
 /// Consecutive grid points at which every channel has a value.
 struct Run {
-    /// First grid index; an integer.
+    /// First grid index, an integer value.
     first: f64,
     /// Samples row by row: inputs, then outputs.
     rows: Vec<f64>,

@@ -16,22 +16,23 @@ pub enum Hold {
     /// A continuous signal; stairs raise a caution.
     #[default]
     None,
-    /// The stairs act on the aircraft, or are the resolution of the sensor: the samples are right.
+    /// The stairs act on the aircraft, or are the resolution of the sensor: the samples are correct
+    /// as logged.
     Acts,
     /// A command held for `hold_s` \[s\] and logged when it begins: it acts `hold_s / 2` later.
     Command { hold_s: f64 },
-    /// A sensor with the sample time `hold_s` \[s\], repeated by a faster logger: it measured
-    /// `hold_s / 2` earlier.
+    /// A sensor with the sample time `hold_s` \[s\] whose samples are repeated by a faster logger:
+    /// a stamp is on average `hold_s / 2` later than the measurement.
     SlowSensor { hold_s: f64 },
     /// A sensor slower than the logger: only new samples count, with straight lines between them.
     FreshSamples,
 }
 
-/// Preparation of a channel.
+/// Preparation of a channel: delay to remove, kind of hold, plausible range.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ChannelPreparation {
     pub name: String,
-    /// Known sensor or bus delay to remove \[s\].
+    /// Sensor or bus delay to remove \[s\], as stated by the engineer.
     pub delay_s: f64,
     pub hold: Hold,
     /// Maximum plausible modulus in the channel's unit; a larger value raises a doubt about the
@@ -49,7 +50,8 @@ impl ChannelPreparation {
         }
     }
 
-    /// Returns the delay \[s\] of a stamp after the time at which the channel had the value.
+    /// Returns how much later \[s\] a sample is stamped than the channel had its value; negative
+    /// for a command that is stamped when its hold begins.
     pub(crate) fn shift_s(&self) -> f64 {
         match self.hold {
             Hold::Command { hold_s } => self.delay_s - 0.5 * hold_s,
@@ -67,7 +69,7 @@ impl ChannelPreparation {
     }
 }
 
-/// Preparation of flight records.
+/// Settings for the preparation of flight records.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Preparation {
     /// Inputs, in column order.
@@ -86,7 +88,8 @@ pub struct Preparation {
 }
 
 impl Preparation {
-    /// The defaults: every channel as logged, gaps up to 3 samples bridged, segments from 10 s on.
+    /// Creates the default settings: every channel as logged, gaps of up to 3 samples bridged,
+    /// segments of at least 10 s.
     #[must_use]
     pub fn of(inputs: &[&str], outputs: &[&str]) -> Self {
         Self {
@@ -121,7 +124,7 @@ impl Preparation {
         })
     }
 
-    /// Returns a channel's settings.
+    /// Returns the settings of a channel; `None` if the channel does not exist.
     pub fn channel(&self, signal: &Signal) -> Option<&ChannelPreparation> {
         signal
             .role
@@ -129,7 +132,7 @@ impl Preparation {
             .get(signal.index)
     }
 
-    /// Returns a channel's settings for editing.
+    /// Returns the settings of a channel for editing; `None` if the channel does not exist.
     pub fn channel_mut(&mut self, signal: &Signal) -> Option<&mut ChannelPreparation> {
         signal
             .role
@@ -175,7 +178,7 @@ pub enum PreparationError {
     NoRecords,
     #[error("no {0} is given: identification needs at least one input and one output")]
     NoChannels(ChannelSide),
-    /// The channels of a record differ from the named ones.
+    /// The channels of a record differ from the channels in the settings.
     #[error("record {record} has {found} {role}s, not {named}")]
     ChannelsDiffer {
         record: String,
@@ -195,12 +198,13 @@ pub enum PreparationError {
     },
     /// A delay or a hold is not finite or too long.
     #[error(
-        "{signal}: a delay or hold of {seconds} s is not possible, at most {LONGEST_SHIFT_S} s"
+        "{signal}: a delay or hold of {seconds} s is not possible; the maximum is \
+        {LONGEST_SHIFT_S} s"
     )]
     Shift { signal: Signal, seconds: f64 },
-    #[error("the shortest piece is {0} s: it must be greater than 0")]
+    #[error("minimum length of a piece: expected more than 0 s, found {0} s")]
     LeastSegment(f64),
-    #[error("gaps of {0} samples are too long to be bridged: at most {LONGEST_BRIDGE}")]
+    #[error("gaps of {0} samples are too long to be bridged; the maximum is {LONGEST_BRIDGE}")]
     Bridge(usize),
     #[error(
         "record {record}: time goes from {previous_s} s to {time_s} s in row {}. Sort the rows, or delete repeated rows",
@@ -227,7 +231,6 @@ pub enum PreparationError {
          Log longer records, fill the gaps, or leave out the channel with gaps"
     )]
     NothingLeft { longest_s: f64, least_s: f64 },
-    /// Channels that are constant.
     #[error("{} never moved in any record: leave {} out", names(.0), if .0.len() == 1 { "it" } else { "them" })]
     Constant(Vec<Signal>),
 }

@@ -14,7 +14,7 @@ use super::channel_quality::{
 use super::gaps::{Cause, Gap, names};
 use super::preparation_settings::{ChannelPreparation, Hold, Preparation};
 
-/// Correlation above which two inputs count as moved together.
+/// Correlation above which two inputs count as always moved together.
 const TOGETHER: f64 = 0.99;
 /// Correlation above which an output counts as a copy of an input or of another output.
 const COPY: f64 = 0.9999;
@@ -31,8 +31,11 @@ pub enum RecordCaution {
         /// 95th percentile of the deviations from multiples of the sample time \[%\].
         percent: f64,
     },
-    /// The part between two gaps is too short.
-    #[error("{record}: {length_s:.1} s from {start_s:.2} s were left out, too short between gaps")]
+    /// A part between two gaps was left out because it is too short.
+    #[error(
+        "{record}: the {length_s:.1} s after {start_s:.2} s were left out, because they are \
+        too short between two gaps"
+    )]
     SegmentDropped {
         record: String,
         start_s: f64,
@@ -42,8 +45,8 @@ pub enum RecordCaution {
     RecordUnused(String),
     /// More than half of the consecutive samples are equal while the channel moves.
     #[error(
-        "{signal}: {percent:.0} % of consecutive samples are equal, it changes every {:.0} ms. State the cause: {}or a signal \
-         that really moves in steps (nothing done, as now)",
+        "{signal}: {percent:.0} % of consecutive samples are equal; it changes every {:.0} ms. \
+        State the cause: {}or a signal that really moves in steps (used as logged, as now)",
         1e3 * hold_s, hold_choices(signal.role, 1e3 * hold_s)
     )]
     SampleHold {
@@ -54,7 +57,7 @@ pub enum RecordCaution {
         hold_s: f64,
     },
     /// A value that is implausible in the channel's unit.
-    #[error("{signal} reaches {greatest:.3}, beyond {limit}: check its unit")]
+    #[error("{signal} reaches {greatest:.3}, above the plausible maximum {limit}: check its unit")]
     UnlikelyUnit {
         signal: Signal,
         /// Maximum modulus of the samples.
@@ -67,21 +70,19 @@ pub enum RecordCaution {
         names(signals)
     )]
     MovedTogether {
-        /// Two inputs.
         signals: [Signal; 2],
         correlation: f64,
     },
-    /// An output is at its limit.
     #[error(
         "{signal} is at its limit for {percent:.1} % of {record}{}, which cannot be repaired. Leave the output out, or {}",
         if *records > 1 { format!(", and in {} other records", records - 1) } else { String::new() },
         if *records > 1 { "these records" } else { "the record" }
     )]
     AtLimit {
-        /// Name of the worst record.
+        /// Name of the record with the largest share of samples at the limit.
         record: String,
         signal: Signal,
-        /// Share of the samples \[%\].
+        /// Share of samples at the limit in this record \[%\].
         percent: f64,
         /// Number of affected records.
         records: usize,
@@ -97,13 +98,13 @@ pub enum RecordCaution {
         /// Total duration \[s\].
         seconds: f64,
     },
-    /// An output is logged in coarse steps.
     #[error(
-        "{signal} is logged in coarse steps of {steps:.1} standard deviations; this had no effect in any test"
+        "{signal} is logged in coarse steps of {steps:.1} standard deviations; such steps had no \
+        effect in tests of the identification"
     )]
     Coarse {
         signal: Signal,
-        /// Step over the standard deviation.
+        /// Step size in standard deviations of the channel.
         steps: f64,
     },
     /// An output copies another channel.
@@ -117,19 +118,20 @@ pub enum RecordCaution {
     },
 }
 
-/// Lists the possible causes of stairs.
+/// Returns the possible causes of stairs, as text for the caution.
 fn hold_choices(role: ChannelSide, hold_ms: f64) -> String {
     let half = 0.5 * hold_ms;
     let command = match role {
         ChannelSide::Input => {
-            format!("a command held and logged once a hold (moved {half:.0} ms later), ")
+            format!("a command that is held and logged once per hold (moved {half:.0} ms later), ")
         }
         ChannelSide::Output => String::new(),
     };
     format!("{command}a slow sensor (only fresh samples kept, or moved {half:.0} ms earlier), ")
 }
 
-/// Examines the channels of the records as logged, and of the segments made from them.
+/// Returns cautions about the channels of the records as logged, and of the segments made from
+/// them.
 pub(crate) fn channel_cautions(
     records: &[FlightRecord],
     segments: &[Segment],
@@ -148,7 +150,7 @@ pub(crate) fn channel_cautions(
     cautions
 }
 
-/// Reports an implausible unit if a channel exceeds its plausible limit.
+/// Returns a caution if a channel exceeds its plausible limit, which suggests a wrong unit.
 fn unit_caution(
     signal: &Signal,
     channel: &ChannelPreparation,
@@ -170,7 +172,7 @@ fn unit_caution(
     }
 }
 
-/// Reports stairs in a channel whose hold is not declared.
+/// Returns a caution about stairs in a channel whose hold is not declared.
 fn stairs_caution(
     signal: &Signal,
     channel: &ChannelPreparation,
@@ -179,7 +181,7 @@ fn stairs_caution(
     if channel.hold != Hold::None {
         return None;
     }
-    // The stairs of a coarse output are its coarse steps.
+    // The stairs of a coarse output are its coarse steps, for which there is another caution.
     if signal.role == ChannelSide::Output && is_coarse(&values_of_all(records, signal)) {
         return None;
     }
@@ -191,7 +193,7 @@ fn stairs_caution(
     })
 }
 
-/// Reports an output at its limit, with the worst record.
+/// Returns a caution about an output at its limit; it names the worst record.
 fn limit_caution(signal: &Signal, records: &[FlightRecord]) -> Option<RecordCaution> {
     let mut clipped = Vec::new();
     for record in records {
@@ -209,7 +211,7 @@ fn limit_caution(signal: &Signal, records: &[FlightRecord]) -> Option<RecordCaut
     })
 }
 
-/// Reports an output in coarse steps.
+/// Returns a caution about an output that is logged in coarse steps.
 fn coarse_caution(signal: &Signal, records: &[FlightRecord]) -> Option<RecordCaution> {
     let steps = coarseness(&values_of_all(records, signal))?;
     if steps > COARSE {
@@ -230,7 +232,7 @@ fn values_of_all(records: &[FlightRecord], signal: &Signal) -> Vec<f64> {
         .collect()
 }
 
-/// Reports channels that move together, by their correlation over all segments.
+/// Returns cautions about channels that move together, from their correlation over all segments.
 fn correlation_cautions(segments: &[Segment], preparation: &Preparation) -> Vec<RecordCaution> {
     let signals: Vec<Signal> = preparation.channels().map(|(signal, _)| signal).collect();
     let mut covariance = DMatrix::zeros(signals.len(), signals.len());
@@ -267,7 +269,8 @@ fn correlation_cautions(segments: &[Segment], preparation: &Preparation) -> Vec<
     cautions
 }
 
-/// Reports the outputs that were constant in a record while others moved, from its gaps.
+/// Returns a caution about the outputs that were constant in a record while others moved, from its
+/// gaps.
 pub(crate) fn stuck_caution(record: &str, gaps: &[Gap]) -> Option<RecordCaution> {
     let mut stuck = BTreeSet::new();
     let mut seconds = 0.0;

@@ -16,14 +16,14 @@ const LEAST_PARTIAL_COHERENCE: f64 = 0.3;
 const GREATEST_CONDITION: f64 = 1e3;
 /// Minimum partial coherence of a trusted point (M14.2).
 pub const TRUSTED_COHERENCE: f64 = 0.6;
-/// The band is too wide at an end if at least this share of it, in logarithm, shows no response
-/// there (M14.10).
+/// Minimum share of the band, in logarithmic frequency, without a response at an end for the band
+/// to count as too wide there (M14.10).
 const END: f64 = 0.2;
 
 /// The measured response at a frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EstimatePoint {
-    /// \[rad/s\].
+    /// Frequency \[rad/s\].
     pub omega: f64,
     /// `G0`, outputs x inputs.
     pub response: DMatrix<Complex<f64>>,
@@ -31,14 +31,14 @@ pub struct EstimatePoint {
     /// `sqrt(variance / 2) / |G0|` is the standard deviation of the log modulus \[Np\] and of the
     /// phase \[rad\].
     pub variance: DMatrix<f64>,
-    /// `Cv`, the noise covariance of a line, real part, outputs x outputs.
+    /// Real part of `Cv`, the noise covariance of a spectral line; outputs x outputs.
     pub noise: DMatrix<f64>,
     /// Mean line power of each output around this frequency.
     pub power: DVector<f64>,
     /// Multiple coherence of each output: the share of its power that all inputs explain, 0 to 1.
     pub coherence: DVector<f64>,
-    /// Partial coherence, outputs x inputs: this input explains this share, 0 to 1, of the power
-    /// that the other inputs leave unexplained.
+    /// Partial coherence, outputs x inputs: the share, 0 to 1, that this input explains of the
+    /// power left unexplained by the other inputs.
     pub partial_coherence: DMatrix<f64>,
     /// Condition number of the spectral matrix `S_uu` of the inputs, in scaled units.
     pub condition: f64,
@@ -58,7 +58,7 @@ impl EstimatePoint {
     /// Returns the maximum partial coherence of an input over the outputs, less the share that as
     /// many columns of noise would explain: `1 - (1 - c) (freedom + 3) / freedom`.
     ///
-    /// Without this correction, the maximum over many outputs is never small by chance.
+    /// Without this correction, the maximum over many outputs would hardly ever be small.
     fn greatest_coherence(&self, input: usize) -> f64 {
         let columns = TERMS as f64;
         let freedom = self.freedom.max(1) as f64;
@@ -70,7 +70,7 @@ impl EstimatePoint {
         (1.0 - (1.0 - greatest) * (freedom + columns) / freedom).max(0.0)
     }
 
-    /// Whether an input is coherent with an output.
+    /// Whether at least one input is coherent with an output.
     fn is_shown(&self) -> bool {
         (0..self.response.ncols()).any(|input| self.greatest_coherence(input) >= TRUSTED_COHERENCE)
     }
@@ -94,8 +94,8 @@ impl EstimatePoint {
 /// Independent excitation of each input.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Excitation {
-    /// For each input, the median over frequency of its maximum partial coherence over the outputs,
-    /// 0 to 1.
+    /// Maximum partial coherence of each input over the outputs, as a median over frequency, 0 to
+    /// 1.
     pub partial_coherence: Vec<f64>,
     /// Median over frequency of the condition number of the spectral matrix of the inputs.
     pub condition: f64,

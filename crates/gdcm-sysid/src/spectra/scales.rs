@@ -5,8 +5,8 @@ use nalgebra::DMatrix;
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::simulation::Segment;
 
-/// Minimum rms of a channel over its maximum modulus; below it, the channel is constant apart from
-/// rounding.
+/// Minimum rms of a channel relative to its maximum modulus; below it, the channel is constant
+/// apart from rounding.
 const CONSTANT: f64 = 1e-12;
 
 /// Scale of every channel, in file units: its rms about the mean of each segment, over all segments
@@ -28,7 +28,7 @@ pub struct Scales {
 pub enum ScalingError {
     #[error("there are no flight records")]
     NoSegments,
-    /// Index of the segment, counted from 0.
+    /// A segment has other channel counts than the first; index of the segment, counted from 0.
     #[error("piece {} of the flight records differs from the first in its number of channels", .0 + 1)]
     ChannelsDiffer(usize),
     /// A sample or its square is not finite; index of the segment, counted from 0.

@@ -10,8 +10,8 @@ use gdcm_numerics::{FourierPlanner, FourierTransform};
 
 use super::gap_hat::GapHat;
 
-/// Minimum frequency of the used lines of a segment, in units of its first line, which contains the
-/// drift: they start with the second (M14.12).
+/// Lowest frequency used, in units of a segment's first line. The first line contains the drift, so
+/// that the lines are used from the second on (M14.12).
 const FIRST_LINE: f64 = 1.5;
 
 /// Spectral lines of a segment (M14.2): columns are lines, rows are channels.
@@ -56,12 +56,12 @@ impl Spectrum {
     }
 }
 
-/// The frequency range of the lines used.
+/// Frequency range of the lines used.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LineRange {
-    /// \[rad/s\].
+    /// Minimum frequency \[rad/s\].
     pub(crate) lowest: f64,
-    /// \[rad/s\].
+    /// Maximum frequency \[rad/s\].
     pub(crate) highest: f64,
 }
 

@@ -13,13 +13,14 @@ use super::preparation_settings::{ChannelPreparation, Hold, Preparation};
 
 /// Minimum duration of a frozen run \[s\].
 const FROZEN_S: f64 = 1.0;
-/// Minimum length of a frozen run, over the usual length of runs with equal samples.
+/// Minimum length of a frozen run, relative to the usual length of runs with equal samples.
 const UNUSUAL: f64 = 5.0;
 /// Quantile that gives the usual length of runs with equal samples.
 const USUAL: f64 = 0.95;
-/// Minimum number of runs with equal samples in an output that moves.
+/// Minimum number of runs with equal samples in an output that can be frozen: with fewer runs, it
+/// does not move at other times.
 const RUNS_OF_A_MOVING: usize = 10;
-/// Minimum number of equal samples at the minimum or the maximum that form a run at a limit.
+/// Minimum number of equal samples in a run at the minimum or maximum of an output.
 const RUN_AT_A_LIMIT: usize = 5;
 /// Tolerance of a time beyond the last sample, relative to the sample time.
 const ROUNDING: f64 = 1e-6;
@@ -114,7 +115,7 @@ pub(crate) struct Track {
     values: Vec<f64>,
     /// Delay of the stamps \[s\].
     shift_s: f64,
-    /// Maximum distance of two samples \[s\] without a gap, or with a gap that is bridged.
+    /// Maximum time between two samples \[s\] that is no gap, or a gap that is bridged.
     longest_step_s: f64,
     rounding_s: f64,
 }

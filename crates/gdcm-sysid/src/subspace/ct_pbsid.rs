@@ -30,16 +30,16 @@ pub(crate) struct SubspaceShape {
     pub(crate) longest_future: usize,
 }
 
-/// States for all orders, proposed with a Laguerre pole and a past window.
+/// States for models of all orders, from one Laguerre pole and one past window.
 #[derive(Clone, Debug)]
 pub(crate) struct Subspace {
     pole: f64,
     inputs: usize,
     /// The leading (p + 1) q columns and rows of `R`.
     factor: DMatrix<f64>,
-    /// `Gamma K`.
+    /// `Gamma K`, the map to the future.
     map: DMatrix<f64>,
-    /// `W`.
+    /// `W`, the left singular vectors of `Gamma K Z0'`.
     left: DMatrix<f64>,
     /// The diagonal of `S`, descending.
     pub(crate) singular_values: Vec<f64>,
@@ -184,7 +184,7 @@ mod tests {
         let mut factor = TriangularFactor::empty(rows.ncols());
         factor.append(&rows);
         let subspace = Subspace::new(&factor, projections.pole, shape, 0.0).unwrap();
-        // Independent numpy code; its file states the tolerances.
+        // Expected values from independent numpy code; their file states the tolerances.
         for (found, expected) in subspace
             .singular_values
             .iter()

@@ -1,15 +1,4 @@
-//! Removal of the modes far above the band, with their static part kept.
-//!
-//! ```text
-//! 1  A = Q T Q^H, T upper triangular; neighbours on its diagonal are exchanged until the slow ones
-//!    come first
-//! 2  Q1 an orthonormal real basis for the span of Q's first columns, Q2 for its complement
-//! 3  [Q1 Q2]' A [Q1 Q2] = [A1 A12; 0 A2];  A1 X - X A2 = -A12 (Sylvester)
-//! 4  slow: A1, B1 = Q1'B - X Q2'B, C1 = C Q1;   fast: A2, B2 = Q2'B, C2 = C (Q1 X + Q2)
-//! 5  D + C2 (-A2)^-1 B2
-//! ```
-//!
-//! G. Golub & C. Van Loan, "Matrix Computations", 4th ed. 2013, section 7.6.
+//! Removal of the modes far above the band; their static gain is kept.
 
 use nalgebra::{Complex, DMatrix, DVector, Dyn, SymmetricEigen};
 
@@ -45,8 +34,8 @@ pub(crate) fn without_fast_modes(model: &StateSpace, limit: f64) -> Option<State
     StateSpace::new(a1, b1, c * q1, model.d() - c2 * a2.lu().solve(&b2)?).ok()
 }
 
-/// Returns an orthonormal basis whose first `count` columns span the same space as the first
-/// `count` columns of `q`, which are conjugate or real.
+/// Returns a real orthonormal basis whose first `count` columns span the same space as the first
+/// `count` columns of `q`. Complex vectors of `q` occur there only with their conjugates.
 fn real_basis(q: &DMatrix<Complex<f64>>, count: usize) -> DMatrix<f64> {
     let order = q.nrows();
     // The projector on the span is real, with the eigenvalues 1 and 0.
@@ -123,7 +112,7 @@ mod tests {
                 .count()
         );
         assert!((0..9).all(|at| (form.t[(at, at)].re > 0.0) == (at < count)));
-        // A few dozen rotations, each of them backward stable.
+        // 1e-13: a few dozen rotations, each of them backward stable.
         assert!(
             (&form.q * &form.t * form.q.adjoint() - a.map(Complex::from)).norm() < 1e-13 * a.norm()
         );
@@ -136,7 +125,7 @@ mod tests {
         let slow = without_fast_modes(&model, number(&known["wmax"])).unwrap();
         assert_eq!(slow.order() as f64, number(&known["order"]));
         for (omega, expected) in numbers(&known["w"]).into_iter().zip(response(&known["H"])) {
-            // Independent numpy code; its file states the tolerance.
+            // Expected values from independent numpy code; their file states the tolerance.
             assert!((response_at(&slow, omega) - expected).camax() < 1e-9);
         }
     }

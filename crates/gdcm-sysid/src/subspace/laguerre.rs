@@ -90,7 +90,7 @@ pub(crate) struct Projections {
     pub(crate) pole: f64,
     /// `p`: every channel has the projections 0 to `past`.
     pub(crate) past: usize,
-    /// Time between two instants \[s\].
+    /// Time between the instants at which rows are taken \[s\].
     pub(crate) spacing_s: f64,
 }
 
@@ -225,7 +225,7 @@ mod tests {
             let projections = bank.projections(signals.column(channel).as_slice(), count - 1);
             for (sample, expected) in known["expected"].as_array().unwrap().iter().enumerate() {
                 for k in 0..count {
-                    // Independent numpy code; its file states the tolerance.
+                    // Expected values from independent numpy code; their file states the tolerance.
                     assert!(
                         (projections[(sample, k)] - number(&expected[k][channel])).abs() < 1e-12
                     );
@@ -246,7 +246,7 @@ mod tests {
             (model.c(), "C"),
             (model.d(), "D"),
         ] {
-            // Independent numpy code; its file states the tolerance.
+            // Expected values from independent numpy code; their file states the tolerance.
             assert!((found - matrix(&known[name])).amax() < 1e-12, "{name}");
         }
     }

@@ -22,13 +22,11 @@ const LEAST_ROWS: f64 = 2.0;
 const LEAST_ROWS_SHORT: f64 = 1.5;
 /// Time between instants times the upper band end \[rad\].
 pub(crate) const SPACING: f64 = 1.2;
-/// Minimum number of real values in the lines for each parameter of a model (M14.13).
+/// Minimum number of real values in the spectral lines for each parameter of a model (M14.13).
 pub(crate) const FIGURES_AN_UNKNOWN: usize = 5;
 
 /// Counts the parameters of a model with this order, without those that only change the state
 /// basis: `n (m + l) + m l`.
-///
-/// Changes in the state basis do not count.
 pub(crate) fn parameters_of_order(order: usize, inputs: usize, outputs: usize) -> usize {
     order * (inputs + outputs) + inputs * outputs
 }
@@ -40,7 +38,7 @@ pub(crate) struct Extent {
     pub(crate) outputs: usize,
     /// Number of real values in all lines, less the unknowns of the transients.
     pub(crate) figures: usize,
-    /// Record length times the upper band end \[rad\].
+    /// Total length of the records times the upper band end \[rad\].
     pub(crate) radians: f64,
 }
 

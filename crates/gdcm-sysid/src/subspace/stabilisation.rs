@@ -2,13 +2,14 @@
 
 use nalgebra::Complex;
 
-/// Maximum relative distance between orders of a stable pole.
+/// Maximum distance of a stable pole from the nearest pole of the model whose order is lower by
+/// two, relative to the modulus.
 const STABLE: f64 = 0.05;
 
 /// Poles of the model of an order.
 pub(crate) struct PolesOfOrder {
     pub(crate) order: usize,
-    /// \[rad/s\].
+    /// Poles \[rad/s\].
     pub(crate) poles: Vec<Complex<f64>>,
 }
 

@@ -9,8 +9,8 @@ use super::deltas::{delays_ms, gain_ratios};
 use super::sample_words::spread;
 use super::{Context, Derivation};
 
-/// Pools the mismatches of the measuring responses, or of all responses if no measuring response is
-/// defined.
+/// Collects the mismatches of the responses in the objective (on-axis; all if none is on-axis), or
+/// of all responses if none of these has a mismatch.
 fn pooled<'a>(
     context: &Context<'a>,
     mismatch: impl Fn(Pair) -> Option<&'a Mismatch>,

@@ -8,14 +8,14 @@ use gdcm_model::units::{s_to_ms, six_digits};
 use super::{Context, Derivation};
 use crate::leads::servo_words;
 
-/// An objective as an equation.
+/// An objective as an equation, with the units of its value.
 struct Objective {
     equation: &'static str,
     /// Unit of the displayed value, with a leading space.
     unit: &'static str,
     /// Factor from the stored to the displayed value.
     scale: f64,
-    /// Section in the method's description.
+    /// Section in the description of the method.
     section: &'static str,
 }
 
@@ -50,7 +50,7 @@ impl Objective {
     }
 }
 
-/// Derives a response's net gain.
+/// Derives the net gain `k_o k_i` of a response.
 pub(super) fn net_gain(context: &Context<'_>, pair: Pair) -> Derivation {
     let result = context.result;
     let [output, input] = Channel::of(pair);
@@ -74,7 +74,7 @@ pub(super) fn net_gain(context: &Context<'_>, pair: Pair) -> Derivation {
     }
 }
 
-/// Derives a response's net delay.
+/// Derives the net delay `τ_o + τ_i` \[ms\] of a response.
 pub(super) fn net_delay(context: &Context<'_>, pair: Pair) -> Derivation {
     let result = context.result;
     let [output, input] = Channel::of(pair);
@@ -98,7 +98,7 @@ pub(super) fn net_delay(context: &Context<'_>, pair: Pair) -> Derivation {
     }
 }
 
-/// Describes whether a response is constrained, and the delta to which it is constrained.
+/// Describes whether a response is constrained, and its delta gain or delay.
 fn constraint_words(
     context: &Context<'_>,
     pair: Pair,
@@ -108,18 +108,18 @@ fn constraint_words(
     let name = context.pair(pair);
     let delta = match delta {
         Some(delta) => five_digits(delta),
-        None => "nothing defined".to_owned(),
+        None => "undefined".to_owned(),
     };
     if solution.targets[pair].is_none() {
-        format!("{name} is free, its delta is {delta}")
+        format!("{name} is not held; its delta is {delta}")
     } else if solution.unmatched.iter().any(|miss| miss.pair == pair) {
-        format!("{name} is held at the nearest that can be reached, its delta is {delta}")
+        format!("{name} is held as close to its delta as possible; its delta is {delta}")
     } else {
-        format!("{name} is held at its delta {delta}")
+        format!("{name} is held at its delta, {delta}")
     }
 }
 
-/// Derives a channel's gain.
+/// Derives the gain `k` of a channel; `None` for a channel that the dataset does not have.
 pub(super) fn gain(context: &Context<'_>, channel: Channel) -> Option<Derivation> {
     let result = context.result;
     let value = *result.gains.channels().get(channel)?;
@@ -143,7 +143,8 @@ pub(super) fn gain(context: &Context<'_>, channel: Channel) -> Option<Derivation
     })
 }
 
-/// Derives a channel's delay or signed delay.
+/// Derives the delay or signed delay `τ` \[ms\] of a channel; `None` for a channel that the dataset
+/// does not have.
 pub(super) fn delay(context: &Context<'_>, channel: Channel) -> Option<Derivation> {
     let result = context.result;
     let value = s_to_ms(*result.delays.channels().get(channel)?);
@@ -161,7 +162,7 @@ pub(super) fn delay(context: &Context<'_>, channel: Channel) -> Option<Derivatio
     let mut with_numbers = optimum.steps(channel, &format!("{name} = {} ms", five_digits(value)));
     if let Some(filter) = result.correction.lead(channel) {
         with_numbers.push(format!(
-            "its filter has {} ms of lead at low frequency: {}",
+            "its lead filter provides {} ms of lead at low frequency: {}",
             five_digits(s_to_ms(filter.lead_s())),
             servo_words(filter)
         ));
@@ -179,7 +180,7 @@ pub(super) fn delay(context: &Context<'_>, channel: Channel) -> Option<Derivatio
     })
 }
 
-/// Derives the objective of the gains.
+/// Derives the minimised objective of the gains.
 pub(super) fn gain_objective(context: &Context<'_>) -> Derivation {
     let optimum = Optimum {
         context,
@@ -189,7 +190,7 @@ pub(super) fn gain_objective(context: &Context<'_>) -> Derivation {
     optimum.objective(&Objective::of_gains(context))
 }
 
-/// Derives the objective of the delays.
+/// Derives the minimised objective of the delays.
 pub(super) fn delay_objective(context: &Context<'_>) -> Derivation {
     let problem = &context.result.delay_problem;
     let optimum = Optimum {
@@ -200,7 +201,7 @@ pub(super) fn delay_objective(context: &Context<'_>) -> Derivation {
     optimum.objective(&Objective::of_delays(problem))
 }
 
-/// A condition's problem with its solution.
+/// Gain or delay problem of a condition, with its solution.
 struct Optimum<'a> {
     context: &'a Context<'a>,
     problem: &'a Problem,
@@ -208,8 +209,8 @@ struct Optimum<'a> {
 }
 
 impl Optimum<'_> {
-    /// Lists the constrained responses that link the channel to other channels, then its value
-    /// within the bounds; `last` contains the value with its name.
+    /// Lists the constrained products or sums that contain the channel, then its bounds with
+    /// `last`, the name and the value of the channel, between them.
     fn steps(&self, channel: Channel, last: &str) -> Vec<String> {
         let is_gain = self.problem.quantity.is_gain();
         let (unit, scale) = if is_gain { ("", 1.0) } else { (" ms", 1e3) };
@@ -264,7 +265,7 @@ impl Optimum<'_> {
         rests_on
     }
 
-    /// Derives the objective: fit and regularisation.
+    /// Derives the value of the objective: fit term plus regularisation term.
     fn objective(&self, objective: &Objective) -> Derivation {
         let Objective { unit, scale, .. } = *objective;
         let value = scale * self.solution.objective;
@@ -282,7 +283,7 @@ impl Optimum<'_> {
         );
         let mut rests_on = self.rests_on();
         rests_on.push(format!(
-            "no less than {}{unit} is possible",
+            "proven lower bound of the objective: {}{unit}",
             five_digits(scale * self.solution.proof.lower_bound)
         ));
         Derivation {

@@ -1,4 +1,4 @@
-//! Condition of an explained result, with descriptions of its models and choices.
+//! Condition of an explained result, and descriptions of its models and choices.
 
 use gdcm_method::correction::Channel;
 use gdcm_method::fidelity::Mismatch;
@@ -7,14 +7,14 @@ use gdcm_model::units::six_digits;
 use gdcm_study::decisions::settings::Settings;
 use gdcm_study::{Analysis, ConditionAnalysis};
 
-/// A condition of an analysis.
+/// A condition of an analysis, with its result.
 pub(super) struct Context<'a> {
     pub(super) analysis: &'a Analysis,
     pub(super) result: &'a ConditionAnalysis,
 }
 
 impl<'a> Context<'a> {
-    /// Returns the context of a condition; `None` where it has no result.
+    /// Returns the context of a condition; `None` if the condition has no result.
     pub(super) fn new(analysis: &'a Analysis, condition: ConditionId) -> Option<Self> {
         Some(Self {
             analysis,
@@ -40,12 +40,12 @@ impl<'a> Context<'a> {
         channel.name_in(&self.analysis.study.dataset)
     }
 
-    /// Writes a title: the name of the result, then the condition: "…, condition 3".
+    /// Returns a title from the name of a result: "net gain of LON → Q, condition 3".
     pub(super) fn title(&self, figure: &str) -> String {
         format!("{figure}, condition {}", self.result.condition.id())
     }
 
-    /// Returns the mismatch between the two representatives.
+    /// Returns the mismatch between the two representatives in a response, without leads.
     pub(super) fn mismatch(&self, pair: Pair) -> Option<&'a Mismatch> {
         self.result
             .comparison
@@ -55,7 +55,8 @@ impl<'a> Context<'a> {
             .as_ref()
     }
 
-    /// Returns the mismatch after the leads of the channels, if any (M15.5).
+    /// Returns the mismatch with the leads of the channels applied, or without leads if there are
+    /// none (M15.5).
     pub(super) fn compensated_mismatch(&self, pair: Pair) -> Option<&'a Mismatch> {
         match &self.result.compensated {
             Some(compensated) => compensated.mismatch.get(pair)?.as_ref(),
@@ -63,7 +64,7 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// Describes the two representatives.
+    /// Describes the physics and the identified representative.
     pub(super) fn models(&self) -> Vec<String> {
         let couplings = if self.result.coupled.is_some() {
             format!(", with {} (M16)", self.settings().couplings.name())
@@ -78,7 +79,8 @@ impl<'a> Context<'a> {
         ]
     }
 
-    /// Describes the band and its frequencies.
+    /// Describes the frequencies at which responses are compared: their number, and the ends of the
+    /// band.
     pub(super) fn band(&self) -> String {
         let settings = self.settings();
         format!(
@@ -98,7 +100,7 @@ impl<'a> Context<'a> {
         words
     }
 
-    /// Lists the marked responses.
+    /// Lists the names of responses; "none" if there are none.
     pub(super) fn pairs(&self, pairs: impl Iterator<Item = Pair>) -> String {
         let names: Vec<String> = pairs.map(|pair| self.pair(pair)).collect();
         if names.is_empty() {
@@ -108,7 +110,7 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// Lists the responses used for bounds and distances.
+    /// Lists the responses from which bounds and distances are computed.
     pub(super) fn measuring(&self) -> String {
         let measuring = self.analysis.study.dataset.measuring_pairs();
         format!("responses {}", self.pairs(measuring.marked()))
@@ -120,11 +122,11 @@ impl<'a> Context<'a> {
     }
 }
 
-/// Describes the weights, and the number of frequencies with nonzero weight; `None` where coherence
-/// is not used.
+/// Describes the weights, and the number of frequencies with nonzero weight; `None` if coherence is
+/// not used.
 pub(super) fn weight_words(mismatch: &Mismatch) -> Option<String> {
     let count = mismatch.weights()?.len();
     Some(format!(
-        "{count} of the frequencies, each by its coherence: W = [1.58 (1 − e^(−γ²))]² (M4a)"
+        "{count} of the frequencies, weighted by coherence: W = [1.58 (1 − e^(−γ²))]² (M4a)"
     ))
 }

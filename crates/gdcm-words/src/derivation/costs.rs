@@ -13,10 +13,10 @@ use super::sample_words::median_words;
 use super::{Context, Derivation};
 use crate::assessment::correction_source;
 
-/// Maximum number of terms that are written out in a sum.
+/// Maximum number of terms written out in a sum.
 const MOST_TERMS: usize = 8;
 
-/// Section about J in the description of the method.
+/// Section that defines J in the description of the method.
 const COST_SECTION: &str = "M4, eq. (14) to (19)";
 
 /// Writes a sum: "a + b + c + … (20 terms)".
@@ -58,7 +58,7 @@ fn model_words(model: &Model) -> Vec<String> {
     words
 }
 
-/// Derives a model's score: its mean distance to the other kept models.
+/// Derives the score of a model: its mean distance to the other kept models.
 pub(super) fn score(context: &Context<'_>, model: &ModelId) -> Option<Derivation> {
     let result = context.result;
     let kind = model.bundle;
@@ -70,7 +70,7 @@ pub(super) fn score(context: &Context<'_>, model: &ModelId) -> Option<Derivation
         .filter_map(|other| result.figures.bundle(kind).between(index, other))
         .collect();
     let step = if distances.is_empty() {
-        "s = 0: it is the only model kept".to_owned()
+        "s = 0, because no other model is kept".to_owned()
     } else {
         format!(
             "s = ({}) / {} = {}",
@@ -103,11 +103,11 @@ pub(super) fn score(context: &Context<'_>, model: &ModelId) -> Option<Derivation
     })
 }
 
-/// Derives the discontinuity ratio of a physics model: distances to other models over the distances
-/// that the trims explain.
+/// Derives the discontinuity ratio of a physics model: its distance to other models, relative to
+/// the distance that the difference in trim explains.
 pub(super) fn ratio(context: &Context<'_>, model: &ModelId) -> Option<Derivation> {
     const EQUATION: &str = "r_a = median over b of d(a, b) / √(Σ_k w_k (p_ak − p_bk)²); each p \
-                            divided by its largest, w_k ≥ 0 by least absolute deviations";
+        divided by its maximum, w_k ≥ 0 by least absolute deviations";
     let result = context.result;
     let value = result.discontinuity_ratio(&model.name)?;
     let fit = result.figures.discontinuity.as_ref().ok()?;
@@ -147,13 +147,16 @@ pub(super) fn ratio(context: &Context<'_>, model: &ModelId) -> Option<Derivation
         five_digits(value)
     ));
     let mut rests_on = vec![
-        format!("all {} physics models, whatever is rejected", models.len()),
+        format!(
+            "all {} physics models, including rejected models",
+            models.len()
+        ),
         context.band(),
         context.measuring(),
     ];
     rests_on.extend(model_words(&models[index]));
     rests_on.push(format!(
-        "above {SUGGESTION_RATIO} a model is suggested as an outlier"
+        "a model above {SUGGESTION_RATIO} is suggested as an outlier"
     ));
     Some(Derivation {
         title: context.title(&format!("discontinuity ratio of {}", model.name)),
@@ -179,7 +182,7 @@ fn cost_equation(average: CostAverage) -> String {
     format!("J = {per_db} · {word}_ω(ΔdB²) + {per_deg} · {word}_ω(Δφ²), dB and degrees")
 }
 
-/// Writes the steps to J of a mismatch: magnitude part, phase part, and their sum.
+/// Writes the steps from a mismatch to J: magnitude part, phase part, and their sum.
 fn cost_steps(symbol: &str, cost: Cost, average: CostAverage) -> [String; 3] {
     let word = average_word(average);
     let [per_db, per_deg] = Cost::factors();
@@ -196,7 +199,7 @@ fn cost_steps(symbol: &str, cost: Cost, average: CostAverage) -> [String; 3] {
     ]
 }
 
-/// Writes the net gain and net delay of a correction.
+/// Describes the net gain and the net delay of a correction.
 fn correction_words(context: &Context<'_>, pair: Pair, correction: &ChannelCorrection) -> String {
     let [output, input] = Channel::of(pair).map(|channel| context.channel(channel));
     format!(
@@ -232,7 +235,7 @@ pub(super) fn cost_after(context: &Context<'_>, pair: Pair) -> Option<Derivation
     Some(Derivation {
         title: context.title(&format!("J of {} after the correction", context.pair(pair))),
         equation: format!(
-            "{}; of H_sim · k_o k_i e^(−jω(τ_o + τ_i))",
+            "{}; for the corrected response H_sim · k_o k_i e^(−jω(τ_o + τ_i))",
             cost_equation(average)
         ),
         with_numbers,

@@ -1,4 +1,4 @@
-//! Derives G and D (M6).
+//! Derives delta gain G and delta delay D (M6).
 
 use gdcm_method::correction::delta::GainSource;
 use gdcm_method::fidelity::Mismatch;
@@ -32,7 +32,7 @@ pub(super) fn delays_ms(mismatch: &Mismatch, omega: &[f64]) -> Vec<f64> {
 fn weighted_median_words(mismatch: &Mismatch, values: &[f64]) -> String {
     match mismatch.coherence_weights {
         None => median_words(values),
-        Some(_) => format!("where half of the weight lies of {}", spread(values)),
+        Some(_) => format!("the weighted median of {}", spread(values)),
     }
 }
 
@@ -67,7 +67,10 @@ fn mean_gain(context: &Context<'_>, title: String, value: f64) -> Derivation {
         let scores = &context.result.representative(kind).scores;
         scores.iter().flatten().count()
     });
-    let models = format!("{physics} physics and {identified} identified models that are kept");
+    let models = format!(
+        "{physics} physics models and {identified} identified models that are \
+        kept"
+    );
     Derivation {
         title,
         equation:
@@ -80,7 +83,7 @@ fn mean_gain(context: &Context<'_>, title: String, value: f64) -> Derivation {
     }
 }
 
-/// Derives the delta delay `D` of a response: the band delay where the delays are fitted to it,
+/// Derives the delta delay `D` of a response: the band delay if the delays are fitted to it,
 /// otherwise the median.
 pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     let value = s_to_ms(context.result.wanted_delay_s(pair)?);
@@ -102,7 +105,9 @@ pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     };
     if !is_of_band && mismatch.leaves_half_a_turn() {
         rests_on.push(
-            "at each frequency the turn nearest to the pure delay that fits best (M6b)".to_owned(),
+            "at each frequency, the phase is taken on the turn nearest to the best-fitting pure \
+            delay (M6b)"
+                .to_owned(),
         );
     }
     Some(Derivation {
@@ -115,7 +120,7 @@ pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     })
 }
 
-/// Writes the least-squares slope of the missing phase as a quotient.
+/// Writes the least-squares slope of the missing phase over frequency as a quotient.
 fn band_delay_words(context: &Context<'_>, mismatch: &Mismatch) -> String {
     let omega = mismatch.omega(context.omega());
     let phase = mismatch.phase_difference(context.omega());

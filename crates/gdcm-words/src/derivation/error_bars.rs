@@ -1,4 +1,5 @@
-//! Error bars of explained results, and the results after each swap (M13).
+//! Error bars of explained results, and each result after another model is substituted for a
+//! representative (M13).
 
 use gdcm_method::uncertainty::{Bar, Scalar, VarianceComponent};
 use gdcm_model::dataset::ConditionId;
@@ -9,14 +10,14 @@ use gdcm_study::{Analysis, ConditionAnalysis};
 
 use super::explain_target::ExplainTarget;
 
-/// Remark on unconstrained net gains and on channels, where the identified models report their own
-/// error.
-const SPREAD_ALONE: &str = "its identification part is the spread of the models alone, too small \
-                            where they share their records: the error that a model tells of itself \
-                            counts for G, D and the net gains that are held (M13.2)";
+/// Remark on unconstrained net gains and on channel values, used if the identified models come with
+/// standard errors.
+const SPREAD_ALONE: &str = "its identification part is the spread of the models alone, which is \
+    too small if the models share records; the standard errors of the models themselves count \
+    only for G, D and held net gains (M13.2)";
 
-/// Describes the error bar of a result with its parts, and the result after every swap; empty where
-/// there is no error bar, or it was not computed.
+/// Describes the error bar of a result with its parts, and the result after each substitution of a
+/// model; empty if no error bar is available.
 pub(super) fn error_bar_lines(analysis: &Analysis, target: &ExplainTarget) -> Vec<String> {
     lines_of(analysis, target).unwrap_or_default()
 }
@@ -38,7 +39,8 @@ fn lines_of(analysis: &Analysis, target: &ExplainTarget) -> Option<Vec<String>> 
     Some(lines)
 }
 
-/// Returns the condition and the key of the error bar that belongs to a result.
+/// Returns the condition and the key of a result's error bar; `None` for results without error
+/// bars.
 fn scalar_of(analysis: &Analysis, target: &ExplainTarget) -> Option<(ConditionId, Scalar)> {
     Some(match target {
         ExplainTarget::DeltaGain(id, pair) => (*id, Scalar::Gain(*pair)),
@@ -50,16 +52,16 @@ fn scalar_of(analysis: &Analysis, target: &ExplainTarget) -> Option<(ConditionId
     })
 }
 
-/// Describes the error bar, its two parts, and its remarks.
+/// Describes an error bar, its two parts, and its remarks.
 fn bar_lines(bar: &Bar, scalar: Scalar, level: f64) -> Vec<String> {
     let whole = match (bar.half_width(level), bar.degrees_of_freedom()) {
         (Some(half_width), Some(degrees)) => format!(
-            "bar of {:.0} %: ± {} = t({degrees:.1}) · {} (M13)",
+            "{:.0} % error bar: ± {} = t({degrees:.1}) · {} (M13)",
             100.0 * level,
             deviation_words(scalar, half_width),
             deviation_words(scalar, bar.deviation())
         ),
-        _ => "no bar (M13)".to_owned(),
+        _ => "no error bar (M13)".to_owned(),
     };
     let mut lines = vec![
         whole,
@@ -69,7 +71,7 @@ fn bar_lines(bar: &Bar, scalar: Scalar, level: f64) -> Vec<String> {
     lines.extend(bar.remarks().into_iter().map(str::to_owned));
     if bar.left_out > 0 {
         lines.push(format!(
-            "{} substitutions have no such figure",
+            "{} exchanges of a model give no value of this result",
             bar.left_out
         ));
     }
@@ -87,7 +89,7 @@ fn part_words(name: &str, scalar: Scalar, part: Option<VarianceComponent>) -> St
     }
 }
 
-/// Formats a deviation: delays in ms, gains in percent.
+/// Formats a standard deviation: of a delay in ms, of a gain in percent.
 fn deviation_words(scalar: Scalar, deviation: f64) -> String {
     if scalar.is_delay() {
         format!("{:.2} ms", s_to_ms(deviation))
@@ -96,7 +98,7 @@ fn deviation_words(scalar: Scalar, deviation: f64) -> String {
     }
 }
 
-/// Describes a result after a swap: "with physics model roll+5: 1.0423".
+/// Describes a result after the substitution of a model: "with physics model roll+5: 1.0423".
 fn swap_words(result: &ConditionAnalysis, swap: &ModelSwap, scalar: Scalar) -> String {
     let kind = swap.bundle;
     let name = &result.condition.bundle(kind)[swap.model].name;

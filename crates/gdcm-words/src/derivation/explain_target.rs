@@ -19,7 +19,7 @@ pub enum ExplainTarget {
     DelayBound(ConditionId),
     /// J of the uncorrected physics representative in a response.
     CostBefore(ConditionId, Pair),
-    /// J of the physics representative in a response, under the condition's own correction.
+    /// J of the physics representative in a response, with the condition's own correction.
     CostAfter(ConditionId, Pair),
     /// Change in J of a response in an assessment.
     CostChange(ConditionId, Pair, AssessmentChoice),

@@ -18,16 +18,17 @@ use gdcm_study::Analysis;
 use context::Context;
 pub use explain_target::ExplainTarget;
 
-/// Derivation of a result.
+/// Derivation of a result: equation, equation with numbers, and the models and choices on which the
+/// result rests.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Derivation {
-    /// Name of the result: "G of LON → Q, condition 3".
+    /// Name of the result with its condition: "G of LON → Q, condition 3".
     pub title: String,
     /// The equation, as in the description of the method.
     pub equation: String,
     /// The equation with numbers, step by step; the last step contains the result.
     pub with_numbers: Vec<String>,
-    /// The underlying models, band, points and choices.
+    /// Models, band, points and choices on which the result rests.
     pub rests_on: Vec<String>,
     /// Section in the description of the method: "M6, eq. (5)".
     pub section: &'static str,
@@ -42,8 +43,8 @@ impl Derivation {
     }
 }
 
-/// Derives a result of `analysis`; `None` where it does not exist. Computes at most a few medians
-/// over frequency.
+/// Derives a result of `analysis`; `None` if the result does not exist. This is cheap: at most a
+/// few medians over frequency are computed.
 pub fn derivation(analysis: &Analysis, target: &ExplainTarget) -> Option<Derivation> {
     let mut derivation = derivation_without_bar(analysis, target)?;
     derivation
@@ -55,7 +56,7 @@ pub fn derivation(analysis: &Analysis, target: &ExplainTarget) -> Option<Derivat
 fn derivation_without_bar(analysis: &Analysis, target: &ExplainTarget) -> Option<Derivation> {
     let condition = |id: &ConditionId| Context::new(analysis, *id);
     let response = |id: &ConditionId, pair: &Pair| {
-        // `pair` may come from another dataset.
+        // `pair` may come from another dataset and may not exist in this one.
         analysis.study.dataset.on_axis().get(*pair)?;
         Context::new(analysis, *id)
     };

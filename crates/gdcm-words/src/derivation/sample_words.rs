@@ -1,8 +1,8 @@
-//! Describes samples: range and median.
+//! Descriptions of samples by their range and their median.
 
 use gdcm_model::number_format::five_digits;
 
-/// Describes the number of values and their range.
+/// Describes values by their number and range.
 pub(super) fn spread(values: &[f64]) -> String {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -18,7 +18,7 @@ pub(super) fn spread(values: &[f64]) -> String {
     }
 }
 
-/// Describes values and their median.
+/// Describes how the median results from the values.
 pub(super) fn median_words(values: &[f64]) -> String {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -26,7 +26,7 @@ pub(super) fn median_words(values: &[f64]) -> String {
     match sorted.len() {
         0 => "no values".to_owned(),
         count if count % 2 == 1 => format!(
-            "the middle one of {}: {}",
+            "the middle value of {}: {}",
             spread(values),
             five_digits(sorted[middle])
         ),
@@ -34,7 +34,7 @@ pub(super) fn median_words(values: &[f64]) -> String {
             let below = five_digits(sorted[middle - 1]);
             let above = five_digits(sorted[middle]);
             format!(
-                "the mean of the middle two of {}: ({below} + {above}) / 2",
+                "the mean of the two middle values of {}: ({below} + {above}) / 2",
                 spread(values)
             )
         }
@@ -49,12 +49,12 @@ mod tests {
     fn a_median_is_told_from_its_middle_values() {
         assert_eq!(
             median_words(&[3.0, 1.0, 2.0]),
-            "the middle one of 3 values from 1.0000 to 3.0000: 2.0000"
+            "the middle value of 3 values from 1.0000 to 3.0000: 2.0000"
         );
         let even = median_words(&[4.0, 1.0, 3.0, 2.0]);
         assert_eq!(
             even,
-            "the mean of the middle two of 4 values from 1.0000 to 4.0000: (2.0000 + 3.0000) / 2"
+            "the mean of the two middle values of 4 values from 1.0000 to 4.0000: (2.0000 + 3.0000) / 2"
         );
     }
 }

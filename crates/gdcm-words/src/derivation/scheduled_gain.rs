@@ -52,7 +52,7 @@ fn rests_on(analysis: &Analysis, schedule: &Schedule) -> Vec<String> {
         .map(ToString::to_string)
         .collect();
     let mut rests_on = vec![
-        format!("the optima of the conditions {}", ids.join(", ")),
+        format!("the optima of conditions {}", ids.join(", ")),
         format!(
             "airspeeds {} to {} kt",
             number(schedule.airspeeds.min_kt),
@@ -79,7 +79,7 @@ fn equation(regression: &Regression, symbol: &str) -> String {
             )
         }
         Regression::Table { .. } => {
-            format!("{symbol} linear between the means of each cluster of airspeeds")
+            format!("{symbol} is interpolated linearly between the means of the airspeed clusters")
         }
     }
 }
@@ -130,7 +130,7 @@ fn scaled_airspeed_words(schedule: &Schedule, airspeed_kt: f64) -> String {
     )
 }
 
-/// Writes the table points on either side of an airspeed.
+/// Describes the table points on either side of an airspeed.
 fn neighbours_words(airspeeds_kt: &[f64], values: &[f64], airspeed_kt: f64) -> String {
     let point = |at: usize| {
         format!(

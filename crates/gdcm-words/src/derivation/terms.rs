@@ -1,20 +1,23 @@
 //! Symbols of the equations with their meanings.
 
-/// Symbols of the derived equations with meaning, and with unit if there is one (docs/method.md).
+/// Symbols of the derived equations with their meaning and, if any, their unit (docs/method.md).
 const TERMS: [(&str, &str); 30] = [
-    ("G", "gain that the response wants, a ratio"),
-    ("D", "delay that the response wants [s]"),
+    (
+        "G",
+        "delta gain, the gain that the response needs (a ratio)",
+    ),
+    ("D", "delta delay, the delay that the response needs [s]"),
     ("H_ref", "response of the identified representative"),
     ("H_sim", "response of the physics representative"),
     (
         "Δφ",
-        "phase of H_ref less that of H_sim, unwrapped [rad; in J deg]",
+        "phase of H_ref minus phase of H_sim, unwrapped [rad; deg in J]",
     ),
-    ("ΔdB", "magnitude of H_sim less that of H_ref [dB]"),
+    ("ΔdB", "magnitude of H_sim minus magnitude of H_ref [dB]"),
     ("ω", "frequency [rad/s]"),
     (
         "W",
-        "weight of a frequency, by coherence where that is used",
+        "weight of a frequency, from its coherence if coherence is used",
     ),
     ("k_o", "gain of the output channel"),
     ("k_i", "gain of the input channel"),
@@ -24,31 +27,32 @@ const TERMS: [(&str, &str); 30] = [
     ("k", "gain of a channel"),
     ("L_o", "lead filter of the output channel"),
     ("L_i", "lead filter of the input channel"),
-    ("w", "weight of a response, 0 where it is ignored"),
+    ("w", "weight of a response; 0 if the response is ignored"),
     ("w_k", "weight of coordinate k of the trim"),
-    ("α", "weight of the corrections of the outputs"),
-    ("LB", "lower bound of the channels"),
-    ("UB", "upper bound of the channels"),
-    ("q", "quantile that sets the bounds"),
+    ("α", "regularisation weight of the output corrections"),
+    ("LB", "lower bound on channel values"),
+    ("UB", "upper bound on channel values"),
+    ("q", "quantile that determines the bounds"),
     (
         "J",
-        "cost of a response: what is left of magnitude and phase",
+        "cost of a response: weighted magnitude and phase errors",
     ),
-    ("ΔJ", "what the correction changes of J"),
+    ("ΔJ", "change of J due to the correction"),
     (
         "d",
-        "distance of two models: root of the mean J of one against the other",
+        "distance between two models: square root of the mean J of one against the other",
     ),
     (
         "s_a",
-        "score of a model: how far the others of its bundle are",
+        "score of model a: its mean distance to the other models in the bundle",
     ),
     (
         "r_a",
-        "discontinuity ratio: the distance found over the one that the trims explain",
+        "discontinuity ratio: distance between models, relative to the distance that their trims \
+        explain",
     ),
     ("p_ak", "coordinate k of the trim of model a"),
-    ("v", "airspeed, from −1 to 1 over the conditions"),
+    ("v", "airspeed, scaled from −1 to 1 over the conditions"),
     ("V", "airspeed [kt]"),
 ];
 
@@ -64,7 +68,8 @@ pub(super) fn terms_of(equation: &str) -> Vec<(&'static str, &'static str)> {
     found.into_iter().map(|(_, term)| term).collect()
 }
 
-/// Returns the position of a symbol in an equation, except inside a longer symbol.
+/// Returns the position of a symbol in an equation; occurrences inside a longer symbol do not
+/// count.
 fn place_of(symbol: &str, equation: &str) -> Option<usize> {
     for (place, _) in equation.match_indices(symbol) {
         let before = equation[..place].chars().next_back();

@@ -89,7 +89,7 @@ fn limits_can_be_typed_and_invalid_limits_are_refused_with_a_message() {
     let mut harness = harness(three_curves());
     type_limits(&mut harness, FREQUENCIES, ["2", "8"]);
     let (min, max) = ranges(&harness).0;
-    // Rounding errors of a logarithm and its inverse.
+    // The tolerance allows for rounding errors of a logarithm and its inverse.
     assert!(
         (min - 2.0).abs() < 1e-12 && (max - 8.0).abs() < 1e-12,
         "{min} {max}"

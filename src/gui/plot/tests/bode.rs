@@ -253,7 +253,8 @@ fn a_notch_of_the_wheel_zooms_by_a_tenth_and_stops_a_decade_beyond_the_data() {
     };
     harness.event(notch(1.0));
     harness.run_steps(30);
-    // The toolkit's smoothing accumulates in single precision.
+    // The tolerance of 1e-3 is needed because egui accumulates smooth scrolling in single
+    // precision.
     assert!(
         (before / decades(&harness) - 1.1).abs() < 1e-3,
         "{before} {}",
@@ -570,7 +571,8 @@ fn many_static_curves_are_an_image_and_the_pointed_curve_is_a_line_on_top() {
         )
     }));
     let mut harness = harness(curves);
-    // The corrected curve, in both panes; dashes and dots of the nominal model are short.
+    // Only the corrected curve is drawn with long lines, in both panes; the dashes and dots of the
+    // nominal model are short.
     assert_eq!(long_lines(&harness), 2);
     let at = point_on(&harness, 1, 60);
     harness.hover_at(at);

@@ -62,7 +62,7 @@ fn the_wheel_zooms_the_time_of_every_chart_and_the_values_in_view_fill_each() {
     let at = Pos2::new(300.0, 100.0);
     harness.hover_at(at);
     harness.step();
-    // 1.1 to the power of 21 notches of 40 pt.
+    // 21 notches of 40 pt, each of which zooms by a factor of 1.1.
     harness.event(wheel(vec2(0.0, 840.0)));
     harness.run_steps(40);
     let zoomed = harness.state().clone();
@@ -101,7 +101,7 @@ fn zooming_out_of_a_chart_over_time_ends_at_its_data() {
     );
     harness.event(wheel(vec2(0.0, -4000.0)));
     harness.run_steps(80);
-    // The ends of the axis are those of the data, as before the first turn.
+    // The axis ends at the data again, as before the first turn of the wheel.
     assert!(
         (harness.state()[0].width() / whole[0].width() - 1.0).abs() < 1e-6,
         "{:?}",
@@ -127,7 +127,7 @@ fn dragging_moves_the_time_of_every_chart_and_the_values_follow() {
     );
     let widths = [&whole, &moved].map(|views| views[0].width());
     assert!((widths[0] - widths[1]).abs() < 1e-6);
-    // From the current start of the view to the last sample.
+    // The values fit the samples from the start of the view to the last sample (`y = x`).
     assert!(
         (moved[0].min()[1] - moved[0].min()[0]).abs() < 10.0
             && (moved[0].max()[1] - 100.0).abs() < 10.0

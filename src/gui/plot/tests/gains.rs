@@ -8,7 +8,7 @@ use super::*;
 use crate::gui::widgets::palette;
 use crate::gui::widgets::palette::Palette;
 
-/// Plots of gains, or of columns if there are any.
+/// Test state: a figure with interactive dots, or with interactive columns if there are any.
 #[derive(Default)]
 struct Model {
     figure: Figure,
@@ -18,7 +18,7 @@ struct Model {
     events: Vec<FigureEvent>,
 }
 
-/// Describes marks by their numbers.
+/// Describes plots by their index.
 struct Numbers;
 
 impl FigureWords for Numbers {

@@ -24,7 +24,7 @@ pub(super) fn numbered(number: u64) -> CurveId {
     ))
 }
 
-/// Returns a curve of values an octave apart, the same in both panes.
+/// Returns a curve with the same `values` in both panes, at frequencies an octave apart.
 pub(super) fn sample_curve(id: u64, values: &[f64]) -> BodeCurve {
     let curve = BodeCurve::new(numbered(id), Role::Perturbed);
     curve.with(&vec![1.0, 2.0, 4.0].into(), &values.into(), &values.into())
@@ -77,7 +77,7 @@ fn double_click<State>(harness: &mut Harness<'_, State>, at: Pos2) {
     }
 }
 
-/// Returns a turn of the wheel \[pt\].
+/// Returns the event of a wheel turn by `delta` \[pt\].
 fn wheel(delta: Vec2) -> Event {
     Event::MouseWheel {
         unit: egui::MouseWheelUnit::Point,

@@ -17,7 +17,7 @@ const SIDES: [ChannelSide; 2] = [ChannelSide::Input, ChannelSide::Output];
 enum ChannelField {
     Name,
     Unit,
-    /// Unit in the files, used where a file names none.
+    /// Unit for files that do not name one.
     UnitInFiles,
 }
 
@@ -36,11 +36,11 @@ impl ChannelField {
         match self {
             Self::Name => "name",
             Self::Unit => "?",
-            Self::UnitInFiles => "as files say",
+            Self::UnitInFiles => "as in the files",
         }
     }
 
-    /// Returns the width \[pt\].
+    /// Returns the width of the text field \[pt\].
     fn width(self) -> f32 {
         match self {
             Self::Name => 90.0,
@@ -80,7 +80,7 @@ pub(super) fn channel_table_ui(
         .num_columns(4)
         .spacing([6.0, 3.0])
         .show(ui, |ui| {
-            for heading in ["channel", "unit", "where files give none", ""] {
+            for heading in ["channel", "unit", "unit if a file gives none", ""] {
                 ui.label(palette.small(heading));
             }
             ui.end_row();

@@ -8,7 +8,7 @@ use crate::gui::widgets::controls::{entry_ui, named};
 use crate::gui::widgets::palette::Palette;
 
 const HEADING_WIDTH: f32 = 180.0;
-/// Maximum number of displayed columns; of further columns only the number is given.
+/// Maximum number of displayed columns; a note gives the number of further columns.
 const MOST_COLUMNS: usize = 60;
 
 /// Shows a field for each column heading; after a change the file is read again.
@@ -42,11 +42,11 @@ pub(super) fn column_headings_ui(
         });
     if headings.len() > MOST_COLUMNS {
         let more = headings.len() - MOST_COLUMNS;
-        ui.label(palette.small(format!("and {more} more, which the rules file can name")));
+        ui.label(palette.small(format!("and {more} more; name them in the rules file")));
     }
 }
 
-/// Shows buttons with the possible units if a column's unit is unknown.
+/// Shows buttons with the possible units of a column whose unit is unknown.
 fn possible_units_ui(
     ui: &mut Ui,
     assembly: &AssemblyState,
@@ -65,10 +65,10 @@ fn possible_units_ui(
         for unit in &open.units {
             let name = format!("Column {} of {file} is in {unit}", column + 1);
             let hint = if files == 1 {
-                format!("The numbers are in {unit}")
+                format!("The values are in {unit}")
             } else {
                 format!(
-                    "The numbers are in {unit}, here and in the {} other tables with these headings",
+                    "The values are in {unit}, also in the {} other tables with these headings",
                     files - 1
                 )
             };

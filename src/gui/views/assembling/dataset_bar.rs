@@ -46,7 +46,7 @@ fn name_and_band_ui(
     }
 }
 
-/// Draws a field for a frequency \[rad/s\]; returns a typed value.
+/// Draws a field for a band limit \[rad/s\]; returns a newly typed value.
 fn band_end_ui(ui: &mut Ui, name: &str, value: f64, commands: &mut Vec<Command>) -> Option<f64> {
     number_entry_ui(ui, name, &number(value), "rad/s", 50.0, commands).flatten()
 }
@@ -63,14 +63,14 @@ fn rules_file_ui(ui: &mut Ui, assembly: &mut AssemblyState, commands: &mut Vec<C
         button_ui(
             ui,
             Button::new("Load rules"),
-            "Rules saved from an earlier import",
+            "Applies rules that were saved in an earlier import",
             AssemblingCommand::LoadRules(path.into()),
             commands,
         );
         button_ui(
             ui,
             Button::new("Save rules"),
-            "For the next folder of this kind",
+            "For later imports of similar folders",
             AssemblingCommand::SaveRules(path.into()),
             commands,
         );
@@ -88,7 +88,7 @@ fn dataset_file_ui(ui: &mut Ui, assembly: &mut AssemblyState, commands: &mut Vec
     let is_ready = !path.is_empty() && assembly.assembly().problems().is_empty();
     let text = RichText::new("Make dataset").strong();
     ui.add_enabled(is_ready, Button::new(text))
-        .on_hover_text("Writes the dataset and its rules beside it, and opens the dataset")
-        .on_disabled_hover_text("Complete the items and enter the path of the dataset first")
+        .on_hover_text("Writes the dataset with its rules beside it, and opens the dataset")
+        .on_disabled_hover_text("First complete the listed items and enter the path of the dataset")
         .asks(AssemblingCommand::MakeDataset(path.into()), commands);
 }

@@ -167,7 +167,7 @@ fn factors_change(
     })
 }
 
-/// Draws a row with a label and a field; returns a typed text.
+/// Draws a row with a label and a field; returns a newly typed text.
 fn declaration_ui(
     ui: &mut Ui,
     name: &str,

@@ -26,7 +26,7 @@ pub(super) fn details_ui(
     };
     ui.label(RichText::new(part.found.key()).strong());
     ui.label(palette.small(part.found.words()));
-    let hint = "Adds it to the dataset";
+    let hint = "Only included models are written to the dataset";
     if let Some(is_included) = check_ui(ui, !part.row.left_out, "Include this model", hint) {
         let change = assembly.rule_change(selected, |rule| rule.left_out = Some(!is_included));
         commands.push(change);
@@ -44,13 +44,13 @@ pub(super) fn details_ui(
     }
     for side in part.sides_by_position() {
         ui.label(palette.small_warning(format!(
-            "caution: {side}s have no names in the file: taken in the order of the dataset"
+            "caution: the file does not name its {side}s; the order of the dataset is assumed"
         )));
     }
     notes_ui(ui, part, palette);
 }
 
-/// Selects the model's role in its condition.
+/// Draws the selector of the model's role in its condition.
 fn role_ui(ui: &mut Ui, assembly: &AssemblyState, part: &Part, commands: &mut Vec<Command>) {
     ui.label("role");
     let mut role = part.row.role;

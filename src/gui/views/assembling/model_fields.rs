@@ -102,7 +102,7 @@ fn field_ui(
 /// it was clicked.
 pub(super) fn fill_down_ui(ui: &mut Ui, name: &str) -> bool {
     let name = format!("Fill down {name}");
-    let hint = format!("{name}: copies it to every model below in the same folder");
+    let hint = format!("Copies {name} to every model below in the same folder");
     named(ui.small_button("↓"), Role::Button, name)
         .on_hover_text(hint)
         .clicked()
@@ -121,7 +121,7 @@ fn condition_fields(part: &Part) -> Vec<Field> {
         Field::new(
             "name",
             Some(row.name.clone()),
-            "in its bundle",
+            "unique in the bundle",
             Effect::Text(|rule| &mut rule.name),
         ),
         Field::new(

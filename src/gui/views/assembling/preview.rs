@@ -21,17 +21,17 @@ use crate::gui::widgets::palette::Palette;
 
 /// Number of points on the curve of a model.
 const POINTS: usize = 300;
-/// Factor by which the curve extends beyond the comparison band on either side.
+/// Factor by which the curve extends beyond the comparison band at either end.
 const BEYOND: f64 = 3.0;
 
-/// Shows a response, and a selector of all responses.
+/// Shows the Bode plot of a response, and a selector of all responses of the model.
 pub(super) fn preview_ui(
     ui: &mut Ui,
     assembly: &mut AssemblyState,
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    // A panel without content would shrink.
+    // Keep the size: a panel without content would shrink.
     ui.set_min_size(ui.available_size());
     let band = assembly.assembly().rules().band;
     let Some(part) = assembly.assembly().parts().get(assembly.selected) else {
@@ -51,7 +51,7 @@ pub(super) fn preview_ui(
     let scene = BodeScene {
         quantity: BodeQuantity::RESPONSE_OF_FOUND_MODEL,
         unit: FrequencyUnit::default(),
-        message: Some("This response cannot be computed"),
+        message: Some("This response cannot be computed: the model is incomplete or inconsistent"),
         ..BodeScene::new(&names[place], curves, band)
     };
     bode_ui(ui, &scene, &mut assembly.preview.view, palette);
@@ -70,7 +70,7 @@ fn response_choice_ui(ui: &mut Ui, names: &[String], place: usize, commands: &mu
     }
 }
 
-/// Computes the curve again after another model or response was selected.
+/// Recomputes the curve if another model or response has been selected.
 fn update(preview: &mut Preview, found: &FoundModel, place: usize, band: (f64, f64)) {
     let key = found.key();
     let mut is_same_model = false;
@@ -82,7 +82,7 @@ fn update(preview: &mut Preview, found: &FoundModel, place: usize, band: (f64, f
     }
     let curves = curve(found, place, band).into_iter().collect();
     preview.drawn = Some((key, place, curves));
-    // A measured response may have other frequencies than the previous model.
+    // A different model may have other frequencies, so `request_fit` also fits the frequency axis.
     if is_same_model {
         preview.view.request_refit();
     } else {
@@ -106,7 +106,7 @@ fn response_name(found: &FoundModel, place: usize) -> String {
     )
 }
 
-/// Returns the name of a channel, or its side and number.
+/// Returns the name of a channel; without a name, its side and its number, counted from 1.
 fn channel_name(labels: &[ChannelLabel], index: usize, side: &str) -> String {
     if let Some(label) = labels.get(index)
         && let Some(name) = &label.name
@@ -143,7 +143,8 @@ fn curve(found: &FoundModel, place: usize, band: (f64, f64)) -> Option<BodeCurve
     })
 }
 
-/// Returns a response measured in the file, which stores all values of a pair together.
+/// Returns a response measured in the file, in which the values of each pair are contiguous; `None`
+/// without measured responses.
 fn measured_response(found: &FoundModel, place: usize) -> Option<PairResponse> {
     let response = found.response()?;
     let count = response.omega.len();
@@ -157,7 +158,8 @@ fn measured_response(found: &FoundModel, place: usize) -> Option<PairResponse> {
     })
 }
 
-/// Computes the response of a state-space model over the extended band.
+/// Computes the response of a state-space model over the extended band; `None` if the matrices are
+/// incomplete or inconsistent.
 fn model_response(found: &FoundModel, pair: Pair, band: (f64, f64)) -> Option<PairResponse> {
     let [a, b, c, d] = found.draft.matrices.clone();
     let model = StateSpace::new(a?, b?, c?, d?)

@@ -8,9 +8,10 @@ use crate::gui::commands::command::Command;
 use crate::gui::state::assembling::AssemblyState;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Maximum number of displayed lines; of further lines only the number is given.
+/// Maximum number of displayed lines; a note gives the number of further lines.
 const MOST_LINES: usize = 200;
-/// Maximum number of displayed tables without models; further tables are shown once these are read.
+/// Maximum number of displayed tables without models. Further tables are shown when these have been
+/// read as models.
 const MOST_TABLES: usize = 5;
 
 /// Shows a line for each incomplete item; a click displays its model.
@@ -73,7 +74,8 @@ fn without_reference_ui(ui: &mut Ui, state: &AssemblyState, palette: &Palette) {
     }
     let ids: Vec<String> = conditions.iter().map(i64::to_string).collect();
     let words = format!(
-        "No identified models yet of conditions {}: identify them from flight records afterwards",
+        "Conditions {} have no identified models yet: identify models from flight records \
+        afterwards",
         ids.join(", ")
     );
     ui.add(Label::new(palette.small(words)).wrap());

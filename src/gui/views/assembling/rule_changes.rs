@@ -24,7 +24,7 @@ impl AssemblyState {
         })
     }
 
-    /// Returns the command that changes a column heading; the other headings stay.
+    /// Returns the command that changes a column heading and keeps the other headings.
     pub(super) fn heading_change(&self, file: &str, column: usize, heading: &str) -> Command {
         self.rules_change(|rules| {
             let Some(present) = self.tables.get(file) else {

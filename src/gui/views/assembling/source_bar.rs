@@ -19,7 +19,7 @@ pub(super) fn source_bar_ui(
         ui.label(RichText::new("Import models").strong());
         add_ui(ui, assembly, commands);
         let (can_undo, can_redo) = assembly.steps();
-        let cancel = "Back to the open dataset; discards this import";
+        let cancel = "Discards this import and returns to the open dataset";
         for (text, is_enabled, hint, command) in [
             ("Choose folder…", true, "", AssemblingCommand::AskFolder),
             ("Undo change", can_undo, "", AssemblingCommand::Undo),
@@ -40,7 +40,7 @@ fn add_ui(ui: &mut Ui, assembly: &mut AssemblyState, commands: &mut Vec<Command>
         ui,
         "Folder or file of models",
         &mut assembly.source_path,
-        "path of a folder or a file; or drop them here",
+        "path of a folder or file, or drop it here",
     );
     let path = assembly.source_path.trim();
     let add = ui.add_enabled(!path.is_empty(), Button::new("Add"));

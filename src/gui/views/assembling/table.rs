@@ -79,9 +79,9 @@ fn incomplete_parts(assembly: &AssemblyState) -> Vec<usize> {
 struct Table<'a> {
     assembly: &'a AssemblyState,
     parts: &'a [Part],
-    /// Part indices by row.
+    /// Index of the model in each row.
     order: Vec<usize>,
-    /// Part indices with a problem.
+    /// Indices of the models with a problem.
     incomplete: Vec<usize>,
     /// Row width \[pt\].
     width: f32,
@@ -89,7 +89,7 @@ struct Table<'a> {
 }
 
 impl Table<'_> {
-    /// Returns the part in a row.
+    /// Returns the model in a row; `None` if the row does not exist.
     fn part(&self, row: usize) -> Option<&Part> {
         let index = self.order.get(row)?;
         Some(&self.parts[*index])

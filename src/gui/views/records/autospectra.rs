@@ -17,7 +17,7 @@ use crate::gui::widgets::palette::Palette;
 
 /// Minimum chart height \[pt\].
 const LEAST_HEIGHT: f32 = 140.0;
-/// Number of spectral lines averaged into one point.
+/// Number of adjacent spectral lines averaged into one point.
 const SMOOTHED: usize = 5;
 
 /// Autospectrum of each input: frequency \[rad/s\] and level \[dB of the squared unit per Hz\].
@@ -112,7 +112,7 @@ impl InputCharts<'_> {
     }
 }
 
-/// Returns the identification band of the condition, or that of the study.
+/// Returns the identification band of the condition, or else the band of the study.
 fn shown_band(page: Page<'_>) -> Band {
     let study_band = page.state.study.settings.band;
     match page.records.band {
@@ -178,8 +178,8 @@ fn autospectra(flight: &FlightRecord, highest: f64) -> Autospectra {
     all
 }
 
-/// Returns the median of the positive time steps \[s\], which is the sample time if the clock is
-/// nearly even.
+/// Returns the median of the positive time steps \[s\], which is the sample time if sampling is
+/// nearly uniform; `None` without positive steps.
 fn middle_step(time_s: &[f64]) -> Option<f64> {
     let steps: Vec<f64> = time_s
         .windows(2)

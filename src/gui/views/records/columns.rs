@@ -23,7 +23,10 @@ const RECORD_FIELD_WIDTH: f32 = 60.0;
 const HEADINGS: [(&str, &str); 6] = [
     ("channel", "Channel of the dataset"),
     ("column of the file", "Column with the channel's samples"),
-    ("factor", "From the unit of the file to that of the dataset"),
+    (
+        "factor",
+        "Converts the unit of the file to the unit of the dataset",
+    ),
     (
         "time skew [ms]",
         "Logging delay of the channel, in every record",
@@ -38,7 +41,7 @@ const HEADINGS: [(&str, &str); 6] = [
     ),
 ];
 
-/// Shows a line for the time and for each channel.
+/// Shows a row for the time and for each channel.
 pub(super) fn columns_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page {
         state,
@@ -54,7 +57,7 @@ pub(super) fn columns_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command
     } else {
         "every added record, in all conditions,"
     };
-    ui.label(palette.small(format!("Applies to {scope} with columns of these names")));
+    ui.label(palette.small(format!("Applies to {scope} with the same column names")));
     ScrollArea::vertical()
         .id_salt("columns of a record")
         .auto_shrink(false)
@@ -77,7 +80,7 @@ pub(super) fn columns_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command
         });
 }
 
-/// Shows the time column and its factor to seconds.
+/// Shows the time column and its conversion factor to seconds.
 fn time_row_ui(ui: &mut Ui, record: usize, row: &LaidOutRecord, commands: &mut Vec<Command>) {
     ui.label("time [s]");
     let (chosen, seconds) = match row.layout.time {
@@ -88,7 +91,7 @@ fn time_row_ui(ui: &mut Ui, record: usize, row: &LaidOutRecord, commands: &mut V
         commands.push(time_command(record, row, column, seconds));
     }
     let value = number(seconds);
-    let name = "Seconds of a unit of time";
+    let name = "Seconds per unit of time";
     let typed = number_entry_ui(ui, name, &value, "1", FIELD_WIDTH, commands);
     if let Some(Some(seconds)) = typed
         && let Some(column) = chosen
@@ -168,8 +171,8 @@ impl ChannelRow<'_> {
         }
     }
 
-    /// Shows the factor to the dataset's unit. If the unit in the file is unknown, shows the
-    /// possible units with none selected.
+    /// Shows the conversion factor to the dataset's unit. If the unit in the file is unknown, shows
+    /// the possible units with none selected.
     fn factor_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let name = &self.signal.name;
         let open_units = match self.column_use {

@@ -92,7 +92,7 @@ fn outcome_cells(state: &State, id: ConditionId, records: &ConditionRecords) -> 
         let text = if job.news().step.is_empty() {
             "waits"
         } else {
-            "under way"
+            "running"
         };
         return vec![text.to_owned()];
     }

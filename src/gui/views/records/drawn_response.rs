@@ -24,8 +24,8 @@ pub(super) enum BodePart {
 }
 
 impl BodePart {
-    /// Returns the maximum half-length of bars and bands \[dB, deg\]: longer ones would hide the
-    /// rest.
+    /// Returns the maximum half-length of bars and bands \[dB, deg\]. Longer ones are cut, because
+    /// they would hide other curves.
     fn most_half(self) -> f64 {
         match self {
             Self::Magnitude => 20.0,
@@ -85,7 +85,7 @@ pub(super) struct MeasuredPoint {
     pub(super) is_trusted: bool,
 }
 
-/// Conditions under which responses were measured.
+/// Band and method of a measured response.
 #[derive(Clone, Copy)]
 pub(super) struct MeasuredBand {
     /// Identification band \[rad/s\].
@@ -256,8 +256,8 @@ fn curve(
     shape(omega, &values, reference)
 }
 
-/// Returns magnitude and unwrapped phase, on the branch nearest to `reference`, a point of another
-/// curve.
+/// Returns the curve with magnitude and unwrapped phase, on the branch nearest to `reference`, a
+/// point of another curve.
 fn shape(
     omega: Vec<f64>,
     values: &[Complex<f64>],
@@ -282,8 +282,8 @@ fn shape(
     curve
 }
 
-/// Returns the shift by whole turns \[deg\] that brings the phase closest to that of `reference`,
-/// at the frequency nearest to that point.
+/// Returns the shift by whole turns \[deg\] that brings the phase closest to the phase of
+/// `reference`, compared at the nearest frequency.
 fn branch_shift_deg(omega: &[f64], phase_deg: &[f64], reference: CurvePoint) -> f64 {
     let nearest = (0..omega.len()).min_by(|a, b| {
         let distance_a = (omega[*a] / reference.omega).ln().abs();

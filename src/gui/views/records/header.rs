@@ -19,7 +19,8 @@ pub fn records_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>
     }
     let records = state.records.conditions.get(&condition);
     let has_used_record = records.is_some_and(|records| records.used_rows().next().is_some());
-    let hint = "Models of this condition from its records: CT-PBSID, refined, with bands (M14)";
+    let hint = "Identifies models of this condition from its records: CT-PBSID, refined, with \
+        confidence bands (M14)";
     ui.add_enabled(has_used_record, Button::new("Identify"))
         .on_hover_text(hint)
         .asks(RecordsCommand::Identify, commands);

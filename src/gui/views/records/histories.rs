@@ -38,7 +38,7 @@ pub(super) fn histories_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comma
         return;
     };
     let Some(flight) = &row.flight else {
-        let text = "Assign its columns to the channels first: page Columns";
+        let text = "First assign the record's columns to channels: page Columns";
         ui.label(RichText::new(text).color(palette.warning));
         return;
     };
@@ -79,7 +79,8 @@ pub(super) fn histories_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comma
         .show(ui, |ui| charts.show(ui));
 }
 
-/// Lists how the identification prepared the displayed record: gaps, delays, held commands.
+/// Lists facts about the preparation of the displayed record that raise no caution, such as an
+/// input at its limit.
 fn preparation_ui(ui: &mut Ui, page: Page<'_>) {
     let Page {
         records, palette, ..
@@ -115,7 +116,7 @@ impl ChannelCharts<'_> {
         let size = vec2(2.0 * width, height * rows as f32);
         let (area, _) = ui.allocate_exact_size(size, Sense::hover());
         for index in 0..count {
-            // Column by column, so that inputs come before outputs.
+            // Fill the grid column by column, so that inputs come before outputs.
             let column = index / rows;
             let row = index % rows;
             let corner = area.min + vec2(column as f32 * width, row as f32 * height);
@@ -215,7 +216,7 @@ fn recorded_points(flight: &FlightRecord, index: usize) -> Vec<Arc<[[f64; 2]]>> 
         .collect()
 }
 
-/// Makes a separate record from a typed or dragged part.
+/// Draws the controls that make a typed or dragged part a separate record.
 fn part_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page {
         state,
@@ -232,20 +233,20 @@ fn part_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
         commands.push(match typed_part(&text, span_s) {
             Some(part_s) => RecordsCommand::AddPart(records.chosen, part_s).into(),
             None => Command::Form(FormCommand::Refuse(format!(
-                "a part: expected two times in s, the earlier first, as in \"12 40\", \
-                 or \"+5 +34\" from the start of the record, found \"{text}\""
+                "part of the record: expected two times in s, the earlier first, as in \"12 40\", \
+                or \"+5 +34\" from the start of the record, found \"{text}\""
             ))),
         });
     }
-    let hint = "Drag over a chart to make that stretch a separate record, fitted or held out, \
-                instead of the whole";
+    let hint = "Drag over a chart to use that part as a separate record, fitted or held out, \
+        instead of the whole record";
     if let Some(chooses) = check_ui(ui, state.records.chooses_parts, "drag parts", hint) {
         commands.push(RecordsCommand::ChooseParts(chooses).into());
     }
 }
 
-/// Parses a typed part \[s\]: two times on the record's clock, or, with `+` before both, two times
-/// from the start of the record.
+/// Parses a typed part \[s\]: two times on the record's time axis or, with `+` before both, two
+/// times from the start of the record.
 fn typed_part(text: &str, span_s: Option<[f64; 2]>) -> Option<[f64; 2]> {
     let [from, to] = numbers(text).ok()?[..] else {
         return None;
@@ -267,7 +268,7 @@ fn typed_part(text: &str, span_s: Option<[f64; 2]>) -> Option<[f64; 2]> {
     }
 }
 
-/// Shows the time span of the displayed record on its clock, and counted from the start of the
+/// Shows the time span of the displayed record on its time axis, and counted from the start of the
 /// whole record.
 fn span_ui(ui: &mut Ui, page: Page<'_>) {
     let Page {
@@ -286,7 +287,7 @@ fn span_ui(ui: &mut Ui, page: Page<'_>) {
     let [from, to] = span_s.map(|time_s| telling(time_s, 2));
     let [first, last] = span_s.map(|time_s| telling(time_s - start_s, 2));
     let words = format!(
-        "runs from {from} s to {to} s on its clock, +{first} s to +{last} s from its start"
+        "{from} s to {to} s on the record's time axis, +{first} s to +{last} s from its start"
     );
     ui.add(Label::new(palette.small(words)).truncate());
 }

@@ -87,7 +87,7 @@ pub fn records_view_ui(
                     outcome_ui(ui, page, commands);
                 });
         });
-    // Keeps the content away from the line between list and page.
+    // The margin keeps the content away from the line between list and page.
     let margin = Margin {
         left: 6,
         ..Margin::ZERO

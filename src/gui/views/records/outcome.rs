@@ -31,7 +31,7 @@ pub(super) fn outcome_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command
     ui.add_space(6.0);
     if let Some([low, high]) = records.band {
         ui.label(palette.small(format!(
-            "Band from {low:.2} to {high:.1} rad/s, not the study's"
+            "Band from {low:.2} to {high:.1} rad/s, instead of the study's band"
         )));
         remedies_ui(ui, vec![study_band_remedy()], commands);
     }
@@ -49,7 +49,7 @@ pub(super) fn outcome_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command
         }
         Some((_, Ok(found))) => {
             if records.changed {
-                ui.label(palette.small_warning("Out of date: records or settings changed"));
+                ui.label(palette.small_warning("Outdated: records or settings have changed"));
             }
             summary_ui(ui, found, palette);
             for caution in &found.cautions {
@@ -97,8 +97,9 @@ fn summary_ui(ui: &mut Ui, found: &Identification, palette: &Palette) {
             let color = limit_color(adapted, HELD_OUT[1], palette);
             ui.label(RichText::new(format!("{adapted:.2} ({raw:.2})")).color(color))
                 .on_hover_text(
-                    "χ²/dof of the held-out records, with the model adapted within its own \
-                     uncertainty, and in brackets as it is. The sharpest test; up to 1.3 is good",
+                    "χ²/dof of the held-out records for the model adapted within its uncertainty; \
+                    in brackets, for the model as it is. The most sensitive test: values up to \
+                    1.3 are good",
                 );
         }
     });

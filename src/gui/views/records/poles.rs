@@ -23,7 +23,8 @@ pub(super) fn stabilisation_ui(ui: &mut Ui, page: Page<'_>) {
         return;
     };
     ui.label(palette.small(
-        "Cross: within 5 % of a pole of the order two below. Circle: not. Dotted line: band.",
+        "Cross: within 5 % of a pole of the model whose order is lower by two. Circle: no such \
+        pole. Dotted line: band.",
     ));
     let unit = state.display.curves.unit;
     let across = unit.axis_label();
@@ -44,7 +45,8 @@ pub(super) fn stabilisation_ui(ui: &mut Ui, page: Page<'_>) {
     fill_with_chart(ui, &chart, palette);
 }
 
-/// Returns the nonzero poles that agree with a pole of lower order, or those that do not.
+/// Returns the nonzero poles that agree with a pole of the lower-order model, or the poles that do
+/// not.
 fn stabilisation_marks(found: &Identification, is_stable: bool, palette: &Palette) -> ChartMarks {
     let mut points = Vec::new();
     for point in &found.stabilisation {
@@ -95,8 +97,8 @@ pub(super) fn identified_poles_ui(ui: &mut Ui, page: Page<'_>) {
     fill_with_chart(ui, &chart, palette);
 }
 
-/// Returns the poles with their 95 % intervals; undetermined poles without, because their long
-/// intervals would hide the others.
+/// Returns the poles with their 95 % intervals. Poles that the records do not determine have no
+/// interval, because it would hide other poles.
 fn pole_marks(poles: &[PoleEstimate], is_determined: bool, palette: &Palette) -> ChartMarks {
     let mut points = Vec::new();
     let mut sideways = Vec::new();

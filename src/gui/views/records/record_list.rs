@@ -23,7 +23,7 @@ pub(super) const CHI_SQUARED: &str =
 pub(super) const BAD: f64 = 1.5;
 
 const HEADINGS: [(&str, &str); 4] = [
-    ("use", "Use the record at all"),
+    ("use", "Use the record for identification or validation"),
     (
         "hold",
         "Held out: not fitted, so that it can test the model",
@@ -32,7 +32,7 @@ const HEADINGS: [(&str, &str); 4] = [
     ("χ²/dof", CHI_SQUARED),
 ];
 
-/// Shows a line for each record: whether it is used or held out, and the model's fit.
+/// Shows a row for each record: whether it is used or held out, and the model's fit.
 pub(super) fn record_list_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page {
         records, palette, ..
@@ -87,7 +87,7 @@ fn note_ui(ui: &mut Ui, text: String, color: Color32) {
     ui.add(Label::new(text).wrap());
 }
 
-/// Shows the check boxes that use a record and hold it out.
+/// Draws two check boxes: whether a record is used, and whether it is held out for validation.
 fn use_ui(ui: &mut Ui, page: Page<'_>, index: usize, commands: &mut Vec<Command>) {
     let row = &page.records.rows[index];
     let name = &row.table.name;
@@ -150,7 +150,7 @@ fn name_ui(ui: &mut Ui, page: Page<'_>, index: usize, width: f32, commands: &mut
     response.asks(RecordsCommand::Choose(index), commands);
 }
 
-/// Shows the fit cost of a record, and a sign if cautions concern the record.
+/// Shows the fit cost of a record, and a warning sign if cautions concern the record.
 fn fit_ui(ui: &mut Ui, page: Page<'_>, index: usize) {
     let Page {
         records, palette, ..
@@ -174,7 +174,7 @@ fn fit_ui(ui: &mut Ui, page: Page<'_>, index: usize) {
     }
 }
 
-/// Returns χ²/dof of the recommended model in a record.
+/// Returns χ²/dof of the recommended model for a record; `None` without a current identification.
 fn fit_cost(page: Page<'_>, index: usize) -> Option<f64> {
     let found = page.current_identification()?;
     let fit = found
@@ -194,7 +194,8 @@ pub(super) fn cost_text(cost: f64, palette: &Palette) -> RichText {
     RichText::new(format!("{cost:.2}")).color(color)
 }
 
-/// Selects a record's manoeuvre, and removes a part.
+/// Draws the selector of a record's manoeuvre or, for a part of a record, the button that removes
+/// the part.
 fn kind_ui(
     ui: &mut Ui,
     index: usize,
@@ -216,8 +217,8 @@ fn kind_ui(
     });
 }
 
-/// Describes problems; several missing columns are reported in one sentence, as are several unknown
-/// units.
+/// Describes problems of a record; several missing columns share one sentence, as do several
+/// unknown units.
 fn problem_texts(problems: &[LayoutProblem]) -> Vec<String> {
     let mut missing = ChannelProblems::default();
     let mut without_unit = ChannelProblems::default();
@@ -235,19 +236,19 @@ fn problem_texts(problems: &[LayoutProblem]) -> Vec<String> {
     }
     let mut texts = Vec::new();
     texts.extend(missing.text(|channels| {
-        format!("no column is {channels}; assign them on page Columns (columns: {columns})")
+        format!("no column for {channels}; assign them on page Columns (columns: {columns})")
     }));
     texts.extend(without_unit.text(|channels| {
         format!(
-            "the file does not say the units of {channels}, and their samples can be in several; \
-             choose them on page Columns"
+            "the file does not give the units of {channels}, and their values allow several \
+            units; choose them on page Columns"
         )
     }));
     texts.extend(others);
     texts
 }
 
-/// Problems that are reported in one sentence.
+/// Problems of the same kind, which share one sentence.
 #[derive(Default)]
 struct ChannelProblems<'a> {
     channels: Vec<&'a str>,
@@ -263,7 +264,8 @@ impl<'a> ChannelProblems<'a> {
         }
     }
 
-    /// Returns the problem's own message, or `shared` with several channel names.
+    /// Returns the message of a single problem, or `shared` applied to the names of several
+    /// channels.
     fn text(self, shared: impl FnOnce(String) -> String) -> Option<String> {
         if self.channels.len() > 1 {
             Some(shared(self.channels.join(", ")))

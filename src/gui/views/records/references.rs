@@ -21,7 +21,7 @@ pub(super) struct PossibleReference {
     pub(super) is_suggested: bool,
 }
 
-/// Selects the columns with recorded references.
+/// Draws the selector of the columns that hold recorded references.
 pub(super) fn references_ui(
     ui: &mut Ui,
     page: Page<'_>,
@@ -47,7 +47,8 @@ pub(super) fn references_ui(
     if is_focused {
         list.response.request_focus();
     }
-    let hint = "Columns of recorded signals that drove the loop from outside (M14.15)";
+    let hint = "Columns with recorded external inputs of the closed loop, used as instrumental \
+        variables (M14.15)";
     named(
         list.response.on_hover_text(hint),
         Role::ComboBox,
@@ -56,7 +57,8 @@ pub(super) fn references_ui(
     ui.end_row();
 }
 
-/// Lists the chosen references that are not columns, then every possible column.
+/// Lists the chosen references that are not columns of the first used record, then every possible
+/// column.
 fn reference_list_ui(ui: &mut Ui, records: &ConditionRecords, commands: &mut Vec<Command>) {
     let possible = possible_references(ui, records);
     for name in &records.references {

@@ -1,4 +1,4 @@
-//! Buttons that remedy the cause of a caution.
+//! Buttons that remove the cause of a caution.
 
 use egui::Ui;
 
@@ -18,8 +18,8 @@ use crate::gui::commands::records::RecordsCommand;
 use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::state::records::{ConditionRecords, RecordsPage};
 
-/// Number of lowest-frequency periods in the longest record: slightly more than five, so that
-/// rounding does not cause the same caution again.
+/// Number of periods of the lowest frequency that the longest record must contain: slightly more
+/// than five, so that rounding does not cause the same caution again.
 const PERIODS: f64 = 5.001;
 /// Maximum number of buttons for references.
 const MOST_REFERENCES: usize = 3;
@@ -43,8 +43,8 @@ pub(super) fn study_band_remedy() -> Remedy {
     Remedy::new("Use the study's band", RecordsCommand::SetBand(None))
 }
 
-/// Proposes another band if a failed identification needs one; `band` \[rad/s\] is the current
-/// band.
+/// Returns a button that changes the band if this lets the failed identification succeed; `band`
+/// \[rad/s\] is the current band.
 pub(super) fn band_remedy(error: &IdentificationError, band: [f64; 2]) -> Option<Remedy> {
     let [lowest, highest] = band;
     match error {
@@ -137,23 +137,23 @@ fn hold_remedies(signal: &Signal, hold_s: f64) -> Vec<Remedy> {
     let mut remedies = Vec::new();
     if signal.role == ChannelSide::Input {
         remedies.push(Remedy::new(
-            format!("{name} is a held command"),
+            format!("Treat {name} as a held command"),
             RecordsCommand::SetHold(signal.clone(), Hold::Command { hold_s }),
         ));
     }
     remedies.push(Remedy::new(
-        format!("{name} is a slow sensor"),
+        format!("Treat {name} as a slow sensor"),
         RecordsCommand::SetHold(signal.clone(), Hold::FreshSamples),
     ));
     remedies.push(Remedy::new(
-        format!("{name} is right as it is"),
+        format!("Use {name} unchanged"),
         RecordsCommand::SetHold(signal.clone(), Hold::Acts),
     ));
     remedies
 }
 
-/// Offers to repair each contradicting record whose fault is identified, then to leave each record
-/// out.
+/// Returns remedies for contradicting records: first the repair of each identified fault, then
+/// buttons that leave a record out.
 fn contradiction_remedies(
     records: &ConditionRecords,
     contradicting: &[ContradictingRecord],
@@ -168,7 +168,7 @@ fn contradiction_remedies(
     remedies
 }
 
-/// Repairs the fault of a record, in addition to earlier remedies.
+/// Returns a remedy that repairs the identified fault of a record, in addition to earlier remedies.
 fn repair(records: &ConditionRecords, contradicting: &ContradictingRecord) -> Option<Remedy> {
     let row = records.row_of_record(contradicting.record)?;
     let fault = contradicting.fault.as_ref()?;
@@ -207,7 +207,7 @@ fn repair_label(fault: &RecordFault, record: &str) -> String {
             )
         }
         RecordFault::Gain(signal, factor) if *factor < 0.0 => {
-            format!("Turn {signal} of {record}")
+            format!("Reverse the sign of {signal} in {record}")
         }
         RecordFault::Gain(signal, factor) => {
             format!("Multiply {signal} of {record} by {factor:.2}")
@@ -215,8 +215,8 @@ fn repair_label(fault: &RecordFault, record: &str) -> String {
     }
 }
 
-/// Removes a delay \[s\] from a channel in all records, in addition to the delay that was already
-/// removed when the new one was found.
+/// Returns a remedy that removes a delay \[s\] from a channel in all records, in addition to the
+/// delay that the identification already removed.
 pub(super) fn remove_common_delay(
     records: &ConditionRecords,
     signal: &Signal,
@@ -243,8 +243,8 @@ fn use_band(band: [f64; 2]) -> Remedy {
     )
 }
 
-/// Raises the lower end of the band so that the longest record contains [`PERIODS`] periods; at the
-/// frequency `once` \[rad/s\], it contains a single period.
+/// Returns a remedy that raises the lower end of the band so that the longest record contains
+/// [`PERIODS`] periods; at the frequency `once` \[rad/s\], it contains a single period.
 fn raise_lowest_frequency(records: &ConditionRecords, once: f64) -> Option<Remedy> {
     let (job, _) = records.found.as_ref()?;
     let [_, highest] = job.request.options.band;
@@ -255,7 +255,7 @@ fn raise_lowest_frequency(records: &ConditionRecords, once: f64) -> Option<Remed
     }
 }
 
-/// Leaves a record out if another record remains for the fit.
+/// Returns a remedy that leaves a record out; `None` if no other record remains for the fit.
 fn leave_out(records: &ConditionRecords, name: &str) -> Option<Remedy> {
     let index = used_row(records, name)?;
     let another_is_fitted = records
@@ -271,7 +271,7 @@ fn leave_out(records: &ConditionRecords, name: &str) -> Option<Remedy> {
     }
 }
 
-/// Includes a held-out record in the fit.
+/// Returns a remedy that includes a held-out record in the fit.
 fn fit_held_out(records: &ConditionRecords, name: &str) -> Option<Remedy> {
     let index = used_row(records, name)?;
     Some(Remedy::new(
@@ -295,7 +295,8 @@ fn choose_order() -> Remedy {
     Remedy::new("Set an order…", RecordsCommand::ShowAdvanced(ORDERS))
 }
 
-/// Proposes the references that column names suggest, and a list of all columns.
+/// Returns remedies that select a reference suggested by its column name, and one that lists all
+/// columns.
 fn reference_remedies(ui: &Ui, records: &ConditionRecords) -> Vec<Remedy> {
     let possible = possible_references(ui, records);
     let mut remedies = Vec::new();
@@ -306,7 +307,7 @@ fn reference_remedies(ui: &Ui, records: &ConditionRecords) -> Vec<Remedy> {
     {
         let column = &reference.column;
         remedies.push(Remedy::new(
-            format!("By way of {column}"),
+            format!("Use {column} as reference"),
             RecordsCommand::SetReferences(vec![column.clone()]),
         ));
     }

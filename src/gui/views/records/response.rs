@@ -14,13 +14,13 @@ use crate::gui::plot::chart_view::chart_ui;
 use crate::gui::widgets::controls::{named, painted_text, text_width};
 use crate::gui::widgets::palette::{Palette, small};
 
-/// Band \[rad/s\] of models without a job.
+/// Substitute band \[rad/s\] for an identification without a job.
 const UNKNOWN_BAND: [f64; 2] = [0.1, 10.0];
-/// Half the height of the mark about the curve, where it deviates from the measured points.
+/// Half-height of the marks along the curve of the recommended model.
 const MARK_DB: f64 = 2.0;
 const MARK_DEG: f64 = 15.0;
 
-/// Shows magnitude above and phase below; during refinement, the first model.
+/// Draws the Bode plot of the identified response; during refinement, of the first model.
 pub(super) fn response_ui(ui: &mut Ui, page: Page<'_>) {
     let Page { state, palette, .. } = page;
     let Some(drawn) = drawn_response(ui, page) else {
@@ -54,8 +54,8 @@ pub(super) fn response_ui(ui: &mut Ui, page: Page<'_>) {
     chart_ui(ui, place, &phase, palette);
 }
 
-/// Returns the curves of the pair in focus: those of the first model while it is refined, otherwise
-/// those of the finished identification, if any.
+/// Returns the curves of the pair in focus: of the first model while it is refined, otherwise of
+/// the finished identification, if any.
 fn drawn_response(ui: &Ui, page: Page<'_>) -> Option<Arc<DrawnResponse>> {
     let Page { state, records, .. } = page;
     let pair = state.display.selection.pair;
@@ -196,7 +196,7 @@ fn line_points(curve: &[CurvePoint], part: BodePart) -> Arc<[[f64; 2]]> {
     curve.iter().map(|point| point.place(part)).collect()
 }
 
-/// Returns a bar about the recommended curve within an interval \[rad/s\].
+/// Returns a strip along the recommended curve within an interval \[rad/s\].
 fn interval_mark(
     drawn: &DrawnResponse,
     interval: [f64; 2],
@@ -263,7 +263,7 @@ fn legend_ui(ui: &mut Ui, drawn: &DrawnResponse, palette: &Palette) {
             entry.show(ui, palette);
         }
         if drawn.has_cut_intervals() {
-            ui.label(palette.small("bars and bands end at ± 20 dB and ± 180°"));
+            ui.label(palette.small("bars and bands are cut at ± 20 dB and ± 180°"));
         }
     });
 }
@@ -287,7 +287,7 @@ fn legend_entries(drawn: &DrawnResponse, palette: &Palette) -> Vec<LegendEntry> 
         },
         LegendEntry {
             sample: Sample::Circle,
-            text: "partial coherence below 0.6, or few lines",
+            text: "partial coherence below 0.6, or few spectral lines",
             color: palette.dim_text,
         },
     ];
@@ -302,7 +302,7 @@ fn legend_entries(drawn: &DrawnResponse, palette: &Palette) -> Vec<LegendEntry> 
 }
 
 impl LegendEntry {
-    /// Draws sample and label without a line break between them.
+    /// Draws the sample and the label on the same line.
     fn show(&self, ui: &mut Ui, palette: &Palette) {
         let words = text_width(ui, self.text, small());
         let (rect, response) =
@@ -314,7 +314,7 @@ impl LegendEntry {
     }
 }
 
-/// Sample before a legend label.
+/// Line or point drawn before a legend label.
 #[derive(Clone, Copy)]
 enum Sample {
     Line,

@@ -38,12 +38,12 @@ impl SearchList {
         }
     }
 
-    /// Describes the values searched if none are given.
+    /// Describes the values that are searched if the field is empty.
     fn default_values(self) -> &'static str {
         match self {
             Self::Orders => "from the records: 1 to 24",
             Self::PastWindows => "from the records: 8 to 24",
-            Self::LaguerrePoles => "0.375, 0.54, 0.75 of the band's end",
+            Self::LaguerrePoles => "0.375, 0.54, 0.75 of the upper band limit",
         }
     }
 
@@ -61,7 +61,10 @@ impl SearchList {
             Self::PastWindows => search.pasts = whole_numbers(&list, LONGEST_PAST)?,
             Self::LaguerrePoles => {
                 if let Some(pole) = list.iter().find(|pole| **pole <= 0.0) {
-                    return Err(format!("a pole is positive, found {}", number(*pole)));
+                    return Err(format!(
+                        "Laguerre poles: expected positive values, found {}",
+                        number(*pole)
+                    ));
                 }
                 search.poles = list;
             }
@@ -70,9 +73,10 @@ impl SearchList {
     }
 }
 
-/// Shows the settings under a heading; with an empty field, the identification chooses the values.
+/// Draws the settings in a section that can be folded; with an empty field, the identification
+/// chooses the values.
 ///
-/// Opens the heading and focuses the field named `focused`, once.
+/// Unfolds the section once to focus the field named `focused`.
 pub(super) fn search_settings_ui(
     ui: &mut Ui,
     page: Page<'_>,

@@ -23,7 +23,6 @@ use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 /// A model compared with the displayed record.
 pub(super) struct Simulated<'a> {
     pub(super) model: TimeModel,
-    /// Line colour.
     pub(super) color: Color32,
     /// Response of the model, or the reason for its absence; `None` while it is being computed.
     pub(super) result: Option<&'a Result<Arc<Validation>, String>>,
@@ -182,21 +181,21 @@ fn state_space(state: &State, records: &ConditionRecords, model: TimeModel) -> O
     }
 }
 
-/// Selects the models drawn beside the record.
+/// Draws the selector of the models that are compared with the record.
 pub(super) fn time_models_ui(
     ui: &mut Ui,
     state: &State,
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    ui.label(palette.small("response to the same inputs, and fit, of:"));
+    ui.label(palette.small("compare with the simulated response of:"));
     for model in TimeModel::ALL {
         let mut is_drawn = state.records.time_models.contains(&model);
         let text = RichText::new(format!("{} model", model.name()))
             .size(SMALL_SIZE)
             .color(model.color(palette));
-        let hint = "In windows of 10 s, shorter for an unstable model, each with its own initial \
-                    state and offsets";
+        let hint = "Simulated in windows of 10 s (shorter for an unstable model), each with a \
+            separate initial state and offsets";
         if ui
             .checkbox(&mut is_drawn, text)
             .on_hover_text(hint)
@@ -207,10 +206,10 @@ pub(super) fn time_models_ui(
     }
 }
 
-/// Limit of Theil's coefficient below which a model is good (M14, section 6).
+/// Limit of Theil's coefficient below which the fit of a model counts as good (M14, section 6).
 const GOOD_THEIL: f64 = 0.25;
 
-/// Shows fit tables: by record, by output, and in time.
+/// Shows the fit in tables: by record, by output, and in the time domain.
 pub(super) fn fit_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     ScrollArea::vertical()
         .id_salt("fit")
@@ -227,7 +226,7 @@ pub(super) fn fit_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
 /// Shows χ²/dof by record and by output.
 fn frequency_fit_ui(ui: &mut Ui, page: Page<'_>, found: &Identification) {
     let Page { state, palette, .. } = page;
-    let heading = "In frequency: χ² per degree of freedom; 1 if only noise remains";
+    let heading = "Frequency domain: χ² per degree of freedom; 1 if only noise remains";
     ui.label(RichText::new(heading).strong());
     Grid::new("fit of records")
         .num_columns(3)
@@ -268,7 +267,12 @@ fn time_fit_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
         Some(row) => row.table.name.as_str(),
         None => "",
     };
-    ui.label(RichText::new(format!("In time: {name}, fit in % and Theil's coefficient")).strong());
+    ui.label(
+        RichText::new(format!(
+            "Time domain: {name}, fit in % and Theil's coefficient"
+        ))
+        .strong(),
+    );
     time_models_ui(ui, state, palette, commands);
     let models = simulated(state, palette);
     Grid::new("fit in time")
@@ -294,7 +298,8 @@ fn time_fit_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
         model.absence_ui(ui, state, palette);
     }
     ui.label(palette.small(
-        "The fit in time hardly separates models: rank them by the cost of held-out records",
+        "The fit in the time domain hardly distinguishes models: rank them by the cost of \
+        held-out records",
     ));
 }
 

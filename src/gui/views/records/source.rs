@@ -50,7 +50,7 @@ fn add_ui(ui: &mut Ui, path: &mut String, commands: &mut Vec<Command>) {
     });
 }
 
-/// Asks once about the missing units of all conditions.
+/// Shows a question about the missing units of all conditions, with buttons that set them.
 fn open_units_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let Some(open) = state.records.open_units() else {
         return;
@@ -71,7 +71,7 @@ fn open_units_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
         format!(" of {} conditions", open.conditions)
     };
     let question = format!(
-        "{records}{conditions} without units: are they those of the dataset, {}?",
+        "{records}{conditions} without units: do the units of the dataset apply, {}?",
         channels.join(", ")
     );
     ui.add(Label::new(palette.small_warning(question)).wrap());
@@ -129,10 +129,13 @@ fn other_channels_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
         return;
     }
     ui.horizontal_wrapped(|ui| {
-        ui.label(page.palette.small("Other channels than the dataset has?"));
+        ui.label(
+            page.palette
+                .small("Records without the dataset's channels?"),
+        );
         button_ui(
             ui,
-            Button::new("Make a dataset of them…"),
+            Button::new("Make a dataset from them…"),
             "Models can be identified from them before a physics model exists",
             RecordsCommand::AskDataset,
             commands,

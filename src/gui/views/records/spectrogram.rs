@@ -25,7 +25,7 @@ struct PaintedSpectrogram {
     spectrogram: Spectrogram,
 }
 
-/// Selects the input, or none.
+/// Draws the selector of the input whose spectrogram is shown; no input is an option.
 pub(super) fn spectrogram_choice_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let state = page.state;
     ui.label(page.palette.small("spectrogram of"));
@@ -69,7 +69,10 @@ pub(super) fn spectrogram_ui(ui: &mut Ui, page: Page<'_>, flight: &Arc<FlightRec
         ui.label(palette.small("The record is too short or sampled too slowly for a spectrogram"));
         return;
     };
-    let title = format!("{}: power over time, dB below the greatest", channel.name);
+    let title = format!(
+        "{}: power over time [dB relative to the maximum]",
+        channel.name
+    );
     let unit = state.display.curves.unit;
     let label = unit.axis_label();
     let mut chart = Chart::new(&title, ChartAxis::Linear, "", &label);

@@ -15,7 +15,7 @@ pub(super) fn numbers(text: &str) -> Result<Vec<f64>, String> {
     Ok(list)
 }
 
-/// Returns a band \[rad/s\]; `None` for an empty list.
+/// Returns the band given by two increasing frequencies \[rad/s\]; `None` for an empty list.
 pub(super) fn typed_band(list: &[f64]) -> Result<Option<[f64; 2]>, String> {
     match *list {
         [] => Ok(None),
@@ -27,7 +27,7 @@ pub(super) fn typed_band(list: &[f64]) -> Result<Option<[f64; 2]>, String> {
     }
 }
 
-/// Returns whole numbers from 1 to `highest`.
+/// Returns the numbers if all of them are whole numbers from 1 to `highest`.
 pub(super) fn whole_numbers(list: &[f64], highest: usize) -> Result<Vec<usize>, String> {
     let mut whole = Vec::new();
     for &value in list {

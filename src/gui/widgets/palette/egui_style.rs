@@ -64,7 +64,8 @@ impl Palette {
             noninteractive: self.widget(self.panel, self.panel, self.line),
             inactive: self.widget(self.raised, self.line, self.line),
             hovered: self.widget(pale, strong, outline),
-            // Pressed and focused boxes: a fill in the accent colour would look checked.
+            // `active` also applies to focused boxes: with a fill in the accent colour they would
+            // look checked.
             active: self.widget(self.selected, strong, self.accent),
             open: self.widget(pale, self.raised, self.line),
         }

@@ -12,7 +12,7 @@ use crate::csv_text::write_records;
 use crate::file_error::FileError;
 use crate::output_set::OutputSet;
 
-/// Returns the format given by a file extension.
+/// Returns the figure format that a file extension selects.
 ///
 /// # Errors
 /// [`FileError::FigureFormat`] for an unknown extension.
@@ -32,7 +32,7 @@ pub fn figure_format(path: &Path) -> Result<FigureFormat, FileError> {
     })
 }
 
-/// Writes a figure to a file, in the format that its extension names.
+/// Writes a figure to a file; the file extension selects the format.
 ///
 /// # Errors
 /// [`FileError::FigureWithoutNumbers`] if CSV is requested for a figure without data; otherwise the
@@ -54,7 +54,7 @@ pub fn write_figure(
     outputs.persist()
 }
 
-/// Writes a figure in the given format.
+/// Writes a figure in the format `format`, whatever the file extension. CSV follows RFC 4180.
 pub fn write_as(
     figure: &Figure,
     width: ColumnWidth,
@@ -72,8 +72,6 @@ pub fn write_as(
     }
 }
 
-// Comma-separated values (RFC 4180).
-
 #[cfg(test)]
 mod tests {
     use gdcm_plot::figure::axis::Axis;
@@ -84,8 +82,8 @@ mod tests {
     use super::*;
     use crate::output_set::Existing;
 
-    /// Returns a figure with a curve whose model name contains codes that would turn a terminal red
-    /// and hide the text that follows.
+    /// Returns a figure with a curve whose name contains control codes: a terminal would show it in
+    /// red and hide the text that follows.
     fn named_by_codes() -> Figure {
         let name = "\u{1b}[31mred\u{9b}31m\u{202e}";
         let curve =

@@ -1,5 +1,5 @@
-//! Runs exported programs with their interpreters and compilers and compares their output with the
-//! schedule.
+//! Runs exported programs with the interpreters and compilers of their languages, and compares
+//! their output with the schedule.
 
 use std::process::Command;
 use std::sync::Arc;
@@ -19,7 +19,8 @@ use super::*;
 use crate::export::{EXPORTERS, ExportRequest, ExportSource};
 use crate::files::dataset_file::embedded_example;
 
-/// Returns analyses of the example with every form of the schedule: kind, quantity, delays.
+/// Returns analyses of the example that cover every kind of schedule, scheduled quantity and
+/// treatment of delays.
 fn analyses() -> Vec<(String, Analysis)> {
     let mut engine = Engine::default();
     let kinds = [ScheduleKind::Polynomial { degree: 2 }, ScheduleKind::Table];
@@ -41,7 +42,7 @@ fn analyses() -> Vec<(String, Analysis)> {
             }
         }
     }
-    // Schedules of leads: one with a constant signed delay, one with a signed delay that varies
+    // Schedules with leads: one with a constant signed delay, one with a signed delay that varies
     // with airspeed.
     for tau_degree in [0, 2] {
         let mut study = Study::new(embedded_example().unwrap().dataset);
@@ -56,7 +57,7 @@ fn analyses() -> Vec<(String, Analysis)> {
         let analysis = engine.analyze(&study, &Unobserved).unwrap();
         analyses.push((format!("leads of degree {tau_degree}"), analysis));
     }
-    // A single airspeed: the range has zero width.
+    // Conditions at a single airspeed, so that the airspeed range has zero width.
     let mut study = Study::new(embedded_example().unwrap().dataset);
     let conditions = study.dataset.clone();
     let at = conditions.conditions()[3].flight_state().airspeed_kt;
@@ -79,7 +80,7 @@ fn analyses() -> Vec<(String, Analysis)> {
     analyses
 }
 
-/// Returns the schedule of an analysis as a program in a language; `name` is its file name.
+/// Returns the schedule of an analysis as a program; `name` is the name of its file.
 fn program(language: &str, analysis: &Analysis, name: &str) -> String {
     let source = &ExportSource {
         name: NASTY[0].to_owned(),
@@ -114,7 +115,7 @@ fn airspeeds() -> Vec<f64> {
         .collect()
 }
 
-/// Returns the expected values, in the order in which the exported programs print them.
+/// Returns the scheduled values, in the order in which the exported programs print them.
 fn expected(analysis: &Analysis) -> Vec<f64> {
     let schedule = analysis.schedule.as_ref().unwrap();
     let values = |airspeed: f64| {
@@ -133,8 +134,8 @@ fn expected(analysis: &Analysis) -> Vec<f64> {
 fn assert_same(words: &str, found: &[f64], expected: &[f64]) {
     assert_eq!(found.len(), expected.len(), "{words}");
     for (index, (a, b)) in found.iter().zip(expected).enumerate() {
-        // A delay is clipped where it crosses zero; near there a difference below a femtosecond is
-        // negligible.
+        // The absolute tolerance is needed where a delay is clipped at zero; differences below a
+        // femtosecond are negligible.
         assert!(
             (a - b).abs() <= 1e-12 * b.abs() + 1e-16,
             "{words}, value {index}: {a} instead of {b}"
@@ -142,8 +143,7 @@ fn assert_same(words: &str, found: &[f64], expected: &[f64]) {
     }
 }
 
-/// Runs a program and compares its output; prints a message if the interpreter or compiler is
-/// missing.
+/// Runs a program and compares its output with `expected`.
 fn assert_run(
     words: &str,
     program: &str,
@@ -362,7 +362,7 @@ fn coupled() -> Analysis {
     Engine::default().analyze(&study, &Unobserved).unwrap()
 }
 
-/// Returns a 6 x 4 feed-through matrix of values that every language formats identically.
+/// Returns a 6 x 4 feed-through matrix with values that every language formats identically.
 fn feed_through() -> DMatrix<f64> {
     DMatrix::from_fn(6, 4, |output, input| {
         0.25 * (output as f64 - 2.0) * (input as f64 + 1.0) / 4.0
@@ -384,8 +384,8 @@ fn list_of_rows(of: &DMatrix<f64>, [open, close]: [char; 2]) -> String {
     )
 }
 
-/// Returns, at each airspeed and row by row, the mixing, the feedback, and the feedback with its
-/// loop closed through the feed-through matrix.
+/// Returns three matrices at each airspeed, row by row: the mixing, the feedback, and the feedback
+/// with its loop closed through the feed-through matrix.
 fn expected_couplings(analysis: &Analysis) -> Vec<f64> {
     let matrices = analysis.fitted_couplings().unwrap().matrices();
     let feedback = matrices.feedback();
@@ -502,8 +502,8 @@ fn a_study_without_couplings_has_none_in_its_programs() {
     }
 }
 
-/// Returns the example scheduled with altitude as its second variable, and its values at fifty
-/// airspeeds and three altitudes.
+/// Returns the example with altitude as second variable of the schedule, and the scheduled values
+/// at fifty airspeeds and three altitudes.
 fn with_altitude(kind: ScheduleKind) -> (Analysis, Vec<f64>) {
     let mut study = Study::new(embedded_example().unwrap().dataset);
     let schedule = ScheduleSettings {
@@ -604,7 +604,8 @@ fn a_second_variable_is_the_second_argument_of_every_program() {
     }
 }
 
-/// Returns the example with one input and two outputs whose names need escaping.
+/// Returns an analysis with one input and two outputs of the example, with names that need
+/// escaping.
 fn with_nasty_names() -> Analysis {
     let example = embedded_example().unwrap().dataset;
     let mut header = example.header();

@@ -1,4 +1,4 @@
-//! JSON values by channel and by response, with a dataset's channel names.
+//! JSON values by channel and by response, which contain the channel names of a dataset.
 
 use serde_json::{Map, Value, json};
 
@@ -7,7 +7,7 @@ use gdcm_method::schedule::Regression;
 use gdcm_model::dataset::{Pair, PairTable};
 use gdcm_study::Analysis;
 
-/// Whether a value is empty: null, false, or an empty list.
+/// Returns whether a value is empty: null, false, or an empty list.
 pub(super) fn is_empty_value(value: &Value) -> bool {
     match value {
         Value::Null | Value::Bool(false) => true,
@@ -16,7 +16,7 @@ pub(super) fn is_empty_value(value: &Value) -> bool {
     }
 }
 
-/// Returns the object without those of the named members whose values are empty.
+/// Removes from an object the named members that are empty.
 pub(crate) fn without_empty(mut object: Value, members: &[&str]) -> Value {
     if let Value::Object(all) = &mut object {
         all.retain(|name, value| !(members.contains(&name.as_str()) && is_empty_value(value)));
@@ -24,15 +24,15 @@ pub(crate) fn without_empty(mut object: Value, members: &[&str]) -> Value {
     object
 }
 
-/// Returns a table as a list of rows, one per output. Values that are not finite become null, since
-/// JSON cannot represent them.
+/// Returns a table as a list of rows, one per output. Non-finite values become null, because JSON
+/// cannot represent them.
 pub(super) fn rows<T>(table: &PairTable<Option<T>>, figure: impl Fn(&T) -> f64) -> Value {
     rows_of(table.outputs(), table.inputs(), |pair| {
         table[pair].as_ref().map(&figure).into()
     })
 }
 
-/// Returns table entries as a list of rows, one per output.
+/// Returns the entries of a table as a list of rows, one per output.
 pub(super) fn rows_of(outputs: usize, inputs: usize, entry: impl Fn(Pair) -> Value) -> Value {
     let mut rows = Vec::with_capacity(outputs);
     for output in 0..outputs {
@@ -72,7 +72,8 @@ impl<'a> ChannelNames<'a> {
         pairs.into_iter().map(|pair| self.pair(pair)).collect()
     }
 
-    /// Returns the entries of a response, preceded by its output and its input.
+    /// Returns an object with the channel names of a response, output first, followed by the
+    /// members of `entries`.
     pub(super) fn response_entries(&self, pair: Pair, entries: Value) -> Value {
         let (output, input) = self.pair(pair);
         let mut members = Map::new();
@@ -84,7 +85,7 @@ impl<'a> ChannelNames<'a> {
         Value::Object(members)
     }
 
-    /// Returns an object with a value for each channel, by name.
+    /// Returns an object that maps the name of each channel to its value.
     pub(super) fn by_channel<T: Into<Value>>(&self, value: impl Fn(Channel) -> T) -> Value {
         let mut inputs = Map::new();
         for (index, name) in self.inputs.iter().enumerate() {
@@ -97,7 +98,7 @@ impl<'a> ChannelNames<'a> {
         json!({"inputs": inputs, "outputs": outputs})
     }
 
-    /// Returns regression coefficients by channel.
+    /// Returns the regression coefficients of each channel.
     pub(super) fn coefficients(&self, regressions: &Channels<Regression>) -> Value {
         self.by_channel(|channel| regressions[channel].figures().to_vec())
     }
@@ -106,13 +107,13 @@ impl<'a> ChannelNames<'a> {
         self.by_channel(|channel| correction.gain(channel))
     }
 
-    /// Returns the delays \[s\].
+    /// Returns the delay \[s\] of each channel.
     pub(super) fn delays_s(&self, correction: &ChannelCorrection) -> Value {
         self.by_channel(|channel| correction.pure_delay_s(channel))
     }
 
-    /// Returns signed delay and lead filter by channel (M15); `None` unless the phase correction
-    /// has leads.
+    /// Returns the signed delay and the lead filter of each channel (M15); `None` if the correction
+    /// has no leads.
     pub(super) fn leads(&self, correction: &ChannelCorrection) -> Option<Value> {
         let leads = correction.leads.as_ref()?;
         let price = LeadPrice::of(leads);

@@ -13,13 +13,13 @@ use gdcm_study::Analysis;
 use super::condition_results::{ConditionResults, cell, condition_results};
 use crate::csv_text::write_records;
 
-/// A channel at a condition.
+/// A channel in a condition.
 struct ChannelRow<'a> {
     results: &'a ConditionResults<'a>,
     channel: Channel,
 }
 
-/// Name of a column, and the function that writes its cell.
+/// Name of a column, with the function that formats its cell.
 type ChannelColumn = (&'static str, fn(&ChannelRow<'_>) -> String);
 
 const CHANNEL_COLUMNS: [ChannelColumn; 23] = [
@@ -97,10 +97,11 @@ const CHANNEL_COLUMNS: [ChannelColumn; 23] = [
     ("contains", |row| row.results.contains.clone()),
 ];
 
-/// Writes `corrections.csv`: the channel gains (factors) and delays \[s\] of the chosen conditions,
-/// and the scheduled ones at the same airspeed; with leads, also the signed delays and the lead
-/// filters (M15). With couplings, a column follows for each input and each output, with its
-/// coefficient in the row's input (M16). A missing value is an empty cell.
+/// Writes `corrections.csv`: for the chosen conditions, the channel gains (factors) and delays
+/// \[s\], and their scheduled values at the same airspeeds; with leads, also the signed delays and
+/// the lead filters (M15). With couplings, further columns give, in the row of an input, its
+/// coefficients for each input (mixing) and each output (feedback) (M16). A missing value is an
+/// empty cell.
 pub(crate) fn channel_table(
     analysis: &Analysis,
     chosen: &BTreeSet<ConditionId>,
@@ -143,14 +144,14 @@ impl ChannelRow<'_> {
         self.channel.name(&inputs, &outputs)
     }
 
-    /// Returns the signed delay \[s\] of a correction, if it has leads.
+    /// Returns the signed delay \[s\] of the channel in a correction; `None` without leads.
     fn tau_s(&self, correction: Option<&ChannelCorrection>) -> Option<f64> {
         let leads = correction?.leads.as_ref()?;
         Some(leads.taus_s[self.channel])
     }
 
-    /// Returns the coefficients of all inputs (mixing) and outputs (feedback) in the row's input;
-    /// empty without couplings.
+    /// Returns the coefficients with which all inputs (mixing) and outputs (feedback) act on the
+    /// row's input; empty without couplings.
     fn coupling_cells(&self) -> Vec<String> {
         let Some(fitted) = self.results.analysis.fitted_couplings() else {
             return Vec::new();

@@ -17,7 +17,7 @@ use super::couplings::condition_couplings;
 use super::solutions::{delay_solution, gain_solution};
 use super::uncertainty::{bars, net_gain_bar};
 
-/// Returns a condition's results.
+/// Returns the object with all results of a condition.
 pub(super) fn condition_json(
     names: &ChannelNames<'_>,
     condition: &Condition,
@@ -77,7 +77,7 @@ pub(super) fn condition_json(
     )
 }
 
-/// Returns the reasons why models were rejected, as the engineer noted them.
+/// Returns the rejected models with the reasons that the engineer noted.
 fn rejection_reasons(choice: &ConditionChoice) -> Value {
     let mut reasons = Vec::new();
     for kind in BundleKind::BOTH {
@@ -88,7 +88,7 @@ fn rejection_reasons(choice: &ConditionChoice) -> Value {
     Value::Array(reasons)
 }
 
-/// Returns the models that the analysis itself excluded, with the reason.
+/// Returns the models that the analysis excluded automatically, with reasons.
 fn set_aside(names: &ChannelNames<'_>, result: &ConditionAnalysis) -> Value {
     let mut models = Vec::new();
     for caution in &result.cautions {
@@ -103,7 +103,8 @@ fn caution_words(names: &ChannelNames<'_>, caution: &Caution) -> String {
     caution_text(caution, |pair| names.analysis.study.dataset.pair_name(pair))
 }
 
-/// Returns doubts about the models, then cautions about the results and about leads.
+/// Returns the suspected faults of the models, followed by the cautions about the results and about
+/// leads.
 fn cautions(names: &ChannelNames<'_>, result: &ConditionAnalysis) -> Value {
     let study = &names.analysis.study;
     let mut cautions = Vec::new();
@@ -117,7 +118,7 @@ fn cautions(names: &ChannelNames<'_>, result: &ConditionAnalysis) -> Value {
     json!(cautions)
 }
 
-/// Returns net gains by response, with intervals if there are any.
+/// Returns the net gain of each response, with its interval if available.
 fn net_gains(names: &ChannelNames<'_>, id: ConditionId, result: &ConditionAnalysis) -> Value {
     let mut net_gains = Vec::new();
     for pair in result.held().pairs() {
@@ -131,7 +132,7 @@ fn net_gains(names: &ChannelNames<'_>, id: ConditionId, result: &ConditionAnalys
     Value::Array(net_gains)
 }
 
-/// Returns the cost J of each response in its two parts.
+/// Returns the magnitude part and the phase part of J for each response.
 fn costs(table: &PairTable<Option<Cost>>) -> Value {
     json!({
         "mag": rows(table, |cost| cost.magnitude),
@@ -139,7 +140,7 @@ fn costs(table: &PairTable<Option<Cost>>) -> Value {
     })
 }
 
-/// Returns the sources of the models, as far as the dataset records them.
+/// Returns the sources of the models that the dataset states.
 fn sources(condition: &Condition) -> Value {
     let mut sources = Vec::new();
     for kind in BundleKind::BOTH {

@@ -9,13 +9,13 @@ use gdcm_study::{Analysis, ConditionAnalysis};
 
 use crate::files::export_contents::ExportContents;
 
-/// Results of a condition.
+/// A condition of an analysis, with its scheduled correction.
 pub(super) struct ConditionResults<'a> {
     pub(super) analysis: &'a Analysis,
     pub(super) condition: &'a Condition,
     /// Correction given by the schedule, if there is one.
     pub(super) scheduled: Option<ChannelCorrection>,
-    /// Parts of the correction in the file, and omitted parts, in words.
+    /// Description of the parts of the correction in the file, and of the omitted parts.
     pub(super) contains: String,
 }
 
@@ -50,12 +50,12 @@ impl ConditionResults<'_> {
         self.analysis.condition(self.condition.id())
     }
 
-    /// Returns the condition's own correction.
+    /// Returns the condition's own correction; `None` if the condition has no result.
     pub(super) fn own(&self) -> Option<&ChannelCorrection> {
         self.result().map(|result| &result.correction)
     }
 
-    /// Returns a confidence interval.
+    /// Returns the error bar of a result; `None` if it was not computed.
     pub(super) fn bar(&self, scalar: Scalar) -> Option<&Bar> {
         self.analysis
             .uncertainty
@@ -63,8 +63,8 @@ impl ConditionResults<'_> {
             .bar(self.condition.id(), scalar)
     }
 
-    /// Returns the lower (`end` 0) or upper (`end` 1) bound of the total interval: a factor for a
-    /// gain, seconds for a delay.
+    /// Formats the lower (`end` = 0) or upper (`end` = 1) bound of the total interval: a factor for
+    /// a gain, seconds for a delay. Empty if there is no interval.
     pub(super) fn end(&self, scalar: Scalar, end: usize) -> String {
         let ends = match &self.analysis.uncertainty {
             Some(uncertainty) => self
@@ -79,7 +79,7 @@ impl ConditionResults<'_> {
         }
     }
 
-    /// Returns the square root of a variance component.
+    /// Formats the standard deviation of a variance component; empty if it is missing.
     pub(super) fn deviation(
         &self,
         scalar: Scalar,
@@ -93,8 +93,8 @@ impl ConditionResults<'_> {
 /// Formats a value at full precision; empty if it is missing or not finite.
 pub(super) fn cell(value: Option<f64>) -> String {
     match value {
-        // Debug writes very large and small values with an exponent; Display would write hundreds
-        // of zeros.
+        // `Debug` writes very large and small values with an exponent, where `Display` would write
+        // hundreds of zeros.
         Some(value) if value.is_finite() => format!("{value:?}"),
         _ => String::new(),
     }

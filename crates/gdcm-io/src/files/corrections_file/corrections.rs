@@ -1,4 +1,4 @@
-//! Content of `corrections.json`: all analysis results.
+//! Content of `corrections.json`, which contains all analysis results.
 
 use std::collections::BTreeSet;
 
@@ -18,8 +18,8 @@ use super::uncertainty::uncertainty;
 use super::{NAME, VERSION};
 use crate::files::export_contents::ExportContents;
 
-/// Returns all results of the chosen conditions, with the schedule of the whole study, as written
-/// to `corrections.json`. The file format documentation describes each key.
+/// Returns the content of `corrections.json`: all results of the chosen conditions, with the
+/// schedule of the whole study. The file format documentation describes each key.
 ///
 /// `sha256` is the hash of the dataset's file.
 pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<ConditionId>) -> Value {
@@ -53,7 +53,7 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
     }
     let schedule = analysis.schedule.as_ref().ok();
     let mut settings = analysis.study.settings.named(dataset);
-    // Earlier versions read here whether the schedule below has delays.
+    // Earlier versions of the program learn from this setting whether the schedule has delays.
     settings.schedule.delays = schedule.is_some_and(|schedule| schedule.delays.is_some());
     let corrections = json!({
         "format": NAME,
@@ -86,7 +86,7 @@ fn assessment_json(condition: &Condition, changes: &PairTable<Option<CostChange>
     })
 }
 
-/// Returns channel names and units, in the order of all lists and tables.
+/// Returns the names and units of channels, in the order used in all lists and tables.
 fn channels(channels: &[Channel]) -> Value {
     let mut list = Vec::with_capacity(channels.len());
     for channel in channels {

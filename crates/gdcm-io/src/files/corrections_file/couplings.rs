@@ -1,4 +1,5 @@
-//! The part of `corrections.json` about couplings in the physics models, and their value (M16).
+//! The part of `corrections.json` about couplings in the physics models, and about their benefit
+//! (M16).
 
 use nalgebra::{DMatrix, Scalar};
 use serde_json::{Value, json};
@@ -77,8 +78,8 @@ fn coupling_cost(cost: CouplingCost) -> Value {
     })
 }
 
-/// Returns the mixing at a condition (normalised to ones on the diagonal), and the effect of the
-/// couplings on its physics representative; null without couplings.
+/// Returns the mixing in a condition, normalised to ones on the diagonal, and the effect of the
+/// couplings on the physics representative of the condition; null without couplings.
 pub(super) fn condition_couplings(analysis: &Analysis, result: &ConditionAnalysis) -> Value {
     let Some(coupled) = &result.coupled else {
         return Value::Null;

@@ -30,7 +30,7 @@ pub use self::corrections::corrections;
 const NAME: &str = "gdcm-corrections";
 const VERSION: u64 = 1;
 
-/// Result file names; the last file contains the checksums of the others.
+/// Names of the result files; the last file contains the checksums of the others.
 pub const RESULT_FILES: [&str; 4] = [
     "corrections.json",
     "corrections.csv",
@@ -38,13 +38,14 @@ pub const RESULT_FILES: [&str; 4] = [
     "corrections.sha256",
 ];
 
-/// Returns the result file paths in a directory.
+/// Returns the paths of the result files in a directory.
 pub fn result_paths(directory: &Path) -> [PathBuf; 4] {
     RESULT_FILES.map(|name| directory.join(name))
 }
 
-/// Writes the result files of the chosen conditions into a directory, created if missing: all or
-/// none. The checksums, written last, show whether the files belong together.
+/// Writes the result files of the chosen conditions into a directory, which is created if missing.
+/// Either all files are written or none. The checksums, written last, show whether the files belong
+/// together.
 ///
 /// `sha256` is the hash of the dataset's file.
 pub fn write_results(

@@ -12,13 +12,13 @@ use gdcm_words::assessment::not_assessed_text;
 use super::condition_results::{ConditionResults, cell, condition_results};
 use crate::csv_text::write_records;
 
-/// A response at a condition.
+/// A response in a condition.
 struct ResponseRow<'a> {
     results: &'a ConditionResults<'a>,
     pair: Pair,
 }
 
-/// Name of a column, and the function that writes its cell.
+/// Name of a column, with the function that formats its cell.
 type ResponseColumn = (&'static str, fn(&ResponseRow<'_>) -> String);
 
 const RESPONSE_COLUMNS: [ResponseColumn; 34] = [
@@ -153,9 +153,9 @@ const RESPONSE_COLUMNS: [ResponseColumn; 34] = [
 ];
 
 /// Writes `assessment.csv`: G, D \[s\], net gains, and J of the nominal model with and without the
-/// scheduled correction, for every response at the chosen conditions. A missing value is an empty
-/// cell; `left_out` gives the reason why a condition is not assessed, `D_band_s` is the band delay
-/// (M15.2). The columns `…_low` and `…_high` are the confidence interval.
+/// scheduled correction, for every response in the chosen conditions. A missing value is an empty
+/// cell. `left_out` gives the reason why a condition is not assessed, `D_band_s` is the band delay
+/// (M15.2), and the columns `…_low` and `…_high` contain confidence intervals.
 pub(crate) fn response_table(
     analysis: &Analysis,
     chosen: &BTreeSet<ConditionId>,
@@ -172,14 +172,15 @@ pub(crate) fn response_table(
 }
 
 impl ResponseRow<'_> {
-    /// Returns the change in J due to the schedule.
+    /// Returns the change in J due to the schedule; `None` if the condition or the response is not
+    /// assessed.
     fn change(&self) -> Option<CostChange> {
         let id = self.results.condition.id();
         let changes = self.results.analysis.assessment.get(&id)?;
         changes.as_ref().ok()?[self.pair]
     }
 
-    /// Returns the reason why the condition is not assessed.
+    /// Returns the reason why the condition is not assessed; empty if it is assessed.
     fn left_out(&self) -> String {
         let id = self.results.condition.id();
         match self.results.analysis.assessment.get(&id) {
@@ -188,7 +189,7 @@ impl ResponseRow<'_> {
         }
     }
 
-    /// Returns the error in the band that a single gain cannot remove.
+    /// Returns the deviation within the band that a single gain cannot remove.
     fn left_in_band(&self) -> Option<f64> {
         let uncertainty = self.results.analysis.uncertainty.as_ref()?;
         let id = self.results.condition.id();

@@ -6,7 +6,7 @@ use gdcm_method::schedule::{Schedule, ScheduleCaution, ScheduleKind, ScheduledQu
 
 use super::channel_names::{ChannelNames, without_empty};
 
-/// Returns gains and delays over airspeed.
+/// Returns the object with the scheduled gains and delays over airspeed.
 pub(super) fn schedule_json(names: &ChannelNames<'_>, schedule: &Schedule) -> Value {
     let airspeeds = &schedule.airspeeds;
     let gains = names.coefficients(&schedule.gains);
@@ -85,8 +85,8 @@ fn schedule_table(names: &ChannelNames<'_>, schedule: &Schedule) -> Value {
     Value::Array(rows)
 }
 
-/// Returns a caution about the schedule: its code and text, and if it concerns a single condition
-/// also the condition and values.
+/// Returns a caution about the schedule: its code and text; if it concerns a single condition, also
+/// the condition and the values.
 fn schedule_caution(names: &ChannelNames<'_>, caution: &ScheduleCaution) -> Value {
     let text = caution.words(&names.inputs, &names.outputs);
     match caution {

@@ -1,5 +1,5 @@
 //! The part of `corrections.json` about the gain fit and the delay fit: objective, proof of
-//! optimality, unmatched responses, and their explanation.
+//! optimality, and the unmatched responses with an explanation.
 
 use serde_json::{Value, json};
 
@@ -12,7 +12,7 @@ use gdcm_study::ConditionAnalysis;
 
 use super::channel_names::{ChannelNames, without_empty};
 
-/// Returns the gain fit.
+/// Returns the object with the results of the gain fit.
 pub(super) fn gain_solution(names: &ChannelNames<'_>, result: &ConditionAnalysis) -> Value {
     let gains = &result.gains;
     let mut unmatched = Vec::new();
@@ -37,14 +37,14 @@ pub(super) fn gain_solution(names: &ChannelNames<'_>, result: &ConditionAnalysis
     })
 }
 
-/// Returns the delay fit.
+/// Returns the object with the results of the delay fit.
 pub(super) fn delay_solution(names: &ChannelNames<'_>, result: &ConditionAnalysis) -> Value {
     let delays = &result.delays;
     let band_top_rad_s = names.analysis.study.settings.band.max();
     let mut unmatched = Vec::new();
     for entry in &delays.unmatched {
         let mut why = entry.words(band_top_rad_s, &names.inputs, &names.outputs);
-        // If a single response needs lead, the entry's words already say so.
+        // `is_lone_lead`: if a single response needs lead, its own description already states this.
         if !entry.why.is_lone_lead() {
             why = format!("{why} {}", entry.why.words(&names.inputs, &names.outputs));
         }
@@ -71,8 +71,8 @@ pub(super) fn delay_solution(names: &ChannelNames<'_>, result: &ConditionAnalysi
     without_empty(solution, &["kkt_residual_s"])
 }
 
-/// Explains why the gains or the delays are not matched, which changes would match them, and the
-/// cost of the constraints.
+/// Explains why gains or delays are not matched: the conflicts, the changes that would resolve
+/// them, and the cost of each constraint.
 fn explanation(names: &ChannelNames<'_>, problem: &Problem, solution: &Solution) -> Value {
     let mut conflicts = Vec::new();
     for conflict in &solution.conflicts {
@@ -101,7 +101,7 @@ fn explanation(names: &ChannelNames<'_>, problem: &Problem, solution: &Solution)
     without_empty(explanation, &["agreeing"])
 }
 
-/// Kind of a conflict, and the conflicting values: factors for gains, seconds for delays.
+/// Kind of a conflict, with the conflicting values: factors for gains, seconds for delays.
 #[derive(Default)]
 struct ConflictFigures {
     kind: &'static str,

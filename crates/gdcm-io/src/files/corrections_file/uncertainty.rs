@@ -15,9 +15,9 @@ use gdcm_words::uncertainty::{difference_text, second_variable_text};
 
 use super::channel_names::{ChannelNames, is_empty_value, rows_of, without_empty};
 
-/// Returns a confidence interval with its standard deviations, and the error in the band that a
-/// single gain cannot remove. For a gain, intervals are factors, and standard deviations refer to
-/// the natural logarithm; for a delay, all values are in seconds.
+/// Returns a confidence interval with its standard deviations, and the deviation within the band
+/// that a single gain cannot remove. For a gain, intervals are factors, and standard deviations
+/// refer to the natural logarithm; for a delay, all values are in seconds.
 fn bar_json(scalar: Scalar, bar: &Bar, level: f64, left_in_band: Option<f64>) -> Value {
     let interval = bar.interval(level).map(|ends| in_units(scalar, ends));
     let inner_interval = bar.inner_interval(level).map(|ends| in_units(scalar, ends));
@@ -53,7 +53,7 @@ fn in_units(scalar: Scalar, ends: [f64; 2]) -> [f64; 2] {
     }
 }
 
-/// Returns the confidence interval of a net gain.
+/// Returns the confidence interval of a net gain; `None` if it was not computed.
 pub(super) fn net_gain_bar(
     analysis: &Analysis,
     condition: ConditionId,
@@ -66,7 +66,7 @@ pub(super) fn net_gain_bar(
     Some(bar_json(scalar, bar, uncertainty.level, left_in_band))
 }
 
-/// Returns the confidence intervals of a condition other than those of net gains.
+/// Returns the confidence intervals of a condition, except the intervals of net gains.
 pub(super) fn bars(names: &ChannelNames<'_>, condition: ConditionId) -> Option<Value> {
     let uncertainty = names.analysis.uncertainty.as_ref()?;
     let bars = ConditionBars {
@@ -89,7 +89,7 @@ pub(super) fn bars(names: &ChannelNames<'_>, condition: ConditionId) -> Option<V
     Some(without_empty(members, &["D_band_s"]))
 }
 
-/// Confidence intervals of a condition.
+/// Error bars of a condition, from which its confidence intervals at a level are written.
 struct ConditionBars<'a> {
     names: &'a ChannelNames<'a>,
     bars: &'a ScalarTable<Option<Bar>>,
@@ -115,7 +115,8 @@ impl ConditionBars<'_> {
     }
 }
 
-/// Returns the conclusions from all confidence intervals; `None` without confidence intervals.
+/// Returns the conclusions from the confidence intervals of all conditions; `None` without
+/// confidence intervals.
 pub(super) fn uncertainty(names: &ChannelNames<'_>) -> Option<Value> {
     let uncertainty = names.analysis.uncertainty.as_ref()?;
     let level = uncertainty.level;
@@ -180,8 +181,8 @@ fn decomposition_json(split: &VarianceDecomposition, level: f64) -> Value {
     })
 }
 
-/// Returns the scheduled net gains and their confidence and scatter bands, as natural logarithms,
-/// for the responses that measure a model.
+/// Returns the scheduled net gains of the on-axis responses (all responses if none is on-axis),
+/// with their confidence and scatter bands, as natural logarithms.
 fn bands(names: &ChannelNames<'_>, uncertainty: &Uncertainty) -> Value {
     let (Ok(schedule), Some(bands)) = (&names.analysis.schedule, &uncertainty.bands) else {
         return json!([]);
@@ -216,7 +217,7 @@ fn band_json(schedule: &Schedule, bands: &ScheduleBands, pair: Pair) -> Option<V
     }))
 }
 
-/// Returns the test whether a scheduled net gain needs a second variable.
+/// Returns the result of the test for a second variable in a scheduled net gain.
 fn second_variable_json(test: &SecondVariableTest) -> Value {
     let effect = test.effect.as_ref().ok();
     json!({

@@ -1,5 +1,5 @@
-//! Conversion between dataset files and datasets: from JSON text to drafts, from checked datasets
-//! to text.
+//! Conversion between dataset files and datasets: JSON text becomes a draft, and a checked dataset
+//! becomes text.
 
 use nalgebra::DMatrix;
 
@@ -21,7 +21,7 @@ use super::text::{
 use crate::file_error::{ContentError, ContentFault};
 use crate::json_text::{Limited, Nested};
 
-/// Draft of a dataset, with cautions about its text.
+/// Draft of a dataset, with cautions about the text from which it was read.
 pub(super) struct CautionedDraft {
     pub(super) draft: DatasetDraft,
     /// Cautions about model keys that have no meaning in a dataset.
@@ -29,8 +29,8 @@ pub(super) struct CautionedDraft {
 }
 
 impl DatasetText {
-    /// Converts the text to a draft. Checks only entries spelled as words (units, roles, kinds);
-    /// numbers are checked with the draft.
+    /// Converts the file's entries to a draft. Only entries spelled as words (units, roles, kinds)
+    /// are checked here; numbers are checked with the draft.
     pub(super) fn into_draft(self) -> Result<CautionedDraft, ContentError> {
         let band = self.frequency_band;
         if band.unit != "rad/s" {
@@ -62,7 +62,7 @@ impl DatasetText {
         Ok(CautionedDraft { draft, cautions })
     }
 
-    /// Writes a dataset as text.
+    /// Converts a dataset to its form in the file.
     pub(super) fn from_dataset(dataset: &Dataset) -> Self {
         let mut on_axis = Vec::new();
         for pair in dataset.on_axis().marked() {
@@ -203,7 +203,8 @@ fn model_drafts(
 }
 
 impl RecordText {
-    /// Converts the record at this position (from 1) in the condition at this place.
+    /// Converts a record of the condition at `condition`; `position` is its place in the list of
+    /// records, counted from 1.
     pub(crate) fn into_record(
         self,
         condition: &Location,
@@ -241,7 +242,7 @@ impl RecordText {
         })
     }
 
-    /// Writes a record as text.
+    /// Converts a record to its form in the file.
     pub(crate) fn from_record(record: &ConditionRecord) -> Self {
         let record = record.clone();
         Self {
@@ -261,7 +262,7 @@ impl RecordText {
 }
 
 impl ModelText {
-    /// Returns the keys that are present but have no meaning in a bundle of a dataset.
+    /// Returns the keys that are present but have no meaning for models in a bundle of this kind.
     fn misplaced_keys(&self, kind: BundleKind) -> Vec<&'static str> {
         let is_physics = kind == BundleKind::Physics;
         let mut misplaced = Vec::new();
@@ -289,10 +290,10 @@ impl ModelText {
         misplaced
     }
 
-    /// Returns a physics model's origin.
+    /// Returns the origin of a physics model.
     ///
     /// # Errors
-    /// The role is missing, or neither nominal nor perturbed.
+    /// Fails if the role is missing, or is neither nominal nor perturbed.
     fn physics_origin(&self, place: &Location) -> Result<Origin, ContentError> {
         let Some(role) = &self.role else {
             let fault = ContentFault::MissingKey { key: "role".into() };
@@ -328,7 +329,7 @@ impl ModelText {
         }
     }
 
-    /// Converts the text to the draft of an identified model in a dataset or a study.
+    /// Converts the file's entry to the draft of an identified model in a dataset or a study.
     pub(crate) fn into_identified(self) -> ModelDraft {
         let origin = self.identified_origin();
         self.into_draft(origin)
@@ -355,12 +356,12 @@ impl ModelText {
         }
     }
 
-    /// Writes a model of a dataset as text.
+    /// Converts a model of a dataset to its form in the file.
     pub(crate) fn of_model(model: &Model) -> Self {
         Self::from_draft(ModelDraft::from_model(model))
     }
 
-    /// Writes a model draft as text.
+    /// Converts a model draft to its form in the file.
     pub(crate) fn from_draft(draft: ModelDraft) -> Self {
         let [a, b, c, d] = draft
             .matrices

@@ -26,14 +26,14 @@ pub(crate) use self::text::{LabelText, ModelText, RecordText};
 
 /// The example dataset: a synthetic UH-60A-class helicopter at eleven flight conditions.
 const EXAMPLE: &[u8] = include_bytes!("../../../../../assets/example-dataset.json.gz");
-/// Name under which the example is written.
+/// File name under which the example is written.
 const EXAMPLE_NAME: &str = "example-dataset.json";
 
-/// Dataset origin.
+/// Origin of a dataset: a file, or the example in the program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DatasetOrigin {
     File(PathBuf),
-    /// The example that is part of the program.
+    /// The example dataset that is part of the program.
     EmbeddedExample,
 }
 
@@ -47,7 +47,7 @@ impl fmt::Display for DatasetOrigin {
 }
 
 impl DatasetOrigin {
-    /// Returns the file; `None` for the embedded example.
+    /// Returns the path of the file; `None` for the embedded example.
     pub fn file(&self) -> Option<PathBuf> {
         match self {
             DatasetOrigin::File(path) => Some(path.clone()),
@@ -55,7 +55,7 @@ impl DatasetOrigin {
         }
     }
 
-    /// Returns the path; for the embedded example, the name used in error messages.
+    /// Returns the path of the file; for the embedded example, a name to be used in error messages.
     pub(crate) fn path(&self) -> PathBuf {
         match self {
             DatasetOrigin::File(path) => path.clone(),
@@ -64,7 +64,7 @@ impl DatasetOrigin {
     }
 }
 
-/// A dataset with cautions and the hash of its file.
+/// A dataset with the hash of its file, and cautions about the file.
 #[derive(Clone, Debug)]
 pub struct LoadedDataset {
     pub dataset: Arc<Dataset>,
@@ -76,7 +76,7 @@ pub struct LoadedDataset {
 }
 
 impl LoadedDataset {
-    /// Returns the dataset's file; `None` for the embedded example.
+    /// Returns the path of the dataset's file; `None` for the embedded example.
     pub fn path(&self) -> Option<&Path> {
         match &self.origin {
             DatasetOrigin::File(path) => Some(path),
@@ -84,7 +84,7 @@ impl LoadedDataset {
         }
     }
 
-    /// Returns the dataset's file name; "(embedded example)" without a file.
+    /// Returns the name of the dataset's file; "(embedded example)" if there is no file.
     pub fn file_name(&self) -> String {
         match self.path().and_then(Path::file_name) {
             Some(name) => sanitized(&name.to_string_lossy()),
@@ -93,12 +93,13 @@ impl LoadedDataset {
     }
 }
 
-/// Loads a dataset from a file, with or without gzip compression, completely or not at all.
+/// Loads a dataset from a file, which may be compressed with gzip. A file with any fault is
+/// rejected as a whole.
 pub fn load_dataset(path: &Path) -> Result<LoadedDataset, FileError> {
     load_dataset_within(path, &ReadingBudget::default())
 }
 
-/// Loads a dataset within a reading budget, which can also stop the reading.
+/// Loads a dataset within a reading budget, by which the caller can stop the reading.
 pub fn load_dataset_within(
     path: &Path,
     budget: &ReadingBudget<'_>,
@@ -110,10 +111,10 @@ pub fn load_dataset_within(
     )
 }
 
-/// Returns all faults in a dataset's file, each with its place; empty if it can be loaded.
+/// Returns all faults in a dataset file, each with its place; empty if the dataset can be loaded.
 ///
 /// # Errors
-/// A file whose text cannot be read at all.
+/// Fails if the structure of the text is so damaged that it cannot be read at all.
 pub fn dataset_faults(path: &Path) -> Result<Vec<FileError>, FileError> {
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget)?;
@@ -126,7 +127,10 @@ pub fn dataset_faults(path: &Path) -> Result<Vec<FileError>, FileError> {
         .collect())
 }
 
-/// Checks the structure of a dataset's text, which may be incomplete.
+/// Checks the structure of a dataset file's text; the text may be incomplete.
+///
+/// # Errors
+/// [`FileError::CutOff`] if the text ends early, otherwise the first structural error.
 pub(crate) fn check_dataset_text(
     text: &[u8],
     path: &Path,
@@ -135,7 +139,7 @@ pub(crate) fn check_dataset_text(
     FORMAT.decode::<DatasetText>(text, path, budget).map(drop)
 }
 
-/// Loads a dataset from bytes in memory; errors state `origin` as their source.
+/// Loads a dataset from bytes in memory; error messages name `origin` as the source.
 pub fn load_dataset_bytes(bytes: &[u8], origin: DatasetOrigin) -> Result<LoadedDataset, FileError> {
     let budget = ReadingBudget::default();
     dataset_from(
@@ -145,13 +149,13 @@ pub fn load_dataset_bytes(bytes: &[u8], origin: DatasetOrigin) -> Result<LoadedD
     )
 }
 
-/// Returns the example dataset that is part of the program.
+/// Loads the example dataset that is part of the program.
 pub fn embedded_example() -> Result<LoadedDataset, FileError> {
     load_dataset_bytes(EXAMPLE, DatasetOrigin::EmbeddedExample)
 }
 
-/// Writes the example dataset, uncompressed, into a directory (created if missing), and returns the
-/// file's path.
+/// Writes the example dataset, uncompressed, into a directory, which is created if missing; returns
+/// the path of the file.
 pub fn write_example(directory: &Path, existing: Existing) -> Result<PathBuf, FileError> {
     let source = Source::of(
         EXAMPLE,
@@ -186,8 +190,8 @@ pub fn add_dataset(
         .is_some_and(|extension| extension.eq_ignore_ascii_case("gz"));
     outputs.add(path, |file| {
         if packed {
-            // Buffered, because JSON is written in small pieces and the encoder compresses each
-            // piece separately.
+            // Buffered, because JSON is written in small pieces, each of which the encoder would
+            // compress separately.
             let mut pieces =
                 BufWriter::with_capacity(1 << 16, GzEncoder::new(file, Compression::default()));
             write_compact(&text, &mut pieces)?;

@@ -1,4 +1,4 @@
-//! Members of a dataset file, as JSON.
+//! JSON objects of a dataset file.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use gdcm_model::whole_number::{whole, whole_or_none};
 
 use crate::json_text::{Format, Limited, Nested, Numbers, list, list_while};
 
-/// Format and version.
+/// Name and version of the file format.
 pub(super) const FORMAT: Format = Format {
     name: "gdcm-dataset",
     version: 1,
@@ -39,7 +39,7 @@ pub(super) struct DatasetText {
     pub(super) conditions: Vec<ConditionText>,
 }
 
-/// Reads conditions, limited in their number and in the number of models.
+/// Reads the conditions; their number and the total number of models are limited.
 fn conditions<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<ConditionText>, D::Error> {
     let mut models = 0;
     list_while(
@@ -49,7 +49,7 @@ fn conditions<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Conditio
             models += condition.physics_models.len() + condition.identified_models.len();
             if models > MOST_MODELS_IN_ALL {
                 return Err(format!(
-                    "expected at most {MOST_MODELS_IN_ALL} models in all, found more"
+                    "expected at most {MOST_MODELS_IN_ALL} models in total, found more"
                 ));
             }
             Ok(())
@@ -102,7 +102,7 @@ pub(super) struct ConditionText {
     pub(super) records: Option<Limited<RecordText, MOST_RECORDS>>,
 }
 
-/// A flight record.
+/// A flight record of a condition.
 #[derive(Deserialize, Serialize)]
 pub(crate) struct RecordText {
     pub(super) name: String,
@@ -111,11 +111,11 @@ pub(crate) struct RecordText {
     pub(super) variable: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) sha256: Option<String>,
-    /// "other" if the key is absent.
+    /// "other" if the key is missing.
     pub(super) kind: Option<String>,
     #[serde(default)]
     pub(super) held_out: bool,
-    /// True if the key is absent.
+    /// True if the key is missing.
     pub(super) used: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) sample_time_s: Option<f64>,
@@ -132,7 +132,7 @@ pub(crate) struct RecordText {
 #[derive(Default, Deserialize, Serialize)]
 pub(crate) struct ModelText {
     pub(crate) name: String,
-    /// Physics models only.
+    /// Only for physics models.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) role: Option<String>,
     #[serde(
@@ -141,7 +141,7 @@ pub(crate) struct ModelText {
         skip_serializing_if = "Option::is_none"
     )]
     pub(crate) perturbation: Option<BTreeMap<String, f64>>,
-    /// Identified models only.
+    /// Only for identified models.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) method: Option<String>,
     #[serde(
@@ -150,7 +150,7 @@ pub(crate) struct ModelText {
         skip_serializing_if = "Option::is_none"
     )]
     pub(crate) order: Option<usize>,
-    /// Flight condition, only outside a dataset.
+    /// Identifier of the flight condition; only outside a dataset.
     #[serde(
         default,
         deserialize_with = "whole_or_none",
@@ -163,7 +163,7 @@ pub(crate) struct ModelText {
     pub(crate) altitude_ft: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) mass_kg: Option<f64>,
-    /// Channel names, only outside a dataset; empty texts if they are unknown.
+    /// Channel names; only outside a dataset. Unknown names are empty strings.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) inputs: Option<Limited<LabelText, MOST_CHANNELS>>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -172,7 +172,7 @@ pub(crate) struct ModelText {
     pub(crate) input_units: Option<Limited<String, MOST_CHANNELS>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) output_units: Option<Limited<String, MOST_CHANNELS>>,
-    /// State names, for display only.
+    /// State names; they are only displayed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) states: Option<Limited<String, MOST_STATES>>,
     #[serde(rename = "A", skip_serializing_if = "Option::is_none")]
@@ -196,7 +196,7 @@ pub(crate) struct ModelText {
     pub(crate) bands: Option<BandsText>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) source: Option<SourceText>,
-    /// Notes from reading a model outside a dataset.
+    /// Notes on how the model was read; only outside a dataset.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) notes: Option<Limited<String, MOST_PIECES>>,
     /// Whether the identification that produced the model recommends it.
@@ -217,7 +217,7 @@ pub(crate) enum LabelText {
 }
 
 impl LabelText {
-    /// Returns the name and the unit.
+    /// Returns the name, and the unit if it is given.
     pub(crate) fn into_parts(self) -> (String, Option<String>) {
         match self {
             Self::Name(name) => (name, None),
@@ -245,12 +245,13 @@ pub(crate) struct SourceText {
     /// Variables in the file that were not used.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) unused: Option<Limited<String, MOST_PIECES>>,
-    /// Sides ("inputs", "outputs") whose channels were assigned by position.
+    /// Channel lists (inputs, outputs) that were assigned to the channels of the dataset by
+    /// position instead of by name.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) by_position: Option<Limited<SideText, 2>>,
 }
 
-/// A list with all inputs or all outputs.
+/// The list of all inputs or the list of all outputs.
 #[derive(Clone, Copy, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum SideText {
@@ -276,13 +277,13 @@ pub(crate) struct ResponseText {
     pub(super) im: Nested<3>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) coherence: Option<Nested<3>>,
-    /// First and last trusted frequency of each response.
+    /// First and last trusted frequency \[rad/s\] of each response.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) valid_band_rad_s: Option<Nested<3>>,
     /// Number of independent averages in the estimate.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) averages: Option<f64>,
-    /// Window length.
+    /// Window length used for the estimate \[s\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) window_s: Option<f64>,
 }

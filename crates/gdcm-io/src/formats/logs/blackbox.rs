@@ -25,16 +25,16 @@ use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 const MARK: &[u8] = b"H Product:Blackbox";
-/// Longest plausible time step between frames \[µs\]; a longer step marks a damaged log.
+/// Maximum time step between main frames \[µs\]; a longer step marks damaged data.
 const LONGEST_STEP_US: i64 = 10_000_000;
-/// Minimum number of frames; a flight with fewer is ignored.
+/// Minimum number of frames in a flight; shorter flights are ignored.
 const FEWEST_FRAMES: usize = 50;
-/// 1.0 as an IEEE 754 bit pattern, in the notation of the header.
+/// The number 1.0 in the header, as an IEEE 754 bit pattern.
 const ONE: &str = "0x3f800000";
-/// Names of the controller terms; an axis index follows in brackets.
+/// Column names of the controller terms; an axis index follows in square brackets.
 const TERMS: [&str; 4] = ["axisP", "axisI", "axisD", "axisF"];
 
-/// Betaflight logs.
+/// Importer of blackbox logs.
 pub(crate) const BLACKBOX: Importer = Importer {
     name: "a blackbox log",
     endings: &["bbl", "bfl"],
@@ -73,19 +73,20 @@ fn read_blackbox(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Columns
     if flights.is_empty() {
         return Err(VariableFault::damaged(
             "",
-            "a blackbox without a flight of 50 frames",
+            "no flight with at least 50 frames",
             0,
         ));
     }
     if ignored > 0 {
         flights[0].notes.push(format!(
-            "{ignored} of {count} flights in the file have fewer than {FEWEST_FRAMES} frames: left out"
+            "{ignored} of {count} flights in the file are omitted: they have fewer than \
+            {FEWEST_FRAMES} frames"
         ));
     }
     Ok(flights)
 }
 
-/// Returns the offsets at which flights begin.
+/// Returns the offsets \[bytes\] at which flights begin.
 fn flight_offsets(bytes: &[u8]) -> Vec<usize> {
     let mut offsets = Vec::new();
     for at in 0..bytes.len().saturating_sub(MARK.len()) {
@@ -96,12 +97,12 @@ fn flight_offsets(bytes: &[u8]) -> Vec<usize> {
     offsets
 }
 
-/// Header lines before the frames.
+/// Contents of the header lines before the frames.
 #[derive(Default)]
 struct Heading {
-    /// Values by key.
+    /// Header values by key.
     lines: BTreeMap<String, String>,
-    /// Fields by frame letter.
+    /// Field descriptions by frame letter.
     frames: BTreeMap<u8, FrameFields>,
     numbers: HeaderNumbers,
     /// Header length \[bytes\].
@@ -116,7 +117,8 @@ impl Heading {
             let fields = heading.fields(char::from(kind));
             heading.frames.insert(kind, fields);
         }
-        // Predicted frames share names and signs with intra frames.
+        // The header gives names and signs only for intra frames; predicted frames have the same
+        // fields.
         let intra = heading.frames[&b'I'].clone();
         if let Some(predicted) = heading.frames.get_mut(&b'P') {
             predicted.names = intra.names;
@@ -144,12 +146,12 @@ impl Heading {
         }
     }
 
-    /// Returns the value of a key; empty if the key is missing.
+    /// Returns the header value of a key; empty if the key is missing.
     fn value(&self, key: &str) -> &str {
         self.lines.get(key).map_or("", String::as_str)
     }
 
-    /// Returns the first number in a list; 0 if it is missing.
+    /// Returns the first number in the header value of a key; 0 if there is none.
     fn number(&self, key: &str) -> i64 {
         let first = self.value(key).split(',').next().unwrap_or_default();
         first.parse().unwrap_or(0)
@@ -168,21 +170,23 @@ impl Heading {
         }
     }
 
-    /// Returns the cells in a line such as "Field I name".
+    /// Returns the cells of a header line such as "Field I name".
     fn field_cells(&self, kind: char, property: &str) -> impl Iterator<Item = &str> {
         self.value(&format!("Field {kind} {property}"))
             .split(',')
             .filter(|cell| !cell.is_empty())
     }
 
-    /// Returns the numbers in a line such as "Field I signed"; 255 for a cell that is not a number.
+    /// Returns the numbers in a header line such as "Field I signed"; a cell that is not a number
+    /// becomes 255.
     fn field_numbers(&self, kind: char, property: &str) -> Vec<u8> {
         self.field_cells(kind, property)
             .map(|cell| cell.parse().unwrap_or(u8::MAX))
             .collect()
     }
 
-    /// Returns the fields of the frames with a letter, if all of them can be decoded.
+    /// Returns the fields of the frames with the letter `kind`; `None` if a field cannot be
+    /// decoded.
     fn frame(&self, kind: u8) -> Option<&FrameFields> {
         let fields = self.frames.get(&kind)?;
         if fields.is_whole() {
@@ -192,7 +196,8 @@ impl Heading {
         }
     }
 
-    /// Parses the frame with a letter; returns nothing for an unknown letter or a damaged frame.
+    /// Parses a frame with the letter `kind`; returns `None` for an unknown letter, a damaged
+    /// frame, or a predicted frame without a predecessor.
     fn parse(&self, kind: u8, bytes: &mut PackedBytes<'_>, before: &Predecessors) -> Option<Frame> {
         if kind == b'E' {
             return event(bytes);
@@ -220,19 +225,19 @@ enum Frame {
     End,
 }
 
-/// Parses an event, whose type determines its length.
+/// Parses an event frame, whose length depends on the event type.
 fn event(bytes: &mut PackedBytes<'_>) -> Option<Frame> {
     match bytes.byte()? {
-        // Beep, disarming, inertial unit failure.
+        // Beep, disarming and inertial unit failure: one integer.
         0 | 15 | 40 => {
             bytes.unsigned()?;
         }
-        // Logging resumes; the flight mode changes.
+        // Resumed logging and change of flight mode: two integers.
         14 | 30 => {
             bytes.unsigned()?;
             bytes.unsigned()?;
         }
-        // In-flight adjustment: a four-byte number, or a packed number.
+        // In-flight adjustment: a float of four bytes or a packed integer.
         13 => {
             if bytes.byte()? & 0x80 == 0 {
                 bytes.signed()?;
@@ -255,25 +260,25 @@ fn event(bytes: &mut PackedBytes<'_>) -> Option<Frame> {
     Some(Frame::Other)
 }
 
-/// A flight and its frames.
+/// A flight with its decoded frames.
 struct Flight {
     heading: Heading,
     /// Index of the field "time".
     time: Option<usize>,
-    /// Values in the main frames, by field.
+    /// Values from the main frames, one list for each field.
     values: Vec<Vec<f64>>,
     modes: Vec<ModeSample>,
     damaged: usize,
 }
 
-/// Mode flags in a slow frame, with the time of the preceding main frame.
+/// Mode flags from a slow frame, with the time of the preceding main frame.
 struct ModeSample {
     time_us: f64,
     flags: f64,
 }
 
 impl Flight {
-    /// Reads a flight with its frames; returns nothing if there are too few.
+    /// Reads a flight with its frames; returns `None` if there are fewer than `FEWEST_FRAMES`.
     fn read(
         bytes: &[u8],
         name: &str,
@@ -293,7 +298,7 @@ impl Flight {
     /// Creates a flight without frames.
     ///
     /// # Errors
-    /// The data version or an encoding in the intra frames is not supported.
+    /// [`VariableFault`] if the data version or an encoding of the intra frames is not supported.
     fn begin(heading: Heading, name: &str) -> Result<Self, VariableFault> {
         let version = heading.value("Data version");
         match heading.frame(b'I') {
@@ -309,7 +314,8 @@ impl Flight {
                 Err(VariableFault::unsupported(
                     name,
                     format!(
-                        "a blackbox of data version \"{version}\", or with fields of a later version"
+                        "a blackbox log of data version \"{version}\", or with fields of a later \
+                        version"
                     ),
                     "save it as CSV: blackbox_decode \"{file}\"",
                 ))
@@ -330,7 +336,7 @@ impl Flight {
             budget.work(count as u64, name)?;
             let mut packed = PackedBytes::new(bytes, at + 1);
             let mut frame = self.heading.parse(bytes[at], &mut packed, &before);
-            // The next frame begins where this frame ends.
+            // A frame is damaged if no frame letter follows it.
             let next = bytes.get(packed.at);
             if next.is_some_and(|next| !b"IPSGHE".contains(next)) {
                 frame = None;
@@ -398,11 +404,11 @@ impl Flight {
         Ok(())
     }
 
-    /// Returns the columns, with a sum of the controller terms for each axis.
+    /// Returns the columns of the fields, and for each axis a column with the sum of the controller
+    /// terms.
     fn columns(self, name: String, budget: &ReadingBudget<'_>) -> Result<Columns, VariableFault> {
-        let mut notes = vec![
-            "a log of Betaflight; axisSum is the sum of the terms of the controller".to_owned(),
-        ];
+        let mut notes =
+            vec!["a Betaflight log; axisSum is the sum of the controller terms".to_owned()];
         let names = &self.heading.frames[&b'I'].names;
         let mut columns = Vec::new();
         for (field, values) in names.iter().zip(self.values) {
@@ -419,18 +425,18 @@ impl Flight {
             let sum = controller_sum(&columns, axis, &name, budget)?;
             columns.extend(sum);
         }
-        // With a scale of 1, rates are in deg/s.
+        // The documented unit of the rates, deg/s, requires a scale of 1.
         if self.heading.value("gyro_scale") == ONE {
             notes.extend(give_meanings(&mut columns, &BETAFLIGHT));
         } else {
             notes.push(
-                "gyro_scale is not 1: the unit of gyroADC is not known, no channels are proposed"
+                "gyro_scale is not 1: the unit of gyroADC is unknown, so no channels are proposed"
                     .to_owned(),
             );
         }
         if self.damaged > 0 {
             notes.push(format!(
-                "{} frames are damaged: left out up to the next intra frame",
+                "{} damaged frames: the frames up to the next intra frame are omitted",
                 self.damaged
             ));
         }
@@ -450,7 +456,7 @@ impl Flight {
     }
 }
 
-/// Adds up the controller terms of an axis, if there are any.
+/// Returns a column with the sum of the controller terms of an axis; `None` if there are none.
 fn controller_sum(
     columns: &[RecordColumn],
     axis: usize,
@@ -473,7 +479,8 @@ fn controller_sum(
     Ok(Some(RecordColumn::new(format!("axisSum[{axis}]"), sum)))
 }
 
-/// Returns the mode for `flightModeFlags`: bit 1 is angle, bit 2 is horizon, neither is acro.
+/// Returns the flight mode in `flightModeFlags`: angle if bit 1 (counted from 0) is set, else
+/// horizon if bit 2 is set, else acro.
 fn mode_name(flags: f64) -> &'static str {
     let flags = flags as u32;
     if flags & 2 != 0 {
@@ -489,7 +496,8 @@ fn mode_name(flags: f64) -> &'static str {
 mod tests {
     use super::*;
 
-    /// A flight of `frames` frames at intervals of one millisecond; every tenth is an intra frame.
+    /// Returns a flight of `frames` frames at intervals of one millisecond; every tenth is an intra
+    /// frame.
     fn flight(frames: u32) -> Vec<u8> {
         let mut bytes = b"H Product:Blackbox flight data recorder by Nicholas Sherlock\nH Data version:2\n\
             H Field I name:loopIteration,time,axisP[0],axisI[0],gyroADC[0]\nH Field I signed:0,0,1,1,1\n\
@@ -507,8 +515,8 @@ mod tests {
             bytes
         };
         let signed = |value: i32| packed((value << 1 ^ value >> 31).cast_unsigned());
-        // The roll rate is 0, 1, 2, …; the mean of the two preceding frames, which predicts it, is
-        // lower by 1 or 2.
+        // The roll rate is 0, 1, 2, …: it exceeds its prediction, the mean of the two preceding
+        // frames, by 1 or 2.
         for frame in 0..frames {
             if frame % 10 == 0 {
                 bytes.push(b'I');
@@ -531,7 +539,8 @@ mod tests {
                     frame as i32 - 2
                 };
                 bytes.push(b'P');
-                // After an intra frame the predicted time does not change.
+                // The time is extrapolated from the two preceding frames; after an intra frame, the
+                // prediction is the time of that frame.
                 bytes.extend([signed(if first { 1000 } else { 0 }), vec![0]].concat());
                 bytes.extend(signed(frame as i32 - (last + earlier) / 2));
             }

@@ -1,13 +1,13 @@
-//! Frame fields in a blackbox: encoding and prediction.
+//! Encoding and prediction of the fields in blackbox frames.
 //!
 //! Each field has a numbered encoding and a numbered predictor
-//! (<https://betaflight.com/docs/development/Blackbox-Internals>). The file holds the difference
-//! from the prediction.
+//! (<https://betaflight.com/docs/development/Blackbox-Internals>). The file holds the differences
+//! from the predictions.
 
 /// Maximum number of fields in a frame.
 const MOST_FIELDS: usize = 256;
 
-/// Fields in frames with the same letter.
+/// Descriptions of the fields in all frames with the same letter.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FrameFields {
     pub(super) names: Vec<String>,
@@ -24,19 +24,17 @@ pub(super) struct HeaderNumbers {
     pub(super) battery: i64,
 }
 
-/// The frames before a predicted frame.
+/// The two frames that precede a predicted frame.
 #[derive(Default)]
 pub(super) struct Predecessors {
-    /// The last frame.
     pub(super) last: Option<Vec<i64>>,
-    /// The frame before the last, unless the last is an intra frame.
+    /// The frame before the last; `None` if the last is an intra frame.
     pub(super) earlier: Option<Vec<i64>>,
 }
 
-/// Cursor over bytes with packed numbers.
+/// Cursor over bytes that hold packed integers.
 pub(super) struct PackedBytes<'b> {
     bytes: &'b [u8],
-    /// Offset of the next byte.
     pub(super) at: usize,
 }
 
@@ -51,8 +49,9 @@ impl<'b> PackedBytes<'b> {
         Some(byte)
     }
 
-    /// Reads a variable-length integer: seven bits a byte, lowest first; the eighth bit announces
-    /// another byte.
+    /// Reads a variable-length integer: seven bits per byte, lowest first; the eighth bit is set if
+    /// another byte follows. Returns `None` if the bytes end early or the integer exceeds five
+    /// bytes.
     pub(super) fn unsigned(&mut self) -> Option<u32> {
         let mut value = 0_u32;
         for shift in (0..32).step_by(7) {
@@ -76,7 +75,8 @@ impl<'b> PackedBytes<'b> {
         Some(-extended(self.unsigned()? & 0x3fff, 14))
     }
 
-    /// Reads three numbers with 2, 4 or 6 bits each, or with 1 to 4 bytes each.
+    /// Reads three signed integers of 2, 4 or 6 bits each, or of individual lengths from 1 to 4
+    /// bytes.
     fn three(&mut self) -> Option<[i32; 3]> {
         let lead = self.byte()?;
         Some(match lead >> 6 {
@@ -101,7 +101,8 @@ impl<'b> PackedBytes<'b> {
         })
     }
 
-    /// Reads four numbers with 0, 4, 8 or 16 bits each, in half-byte steps, highest first.
+    /// Reads four signed integers of 0, 4, 8 or 16 bits each, packed without gaps, the higher half
+    /// of each byte first.
     fn four(&mut self) -> Option<[i32; 4]> {
         let tags = self.byte()?;
         let mut half = None;
@@ -137,7 +138,8 @@ fn extended(bits: u32, count: u32) -> i32 {
 }
 
 impl FrameFields {
-    /// Whether there are fields, and each name has a sign, a predictor and a known encoding.
+    /// Returns whether the fields can be decoded: there are between 1 and `MOST_FIELDS` names, each
+    /// with a sign, a predictor and a supported encoding.
     pub(super) fn is_whole(&self) -> bool {
         let count = self.names.len();
         (1..=MOST_FIELDS).contains(&count)
@@ -147,7 +149,7 @@ impl FrameFields {
             && self.encodings.iter().all(|encoding| is_known(*encoding))
     }
 
-    /// Reads the stored differences of a frame; returns nothing if they are damaged.
+    /// Reads the stored differences of a frame; returns `None` if they are damaged.
     pub(super) fn differences(&self, bytes: &mut PackedBytes<'_>) -> Option<Vec<i64>> {
         let count = self.names.len();
         let mut values: Vec<i64> = Vec::with_capacity(count);
@@ -167,8 +169,8 @@ impl FrameFields {
         Some(values)
     }
 
-    /// Reads up to eight consecutive fields that share a byte, in which each bit marks a nonzero
-    /// field; a single field has no such byte.
+    /// Reads up to eight consecutive fields with encoding 6. They share a leading byte in which
+    /// each bit marks a nonzero field; a single field has no such byte.
     fn read_tagged(&self, bytes: &mut PackedBytes<'_>, values: &mut Vec<i64>) -> Option<()> {
         let mut count = 0;
         for encoding in self.encodings[values.len()..].iter().take(8) {
@@ -189,7 +191,7 @@ impl FrameFields {
         Some(())
     }
 
-    /// Computes the field values of a frame from its differences and the two preceding frames.
+    /// Computes the field values of a frame; `values` are its stored differences.
     pub(super) fn values(
         &self,
         mut values: Vec<i64>,
@@ -227,12 +229,12 @@ impl FrameFields {
     }
 }
 
-/// Whether an encoding is supported.
+/// Returns whether this program can decode an encoding.
 fn is_known(encoding: u8) -> bool {
     matches!(encoding, 0 | 1 | 3 | 6 | 7 | 8 | 9)
 }
 
-/// Returns the value of a field; `None` if there is no frame or no such field.
+/// Returns the value of a field; `None` if the frame or the field is missing.
 fn field_of(frame: &Option<Vec<i64>>, field: usize) -> Option<i64> {
     frame.as_ref()?.get(field).copied()
 }
@@ -269,7 +271,7 @@ mod tests {
             PackedBytes::new(&[0b1100_0001, 0x34, 0x12, 0xff, 0x05], 0).three(),
             Some([0x1234, -1, 5])
         );
-        // 4 bits, 8 bits, 0 bits, 16 bits: 1, -2, 0, 0x1234.
+        // Lengths 4, 8, 0 and 16 bits: the values 1, -2, 0 and 0x1234.
         assert_eq!(
             PackedBytes::new(&[0b1100_1001, 0x1f, 0xe1, 0x23, 0x40], 0).four(),
             Some([1, -2, 0, 0x1234])

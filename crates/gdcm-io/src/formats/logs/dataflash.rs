@@ -21,15 +21,15 @@ use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 const MARK: [u8; 2] = [0xa3, 0x95];
-/// Length of a message header, two mark bytes and the type \[bytes\].
+/// Length of a message header: two mark bytes and the type \[bytes\].
 const HEADER: usize = 3;
-/// Type and length \[bytes\] of the FMT messages, which describe other messages.
+/// Type and length \[bytes\] of the FMT messages, which describe the other messages.
 const FORMAT: u8 = 128;
 const FORMAT_LENGTH: usize = 89;
 
-/// ArduPilot logs in binary form.
+/// Importer of ArduPilot logs in binary form.
 pub(crate) const DATAFLASH: Importer = Importer {
-    name: "a DataFlash log of ArduPilot",
+    name: "an ArduPilot DataFlash log",
     endings: &["bin"],
     recognises: |bytes, _| bytes.starts_with(&[MARK[0], MARK[1], FORMAT]),
     read: |bytes, path, budget| {
@@ -39,7 +39,7 @@ pub(crate) const DATAFLASH: Importer = Importer {
     },
 };
 
-/// Reads a log: first the descriptions of all messages, then the samples.
+/// Reads a log in two passes: first all message descriptions, then the samples.
 fn read_dataflash(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, VariableFault> {
     let mut descriptions = Descriptions::new();
     let mut messages = Messages::new(bytes, budget);
@@ -65,14 +65,14 @@ fn read_dataflash(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, V
     }
 
     let mut notes =
-        vec!["a log of ArduPilot; time in seconds since the autopilot was started".to_owned()];
+        vec!["an ArduPilot log; time in seconds since the start of the autopilot".to_owned()];
     if skipped > 0 {
-        notes.push(format!("{skipped} bytes between messages: left out"));
+        notes.push(format!("{skipped} bytes between messages are skipped"));
     }
     topics.columns(notes)
 }
 
-/// Length by message type, with the header \[bytes\]; 0 if it is unknown.
+/// Message lengths including the header \[bytes\], by message type; 0 if unknown.
 type Lengths = [usize; 256];
 
 #[derive(Clone, Copy)]
@@ -82,7 +82,7 @@ struct Message<'b> {
 }
 
 impl Message<'_> {
-    /// Returns the value of a numeric field; `None` for other fields.
+    /// Returns the value of the field at `index`; `None` if the field is not numeric.
     fn number(self, layout: &MessageLayout, index: usize) -> Option<f64> {
         let field = layout.fields.get(index)?;
         match field.kind {
@@ -105,12 +105,12 @@ impl Message<'_> {
     }
 }
 
-/// The messages in a log, one after another.
+/// Iterator over the messages in a log.
 struct Messages<'b, 'm> {
     bytes: &'b [u8],
     budget: &'m ReadingBudget<'m>,
     at: usize,
-    /// Number of bytes outside messages.
+    /// Number of skipped bytes that belong to no message.
     skipped: usize,
 }
 
@@ -124,7 +124,8 @@ impl<'b, 'm> Messages<'b, 'm> {
         }
     }
 
-    /// Returns the next message of a type whose length is in `lengths`; skips any other bytes.
+    /// Returns the next message whose type has a length in `lengths`; counts all other bytes as
+    /// skipped.
     fn next(&mut self, lengths: &Lengths) -> Result<Option<Message<'b>>, VariableFault> {
         while let Some([first, second, kind]) = array::<HEADER>(self.bytes, self.at) {
             self.budget.work(1, "")?;
@@ -146,7 +147,7 @@ impl<'b, 'm> Messages<'b, 'm> {
     }
 }
 
-/// Message descriptions that have been read.
+/// Message descriptions read so far.
 struct Descriptions {
     layouts: Layouts,
     lengths: Lengths,
@@ -162,7 +163,7 @@ impl Descriptions {
         }
     }
 
-    /// Stores the content of a message that describes others; ignores any other message.
+    /// Stores the content of a message that describes other messages; ignores any other message.
     fn take(&mut self, message: Message<'_>) {
         if message.kind == FORMAT {
             self.take_format(message.content);
@@ -215,7 +216,7 @@ impl Descriptions {
         };
         let ends = layout.fields.iter().map(|field| field.end());
         let needed = ends.max().unwrap_or(0);
-        // The length of FMT itself is fixed.
+        // A description of FMT is ignored: its length is fixed.
         if kind != FORMAT && usize::from(length) >= needed + HEADER {
             self.lengths[usize::from(kind)] = usize::from(length);
             self.layouts.by_type.insert(kind, layout);
@@ -227,7 +228,7 @@ fn text_between(content: &[u8], from: usize, to: usize) -> String {
     printable_text(content.get(from..to).unwrap_or_default())
 }
 
-/// Returns printable ASCII text up to the first other byte.
+/// Returns the printable ASCII characters up to the first other byte.
 fn printable_text(bytes: &[u8]) -> String {
     let end = bytes
         .iter()
@@ -263,7 +264,7 @@ pub(super) mod tests {
         )
     }
 
-    /// A log of `samples` rates and two instances of an inertial unit.
+    /// Returns a log with `samples` samples of the rates and of two instances of an inertial unit.
     pub(in crate::formats::logs) fn log(samples: u64) -> Vec<u8> {
         let mut bytes = format(
             FORMAT,

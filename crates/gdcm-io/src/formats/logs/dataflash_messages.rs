@@ -1,4 +1,4 @@
-//! Messages in binary and text DataFlash logs: their layouts, and their samples by topic.
+//! Messages in binary and text DataFlash logs: layouts, and samples grouped by topic.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -10,19 +10,19 @@ use crate::formats::recorded_columns::Columns;
 use crate::formats::strides::{NumberClass, StoredNumber};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Messages that describe the log and hold no samples.
+/// Names of messages that describe the log and hold no samples.
 const DESCRIPTIONS: [&str; 5] = ["FMT", "FMTU", "UNIT", "MULT", "PARM"];
-/// Unit letter of the field that holds the message instance.
+/// Unit letter of the field that identifies the instance of a sensor.
 const INSTANCE: char = '#';
 
-/// Kind of a message field, given by its letter.
+/// Data type of a message field, given by a letter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum FieldKind {
     Number {
         stored: StoredNumber,
         factor: f64,
     },
-    /// Bytes that are not a number, with their length.
+    /// Field that is not a number, with its length \[bytes\].
     Other(usize),
 }
 
@@ -57,7 +57,7 @@ impl FieldKind {
         })
     }
 
-    /// Length \[bytes\].
+    /// Length of the field \[bytes\].
     pub(super) fn size(self) -> usize {
         match self {
             Self::Number { stored, .. } => stored.size(),
@@ -70,31 +70,31 @@ impl FieldKind {
 pub(super) struct MessageField {
     pub(super) name: String,
     pub(super) kind: FieldKind,
-    /// Offset in the message \[bytes\].
+    /// Offset in the message content \[bytes\].
     pub(super) offset: usize,
 }
 
 impl MessageField {
-    /// Returns the offset after the field \[bytes\].
+    /// Returns the offset of the byte after the field \[bytes\].
     pub(super) fn end(&self) -> usize {
         self.offset + self.kind.size()
     }
 }
 
-/// Layout of the messages with the same type.
+/// Layout of all messages of one type.
 #[derive(Clone, Debug)]
 pub(super) struct MessageLayout {
     pub(super) name: String,
     pub(super) fields: Vec<MessageField>,
-    /// Unit letter by field.
+    /// Unit letters by field.
     units: Vec<char>,
-    /// Multiplier letter by field.
+    /// Multiplier letters by field.
     multipliers: Vec<char>,
 }
 
 impl MessageLayout {
-    /// Builds a layout from its letters and names; returns nothing for an unknown letter or too
-    /// many names.
+    /// Builds a layout from format letters and comma-separated field names; returns `None` for an
+    /// unknown letter, an empty message name, or more names than letters.
     pub(super) fn parse(name: &str, letters: &str, names: &str) -> Option<Self> {
         let mut offset = 0;
         let mut fields = Vec::new();
@@ -127,7 +127,7 @@ impl MessageLayout {
     }
 }
 
-/// Layouts in a log by type, with the meanings of unit and multiplier letters.
+/// Message layouts by type, with the meanings of the unit and multiplier letters.
 #[derive(Default)]
 pub(super) struct Layouts {
     pub(super) by_type: BTreeMap<u8, MessageLayout>,
@@ -144,7 +144,7 @@ impl Layouts {
         }
     }
 
-    /// Returns the unit of a field, in the spelling of this program.
+    /// Returns the unit of a field as this program writes it; `None` if the field has no unit.
     fn unit(&self, layout: &MessageLayout, field: usize) -> Option<String> {
         let unit = self.units.get(layout.units.get(field)?)?;
         match unit.as_str() {
@@ -165,24 +165,24 @@ impl Layouts {
     }
 }
 
-/// Fields of a message that are used.
+/// Message fields from which samples are read.
 pub(super) struct SampleFields<'l> {
     pub(super) layout: &'l MessageLayout,
     stamp: Stamp,
-    /// Index of the field with the instance.
+    /// Index of the field that identifies the instance.
     instance: Option<usize>,
     numbers: Vec<SampleNumber>,
 }
 
-/// Time stamp field.
+/// Time stamp field of a message.
 #[derive(Clone, Copy)]
 struct Stamp {
     field: usize,
-    /// Factor to seconds.
+    /// Unit of the time stamp \[s\].
     unit_s: f64,
 }
 
-/// A numeric field of a message.
+/// Numeric field of a message.
 struct SampleNumber {
     field: usize,
     multiplier: f64,
@@ -190,8 +190,9 @@ struct SampleNumber {
 }
 
 impl<'l> SampleFields<'l> {
-    /// Finds the time stamp, the instance and the numeric fields of a layout; returns nothing
-    /// without a stamp or numeric fields.
+    /// Finds the time stamp, the instance and the numeric fields of a layout; returns `None` for a
+    /// layout without a time stamp or without numeric fields, and for messages that describe the
+    /// log.
     pub(super) fn find(layout: &'l MessageLayout, layouts: &Layouts) -> Option<Self> {
         if DESCRIPTIONS.contains(&layout.name.as_str()) {
             return None;
@@ -219,7 +220,8 @@ impl<'l> SampleFields<'l> {
             if index == stamp.field || Some(index) == instance {
                 continue;
             }
-            // Format letters for hundredths include the factor that the multiplier repeats.
+            // The format letters for hundredths already include the factor, which the multiplier
+            // repeats.
             let multiplier = if factor == 1.0 {
                 layouts.multiplier(layout, index)
             } else {
@@ -243,14 +245,14 @@ impl<'l> SampleFields<'l> {
     }
 }
 
-/// Topics during reading, by message and instance.
+/// Samples read so far, by message name and instance.
 #[derive(Default)]
 pub(super) struct Topics {
     by_name: BTreeMap<(String, u64), TopicSamples>,
 }
 
 impl Topics {
-    /// Adds the sample in a message; `value` returns its field at an index.
+    /// Adds a sample from a message; `value` returns the message field at an index.
     pub(super) fn take(
         &mut self,
         fields: &SampleFields<'_>,
@@ -282,7 +284,8 @@ impl Topics {
         topic.push(time * fields.stamp.unit_s, values, budget)
     }
 
-    /// Returns the columns with their documented meanings and the flight modes over time.
+    /// Returns the columns, with their documented channels and units, and the flight modes over
+    /// time.
     pub(super) fn columns(self, notes: Vec<String>) -> Result<Columns, VariableFault> {
         let mut modes = Vec::new();
         if let Some(armed) = self.states("ARM", "ArmState") {
@@ -314,7 +317,7 @@ impl Topics {
         if columns.columns.is_empty() {
             return Err(VariableFault::damaged(
                 "",
-                "a log without a message that has stamps and numbers",
+                "a log without a message that has time stamps and numbers",
                 0,
             ));
         }
@@ -326,7 +329,7 @@ impl Topics {
         Ok(columns)
     }
 
-    /// Returns a field over time, in the first instance of a message.
+    /// Returns a field over time, from instance 0 of a message.
     fn states(&self, name: &str, field: &str) -> Option<States<'_>> {
         let topic = self.by_name.get(&(name.to_owned(), 0))?;
         Some(States {
@@ -336,7 +339,7 @@ impl Topics {
     }
 }
 
-/// A state over time.
+/// Values of a field over time.
 struct States<'t> {
     time_s: &'t [f64],
     field: &'t TopicField,
@@ -348,7 +351,7 @@ impl States<'_> {
     }
 }
 
-/// Creates a topic without samples for a message and its instance.
+/// Creates a topic without samples for an instance of a message.
 fn new_topic(fields: &SampleFields<'_>, instance: u64) -> TopicSamples {
     let name = &fields.layout.name;
     let name = if instance == 0 {

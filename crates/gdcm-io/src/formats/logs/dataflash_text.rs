@@ -1,6 +1,7 @@
-//! DataFlash logs from ArduPilot as text: a line for each message, `NAME, value, value`.
+//! DataFlash logs of ArduPilot as text: a line `NAME, value, value` for each message.
 //!
-//! FMT, FMTU, UNIT and MULT lines describe the messages. The values include the multipliers.
+//! FMT, FMTU, UNIT and MULT lines describe the messages. The values already include the
+//! multipliers.
 
 use std::collections::BTreeMap;
 
@@ -10,12 +11,12 @@ use crate::formats::recorded_columns::Columns;
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// First characters in a log, without blanks.
+/// First characters of a log after removal of blanks.
 const BEGINNING: &[u8] = b"FMT,128,89,FMT,";
 
-/// ArduPilot logs in text form.
+/// Importer of ArduPilot logs in text form.
 pub(crate) const DATAFLASH_TEXT: Importer = Importer {
-    name: "a DataFlash log of ArduPilot as text",
+    name: "an ArduPilot DataFlash log as text",
     endings: &["log"],
     recognises: |bytes, _| {
         let start: Vec<u8> = bytes
@@ -54,11 +55,11 @@ fn read_text(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, Variab
         topics.take(fields, |index| cells.get(index)?.parse().ok(), budget)?;
     }
     topics.columns(vec![
-        "a log of ArduPilot as text; time in seconds since the autopilot was started".to_owned(),
+        "an ArduPilot log as text; time in seconds since the start of the autopilot".to_owned(),
     ])
 }
 
-/// Reads the layouts from the lines that describe messages.
+/// Reads the message layouts from the lines that describe messages.
 fn read_layouts(text: &str) -> Layouts {
     let mut layouts = Layouts::default();
     for line in text.lines() {
@@ -89,14 +90,14 @@ fn read_layouts(text: &str) -> Layouts {
                     layouts.units.insert(letter, (*label).to_owned());
                 }
             }
-            // Values in text logs include the multipliers: MULT is not needed.
+            // MULT is not needed: values in text logs already include the multipliers.
             _ => {}
         }
     }
     layouts
 }
 
-/// Parses a unit letter: a character code, or the letter itself.
+/// Parses a unit letter, written as a character code or as the letter itself.
 fn letter_from(cell: &str) -> Option<char> {
     match cell.parse::<u8>() {
         Ok(code) => Some(char::from(code)),

@@ -1,12 +1,12 @@
-//! Channels and units for logged columns, as each system documents them.
+//! Channels and units of logged columns, according to the documentation of each logging system.
 
 use gdcm_sysid::records::RecordColumn;
 
-/// A documented column.
+/// A column whose channel and unit are documented.
 struct DocumentedColumn {
     name: &'static str,
     channel: &'static str,
-    /// Empty if the documentation gives none.
+    /// Unit; empty if the documentation gives none.
     unit: &'static str,
 }
 
@@ -22,11 +22,11 @@ const fn documented(
     }
 }
 
-/// Documented columns in the logs of a system. A channel is read from the first of its columns in
-/// this list that is present and varies.
+/// Documented columns in the logs of a system. If several columns measure a channel, the first in
+/// this list that is present and varies is used.
 pub(super) struct Meanings {
     columns: &'static [DocumentedColumn],
-    /// Remark on the sign conventions.
+    /// Note for the user about sign conventions.
     signs: &'static str,
 }
 
@@ -56,8 +56,8 @@ pub(super) const PX4: Meanings = Meanings {
         documented("sensor_combined.accelerometer_m_s2[1]", "NY", "m/s^2"),
         documented("sensor_combined.accelerometer_m_s2[2]", "NZ", "m/s^2"),
     ],
-    signs: "signs are PX4's: body axes forward, right, down, so that thrust and acceleration along z are negative up (give COL=-COLUMN \
-            to reverse one)",
+    signs: "signs follow PX4's convention: body axes forward, right and down, so that thrust and \
+        acceleration along z are negative upwards (give COL=-COLUMN to reverse a sign)",
 };
 
 /// ArduPilot: `SIDD` from the system identification mode, `RATE`, `IMU`
@@ -88,12 +88,12 @@ pub(super) const ARDUPILOT: Meanings = Meanings {
         documented("ATT.Roll", "PHI", "deg"),
         documented("ATT.Pitch", "THETA", "deg"),
     ],
-    signs: "signs are ArduPilot's: body axes forward, right, down, so that the acceleration along z is negative up (give NZ=-COLUMN \
-            to reverse one)",
+    signs: "signs follow ArduPilot's convention: body axes forward, right and down, so that the \
+        acceleration along z is negative upwards (give NZ=-COLUMN to reverse a sign)",
 };
 
-/// Betaflight and relatives: field names of the blackbox; `axisSum` is the sum of the controller's
-/// terms, the input to the mixer (<https://betaflight.com/docs/development/Blackbox>).
+/// Betaflight and relatives: field names of the blackbox; `axisSum` is the sum of the controller
+/// terms, which is the input to the mixer (<https://betaflight.com/docs/development/Blackbox>).
 pub(super) const BETAFLIGHT: Meanings = Meanings {
     columns: &[
         documented("axisSum[0]", "LAT", ""),
@@ -104,10 +104,12 @@ pub(super) const BETAFLIGHT: Meanings = Meanings {
         documented("gyroADC[1]", "Q", "deg/s"),
         documented("gyroADC[2]", "R", "deg/s"),
     ],
-    signs: "signs are the flight controller's: check the sign of one channel before using signs of derivatives",
+    signs: "signs follow the flight controller's convention: check the sign of one channel before \
+        using signs of derivatives",
 };
 
-/// Assigns the documented channels and units to columns; returns a note with the assignments.
+/// Assigns the documented channels and units to columns. Returns a note that lists the assigned
+/// channels; `None` if there are none.
 pub(super) fn give_meanings(columns: &mut [RecordColumn], meanings: &Meanings) -> Option<String> {
     let mut channels: Vec<&str> = Vec::new();
     let mut assignments: Vec<String> = Vec::new();
@@ -133,7 +135,7 @@ pub(super) fn give_meanings(columns: &mut [RecordColumn], meanings: &Meanings) -
         return None;
     }
     Some(format!(
-        "by the system's documentation: {}; {}",
+        "according to the documentation of the logging system: {}; {}",
         assignments.join(", "),
         meanings.signs
     ))
@@ -168,7 +170,7 @@ mod tests {
             "the unit in the file is kept"
         );
         assert!(
-            words.starts_with("by the system's documentation: P = RATE.R, Q = RATE.P; signs"),
+            words.starts_with("according to the documentation of the logging system: P = RATE.R, Q = RATE.P; signs"),
             "{words}"
         );
     }

@@ -1,4 +1,4 @@
-//! Aircraft logs: topics, each with its own clock.
+//! Aircraft logs, which consist of topics with a time axis each.
 //!
 //! ```text
 //! bytes -> messages -> topics: stamps, and a column for each field  (ulog, dataflash, blackbox)
@@ -21,7 +21,7 @@ pub(crate) use dataflash::DATAFLASH;
 pub(crate) use dataflash_text::DATAFLASH_TEXT;
 pub(crate) use ulog::ULOG;
 
-/// Returns `N` bytes from an offset on, or nothing if too few are left.
+/// Returns the `N` bytes from `offset` on; `None` if fewer are left.
 fn array<const N: usize>(bytes: &[u8], offset: usize) -> Option<[u8; N]> {
     bytes.get(offset..offset.checked_add(N)?)?.try_into().ok()
 }

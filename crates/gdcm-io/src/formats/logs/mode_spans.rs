@@ -1,13 +1,14 @@
-//! Modes of a logging system over time.
+//! Time spans of the flight modes in a log.
 
 use gdcm_sysid::records::ModeSpan;
 
-/// Maximum number of spans kept for a log.
+/// Maximum number of spans per log; later spans are ignored.
 const MOST_SPANS: usize = 1000;
 /// Maximum number of spans listed in a note.
 const SHOWN: usize = 8;
 
-/// Returns the time spans in which a state has a constant, named value.
+/// Returns the time spans during which `values` is constant; `name` returns the name of a value, or
+/// `None` if the value needs no span.
 pub(super) fn mode_spans(
     time_s: &[f64],
     values: impl IntoIterator<Item = f64>,
@@ -16,7 +17,7 @@ pub(super) fn mode_spans(
     let mut spans: Vec<ModeSpan> = Vec::new();
     let mut last: Option<f64> = None;
     for (&time, value) in time_s.iter().zip(values) {
-        // A state lasts until the time of the next sample, whether or not that sample repeats it.
+        // The preceding value lasts until this sample, even if the value changes here.
         if let Some(open) = spans.last_mut()
             && last.is_some_and(|last| name(last).is_some())
         {
@@ -37,7 +38,7 @@ pub(super) fn mode_spans(
     spans
 }
 
-/// Describes spans: "armed 3.2 to 88.1 s".
+/// Describes the spans: "armed 3.2 to 88.1 s"; `None` if there are none.
 pub(super) fn modes_note(spans: &[ModeSpan]) -> Option<String> {
     if spans.is_empty() {
         return None;

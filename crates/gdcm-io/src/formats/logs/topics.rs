@@ -1,4 +1,4 @@
-//! Topics in a log, each with its own clock, during reading.
+//! Topics of a log while it is read; each topic has its own time stamps.
 
 use std::sync::Arc;
 
@@ -7,17 +7,17 @@ use gdcm_sysid::records::record_table::TopicClock;
 
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Minimum number of samples; a topic with fewer is ignored.
+/// Minimum number of samples in a topic; shorter topics are ignored.
 const FEWEST_SAMPLES: usize = 3;
 
-/// A topic with its samples.
+/// Topic with the samples read so far.
 pub(super) struct TopicSamples {
     pub(super) name: String,
     pub(super) fields: Vec<TopicField>,
     pub(super) time_s: Vec<f64>,
 }
 
-/// A topic field with its samples.
+/// Field of a topic with the samples read so far.
 pub(super) struct TopicField {
     pub(super) name: String,
     pub(super) unit: Option<String>,
@@ -34,12 +34,12 @@ impl TopicSamples {
         }
     }
 
-    /// Returns the field with a name.
+    /// Returns the field named `name`.
     pub(super) fn field(&self, name: &str) -> Option<&TopicField> {
         self.fields.iter().find(|field| field.name == name)
     }
 
-    /// Appends a sample: a value for each field, in order.
+    /// Appends a sample: the time stamp and a value for each field, in the order of the fields.
     pub(super) fn push(
         &mut self,
         time_s: f64,
@@ -54,7 +54,8 @@ impl TopicSamples {
         Ok(())
     }
 
-    /// Returns the columns; none if there are too few samples.
+    /// Converts the fields to columns; returns none if there are fewer than `FEWEST_SAMPLES`
+    /// samples.
     pub(super) fn columns(self) -> Vec<RecordColumn> {
         if self.time_s.len() < FEWEST_SAMPLES {
             return Vec::new();

@@ -29,14 +29,14 @@ const MAGIC: &[u8] = b"ULog\x01\x12\x35";
 const HEADER: usize = 16;
 /// Length of a message header \[bytes\].
 const MESSAGE_HEADER: usize = 3;
-/// Flag of appended data; a log with any other incompatible flag is rejected.
+/// Incompatibility flag for appended data, the only supported one.
 const APPENDED: u8 = 1;
 /// `ARMING_STATE_ARMED` in `VehicleStatus.msg`, PX4 1.14 to 1.16.
 const ARMED: f64 = 2.0;
 
-/// PX4 logs.
+/// Importer of PX4 logs.
 pub(crate) const ULOG: Importer = Importer {
-    name: "a ULog of PX4",
+    name: "a PX4 ULog",
     endings: &["ulg", "ulog"],
     recognises: |bytes, _| bytes.starts_with(MAGIC),
     read: |bytes, path, budget| {
@@ -46,24 +46,24 @@ pub(crate) const ULOG: Importer = Importer {
     },
 };
 
-/// A subscribed topic and the field positions in its messages.
+/// Topic assigned to a message id, and the positions of its fields in the messages.
 struct Subscription {
     samples: TopicSamples,
     stamp: Place,
-    /// Position of each field.
+    /// Positions of the fields other than the time stamp.
     places: Vec<Place>,
-    /// Minimum data length of a message \[bytes\].
+    /// Minimum length of the data in a message \[bytes\].
     least: usize,
 }
 
-/// Content of the messages read so far.
+/// Contents of the messages read so far.
 #[derive(Default)]
 struct Messages<'b> {
     formats: Formats<'b>,
     subscriptions: BTreeMap<u16, Subscription>,
     dropouts: usize,
     lost_ms: u64,
-    /// Number of data messages that have no topic or are too short.
+    /// Number of data messages without a topic, or too short for it.
     unread: usize,
 }
 
@@ -79,7 +79,8 @@ fn read_ulog(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, Variab
         budget.work(1, "")?;
         let from = at + MESSAGE_HEADER;
         let to = from + usize::from(u16::from_le_bytes([low, high]));
-        // A message cut off by a crash ends where data were appended.
+        // A message that reaches into appended data was cut off by a crash: continue with the
+        // appended data.
         let next_part = appended.iter().copied().filter(|offset| *offset > at).min();
         if let Some(next_part) = next_part
             && to > next_part
@@ -101,17 +102,17 @@ fn read_ulog(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, Variab
     messages.columns(is_cut)
 }
 
-/// Reads the offsets of appended data \[bytes\] from the flags.
+/// Reads the offsets of appended data \[bytes\] from the content of the flags message.
 ///
 /// # Errors
-/// A flag of a later version is set.
+/// [`VariableFault`] if an unknown incompatibility flag is set.
 fn appended_offsets(flags: &[u8]) -> Result<Vec<usize>, VariableFault> {
     for (index, flag) in flags.get(8..16).unwrap_or_default().iter().enumerate() {
         let known = if index == 0 { APPENDED } else { 0 };
         if *flag & !known != 0 {
             return Err(VariableFault::unsupported(
                 "",
-                "a ULog with parts of a later version",
+                "a ULog of a later version",
                 "save its topics as CSV: ulog2csv \"{file}\"",
             ));
         }
@@ -148,7 +149,7 @@ impl<'b> Messages<'b> {
         Ok(())
     }
 
-    /// Stores the layout of a topic; later layouts of the same topic are ignored.
+    /// Stores the layout of a topic; ignores a second layout with the same name.
     fn take_format(
         &mut self,
         content: &'b [u8],
@@ -184,7 +185,7 @@ impl<'b> Messages<'b> {
         Ok(())
     }
 
-    /// Registers a topic and its instance under a message id; skips a layout that is damaged or
+    /// Assigns a topic and its instance to a message id; ignores a topic whose layout is damaged or
     /// lacks a time stamp.
     fn subscribe(
         &mut self,
@@ -227,7 +228,8 @@ impl<'b> Messages<'b> {
         Ok(())
     }
 
-    /// Returns the columns with their documented meanings, the flight modes, and notes.
+    /// Returns the columns, with their documented channels and units, the flight modes, and notes.
+    /// `is_cut`: the log was truncated.
     fn columns(self, is_cut: bool) -> Result<Columns, VariableFault> {
         let topics: Vec<TopicSamples> = self
             .subscriptions
@@ -243,23 +245,25 @@ impl<'b> Messages<'b> {
             return Err(VariableFault::cut_off("", HEADER));
         }
         let notes = &mut columns.notes;
-        notes.push("a log of PX4; time in seconds since the autopilot was started".to_owned());
+        notes.push("a PX4 log; time in seconds since the start of the autopilot".to_owned());
         notes.extend(give_meanings(&mut columns.columns, &PX4));
         if self.dropouts > 0 {
             let lost_s = self.lost_ms as f64 * 1e-3;
             notes.push(format!(
-                "{} dropouts of the logger, {lost_s:.2} s together: gaps",
+                "{} dropouts of the logger, {lost_s:.2} s in total, leave gaps",
                 self.dropouts
             ));
         }
         if self.unread > 0 {
             notes.push(format!(
-                "{} messages without a topic, or too short: left out",
+                "{} messages are omitted: they have no topic or are too short",
                 self.unread
             ));
         }
         if is_cut {
-            notes.push("the file is cut off: read up to its end".to_owned());
+            notes.push(
+                "the file is truncated: it was read up to the last complete message".to_owned(),
+            );
         }
         notes.extend(modes_note(&modes));
         columns.modes = modes;
@@ -267,7 +271,8 @@ impl<'b> Messages<'b> {
     }
 }
 
-/// Finds the armed spans and the flight modes in `vehicle_status`.
+/// Returns the spans in which the vehicle was armed, and those of the flight modes, from
+/// `vehicle_status`.
 fn flight_modes(topics: &[TopicSamples]) -> Vec<ModeSpan> {
     let Some(status) = topics.iter().find(|topic| topic.name == "vehicle_status") else {
         return Vec::new();
@@ -318,7 +323,7 @@ const NAVIGATION: [(u8, &str); 13] = [
 mod tests {
     use super::*;
 
-    /// A message of a ULog.
+    /// Returns a ULog message of type `kind`.
     fn message(kind: u8, content: &[u8]) -> Vec<u8> {
         [&(content.len() as u16).to_le_bytes()[..], &[kind], content].concat()
     }
@@ -384,7 +389,7 @@ mod tests {
             columns
                 .notes
                 .iter()
-                .any(|note| note == "1 dropouts of the logger, 0.25 s together: gaps")
+                .any(|note| note == "1 dropouts of the logger, 0.25 s in total, leave gaps")
         );
         let modes: Vec<&str> = columns
             .modes
@@ -398,7 +403,7 @@ mod tests {
     fn a_log_that_is_cut_off_is_read_up_to_its_end() {
         let bytes = log(40);
         let columns = read(&bytes[..bytes.len() - 20]).unwrap();
-        assert!(columns.notes.iter().any(|note| note.contains("cut off")));
+        assert!(columns.notes.iter().any(|note| note.contains("truncated")));
         assert!(read(&bytes[..16]).is_err() && read(&bytes[..8]).is_err());
     }
 

@@ -1,49 +1,50 @@
-//! Message layouts in ULog: fields that are numbers, arrays or other layouts, flattened to a list.
+//! Message layouts in ULog. The fields are numbers, arrays or nested layouts, which are flattened
+//! to a list of numbers.
 
 use std::collections::BTreeMap;
 
 use crate::formats::strides::{NumberClass, StoredNumber};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Maximum message length, given by the 16-bit length field \[bytes\].
+/// Maximum message length \[bytes\]; the length field has 16 bits.
 const LARGEST: usize = 65_535;
 /// Maximum nesting depth of layouts.
 const DEEPEST: usize = 8;
 
-/// A number in the data part of a message.
+/// Position and type of a number in the data of a message.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Place {
-    /// For example `xyz[0]`, `esc[1].esc_rpm`.
+    /// Name of the number, for example `xyz[0]` or `esc[1].esc_rpm`.
     pub(super) name: String,
     stored: StoredNumber,
-    /// Offset in the message \[bytes\].
+    /// Offset in the message data \[bytes\].
     offset: usize,
 }
 
 impl Place {
-    /// Whether this is the time stamp, in microseconds.
+    /// Returns whether this is the time stamp, an unsigned 64-bit integer \[µs\].
     pub(super) fn is_stamp(&self) -> bool {
         self.name == "timestamp" && Some(self.stored) == number_type("uint64_t")
     }
 
-    /// Returns the offset after the number \[bytes\].
+    /// Returns the offset of the byte after the number.
     pub(super) fn end(&self) -> usize {
         self.offset + self.stored.size()
     }
 
-    /// Reads the number, unless the data are too short.
+    /// Reads the number from message data; `None` if the data are too short.
     pub(super) fn read(&self, data: &[u8]) -> Option<f64> {
         self.stored.at(data, self.offset)
     }
 }
 
-/// Layouts by message name, as written in the file: `uint64_t timestamp;float[3] xyz`.
+/// Layouts by message name, in the notation of the file: `uint64_t timestamp;float[3] xyz`.
 pub(super) type Formats<'b> = BTreeMap<&'b str, &'b str>;
 
 /// Returns the numbers in a message with this name.
 ///
 /// # Errors
-/// A layout that is missing, recursive, or longer than the largest message.
+/// [`VariableFault`] if a layout is missing, recursive, or longer than the largest message.
 pub(super) fn places_in_message(
     name: &str,
     formats: &Formats<'_>,
@@ -60,7 +61,7 @@ pub(super) fn places_in_message(
     Ok(flattening.places)
 }
 
-/// A layout while it is flattened.
+/// State of flattening a layout.
 struct Flattening<'a> {
     formats: &'a Formats<'a>,
     budget: &'a ReadingBudget<'a>,
@@ -70,12 +71,12 @@ struct Flattening<'a> {
     offset: usize,
 }
 
-/// A layout field: `float[3] xyz`.
+/// Field of a layout, such as `float[3] xyz`.
 struct LayoutField<'f> {
     /// Name of a number type or of another layout.
     kind: &'f str,
     name: &'f str,
-    /// Element count in an array.
+    /// Number of elements if the field is an array.
     length: Option<usize>,
 }
 
@@ -84,7 +85,7 @@ impl Flattening<'_> {
         VariableFault::damaged(self.message, what, 0)
     }
 
-    /// Adds the numbers in a layout, in which layouts may be nested up to `deeper` levels.
+    /// Adds the numbers in a layout, down to `deeper` levels of nested layouts.
     fn add_layout(&mut self, name: &str, prefix: &str, deeper: usize) -> Result<(), VariableFault> {
         if deeper == 0 {
             return Err(VariableFault::too_deep(self.message));
@@ -103,7 +104,7 @@ impl Flattening<'_> {
 
     fn parse_field<'f>(&self, field: &'f str) -> Result<LayoutField<'f>, VariableFault> {
         let Some((kind, name)) = field.split_once(' ') else {
-            return Err(self.damaged(format!("\"{}\" is no field", short(field))));
+            return Err(self.damaged(format!("\"{}\" is not a field", short(field))));
         };
         let array = kind.strip_suffix(']').and_then(|kind| kind.split_once('['));
         let Some((kind, length)) = array else {
@@ -119,11 +120,11 @@ impl Flattening<'_> {
                 name,
                 length: Some(length),
             }),
-            _ => Err(self.damaged(format!("\"{}\" has no length", short(name)))),
+            _ => Err(self.damaged(format!("\"{}\" has no valid length", short(name)))),
         }
     }
 
-    /// Adds the numbers in a field, or in each array element.
+    /// Adds the numbers in a field, for an array those of each element.
     fn add_field(
         &mut self,
         field: &LayoutField<'_>,
@@ -144,10 +145,10 @@ impl Flattening<'_> {
                 None if field.kind == "char" => self.offset += 1,
                 None => self.add_layout(field.kind, &format!("{label}."), deeper - 1)?,
             }
-            // Fields without bytes could be repeated without limit.
+            // Reject fields of length zero, which could be repeated without limit.
             if self.offset == begin || self.offset > LARGEST {
                 return Err(self.damaged(format!(
-                    "the field \"{}\" has no length, or too much",
+                    "the field \"{}\" is empty or too long",
                     short(name)
                 )));
             }
@@ -155,7 +156,7 @@ impl Flattening<'_> {
         Ok(())
     }
 
-    /// Adds a number, unless its field is padding.
+    /// Adds a number; for padding, only advances the offset.
     fn add_number(
         &mut self,
         label: String,
@@ -176,7 +177,7 @@ impl Flattening<'_> {
     }
 }
 
-/// Returns the number type with a C type name, or nothing if the name is unknown.
+/// Returns the number type for a C type name; `None` if the name is unknown.
 fn number_type(name: &str) -> Option<StoredNumber> {
     use NumberClass::{Float, Signed, Unsigned};
     let (class, size) = match name {
@@ -195,7 +196,7 @@ fn number_type(name: &str) -> Option<StoredNumber> {
     Some(StoredNumber::little_endian(class, size))
 }
 
-/// Shortens a name for a message.
+/// Shortens a name for use in a message.
 fn short(name: &str) -> String {
     name.chars()
         .take(60)

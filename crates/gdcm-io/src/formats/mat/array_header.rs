@@ -1,4 +1,4 @@
-//! Array header: class, flags, shape and name.
+//! Header of an array: class, flags, shape and name.
 //!
 //! Source: "MAT-File Format", The MathWorks, "miMATRIX Format".
 
@@ -32,20 +32,20 @@ pub(super) enum ArrayClass {
 #[derive(Clone, Debug)]
 pub(super) struct ArrayHeader {
     pub(super) class: ArrayClass,
-    /// Whether the numbers are unsigned 64-bit integers.
+    /// Whether the elements are unsigned 64-bit integers.
     pub(super) has_long_words: bool,
     pub(super) is_logical: bool,
     pub(super) is_complex: bool,
-    /// Length of each dimension; at least two dimensions, 1 x 1 for an opaque array.
+    /// Length of each dimension. There are at least two dimensions; an opaque array is 1 x 1.
     pub(super) shape: Vec<usize>,
-    /// Element count.
+    /// Number of elements.
     pub(super) count: usize,
-    /// Empty for a value nested in another.
+    /// Name of the variable; empty for an array nested in another.
     pub(super) name: String,
 }
 
 impl ArrayHeader {
-    /// Reads the header, which precedes the contents.
+    /// Reads the header of an array, which precedes its contents.
     pub(super) fn read(
         contents: &mut Cursor<'_>,
         budget: &ReadingBudget<'_>,
@@ -59,14 +59,14 @@ impl ArrayHeader {
         let Some(class) = ArrayClass::from_number(number) else {
             return Err(flags
                 .data
-                .damaged(format!("an array with the unknown class {number}")));
+                .damaged(format!("an array of unknown class {number}")));
         };
         let shape = if class == ArrayClass::Opaque {
             vec![1, 1]
         } else {
             read_shape(contents, budget)?
         };
-        // The product of all nonzero dimensions must not overflow.
+        // Reject a shape whose nonzero dimensions have a product that overflows.
         if strides::count(&shape).is_none() {
             budget.take(u64::MAX, 1, "")?;
         }
@@ -109,7 +109,8 @@ impl ArrayClass {
     }
 }
 
-/// Counts the elements in an array with these dimensions; saturates at the largest integer.
+/// Returns the number of elements of an array; `usize::MAX` if the product of the dimensions
+/// overflows.
 pub(super) fn saturating_count(shape: &[usize]) -> usize {
     if shape.contains(&0) {
         return 0;
@@ -121,7 +122,7 @@ pub(super) fn saturating_count(shape: &[usize]) -> usize {
     count
 }
 
-/// Reads the dimensions, with ones for missing dimensions up to two.
+/// Reads the length of each dimension; appends dimensions of length 1 up to two dimensions.
 fn read_shape(
     contents: &mut Cursor<'_>,
     budget: &ReadingBudget<'_>,

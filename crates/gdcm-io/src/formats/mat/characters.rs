@@ -1,4 +1,4 @@
-//! Character arrays.
+//! Character arrays in MATLAB files.
 
 use crate::formats::mat::array_header::saturating_count;
 use crate::formats::mat::element::{DataKind, Element};
@@ -6,7 +6,7 @@ use crate::formats::mat::numbers::read_numbers;
 use crate::formats::variables::TextArray;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Reads a character array, stored as text or as character codes.
+/// Reads a character array, stored as encoded text or as numeric character codes.
 pub(super) fn read_text(
     element: &Element<'_>,
     shape: &[usize],
@@ -16,7 +16,7 @@ pub(super) fn read_text(
     budget.take(wanted as u64, 16, "")?;
     let mut codes = character_codes(element, wanted, budget)?;
     if codes.is_empty() {
-        // Old versions omit the characters of blank arrays.
+        // Files of old versions omit the characters of an array that holds only blanks.
         codes = vec![u32::from(b' '); wanted];
     }
     if codes.len() != wanted {
@@ -28,7 +28,7 @@ pub(super) fn read_text(
     text_rows(&codes, shape, "", budget)
 }
 
-/// Reads the character codes of an element; the shape requires `wanted` codes.
+/// Reads the character codes of an element; `wanted` is the number of characters in its shape.
 fn character_codes(
     element: &Element<'_>,
     wanted: usize,
@@ -42,8 +42,9 @@ fn character_codes(
     Ok(numbers.into_iter().map(|number| number as u32).collect())
 }
 
-/// Decodes UTF-8 characters. The shape counts UTF-16 units in files from MATLAB, characters in
-/// files from some other programs, and bytes in files that label Latin-1 as UTF-8.
+/// Decodes UTF-8 into character codes, depending on whether `wanted`, the number of characters in
+/// the shape, counts UTF-16 units (MATLAB), bytes (files that declare Latin-1 as UTF-8) or
+/// characters (some other programs).
 fn utf8_codes(bytes: &[u8], wanted: usize) -> Vec<u32> {
     let text = String::from_utf8_lossy(bytes);
     let units = text.encode_utf16().count();
@@ -56,9 +57,9 @@ fn utf8_codes(bytes: &[u8], wanted: usize) -> Vec<u32> {
     }
 }
 
-/// Splits a character array, stored by columns, into a text for each row of each page.
+/// Splits a character array in column-major order into a string for each row of each page.
 ///
-/// An array without characters becomes a single empty text, such as MATLAB's `''`, unless it has
+/// An array without characters becomes a single empty string, such as MATLAB's `''`, unless it has
 /// several rows.
 pub(crate) fn text_rows(
     codes: &[u32],
@@ -75,7 +76,7 @@ pub(crate) fn text_rows(
     let shape: Vec<usize> = [height, 1].iter().chain(pages).copied().collect();
     let count = saturating_count(&shape);
     budget.take(count as u64, size_of::<String>() as u64, variable)?;
-    // A UTF-16 unit takes up to three bytes.
+    // A UTF-16 unit needs up to three bytes in UTF-8.
     budget.take(codes.len() as u64, 3, variable)?;
     let page_size = height.saturating_mul(length);
     let mut texts = Vec::with_capacity(count);
@@ -92,7 +93,8 @@ pub(crate) fn text_rows(
     Ok(TextArray { shape, texts })
 }
 
-/// Decodes character codes; a character beyond 16 bits is a single code or a UTF-16 pair.
+/// Decodes character codes. A character beyond 16 bits may be a single code or a UTF-16 surrogate
+/// pair; an invalid code becomes the replacement character.
 fn decode_codes(codes: impl Iterator<Item = u32>) -> String {
     let mut units = Vec::new();
     for code in codes {

@@ -1,4 +1,4 @@
-//! Sequential reading in the byte order of the file.
+//! Cursor for sequential reading in the byte order of a file.
 
 use crate::reading_budget::VariableFault;
 
@@ -9,7 +9,6 @@ pub(super) enum ByteOrder {
 }
 
 impl ByteOrder {
-    /// Decodes a 32-bit integer.
     pub(super) fn u32(self, bytes: [u8; 4]) -> u32 {
         match self {
             ByteOrder::Little => u32::from_le_bytes(bytes),
@@ -17,7 +16,6 @@ impl ByteOrder {
         }
     }
 
-    /// Decodes a 64-bit integer.
     pub(super) fn u64(self, bytes: [u8; 8]) -> u64 {
         match self {
             ByteOrder::Little => u64::from_le_bytes(bytes),
@@ -28,25 +26,26 @@ impl ByteOrder {
 
 /// A position within a section of bytes; reading cannot leave the section.
 ///
-/// Its faults name no variable: [`super::value_path::ValuePath::locate`] adds the name.
+/// Its errors do not contain a variable name, which [`super::value_path::ValuePath::locate`] adds.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cursor<'b> {
-    /// The bytes from the position to the end of the section.
+    /// Remaining bytes of the section.
     bytes: &'b [u8],
     pub(super) order: ByteOrder,
-    /// Offset of the position in the file.
+    /// Position in the file \[bytes\].
     pub(super) offset: u64,
     section: Section,
 }
 
-/// Origin of a section, which determines the fault if the section ends too early.
+/// Origin of a section, which determines the error if the section ends too early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Section {
-    /// The whole file; if it ends too early, the file is truncated.
+    /// The whole file. If it ends too early, the file is truncated.
     File,
-    /// An element of the file; if it ends too early, its size is wrong.
+    /// An element of the file. If it ends too early, its size is wrong.
     Element,
-    /// Unpacked or embedded bytes; faults in them are reported at the start of the packed element.
+    /// Decompressed or embedded bytes. Errors refer to the offset of the element that contains
+    /// them.
     Unpacked,
 }
 
@@ -60,7 +59,7 @@ impl<'b> Cursor<'b> {
         }
     }
 
-    /// Starts at the beginning of bytes that were unpacked from, or embedded at, `offset` in the
+    /// Creates a cursor over bytes that were decompressed from, or embedded at, `offset` in the
     /// file.
     pub(super) fn unpacked(bytes: &'b [u8], order: ByteOrder, offset: u64) -> Self {
         Self {
@@ -76,17 +75,20 @@ impl<'b> Cursor<'b> {
         self.bytes
     }
 
-    /// Counts the remaining bytes.
+    /// Returns the number of remaining bytes.
     pub(super) fn len(&self) -> usize {
         self.bytes.len()
     }
 
-    /// Whether no bytes remain.
+    /// Returns whether no bytes remain.
     pub(super) fn is_empty(&self) -> bool {
         self.bytes.is_empty()
     }
 
-    /// Takes the next `length` bytes as an element.
+    /// Takes the next `length` bytes as a section.
+    ///
+    /// # Errors
+    /// [`VariableFault`] if fewer bytes remain.
     pub(super) fn take(&mut self, length: usize) -> Result<Cursor<'b>, VariableFault> {
         let Some((bytes, rest)) = self.bytes.split_at_checked(length) else {
             return Err(self.too_short());
@@ -109,8 +111,8 @@ impl<'b> Cursor<'b> {
         Ok(taken)
     }
 
-    /// Takes all remaining bytes. If they turn out to be too few, the fault is that of this
-    /// section, not that of an element.
+    /// Takes all remaining bytes. If they turn out to be too few, the error is the same as for this
+    /// section.
     pub(super) fn take_all(&mut self) -> Result<Cursor<'b>, VariableFault> {
         let rest = *self;
         self.pass(rest.len())?;
@@ -122,7 +124,6 @@ impl<'b> Cursor<'b> {
         self.take(length.min(self.len())).map(drop)
     }
 
-    /// Reads a 32-bit integer.
     pub(super) fn u32(&mut self) -> Result<u32, VariableFault> {
         let order = self.order;
         let bytes = self.array()?;
@@ -135,7 +136,7 @@ impl<'b> Cursor<'b> {
         <[u8; N]>::try_from(taken.bytes).map_err(|_| self.too_short())
     }
 
-    /// Returns the fault for bytes at this position that contradict the format.
+    /// Returns the error for bytes at this position that contradict the format.
     pub(super) fn damaged(&self, what: impl Into<String>) -> VariableFault {
         VariableFault::damaged("", what, self.offset)
     }

@@ -1,4 +1,4 @@
-//! Data elements: a tag with data type and length, and the data.
+//! Data elements: a tag with data type and length, followed by the data.
 //!
 //! Source: "MAT-File Format", The MathWorks, "Data Element Format".
 
@@ -6,7 +6,7 @@ use crate::formats::mat::cursor::{ByteOrder, Cursor};
 use crate::formats::strides::{NumberClass, StoredNumber};
 use crate::reading_budget::VariableFault;
 
-/// Data type of an element, with its number in the tag.
+/// Data type of an element; the values are the numbers in the tag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum DataKind {
     I8 = 1,
@@ -27,7 +27,7 @@ pub(super) enum DataKind {
 }
 
 impl DataKind {
-    /// Returns the data type with this number in the tag, if there is such a type.
+    /// Returns the data type for the number in a tag; `None` for an unknown number.
     fn from_number(number: u32) -> Option<Self> {
         Some(match number {
             1 => Self::I8,
@@ -49,7 +49,7 @@ impl DataKind {
         })
     }
 
-    /// Returns the number type; matrices and packed data have none.
+    /// Returns the type of the numbers; `None` for matrices and compressed data.
     pub(super) fn number_type(self, order: ByteOrder) -> Option<StoredNumber> {
         let (class, size) = match self {
             Self::I8 => (NumberClass::Signed, 1),
@@ -68,23 +68,22 @@ impl DataKind {
     }
 }
 
-/// A data element.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Element<'b> {
     pub(super) kind: DataKind,
-    /// The data, without the padding to eight bytes.
+    /// Data without the padding to a multiple of eight bytes.
     pub(super) data: Cursor<'b>,
-    /// Whether all bytes announced by the tag are present; only an array may have fewer.
+    /// Whether the data are as long as the tag announces; only arrays may be shorter.
     pub(super) is_whole: bool,
 }
 
 impl<'b> Element<'b> {
-    /// Reads the next element and its padding.
+    /// Reads the next element and skips its padding.
     pub(super) fn read(cursor: &mut Cursor<'b>) -> Result<Self, VariableFault> {
         let tag = *cursor;
         let first = cursor.u32()?;
-        // A small element holds up to four bytes within its tag, and their count in the upper half
-        // of the first word.
+        // A small element holds up to four bytes within its tag; the upper half of its first word
+        // is their number.
         let small = first >> 16;
         if small != 0 {
             let kind = known_kind(first & 0xffff, tag)?;
@@ -98,7 +97,8 @@ impl<'b> Element<'b> {
         let kind = known_kind(first, tag)?;
         let length = cursor.u32()? as usize;
         if kind == DataKind::Matrix && length > cursor.len() {
-            // GNU Octave announces a few bytes too many for some arrays.
+            // GNU Octave announces a few bytes too many for some arrays: take the bytes that are
+            // present.
             return Ok(Self {
                 kind,
                 data: cursor.take_all()?,
@@ -124,7 +124,10 @@ impl<'b> Element<'b> {
         Ok(())
     }
 
-    /// Counts the numbers in the element.
+    /// Returns how many numbers the element holds.
+    ///
+    /// # Errors
+    /// [`VariableFault`] for an array, and if the data end within a number.
     pub(super) fn count(&self) -> Result<usize, VariableFault> {
         let Some(number_type) = self.kind.number_type(self.data.order) else {
             return Err(self.data.damaged("an array instead of numbers"));
@@ -132,14 +135,14 @@ impl<'b> Element<'b> {
         let width = number_type.size();
         let length = self.data.len();
         if !length.is_multiple_of(width) {
-            return Err(self.data.damaged(format!(
-                "{length} bytes for numbers with {width} bytes each"
-            )));
+            return Err(self
+                .data
+                .damaged(format!("{length} bytes for numbers of {width} bytes each")));
         }
         Ok(length / width)
     }
 
-    /// Reads a name with one byte for each character.
+    /// Reads a name, in UTF-8 or Latin-1, from an element of bytes.
     pub(super) fn name(&self) -> Result<String, VariableFault> {
         match self.kind {
             DataKind::I8 | DataKind::U8 | DataKind::Utf8 => Ok(decode_name(self.data.rest())),
@@ -147,7 +150,7 @@ impl<'b> Element<'b> {
         }
     }
 
-    /// Returns the contents of an array; rejects other elements.
+    /// Returns the contents of an array element; rejects other elements.
     pub(super) fn array_contents(self) -> Result<Cursor<'b>, VariableFault> {
         match self.kind {
             DataKind::Matrix => Ok(self.data),
@@ -156,29 +159,30 @@ impl<'b> Element<'b> {
     }
 }
 
-/// Returns the data type with this number, or the fault at its tag.
+/// Returns the data type for the number in the tag at `tag`; rejects an unknown number.
 fn known_kind(number: u32, tag: Cursor<'_>) -> Result<DataKind, VariableFault> {
     DataKind::from_number(number)
-        .ok_or_else(|| tag.damaged(format!("an element with the unknown data type {number}")))
+        .ok_or_else(|| tag.damaged(format!("an element of unknown data type {number}")))
 }
 
-/// Positions in an array that was read, to find the element after it.
+/// Positions of an array that was read, from which the position of the next element is found.
 #[derive(Clone, Copy)]
 pub(super) struct ReadArray<'b> {
-    /// Position before the tag.
+    /// Position of the tag.
     pub(super) start: Cursor<'b>,
     pub(super) element: Element<'b>,
-    /// Contents that were not read.
+    /// Part of the data that was not read.
     pub(super) unread: Cursor<'b>,
-    /// Position after the element and its padding, as given by the tag.
+    /// Position after the element and its padding, according to the tag.
     pub(super) end: Cursor<'b>,
 }
 
 impl<'b> ReadArray<'b> {
     /// Returns the position of the next element.
     ///
-    /// GNU Octave counts too many bytes for some texts and objects. So if bytes are left over and
-    /// no array begins at the announced end, the next element begins with these bytes.
+    /// GNU Octave announces too many bytes for some strings and objects. Hence, if bytes were not
+    /// read and no array begins at the announced end, the next element begins with the unread
+    /// bytes.
     pub(super) fn next_position(self) -> Result<Cursor<'b>, VariableFault> {
         if self.unread.is_empty() || (self.element.is_whole && begins_array(&self.end)) {
             return Ok(self.end);
@@ -190,7 +194,7 @@ impl<'b> ReadArray<'b> {
     }
 }
 
-/// Whether an array begins at the cursor, or the data ends there.
+/// Returns whether an array begins at the cursor, or the data end there.
 fn begins_array(cursor: &Cursor<'_>) -> bool {
     if cursor.is_empty() {
         return true;
@@ -209,8 +213,8 @@ fn begins_array(cursor: &Cursor<'_>) -> bool {
     is_array && length as usize <= tag.len()
 }
 
-/// Decodes a name up to the first zero; bytes that are not UTF-8 are read as Latin-1, the encoding
-/// of old programs.
+/// Decodes a name up to the first zero byte; bytes that are not UTF-8 are read as Latin-1, the
+/// encoding used by old programs.
 pub(super) fn decode_name(bytes: &[u8]) -> String {
     let bytes = bytes.split(|&byte| byte == 0).next().unwrap_or_default();
     match std::str::from_utf8(bytes) {

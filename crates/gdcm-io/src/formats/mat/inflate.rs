@@ -1,4 +1,4 @@
-//! Unpacking of packed elements (zlib).
+//! Decompression of elements (zlib).
 //!
 //! Source: "MAT-File Format", The MathWorks, "Data Compression"; RFC 1950.
 
@@ -9,14 +9,15 @@ use flate2::read::ZlibDecoder;
 use crate::formats::mat::cursor::Cursor;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Maximum ratio of unpacked to packed bytes, rounded up (RFC 1951: 258 bytes from two bits).
+/// Maximum ratio of decompressed to compressed bytes, rounded up (RFC 1951: 258 bytes from two
+/// bits).
 const MOST_EXPANSION: u64 = 1040;
-/// Number of bytes unpacked between two checks against the budget.
+/// Number of bytes decompressed between two checks against the budget.
 const CHUNK: u64 = 1 << 20;
-/// Length of the tag before the unpacked data \[bytes\].
+/// Length of the tag at the beginning of the decompressed bytes.
 const TAG_BYTES: u64 = 8;
 
-/// Unpacks an element: its tag, and the bytes announced by the tag.
+/// Decompresses an element: its tag, and the number of bytes that the tag announces.
 pub(super) fn inflate(
     packed: Cursor<'_>,
     budget: &ReadingBudget<'_>,
@@ -34,7 +35,7 @@ pub(super) fn inflate(
     Ok(inflater.bytes)
 }
 
-/// A packed element and the bytes unpacked so far.
+/// A compressed element and the bytes decompressed so far.
 struct Inflater<'b> {
     decoder: ZlibDecoder<&'b [u8]>,
     bytes: Vec<u8>,
@@ -43,13 +44,13 @@ struct Inflater<'b> {
 }
 
 impl Inflater<'_> {
-    /// Unpacks the next `length` bytes, or fewer if the packed data ends before.
+    /// Decompresses the next `length` bytes, or fewer if the compressed data end earlier.
     fn read_up_to(&mut self, length: u64) -> Result<(), VariableFault> {
         let packed = self.packed;
         let mut left = length;
         while left > 0 {
             let chunk = left.min(CHUNK);
-            // Vectors grow by doubling.
+            // The factor 2: vectors grow by doubling.
             self.budget.take(2 * chunk, 1, "")?;
             let found = self
                 .decoder
@@ -57,12 +58,12 @@ impl Inflater<'_> {
                 .take(chunk)
                 .read_to_end(&mut self.bytes)
                 .map_err(|error| match error.kind() {
-                    ErrorKind::UnexpectedEof => packed.damaged("the packed bytes end too early"),
-                    _ => packed.damaged("the packed bytes were changed"),
+                    ErrorKind::UnexpectedEof => packed.damaged("the compressed data end too early"),
+                    _ => packed.damaged("the compressed data are corrupt"),
                 })?;
             if (found as u64) < chunk {
-                // GNU Octave announces too many bytes. If too few are present, the fault appears
-                // when they are decoded.
+                // Accept fewer bytes, because GNU Octave announces too many; if bytes are really
+                // missing, decoding them fails.
                 return Ok(());
             }
             left -= chunk;
@@ -70,7 +71,8 @@ impl Inflater<'_> {
         Ok(())
     }
 
-    /// Reads the length in the unpacked tag and rejects it if the packed data cannot be that long.
+    /// Reads the length from the decompressed tag; rejects a length that the compressed data cannot
+    /// reach.
     fn announced_length(&self) -> Result<u64, VariableFault> {
         let packed = self.packed;
         let mut tag = Cursor::unpacked(&self.bytes, packed.order, packed.offset);
@@ -78,22 +80,23 @@ impl Inflater<'_> {
         let length = u64::from(tag.u32()?);
         if length > (packed.len() as u64).saturating_mul(MOST_EXPANSION) {
             return Err(packed.damaged(format!(
-                "{} packed bytes that claim to hold {length}",
+                "{} compressed bytes that claim to expand to {length}",
                 packed.len()
             )));
         }
         Ok(length)
     }
 
-    /// Checks that the packed data ends here; the decoder then compares the checksum.
+    /// Rejects compressed data that continue after the announced length, or whose checksum is
+    /// wrong.
     fn check_end(&mut self) -> Result<(), VariableFault> {
         let packed = self.packed;
         let more = self
             .decoder
             .read(&mut [0])
-            .map_err(|_| packed.damaged("the packed bytes were changed"))?;
+            .map_err(|_| packed.damaged("the compressed data are corrupt"))?;
         if more != 0 {
-            return Err(packed.damaged("more packed bytes than announced"));
+            return Err(packed.damaged("more compressed data than announced"));
         }
         Ok(())
     }

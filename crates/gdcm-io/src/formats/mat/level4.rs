@@ -14,11 +14,11 @@ use crate::formats::strides::{NumberClass, StoredNumber};
 use crate::formats::variables::{Array, Value, Variable};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Header of a matrix. The source writes its first word as the decimal digits MOPT.
+/// Header of a matrix. The source denotes the decimal digits of its first word by M, O, P and T.
 struct MatrixHeader {
-    /// Number type, digit P.
+    /// Number type (digit P).
     number_type: StoredNumber,
-    /// Meaning of the numbers, digit T.
+    /// Meaning of the numbers (digit T).
     meaning: Meaning,
     rows: usize,
     columns: usize,
@@ -33,7 +33,7 @@ enum Meaning {
     Sparse,
 }
 
-/// Whether a file begins with a level-4 header.
+/// Returns whether a file begins with a level-4 header.
 pub(super) fn begins(bytes: &[u8]) -> bool {
     MatrixHeader::read(&mut Cursor::file(bytes, ByteOrder::Little)).is_ok()
 }
@@ -61,7 +61,7 @@ pub(super) fn read(
 }
 
 impl MatrixHeader {
-    /// Reads the next header; the byte order may change from matrix to matrix.
+    /// Reads the next header. The byte order may differ between the matrices of a file.
     fn read(file: &mut Cursor<'_>) -> Result<Self, VariableFault> {
         let start = *file;
         let Some(order) = detect_order(start.rest()) else {
@@ -98,7 +98,7 @@ impl MatrixHeader {
         })
     }
 
-    /// Reads the value after header and name.
+    /// Reads the numbers after header and name, and converts them to a value.
     fn value(
         &self,
         file: &mut Cursor<'_>,
@@ -146,9 +146,9 @@ impl MatrixHeader {
         Ok(self.number_type.decode_all(bytes.rest()))
     }
 
-    /// Interprets stored columns as row indices, column indices, real parts and imaginary parts;
-    /// their last row gives the size of the matrix. Returns `None` for other column counts and for
-    /// invalid sizes or indices.
+    /// Splits the stored columns into row indices, column indices, real parts and, if present,
+    /// imaginary parts; the last row holds the dimensions of the matrix. Returns `None` for any
+    /// other number of columns, and for invalid dimensions or indices.
     fn sparse_entries(&self, stored: &[f64]) -> Option<SparseEntries> {
         let columns: Vec<&[f64]> = stored.chunks_exact(self.rows.max(1)).collect();
         let (rows, columns, re, im) = match *columns.as_slice() {
@@ -169,17 +169,18 @@ impl MatrixHeader {
     }
 }
 
-/// Returns the fault for `found` at `start`, where a matrix should begin.
+/// Returns the error for `found` at `start`, where a matrix was expected.
 fn no_matrix(start: Cursor<'_>, found: &str) -> VariableFault {
     start.damaged(format!("{found} at the expected start of a matrix"))
 }
 
-/// Returns the fault for a sparse matrix at `start`.
+/// Returns the error for an invalid sparse matrix at `start`.
 fn sparse_damage(start: Cursor<'_>) -> VariableFault {
-    start.damaged("a sparse matrix whose numbers do not fit it")
+    start.damaged("a sparse matrix with inconsistent numbers")
 }
 
-/// Converts indices that count from 1; `None` if one is negative, zero or NaN.
+/// Converts indices that count from 1 to indices that count from 0; `None` if an index is negative,
+/// zero or NaN.
 fn indices_from_zero(indices: &[f64]) -> Option<Vec<usize>> {
     let mut converted = Vec::with_capacity(indices.len());
     for &index in indices {
@@ -196,8 +197,8 @@ fn nonnegative(number: f64) -> Option<usize> {
     }
 }
 
-/// Determines the byte order: in the correct order the type is below 2000, its thousands digit is 0
-/// (little endian) or 1 (big endian), and its hundreds digit is 0.
+/// Determines the byte order: read in the correct order, the type is below 2000, its thousands
+/// digit is 0 (little endian) or 1 (big endian), and its hundreds digit is 0.
 fn detect_order(bytes: &[u8]) -> Option<ByteOrder> {
     let first = *bytes.first_chunk::<4>()?;
     if ByteOrder::Little.u32(first) / 100 == 0 {
@@ -209,7 +210,7 @@ fn detect_order(bytes: &[u8]) -> Option<ByteOrder> {
     }
 }
 
-/// Returns the number type for digit P.
+/// Returns the number type for digit P; `None` for an unknown digit.
 fn number_type(digit: u32, order: ByteOrder) -> Option<StoredNumber> {
     let (class, size) = match digit {
         0 => (NumberClass::Float, 8),
@@ -228,7 +229,7 @@ mod tests {
     use super::*;
     use crate::formats::variables::ElementKind;
 
-    /// A matrix in the given byte order.
+    /// Returns the bytes of a matrix in the given byte order.
     fn matrix(kind: u32, sizes: [u32; 4], order: ByteOrder, data: &[u8]) -> Vec<u8> {
         let word = |word: u32| {
             if order == ByteOrder::Little {

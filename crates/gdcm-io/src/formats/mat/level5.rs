@@ -1,4 +1,4 @@
-//! Files of levels 5 to 7: a header, and an element for each variable.
+//! Files of levels 5 to 7: a header, followed by an element for each variable.
 //!
 //! Source: "MAT-File Format", The MathWorks, "Level 5 MAT-File Format".
 
@@ -17,12 +17,12 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Length of the file header \[bytes\].
 const HEADER_BYTES: usize = 128;
-/// Offset of the version in the header.
+/// Offset of the version in the header \[bytes\].
 const VERSION_AT: usize = 124;
-/// Offset of the object position in the header.
+/// Offset of the header field that holds the position of the objects \[bytes\].
 const OBJECTS_AT: usize = 116;
 
-/// Byte order and version at the end of the file header.
+/// Byte order and version, from the end of the file header.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct FileVersion {
     pub(super) order: ByteOrder,
@@ -31,7 +31,7 @@ pub(super) struct FileVersion {
 }
 
 impl FileVersion {
-    /// Reads the version; `None` if the bytes have no such header.
+    /// Reads the version; `None` if the bytes do not begin with such a header.
     pub(super) fn read(bytes: &[u8]) -> Option<Self> {
         match *bytes.get(VERSION_AT..HEADER_BYTES)? {
             [_, major, b'I', b'M'] => Some(Self {
@@ -63,7 +63,8 @@ pub(super) fn read(
     let mut names = HashSet::new();
     while !file.is_empty() {
         budget.take(1, 2 * size_of::<Variable>() as u64, "")?;
-        // Arrays without a name are internal to MATLAB, mainly the objects.
+        // Skip arrays without a name, which are internal to MATLAB, mainly the storage of the
+        // objects.
         let Some(variable) = read_variable(&mut file, &reader)? else {
             continue;
         };
@@ -77,8 +78,8 @@ pub(super) fn read(
     Ok(variables)
 }
 
-/// Reads the objects, or returns the reason why they cannot be read: the other variables remain
-/// readable. Only an exhausted budget is an error.
+/// Reads the objects. If they cannot be read, returns the reason as the inner error, because the
+/// other variables remain readable; only an exhausted budget is an outer error.
 fn objects_or_reason(
     bytes: &[u8],
     order: ByteOrder,
@@ -95,7 +96,8 @@ fn objects_or_reason(
     )))
 }
 
-/// Reads the position of the objects, which old versions leave blank.
+/// Reads the offset of the objects in the file; `None` if the field is blank, as in files of old
+/// versions.
 fn objects_at(bytes: &[u8], order: ByteOrder) -> Option<usize> {
     let place: [u8; 8] = bytes.get(OBJECTS_AT..VERSION_AT)?.try_into().ok()?;
     if place == [b' '; 8] || place == [0; 8] {
@@ -105,7 +107,7 @@ fn objects_at(bytes: &[u8], order: ByteOrder) -> Option<usize> {
     }
 }
 
-/// Reads the next variable, packed or plain; `None` for an array without a name.
+/// Reads the next variable, compressed or not; `None` for an array without a name.
 fn read_variable(
     file: &mut Cursor<'_>,
     reader: &ArrayReader<'_>,
@@ -130,7 +132,7 @@ fn read_variable(
     read_named_array(&mut contents, reader)
 }
 
-/// Reads an array with its name; skips an array without a name.
+/// Reads a variable; skips an array without a name and returns `None`.
 fn read_named_array(
     contents: &mut Cursor<'_>,
     reader: &ArrayReader<'_>,
@@ -153,7 +155,7 @@ mod tests {
     use crate::formats::mat::sample_tests::{chars, doubles, element, file, matrix, record};
     use crate::formats::variables::Value;
 
-    /// The same array with a tag that counts four bytes too many.
+    /// Returns the array with a tag that counts four bytes too many.
     fn too_long(array: Vec<u8>) -> Vec<u8> {
         let length = array.len() as u32 - 8 + 4;
         [&array[..4], &length.to_le_bytes(), &array[8..]].concat()

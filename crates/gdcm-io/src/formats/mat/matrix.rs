@@ -1,4 +1,4 @@
-//! Contents of arrays, including nested arrays.
+//! Contents of arrays, which may contain further arrays.
 //!
 //! Source: "MAT-File Format", The MathWorks, "miMATRIX Format".
 
@@ -20,12 +20,12 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 #[derive(Clone, Copy)]
 pub(super) struct ArrayReader<'a> {
     pub(super) budget: &'a ReadingBudget<'a>,
-    /// The objects of the file, or the reason why they cannot be read.
+    /// Objects of the file, or the reason why they cannot be read.
     pub(super) objects: Result<&'a Subsystem, &'a str>,
 }
 
 impl ArrayReader<'_> {
-    /// Reads the next array, nested in another array.
+    /// Reads the next array within another array; errors contain `path`.
     pub(super) fn nested_value(
         &self,
         contents: &mut Cursor<'_>,
@@ -35,7 +35,7 @@ impl ArrayReader<'_> {
             .map_err(|fault| path.locate(fault))
     }
 
-    /// Reads the next array and moves to the element after it.
+    /// Reads the next array and moves `contents` to the element after it.
     fn next_value(
         &self,
         contents: &mut Cursor<'_>,
@@ -59,7 +59,7 @@ impl ArrayReader<'_> {
         Ok(value)
     }
 
-    /// Reads the contents of an array after its header.
+    /// Reads the value of an array after its header.
     pub(super) fn value(
         &self,
         header: &ArrayHeader,
@@ -121,7 +121,7 @@ impl ArrayReader<'_> {
     ) -> Result<Array, VariableFault> {
         let start = *contents;
         let &[height, width] = header.shape.as_slice() else {
-            return Err(start.damaged("a sparse array that is no matrix"));
+            return Err(start.damaged("a sparse array that is not a matrix"));
         };
         let rows = read_sizes(&Element::read(contents)?, self.budget)?;
         let starts = read_sizes(&Element::read(contents)?, self.budget)?;
@@ -142,14 +142,14 @@ impl ArrayReader<'_> {
             im,
         };
         let Some(entries) = columns.into_entries() else {
-            return Err(start.damaged("a sparse matrix whose columns do not fit its numbers"));
+            return Err(start.damaged("a sparse matrix whose columns do not match its numbers"));
         };
         entries.full_matrix("", self.budget, || {
-            start.damaged("a number outside its sparse matrix")
+            start.damaged("an element outside its sparse matrix")
         })
     }
 
-    /// Reads the real or imaginary parts of a sparse matrix with `stored` entries.
+    /// Reads the real or imaginary parts of the `stored` entries of a sparse matrix.
     fn sparse_numbers(
         &self,
         header: &ArrayHeader,
@@ -157,8 +157,8 @@ impl ArrayReader<'_> {
         contents: &mut Cursor<'_>,
     ) -> Result<Vec<f64>, VariableFault> {
         let mut element = Element::read(contents)?;
-        // MATLAB announces eight bytes for each logical value in a sparse matrix, and writes a
-        // single byte.
+        // For logical values in a sparse matrix, MATLAB announces numbers of eight bytes but writes
+        // a single byte each.
         if header.is_logical
             && element.kind == DataKind::F64
             && element.data.len() < stored.saturating_mul(8)
@@ -185,7 +185,7 @@ impl ArrayReader<'_> {
         })
     }
 
-    /// Reads an object of an `@`-folder class.
+    /// Reads an object of an old-style class, defined in an `@` folder.
     fn folder_object(
         &self,
         header: &ArrayHeader,
@@ -208,13 +208,13 @@ impl ArrayReader<'_> {
         let names = read_field_names(contents, self.budget)?;
         let count = header.count;
         self.take_values(count.saturating_mul(names.len()), contents)?;
-        // A few bytes can announce arbitrarily many records without fields.
+        // A file of a few bytes can announce any number of records without fields.
         self.budget.take(count as u64, RECORD, "")?;
         let mut fields: Vec<(String, Vec<Value>)> = Vec::with_capacity(names.len());
         for name in names {
             fields.push((name, Vec::new()));
         }
-        // Without fields there is nothing to read for a record.
+        // Without fields, no bytes follow for the records.
         let records = if fields.is_empty() { 0 } else { count };
         for at in 0..records {
             let record = path.step(Step::Record(at))?;
@@ -229,21 +229,21 @@ impl ArrayReader<'_> {
         })
     }
 
-    /// Takes `count` values from the budget; refuses more than the remaining bytes can hold, with
-    /// at least eight bytes for each.
+    /// Takes the memory of `count` values from the budget; rejects more values than the remaining
+    /// bytes can hold at eight bytes each.
     fn take_values(&self, count: usize, contents: &Cursor<'_>) -> Result<(), VariableFault> {
         if count > contents.len() / 8 {
             return Err(contents.damaged(format!("{count} values in {} bytes", contents.len())));
         }
-        // Vectors grow by doubling.
+        // The factor 2: vectors grow by doubling.
         self.budget
             .take(count as u64, 2 * size_of::<Value>() as u64, "")
     }
 
-    /// Reads an opaque array after its name: a class object, whose contents are elsewhere in the
-    /// file, or a value that cannot be read.
+    /// Reads an opaque array after its name: an object, whose contents are stored in another part
+    /// of the file, or a value that cannot be read.
     ///
-    /// The format is not published by The MathWorks; it is known from the descriptions by the
+    /// The format is not published by The MathWorks; this reader follows the descriptions by the
     /// MatFileHandler, matio (Python) and MAT.jl projects.
     fn opaque(
         &self,
@@ -254,7 +254,8 @@ impl ArrayReader<'_> {
         let class = Element::read(contents)?.name()?;
         if system != CLASS_SYSTEM {
             Element::pass_all(contents)?;
-            let why = "only objects of MATLAB's own classes are read; in MATLAB, save its data as numbers or text";
+            let why = "only objects of MATLAB classes are supported; in MATLAB, save its data as \
+                numbers or text";
             return Ok(Value::opaque(format!("{class} ({system})"), why));
         }
         let contents = self.nested_value(contents, path)?;
@@ -268,12 +269,16 @@ impl ArrayReader<'_> {
         }
         match &contents {
             Value::Struct(records) => objects.enumeration(records, &class, path, self.budget),
-            _ => Ok(unreadable(&class, "it refers to no object", &variable)),
+            _ => Ok(unreadable(
+                &class,
+                "its reference points to no object",
+                &variable,
+            )),
         }
     }
 }
 
-/// Reads the field names, which precede the records; all have the same length in the file.
+/// Reads the field names, which precede the records and are padded to a common length.
 pub(super) fn read_field_names(
     contents: &mut Cursor<'_>,
     budget: &ReadingBudget<'_>,
@@ -294,7 +299,7 @@ pub(super) fn read_field_names(
     if !fits {
         return Err(names
             .data
-            .damaged("field names that do not fit their length"));
+            .damaged("field names that do not match their length"));
     }
     let length = length.max(1);
     budget.take((bytes.len() / length) as u64, 128, "")?;

@@ -27,16 +27,16 @@ pub(crate) use crate::formats::mat::characters::text_rows;
 pub(crate) use crate::formats::mat::subsystem::{LongWords, Subsystem};
 pub use crate::formats::mat::writer::{write, write_packed};
 
-/// HDF5 signature, at the beginning or after MATLAB's header.
+/// HDF5 signature, at the beginning of a file or after MATLAB's header.
 const HDF5_SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
-/// Major version of levels 5 to 7.
+/// Major version in files of levels 5 to 7.
 const LEVEL_5: u8 = 1;
-/// Expected format in error messages of [`read`].
-const EXPECTED: &str = "a .mat file of MATLAB up to version 7";
+/// Name of the expected format in error messages of [`read`].
+const EXPECTED: &str = "a MATLAB .mat file up to version 7";
 
-/// MATLAB files up to version 7.
+/// Importer of MATLAB files up to version 7.
 pub(crate) const MAT: Importer = Importer {
-    name: "a .mat file of MATLAB up to version 7",
+    name: "a MATLAB .mat file up to version 7",
     endings: &["mat"],
     recognises: |bytes, ending| {
         ending == "mat" || FileVersion::read(bytes).is_some_and(|version| version.major == LEVEL_5)
@@ -47,15 +47,16 @@ pub(crate) const MAT: Importer = Importer {
 /// Reads the variables in file order.
 ///
 /// Parts of a variable that cannot be decoded become [`super::variables::Value::Opaque`]; bytes
-/// that contradict the format are a fault of the whole file.
+/// that contradict the format are an error for the whole file.
 pub fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     if is_hdf5(bytes) {
         return Err(VariableFault::format(
             EXPECTED,
-            "an HDF5 file, as MATLAB writes with -v7.3",
+            "an HDF5 file, as written by MATLAB with -v7.3",
         ));
     }
-    // A level-5 file begins with text, so its first four bytes are not zero, unlike at level 4.
+    // A level-5 file begins with text: none of its first four bytes is zero, unlike in a level-4
+    // file.
     let begins_with_text = bytes.get(..4).is_some_and(|start| !start.contains(&0));
     match FileVersion::read(bytes) {
         Some(FileVersion {
@@ -65,16 +66,16 @@ pub fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, V
         _ if level4::begins(bytes) => level4::read(bytes, budget),
         Some(FileVersion { major, .. }) if begins_with_text => Err(VariableFault::format(
             EXPECTED,
-            format!("a .mat file of the unknown version {major}"),
+            format!("a .mat file of unknown version {major}"),
         )),
         _ => Err(VariableFault::format(EXPECTED, describe_start(bytes))),
     }
 }
 
-/// Whether this is an HDF5 file, as MATLAB writes with `-v7.3`.
+/// Returns whether this is an HDF5 file, the format that MATLAB writes with `-v7.3`.
 pub fn is_hdf5(bytes: &[u8]) -> bool {
-    // The signature is at the beginning, or at byte 512, 1024, 2048 and so on ("HDF5 File Format
-    // Specification", II.A).
+    // The signature is at byte 0, 512, 1024, 2048 and so on ("HDF5 File Format Specification",
+    // II.A).
     if bytes.starts_with(&HDF5_SIGNATURE) {
         return true;
     }
@@ -91,7 +92,7 @@ pub fn is_hdf5(bytes: &[u8]) -> bool {
     false
 }
 
-/// Describes the first bytes of a file in an unknown format.
+/// Describes the first bytes of a file of unknown format.
 fn describe_start(bytes: &[u8]) -> String {
     let start = bytes.get(..bytes.len().min(8)).unwrap_or_default();
     if start.is_empty() {
@@ -124,8 +125,8 @@ mod tests {
     const PLAIN: &[u8] = include_bytes!("../../../../../tests/data/mat/scipy-5.mat");
     const PACKED: &[u8] = include_bytes!("../../../../../tests/data/mat/scipy-5-packed.mat");
     const OLD: &[u8] = include_bytes!("../../../../../tests/data/mat/scipy-4.mat");
-    /// `ss([1 2; 3 4], [1; 0], [1 0], 0)` of the control package, with tags that count too many
-    /// bytes.
+    /// `ss([1 2; 3 4], [1; 0], [1 0], 0)`, saved by the control package of GNU Octave; its tags
+    /// announce too many bytes.
     const OCTAVE: &[u8] = include_bytes!("../../../../../tests/data/mat/octave-ss.mat");
     const MOST: u64 = 1 << 20;
 

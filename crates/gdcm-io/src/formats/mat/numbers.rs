@@ -1,12 +1,12 @@
-//! Numbers of a data element, in any stored type.
+//! Reading of the numbers in a data element, in any stored type.
 
 use crate::formats::mat::element::{DataKind, Element};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Reads all numbers of an element, which must be `count` numbers.
+/// Reads the numbers of an element; rejects any number other than `count`.
 ///
-/// MATLAB stores numbers in the smallest type that holds them, so the stored type may differ from
-/// the array's type.
+/// MATLAB stores the numbers of an array in the smallest type that holds them, so the stored type
+/// may differ from the array's type.
 pub(super) fn read_numbers(
     element: &Element<'_>,
     count: usize,
@@ -25,7 +25,7 @@ pub(super) fn read_numbers(
     Ok(number_type.decode_all(element.data.rest()))
 }
 
-/// Reads integers that are sizes or indices; rejects negative values.
+/// Reads 32-bit integers that are sizes or indices; rejects negative values and other types.
 pub(super) fn read_sizes(
     element: &Element<'_>,
     budget: &ReadingBudget<'_>,
@@ -47,7 +47,7 @@ pub(super) fn read_sizes(
     Ok(sizes)
 }
 
-/// Reads unsigned 64-bit integers exactly; `None` for any other type.
+/// Reads unsigned 64-bit integers without rounding; `None` for any other type.
 pub(super) fn read_long_words(
     element: &Element<'_>,
     budget: &ReadingBudget<'_>,

@@ -1,7 +1,7 @@
-//! Finds the object part of a level-5 file: an array of bytes that form a small embedded file,
-//! whose cells describe all objects.
+//! Object part of a level-5 file: an array of bytes that form a small embedded file, whose cells
+//! describe all objects.
 //!
-//! The format is not published by The MathWorks; it is known from the descriptions by the
+//! The format is not published by The MathWorks; this reader follows the descriptions by the
 //! MatFileHandler, matio (Python) and MAT.jl projects.
 
 use crate::formats::mat::array_header::{ArrayClass, ArrayHeader};
@@ -15,10 +15,10 @@ use crate::formats::mat::value_path::{Step, ValuePath};
 use crate::formats::variables::Value;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Class whose single object holds all other objects.
+/// Class of the single object whose cells hold all other objects.
 const WRAPPER: &str = "FileWrapper__";
 
-/// Reads the objects at byte `at`.
+/// Reads the objects at byte `at` of a file.
 pub(super) fn read_objects(
     bytes: &[u8],
     at: Option<usize>,
@@ -39,8 +39,8 @@ pub(super) fn read_objects(
     read_embedded_file(Element::read(&mut inner)?.array_contents()?, budget)
 }
 
-/// Reads the objects in an embedded file, the contents of an array of bytes: a record whose field
-/// `MCOS` holds the objects of MATLAB's own classes.
+/// Reads the objects from an embedded file, which is the content of a byte array. It holds a record
+/// whose field `MCOS` contains the objects of MATLAB's `classdef` classes.
 fn read_embedded_file(
     mut array: Cursor<'_>,
     budget: &ReadingBudget<'_>,
@@ -67,7 +67,7 @@ fn read_embedded_file(
     Err(systems.damaged("the class systems do not include MCOS"))
 }
 
-/// Reads the objects in a `FileWrapper__`.
+/// Reads the objects from the cells of a `FileWrapper__`.
 fn read_wrapper(
     mut wrapper: Cursor<'_>,
     budget: &ReadingBudget<'_>,
@@ -86,7 +86,7 @@ fn read_wrapper(
     let path = ValuePath::start(WRAPPER);
     let reader = ArrayReader {
         budget,
-        objects: Err("it is nested in the objects of the file"),
+        objects: Err("it is nested inside another object, which is not supported"),
     };
     let mut cells = Vec::new();
     let mut long_words = LongWords::new();
@@ -102,8 +102,8 @@ fn read_wrapper(
     Ok(Subsystem::new(cells, budget)?.with_long_words(long_words))
 }
 
-/// Reads a cell exactly if it holds unsigned 64-bit integers; `value` holds them rounded to 53
-/// bits.
+/// Reads a cell without rounding if it holds unsigned 64-bit integers; `None` for any other cell.
+/// `value` is the cell as already read, with numbers rounded to 53 bits.
 fn read_exact_words(
     mut cell: Cursor<'_>,
     value: &Value,

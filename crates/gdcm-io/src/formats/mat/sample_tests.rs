@@ -1,6 +1,6 @@
-//! Hand-made file bytes for tests.
+//! Builders of MATLAB file bytes for tests.
 
-/// An element of any data type.
+/// Returns a data element with the type number `kind`.
 pub(super) fn element(kind: u32, data: &[u8]) -> Vec<u8> {
     let mut bytes = [kind.to_le_bytes(), (data.len() as u32).to_le_bytes()].concat();
     bytes.extend(data);
@@ -8,7 +8,7 @@ pub(super) fn element(kind: u32, data: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// An array of a class (and flags) with these contents.
+/// Returns an array; `class` includes the flags.
 pub(super) fn matrix(class: u32, shape: &[i32], name: &str, contents: &[Vec<u8>]) -> Vec<u8> {
     let flags = element(6, &[class.to_le_bytes(), [0; 4]].concat());
     let shape = element(
@@ -22,7 +22,7 @@ pub(super) fn matrix(class: u32, shape: &[i32], name: &str, contents: &[Vec<u8>]
     element(14, &[&[flags, shape, name][..], contents].concat().concat())
 }
 
-/// An array of numbers.
+/// Returns an array of `double`.
 pub(super) fn doubles(name: &str, shape: &[i32], numbers: &[f64]) -> Vec<u8> {
     let data: Vec<u8> = numbers
         .iter()
@@ -31,7 +31,7 @@ pub(super) fn doubles(name: &str, shape: &[i32], numbers: &[f64]) -> Vec<u8> {
     matrix(6, shape, name, &[element(9, &data)])
 }
 
-/// A character array.
+/// Returns a character array with a single row.
 pub(super) fn chars(name: &str, text: &str) -> Vec<u8> {
     matrix(
         4,
@@ -41,7 +41,7 @@ pub(super) fn chars(name: &str, text: &str) -> Vec<u8> {
     )
 }
 
-/// A struct with one record.
+/// Returns a struct with one record.
 pub(super) fn record(name: &str, fields: &[(&str, Vec<u8>)]) -> Vec<u8> {
     let names = fields.iter().flat_map(|(field, _)| {
         let mut bytes = field.as_bytes().to_vec();
@@ -57,19 +57,19 @@ pub(super) fn record(name: &str, fields: &[(&str, Vec<u8>)]) -> Vec<u8> {
     matrix(2, &[1, 1], name, &contents)
 }
 
-/// A column cell array.
+/// Returns a column cell array.
 pub(super) fn column(values: &[Vec<u8>]) -> Vec<u8> {
     matrix(1, &[values.len() as i32, 1], "", values)
 }
 
-/// An opaque array.
+/// Returns an opaque array.
 pub(super) fn opaque(name: &str, class: &str, contents: Vec<u8>) -> Vec<u8> {
     let flags = element(6, &[17_u32.to_le_bytes(), [0; 4]].concat());
     let texts = [name, "MCOS", class].map(|text| element(1, text.as_bytes()));
     element(14, &[flags, texts.concat(), contents].concat())
 }
 
-/// A reference to objects.
+/// Returns a reference to objects.
 pub(super) fn reference(objects: &[u32], class: u32) -> Vec<u8> {
     let words = [
         &[0xdd00_0000, 2, 1, objects.len() as u32][..],
@@ -80,24 +80,24 @@ pub(super) fn reference(objects: &[u32], class: u32) -> Vec<u8> {
     words_of(&words)
 }
 
-/// A column of 32-bit integers.
+/// Returns a column of 32-bit integers.
 pub(super) fn words_of(words: &[u32]) -> Vec<u8> {
     let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
     matrix(13, &[words.len() as i32, 1], "", &[element(6, &bytes)])
 }
 
-/// A row of 64-bit integers.
+/// Returns a row of 64-bit integers.
 pub(super) fn long_words_of(words: &[u64]) -> Vec<u8> {
     let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
     matrix(15, &[1, words.len() as i32], "", &[element(13, &bytes)])
 }
 
-/// A file of these elements.
+/// Returns a file with these elements and no objects.
 pub(super) fn file(elements: &[u8]) -> Vec<u8> {
     file_with_objects(elements, None)
 }
 
-/// A file of these elements and the cells of its objects.
+/// Returns a file with these elements and, if given, the cells of its objects.
 pub(super) fn file_with_objects(elements: &[u8], cells: Option<&[Vec<u8>]>) -> Vec<u8> {
     let mut bytes = b"MATLAB 5.0 MAT-file, by hand".to_vec();
     bytes.resize(116, b' ');
@@ -122,7 +122,7 @@ pub(super) fn file_with_objects(elements: &[u8], cells: Option<&[Vec<u8>]>) -> V
     bytes
 }
 
-/// A big-endian file with one array of numbers.
+/// Returns a big-endian file with an array of `double`.
 pub(super) fn big_file(name: &str, shape: &[i32], numbers: &[f64]) -> Vec<u8> {
     let element = |kind: u32, data: &[u8]| {
         let mut bytes = [kind.to_be_bytes(), (data.len() as u32).to_be_bytes()].concat();
@@ -160,24 +160,25 @@ pub(super) fn big_file(name: &str, shape: &[i32], numbers: &[f64]) -> Vec<u8> {
     bytes
 }
 
-/// Bytes of an object directory.
+/// Contents of an object directory.
 pub(super) struct Directory<'d> {
-    /// Layout version.
     pub(super) version: u32,
-    /// Names of properties and classes, counted from 1.
+    /// Names of properties and classes, in the order of their indices, which count from 1.
     pub(super) names: &'d [&'d str],
-    /// Indices of the package name and the class name, for each class.
+    /// For each class, the indices of its package name and of its own name.
     pub(super) classes: &'d [[u32; 2]],
-    /// Properties that classes create when saving their objects: index of the name, kind, value.
+    /// Property lists of objects that their class saves as another value: index of the name, kind,
+    /// value.
     pub(super) made: &'d [&'d [[u32; 3]]],
-    /// Class number and indices of the created and the plain properties, for each object.
+    /// For each object, the class number, the index in `made` and the index in `plain`, from 1; 0
+    /// for none.
     pub(super) objects: &'d [[u32; 3]],
-    /// Properties of other objects.
+    /// Property lists of the other objects: index of the name, kind, value.
     pub(super) plain: &'d [&'d [[u32; 3]]],
 }
 
 impl Directory<'_> {
-    /// Returns the first cell.
+    /// Returns the directory as the first cell of the object part.
     pub(super) fn cell(&self) -> Vec<u8> {
         let bytes = self.bytes();
         matrix(9, &[bytes.len() as i32, 1], "", &[element(2, &bytes)])

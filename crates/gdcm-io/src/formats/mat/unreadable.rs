@@ -1,14 +1,19 @@
-//! Values that are not read, each with the reason and a MATLAB command that exports its data.
+//! Values that this program does not read, each with the reason and a MATLAB command that exports
+//! its data.
 
 use crate::formats::mat::value_path::ValuePath;
 use crate::formats::variables::Value;
 
-/// Returns the unreadable value for an object of an unsupported class.
+/// Returns the opaque value for an object of an unsupported class.
 pub(super) fn unread_class(class: &str, path: &ValuePath<'_>) -> Value {
-    unreadable(class, "values of this class are not read", &path.text())
+    unreadable(
+        class,
+        "values of this class are not supported",
+        &path.text(),
+    )
 }
 
-/// Returns an unreadable value with the reason and a way to export its data.
+/// Returns an opaque value with the reason and a command that exports its data.
 pub(super) fn unreadable(class: &str, reason: &str, variable: &str) -> Value {
     let command = export_command(class, variable);
     let why = format!("{reason}; in MATLAB, save its data: {command}");
@@ -18,7 +23,7 @@ pub(super) fn unreadable(class: &str, reason: &str, variable: &str) -> Value {
 /// Returns a MATLAB command that writes `variable`, an object of `class`, to a file as plain
 /// arrays.
 ///
-/// Source: the reference pages in the manuals for MATLAB, the Control System Toolbox and the System
+/// Source: the reference manuals of MATLAB, the Control System Toolbox and the System
 /// Identification Toolbox.
 fn export_command(class: &str, variable: &str) -> String {
     let sys = if variable.is_empty() { "x" } else { variable };

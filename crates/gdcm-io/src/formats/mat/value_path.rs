@@ -1,11 +1,11 @@
-//! Path to a value inside a variable, for faults and instructions.
+//! Path to a value inside a variable, for errors and instructions.
 
 use crate::reading_budget::VariableFault;
 
 /// Maximum nesting depth of values.
 const DEEPEST: usize = 64;
 
-/// Path from a variable to a value inside it, a linked list from the value outwards.
+/// Path from a variable to a value inside it: a linked list that begins with the innermost step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ValuePath<'p> {
     outer: Option<&'p ValuePath<'p>>,
@@ -15,17 +15,17 @@ pub(super) struct ValuePath<'p> {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Step<'p> {
-    /// The variable, or a whole path as text.
+    /// Name of the variable, or a complete path as text.
     Start(&'p str),
     Field(&'p str),
-    /// A record of an array, counted from 0.
+    /// Index in a struct array, counted from 0.
     Record(usize),
-    /// A value in a cell array, counted from 0.
+    /// Index in a cell array, counted from 0.
     Cell(usize),
 }
 
 impl<'p> ValuePath<'p> {
-    /// Starts at a variable.
+    /// Creates the path of a variable.
     pub(super) fn start(name: &'p str) -> Self {
         Self {
             outer: None,
@@ -34,7 +34,10 @@ impl<'p> ValuePath<'p> {
         }
     }
 
-    /// Appends a step; rejects paths beyond the maximum depth.
+    /// Appends a step.
+    ///
+    /// # Errors
+    /// [`VariableFault`] if the path exceeds the maximum depth.
     pub(super) fn step(&'p self, step: Step<'p>) -> Result<ValuePath<'p>, VariableFault> {
         if self.depth >= DEEPEST {
             return Err(VariableFault::too_deep(&self.text()));
@@ -46,7 +49,7 @@ impl<'p> ValuePath<'p> {
         })
     }
 
-    /// Formats the path as in MATLAB: "sys.A", "models{3}.B".
+    /// Formats the path in MATLAB notation: "sys.A", "models{3}.B".
     pub(super) fn text(&self) -> String {
         let outer = self.outer.map(ValuePath::text).unwrap_or_default();
         match self.step {
@@ -57,7 +60,7 @@ impl<'p> ValuePath<'p> {
         }
     }
 
-    /// Adds the path to a fault that names no value yet.
+    /// Adds the path to an error that does not contain a variable name.
     pub(super) fn locate(&self, fault: VariableFault) -> VariableFault {
         fault.of(|| self.text())
     }

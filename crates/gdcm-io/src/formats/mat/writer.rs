@@ -13,7 +13,7 @@ use crate::formats::variables::{
 };
 use crate::reading_budget::VariableFault;
 
-/// Header text, padded with blanks: MATLAB checks the first words.
+/// First text of the header, padded with blanks; MATLAB checks its first words.
 const HEADER_TEXT: &str = "MATLAB 5.0 MAT-file, written by gdcm";
 /// Length to which the header text is padded \[bytes\].
 const HEADER_TEXT_BYTES: usize = 116;
@@ -23,9 +23,9 @@ const MOST_BYTES: u64 = u32::MAX as u64;
 /// Writes a file with these variables.
 ///
 /// Number types are kept: floating-point numbers are written as `double`, integers as `int32` or,
-/// if a value does not fit, as `int64`, and logical values as `logical`. Texts become a character
-/// array if all rows have the same length, otherwise cells. Objects become structs, and unreadable
-/// values an empty array.
+/// if a value does not fit, as `int64`, and logical values as `logical`. Strings become a character
+/// array if all have the same length, otherwise a cell array. Objects become structs, and opaque
+/// values empty arrays.
 ///
 /// # Errors
 ///
@@ -38,7 +38,7 @@ pub fn write(variables: &[Variable]) -> Result<Vec<u8>, VariableFault> {
     Ok(bytes)
 }
 
-/// Writes a packed file, which is smaller and requires MATLAB 7 or later.
+/// Writes a compressed file, which requires MATLAB 7 or later.
 ///
 /// # Errors
 ///
@@ -54,13 +54,16 @@ pub fn write_packed(variables: &[Variable]) -> Result<Vec<u8>, VariableFault> {
 fn file_header() -> Vec<u8> {
     let mut bytes = HEADER_TEXT.as_bytes().to_vec();
     bytes.resize(HEADER_TEXT_BYTES, b' ');
-    // No objects, version 1.0, and the byte-order mark.
+    // Position of the objects (none), version 1.0, and the byte-order mark.
     bytes.extend([0; 8]);
     bytes.extend([0, 1, b'I', b'M']);
     bytes
 }
 
-/// Returns the array element for a variable.
+/// Returns the element of a variable.
+///
+/// # Errors
+/// [`VariableFault::TooLarge`] for an element beyond 4 GiB.
 fn variable_element(variable: &Variable) -> Result<Vec<u8>, VariableFault> {
     let contents = array_contents(&variable.value, &variable.name);
     if contents.len() as u64 > MOST_BYTES {
@@ -74,10 +77,10 @@ fn variable_element(variable: &Variable) -> Result<Vec<u8>, VariableFault> {
     Ok(element)
 }
 
-/// Packs an element.
+/// Compresses an element.
 fn pack(plain: Vec<u8>) -> Vec<u8> {
     let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
-    // Writing to memory does not fail; the plain bytes would be equivalent.
+    // Writing to memory cannot fail; if it did, the uncompressed element would be equally valid.
     if encoder.write_all(&plain).is_err() {
         return plain;
     }
@@ -89,10 +92,10 @@ fn pack(plain: Vec<u8>) -> Vec<u8> {
     bytes
 }
 
-/// Appends an element, padded to eight bytes. Up to four bytes go into the tag itself, which MATLAB
-/// requires for some names.
+/// Appends an element, padded to a multiple of eight bytes. Up to four bytes are written within the
+/// tag, which MATLAB requires for some names.
 fn append_element(bytes: &mut Vec<u8>, kind: DataKind, data: &[u8]) {
-    // A variable whose length exceeds 32 bits is rejected; its elements are shorter.
+    // The cast is exact: the elements of an accepted variable are shorter than 4 GiB.
     let length = data.len() as u32;
     if (1..=4).contains(&length) && kind != DataKind::Packed {
         bytes.extend((length << 16 | kind as u32).to_le_bytes());
@@ -108,7 +111,7 @@ fn append_element(bytes: &mut Vec<u8>, kind: DataKind, data: &[u8]) {
     }
 }
 
-/// Array classes that are written, with their numbers in the flags.
+/// Array classes that this program writes; the values are their numbers in the flags.
 #[derive(Clone, Copy)]
 enum Class {
     Cell = 1,
@@ -127,7 +130,7 @@ const LOGICAL: u32 = 0x0200;
 /// Lengths to which MATLAB pads field names, including the terminating zero \[bytes\].
 const FIELD_NAME_LENGTHS: [usize; 2] = [32, 64];
 
-/// Returns the contents of an array element; the name is empty within another array.
+/// Returns the contents of an array element; `name` is empty within another array.
 fn array_contents(value: &Value, name: &str) -> Vec<u8> {
     match value {
         Value::Array(array) => number_contents(array, name),
@@ -139,13 +142,13 @@ fn array_contents(value: &Value, name: &str) -> Vec<u8> {
     }
 }
 
-/// Begins the contents of an array element with flags, shape and name.
+/// Returns the beginning of an array element: flags, shape and name.
 fn begin_contents(class: Class, flags: u32, shape: &[usize], name: &str) -> Vec<u8> {
     let mut bytes = Vec::new();
     let words = [(class as u32 | flags).to_le_bytes(), [0; 4]];
     append_element(&mut bytes, DataKind::U32, words.as_flattened());
-    // A dimension beyond 32 bits occurs only in an array that is rejected for its size, or in an
-    // empty array.
+    // A dimension beyond 32 bits occurs only in an empty array, or in an array that is rejected for
+    // its size.
     let sides: Vec<u8> = shape
         .iter()
         .flat_map(|&side| i32::try_from(side).unwrap_or(i32::MAX).to_le_bytes())
@@ -155,7 +158,7 @@ fn begin_contents(class: Class, flags: u32, shape: &[usize], name: &str) -> Vec<
     bytes
 }
 
-/// Class, flags and data type for numbers.
+/// Class, flags and data type with which numbers are written.
 #[derive(Clone, Copy)]
 struct NumberForm {
     class: Class,
@@ -164,7 +167,8 @@ struct NumberForm {
 }
 
 impl NumberForm {
-    /// Returns the form that matches the kind of the array, or `double` if a number does not fit.
+    /// Returns the form for the kind of the array; `double` if a number cannot be written as that
+    /// kind.
     fn for_array(array: &Array) -> Self {
         match array.kind {
             ElementKind::Logical if all_numbers(array, is_truth_value) => Self {
@@ -191,7 +195,7 @@ impl NumberForm {
     }
 }
 
-/// Whether `fits` accepts the real and imaginary parts of all numbers.
+/// Returns whether `fits` is true for the real and imaginary parts of all numbers.
 fn all_numbers(array: &Array, fits: impl Fn(f64) -> bool) -> bool {
     let numbers = array.re.iter().chain(array.im.iter().flatten());
     numbers.copied().all(fits)
@@ -209,7 +213,7 @@ fn fits_i64(number: f64) -> bool {
     is_integer_below(number, 9_223_372_036_854_775_808.0)
 }
 
-/// Whether a number is an integer from `-most` up to, but excluding, `most`.
+/// Returns whether a number is an integer from `-most` up to, but excluding, `most`.
 fn is_integer_below(number: f64, most: f64) -> bool {
     number.fract() == 0.0 && (-most..most).contains(&number)
 }
@@ -242,7 +246,7 @@ fn encode_numbers(kind: DataKind, numbers: &[f64]) -> Vec<u8> {
     }
 }
 
-/// Returns a character array if all texts have the same length, otherwise cells.
+/// Writes strings as a character array if all have the same length, otherwise as a cell array.
 fn text_contents(texts: &TextArray, name: &str) -> Vec<u8> {
     let rows: Vec<Vec<u16>> = texts
         .texts
@@ -258,7 +262,7 @@ fn text_contents(texts: &TextArray, name: &str) -> Vec<u8> {
     if !is_even || rows.is_empty() || rows.len() != count {
         return text_cell_contents(texts, name);
     }
-    // `''` has no rows.
+    // A single empty string has no rows, like `''`.
     let is_single_empty = rows.len() == 1 && length == 0;
     let mut shape = vec![if is_single_empty { 0 } else { height }, length];
     shape.extend(pages);
@@ -273,10 +277,10 @@ fn text_contents(texts: &TextArray, name: &str) -> Vec<u8> {
     bytes
 }
 
-/// Appends the element with UTF-16 characters.
+/// Appends an element with characters, given as UTF-16.
 ///
-/// UTF-8 is written where possible, because SciPy and Octave read it most reliably. Characters with
-/// surrogate pairs stay in UTF-16: in UTF-8 their rows could not be separated.
+/// Characters are written as UTF-8, which SciPy and Octave read most reliably. Arrays with
+/// surrogate pairs are written as UTF-16: as UTF-8, their rows could not be separated.
 fn append_characters(bytes: &mut Vec<u8>, characters: &[u16]) {
     match String::from_utf16(characters) {
         Ok(letters) if letters.chars().count() == characters.len() => {
@@ -292,7 +296,7 @@ fn append_characters(bytes: &mut Vec<u8>, characters: &[u16]) {
     }
 }
 
-/// Returns texts with different lengths, each in a cell.
+/// Writes strings of different lengths as a cell array.
 fn text_cell_contents(texts: &TextArray, name: &str) -> Vec<u8> {
     let cell = CellArray {
         shape: texts.shape.clone(),
@@ -320,7 +324,7 @@ fn record_contents(records: &StructArray, name: &str) -> Vec<u8> {
         .unwrap_or(0);
     for at in 0..count {
         for (_, values) in &records.fields {
-            // An element without bytes is an empty array.
+            // A missing value is written as an element without bytes, which is an empty array.
             let value = match values.get(at) {
                 Some(value) => array_contents(value, ""),
                 None => Vec::new(),
@@ -331,8 +335,7 @@ fn record_contents(records: &StructArray, name: &str) -> Vec<u8> {
     bytes
 }
 
-/// Appends the field names, padded with zeros to the same length, after an element that gives this
-/// length.
+/// Appends the field names: an element with their common length, then the names, padded with zeros.
 fn append_field_names(bytes: &mut Vec<u8>, records: &StructArray) {
     let longest = records
         .fields
@@ -389,7 +392,7 @@ mod writer_tests {
     fn numbers() -> impl Strategy<Value = Value> {
         let whole =
             (-9_000_000_000_000_000_i64..9_000_000_000_000_000).prop_map(|number| number as f64);
-        // As many numbers as the largest shape holds.
+        // The largest shape has 27 elements.
         let both = |kind: ElementKind, number: BoxedStrategy<f64>| {
             let part = prop::collection::vec(number, 27);
             (Just(kind), part.clone(), part)

@@ -1,4 +1,4 @@
-//! MATLAB's attributes of groups and datasets.
+//! Attributes of groups and datasets that MATLAB writes.
 
 use std::collections::HashMap;
 
@@ -7,30 +7,31 @@ use hdf5_pure::{AttrValue, Error};
 use crate::formats::mat73::library_fault::library_fault;
 use crate::reading_budget::VariableFault;
 
-/// `MATLAB_object_decode` of a function handle.
+/// Value of `MATLAB_object_decode` for a function handle.
 pub(super) const FUNCTION_HANDLE: u64 = 1;
-/// `MATLAB_object_decode` of an `@`-folder object, stored as a struct.
+/// Value of `MATLAB_object_decode` for an object of an old-style (`@` folder) class, stored as a
+/// struct.
 pub(super) const FOLDER_OBJECT: u64 = 2;
-/// `MATLAB_object_decode` of a `classdef` object, stored as a reference.
+/// Value of `MATLAB_object_decode` for a `classdef` object, stored as a reference.
 pub(super) const OBJECT: u64 = 3;
 
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct MatlabAttributes {
-    /// Class name (`MATLAB_class`); `None` if MATLAB did not write the object.
+    /// Class name (`MATLAB_class`); `None` if the file was not written by MATLAB.
     pub(super) class: Option<String>,
-    /// Whether the dataset holds the shape of an empty array (`MATLAB_empty`,
+    /// Whether the array is empty; the dataset then holds its shape (`MATLAB_empty`,
     /// `OCTAVE_EMPTY_MATRIX`).
     pub(super) is_empty: bool,
-    /// Height of a sparse matrix (`MATLAB_sparse`).
+    /// Number of rows of a sparse matrix (`MATLAB_sparse`).
     pub(super) sparse_height: Option<u64>,
-    /// Field names of a struct in order (`MATLAB_fields`).
+    /// Field names of a struct, in order (`MATLAB_fields`).
     pub(super) fields: Vec<String>,
     /// Encoding (`MATLAB_object_decode`); 0 for a plain value.
     pub(super) encoding: u64,
 }
 
 impl MatlabAttributes {
-    /// Selects MATLAB's attributes; `path` names the variable in faults.
+    /// Reads MATLAB's attributes; `path` is the variable name in errors.
     pub(super) fn read(
         attributes: Result<HashMap<String, AttrValue>, Error>,
         path: &str,
@@ -53,7 +54,7 @@ impl MatlabAttributes {
         })
     }
 
-    /// Returns the class name, or an empty text.
+    /// Returns the class name; empty if there is none.
     pub(super) fn class_name(&self) -> &str {
         self.class.as_deref().unwrap_or_default()
     }

@@ -1,18 +1,18 @@
-//! Checks on the chunks of packed datasets.
+//! Checks on the chunks of compressed datasets.
 
 use hdf5_pure::{Chunk, ChunkIndex, Dataset};
 
 use crate::formats::mat73::library_fault::{damaged, library_fault};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Memory that the library takes for each chunk while it reads \[bytes\].
+/// Memory that the library needs for each chunk while it reads \[bytes\].
 const CHUNK: u64 = 128;
-/// Maximum length that filters add to a chunk, beyond twice its length \[bytes\].
+/// Maximum length of a stored chunk beyond twice its decompressed length \[bytes\].
 const OVERHEAD: u64 = 4096;
 
-/// Takes the memory for reading a dataset in chunks (an unpacked chunk, and the bookkeeping for
-/// each chunk) and checks that the claimed chunks are possible: the library allocates memory for
-/// the claimed sizes and adds up their offsets unchecked.
+/// Takes the memory needed to read a dataset in chunks from the budget: a decompressed chunk, and
+/// the library's data about each chunk. Rejects chunks that are impossible, because the library
+/// allocates memory for the claimed sizes and adds offsets without overflow checks.
 ///
 /// `sides` are the dimensions of the dataset; `size` is the element size \[bytes\].
 pub(super) fn check_chunks(
@@ -29,7 +29,7 @@ pub(super) fn check_chunks(
         return Ok(());
     };
     if shape.contains(&0) || shape.len() != sides.len() {
-        return Err(damaged(path, "the chunks have no size"));
+        return Err(damaged(path, "the chunks have no valid size"));
     }
     let mut elements: u64 = 1;
     let mut most_chunks: u64 = 1;
@@ -45,7 +45,7 @@ pub(super) fn check_chunks(
     if index == Some(ChunkIndex::BTreeV2) {
         return Err(VariableFault::unsupported(
             path,
-            "a dataset that can grow in two directions",
+            "a dataset with several unlimited dimensions",
             "write it with a fixed shape",
         ));
     }
@@ -59,7 +59,7 @@ pub(super) fn check_chunks(
     if chunks.iter().any(|chunk| chunk.storage_size > longest) {
         return Err(damaged(path, "a chunk is longer than its shape allows"));
     }
-    // The other indices compute offsets instead of storing them.
+    // Only this index stores offsets; the others compute them.
     if index == Some(ChunkIndex::BTreeV1) {
         let is_outside = chunks.iter().any(|chunk| begins_outside(chunk, sides));
         if is_outside || chunks.len() as u64 > most_chunks {

@@ -1,4 +1,4 @@
-//! Dataset elements, read within limits.
+//! Elements of a dataset, read within the budget.
 
 use hdf5_pure::{Dataset, Datatype, ReferenceType};
 
@@ -9,18 +9,18 @@ use crate::formats::strides::{Places, count, matrix_shape};
 use crate::formats::variables::{Array, ElementKind};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Storage order of the elements.
+/// Order in which the elements are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Order {
-    /// MATLAB's order: the first index is fastest, and the dimensions are reversed.
+    /// Column-major, as in MATLAB: the dimensions in the file are reversed.
     Columns,
-    /// C's order: the last index is fastest.
+    /// Row-major, as in C.
     Rows,
 }
 
 impl Order {
-    /// Returns the shape of the array, with at least two dimensions, from the dimensions in the
-    /// file.
+    /// Converts the dimensions in the file to the shape of the array, which has at least two
+    /// dimensions.
     fn shape(self, sides: &[usize]) -> Vec<usize> {
         match self {
             Order::Rows => matrix_shape(sides),
@@ -33,10 +33,10 @@ impl Order {
     }
 }
 
-/// Elements of a dataset in file order.
+/// Elements of a dataset, in file order.
 pub(super) struct Elements {
     pub(super) datatype: Datatype,
-    /// At least two dimensions.
+    /// Shape of the array, with at least two dimensions.
     pub(super) shape: Vec<usize>,
     /// Element size \[bytes\].
     size: usize,
@@ -45,7 +45,10 @@ pub(super) struct Elements {
 }
 
 impl Elements {
-    /// Reads a dataset whose size is within the limits.
+    /// Reads a dataset.
+    ///
+    /// # Errors
+    /// [`VariableFault`] if the size exceeds the budget, or the dataset is damaged.
     pub(super) fn read(
         dataset: &Dataset,
         order: Order,
@@ -70,8 +73,8 @@ impl Elements {
             .map_err(|error| library_fault(&error, path))?;
         let size = usize::try_from(size).map_err(|_| too_many_elements(path))?;
         if bytes.is_empty() && count == 1 {
-            // h5py's Empty has no shape and no element; the library shows this only in the raw
-            // bytes.
+            // An `Empty` of h5py has no shape and no element; the library reveals this only by the
+            // absence of raw bytes.
             return Ok(Self {
                 datatype,
                 shape: vec![0, 0],
@@ -81,7 +84,7 @@ impl Elements {
             });
         }
         if count.checked_mul(size) != Some(bytes.len()) {
-            return Err(damaged(path, "the dataset does not fit its shape"));
+            return Err(damaged(path, "the dataset does not match its shape"));
         }
         Ok(Self {
             datatype,
@@ -92,12 +95,12 @@ impl Elements {
         })
     }
 
-    /// Counts the elements.
+    /// Returns the number of elements.
     pub(super) fn count(&self) -> usize {
         self.bytes.len().checked_div(self.size).unwrap_or(0)
     }
 
-    /// Returns the positions of the elements in the file, in the order used by this program.
+    /// Returns the position of each element in the file, in the column-major order of an array.
     pub(super) fn places(&self) -> Box<dyn Iterator<Item = usize>> {
         match (self.order, Places::row_major(&self.shape)) {
             (Order::Rows, Some(places)) => Box::new(places),
@@ -105,14 +108,14 @@ impl Elements {
         }
     }
 
-    /// Returns the bytes of the element at a position.
+    /// Returns the bytes of the element at a position in the file.
     pub(super) fn at(&self, place: usize) -> &[u8] {
         self.bytes
             .get(place * self.size..(place + 1) * self.size)
             .unwrap_or_default()
     }
 
-    /// Returns the numbers, if the elements are numbers.
+    /// Returns the elements as numbers; `None` if they are not numeric.
     pub(super) fn numbers(
         &self,
         path: &str,
@@ -143,7 +146,7 @@ impl Elements {
         }))
     }
 
-    /// Returns exact 64-bit words, if the elements are 64-bit integers.
+    /// Returns the elements without rounding; `None` if they are not 64-bit integers.
     pub(super) fn words(
         &self,
         path: &str,
@@ -166,7 +169,7 @@ impl Elements {
     }
 }
 
-/// Whether elements of this type are references to datasets and groups.
+/// Returns whether elements of this type are references to datasets or groups.
 pub(super) fn is_object_reference(datatype: &Datatype) -> bool {
     matches!(
         datatype,
@@ -185,7 +188,7 @@ fn sides_in_memory(sides: &[u64]) -> Option<Vec<usize>> {
 }
 
 fn too_many_elements(path: &str) -> VariableFault {
-    damaged(path, "the element count overflows")
+    damaged(path, "the number of elements is too large")
 }
 
 fn little_endian_word(bytes: &[u8]) -> u64 {

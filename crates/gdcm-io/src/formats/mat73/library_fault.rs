@@ -1,10 +1,10 @@
-//! Errors of the HDF5 library as faults of this program.
+//! Conversion of HDF5 library errors to errors of this program.
 
 use hdf5_pure::{Error, FormatError};
 
 use crate::reading_budget::VariableFault;
 
-/// Converts an error of the library to a fault; `path` names the variable.
+/// Converts an error of the library; `path` is the variable name in the error.
 ///
 /// The library does not report the position in the file.
 pub(super) fn library_fault(error: &Error, path: &str) -> VariableFault {
@@ -23,15 +23,16 @@ pub(super) fn library_fault(error: &Error, path: &str) -> VariableFault {
             | FormatError::InvalidLayoutVersion(_)
             | FormatError::UnsupportedZfp(_),
         ) => {
-            // HDF5 2.0 uses a new chunk layout if its latest format is requested.
-            let remedy = "write it with compression gzip or none, in a single file, in the format of HDF5 1.14 or earlier";
+            // A program that requests the latest format of HDF5 2.0 writes a new chunk layout.
+            let remedy = "write it with gzip compression or none, in a single file, in the format \
+                of HDF5 1.14 or earlier";
             VariableFault::unsupported(path, format!("a dataset of this kind ({error})"), remedy)
         }
         _ => damaged(path, &error.to_string()),
     }
 }
 
-/// Returns the fault for bytes that contradict the format; their position is unknown.
+/// Returns the error for bytes that contradict the format, without their position.
 pub(super) fn damaged(path: &str, what: &str) -> VariableFault {
     VariableFault::damaged(path, what, 0)
 }

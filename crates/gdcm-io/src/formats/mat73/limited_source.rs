@@ -1,22 +1,22 @@
-//! File bytes with a limit on reading.
+//! File contents in memory, with a limit on the total number of bytes read.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use hdf5_pure::{FormatError, Source};
 
-/// Maximum number of bytes read, as a multiple of the file size: headers and indices are read
-/// several times, once for each query.
+/// Factor between file size and maximum number of bytes read: headers and indices are read once for
+/// each query.
 const TIMES: u64 = 16;
-/// Additional bytes that may be read from any file; small files need them.
+/// Additional bytes that may be read from a file of any size.
 const ADDITIONAL: u64 = 16 << 20;
-/// Minimum number of bytes counted for a read.
+/// Minimum number of bytes counted for each read.
 const LEAST: u64 = 16;
 
-/// Bytes in memory with a limit on how much is read.
+/// File contents in memory, with a limit on the total number of bytes read.
 ///
-/// Index nodes may refer to one another so that a file with a few kilobytes has more paths than can
-/// ever be visited; the library follows them all. The limit ends such reading.
+/// In a malicious file of a few kilobytes, index nodes may refer to one another and so form more
+/// paths than can ever be visited. The library follows them all; the limit ends such reading.
 pub(super) struct LimitedSource {
     bytes: Vec<u8>,
     /// Number of bytes that may still be read.
@@ -25,7 +25,7 @@ pub(super) struct LimitedSource {
 }
 
 impl LimitedSource {
-    /// Creates the source; reading ends once `stop` is set.
+    /// Creates a source; reading fails once `stop` is set.
     pub(super) fn new(bytes: Vec<u8>, stop: Arc<AtomicBool>) -> Self {
         let limit = (bytes.len() as u64)
             .saturating_mul(TIMES)
@@ -55,7 +55,7 @@ impl Source for LimitedSource {
         }
         if paid.is_err() {
             return Err(FormatError::Source(
-                "its parts refer to one another too often".to_owned(),
+                "the parts of the file refer to one another too often".to_owned(),
             ));
         }
         let start = usize::try_from(offset).unwrap_or(usize::MAX);

@@ -1,16 +1,17 @@
-//! MATLAB 7.3 files, and plain HDF5 files such as those written by h5py.
+//! MATLAB 7.3 files, and other HDF5 files such as those written by h5py.
 //!
 //! The container follows the HDF5 File Format Specification 3.0. MATLAB's conventions are not
-//! published by The MathWorks; they are known from its files and from the descriptions by the
-//! matio, hdf5storage and MAT.jl projects: attributes give the classes, arrays are stored by
-//! columns, with their shapes reversed, and the elements of cells and struct arrays are references
-//! into a group `#refs#`.
+//! published by The MathWorks; this reader follows MATLAB's files and the descriptions by the
+//! matio, hdf5storage and MAT.jl projects: attributes give the classes, arrays are stored in
+//! column-major order with their dimensions reversed, and the elements of cells and struct arrays
+//! are references into a group `#refs#`.
 //!
-//! Arrays without MATLAB's attributes are stored by rows, as in C and Python: a dataset with r x c
-//! elements becomes an r x c array, a scalar 1 x 1, n elements without a second dimension the row 1
-//! x n. (MATLAB's own `h5write` writes such datasets from its columns; they are read transposed.)
-//! Groups become structs. Group members are sorted by name, unless MATLAB gives an order; symbolic
-//! links, including links to other files, are skipped.
+//! Arrays without MATLAB's attributes are stored in row-major order, as in C and Python: a dataset
+//! with r x c elements becomes an r x c array, a scalar a 1 x 1 array, and a dataset with n
+//! elements in one dimension a 1 x n array. (MATLAB's own `h5write` writes such datasets in
+//! column-major order; they are read transposed.) Groups become structs. Group members are sorted
+//! by name, unless MATLAB gives an order. Symbolic links, including links to other files, are
+//! skipped.
 
 mod attributes;
 mod chunks;
@@ -37,23 +38,23 @@ use crate::formats::variables::Variable;
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// MATLAB 7.3 and HDF5.
+/// Importer of MATLAB 7.3 and HDF5 files.
 pub(crate) const HDF5: Importer = Importer {
-    name: "an HDF5 file, as MATLAB writes with -v7.3",
+    name: "an HDF5 file, as written by MATLAB with -v7.3",
     endings: &["mat", "h5", "hdf5"],
     recognises: |bytes, _| is_hdf5(bytes),
     read: |bytes, path, budget| Contents::variables(read(bytes, budget), path),
 };
 
-/// Reads all variables, also those in the groups that GNU Octave writes.
+/// Reads all variables, and converts the groups that GNU Octave writes.
 fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     let variables = read_variables(bytes, budget);
-    // The library reports a stop as an unreadable file: check for it first.
+    // A stop makes the library report an unreadable file: check for the stop first.
     budget.work(0, "")?;
     convert_hdf5_groups(variables?, budget)
 }
 
-/// Reads all variables, with groups as structs.
+/// Reads all variables; groups become structs.
 fn read_variables(
     bytes: &[u8],
     budget: &ReadingBudget<'_>,
@@ -66,23 +67,23 @@ fn read_variables(
     reader.variables(&file.root())
 }
 
-/// Opens a copy of the file and checks that it is complete; a user block such as MATLAB's may
-/// precede it.
+/// Opens a copy of the file and checks that the file is complete. A user block, such as MATLAB's
+/// header, may precede the HDF5 contents.
 fn open(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<File, VariableFault> {
     if !is_hdf5_bytes(bytes) {
         return Err(VariableFault::other_bytes(
-            "a file of MATLAB 7.3 or HDF5",
+            "a MATLAB 7.3 or HDF5 file",
             bytes,
         ));
     }
     budget.take(bytes.len() as u64, 1, "")?;
-    // Reads from a cache would not be counted.
+    // `LimitedSource` would not count reads from a cache.
     let properties =
         FileAccessProperties::new().with_metadata_cache(MetadataCacheConfig::disabled());
     let source = LimitedSource::new(bytes.to_vec(), Arc::clone(budget.stop()));
     let file = File::from_source_with_options(source, properties)
         .map_err(|error| library_fault(&error, ""))?;
-    // Chunks may be missing at the end without any structure extending beyond it.
+    // The size in the superblock reveals a truncated file even if only chunks are missing.
     if file.superblock().eof_address > bytes.len() as u64 {
         return Err(VariableFault::cut_off("", bytes.len()));
     }
@@ -99,8 +100,8 @@ mod tests {
     use crate::formats::mat73::objects::Objects;
     use crate::formats::variables::{Array, CellArray, ElementKind, TextArray, Value};
 
-    /// Reads all variables of a MATLAB 7.3 file or a plain HDF5 file; unreadable objects of
-    /// MATLAB's classes are [`Value::Opaque`](crate::formats::variables::Value::Opaque).
+    /// Reads all variables without resolving references to objects, which become
+    /// [`Value::Opaque`](crate::formats::variables::Value::Opaque).
     fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
         let objects = Objects::Unread("objects are not read".to_owned());
         Reader {
@@ -164,7 +165,8 @@ mod tests {
                 (cube.shape.as_slice(), &cube.re[..3], cube.re[6]),
                 ([2, 3, 4].as_slice(), [0.0, 12.0, 4.0].as_slice(), 1.0)
             );
-            // numpy.arange(600).reshape(20, 30), in chunks that do not divide it.
+            // numpy.arange(600).reshape(20, 30), stored in chunks whose dimensions do not divide
+            // those of the array.
             let packed = array(&variables, "packed");
             assert_eq!(
                 (packed.shape.as_slice(), packed.re[1], packed.re[20]),
@@ -324,7 +326,7 @@ mod tests {
 
     #[test]
     fn other_variables_are_read_if_the_objects_are_damaged() {
-        // The directory of this file is cut off after its version.
+        // The directory of the objects in this file ends after its version.
         let read = (HDF5.read)(
             &file("objects.mat"),
             Path::new("objects.mat"),

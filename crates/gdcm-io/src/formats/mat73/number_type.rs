@@ -1,10 +1,10 @@
-//! Numeric types of HDF5.
+//! Numeric types of HDF5 elements.
 
 use hdf5_pure::{CompoundMember, Datatype, DatatypeByteOrder, EnumMember, FloatingPointLayout};
 
 use crate::formats::strides::{NumberClass, StoredNumber};
 
-/// IEEE 754 binary16, as h5py writes numpy's float16.
+/// IEEE 754 binary16, which h5py writes for NumPy's float16.
 const HALF: FloatingPointLayout = FloatingPointLayout {
     bit_offset: 0,
     bit_precision: 16,
@@ -18,16 +18,16 @@ const HALF: FloatingPointLayout = FloatingPointLayout {
 /// A numeric type, real or complex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct NumberType {
-    /// Type of the number, or of each complex part.
+    /// Type of the number, or of each part of a complex number.
     pub(super) number: StoredNumber,
-    /// Offset of the number, or of its real part, in an element \[bytes\].
+    /// Offset in an element of the number, or of its real part \[bytes\].
     re: usize,
-    /// Offset of the imaginary part in an element \[bytes\].
+    /// Offset in an element of the imaginary part \[bytes\]; `None` for real numbers.
     im: Option<usize>,
 }
 
 impl NumberType {
-    /// Returns the numeric type; `None` if the elements are not numbers.
+    /// Returns the numeric type of elements; `None` if they are not numbers.
     pub(super) fn from_datatype(datatype: &Datatype) -> Option<Self> {
         let Datatype::Compound { members, size } = datatype else {
             return Some(Self {
@@ -36,7 +36,7 @@ impl NumberType {
                 im: None,
             });
         };
-        // MATLAB names the complex parts real and imag, h5py r and i.
+        // MATLAB names the parts of a complex number real and imag, h5py r and i.
         let [re, im] = members.as_slice() else {
             return None;
         };
@@ -56,17 +56,17 @@ impl NumberType {
         })
     }
 
-    /// Whether the numbers are complex.
+    /// Returns whether the numbers are complex.
     pub(super) fn is_complex(self) -> bool {
         self.im.is_some()
     }
 
-    /// Decodes the number, or its real part, in an element.
+    /// Decodes the number in an element, or its real part.
     pub(super) fn real_part(self, element: &[u8]) -> f64 {
         self.part_at(self.re, element)
     }
 
-    /// Decodes the imaginary part in an element, if the numbers are complex.
+    /// Decodes the imaginary part of the number in an element; `None` for real numbers.
     pub(super) fn imaginary_part(self, element: &[u8]) -> Option<f64> {
         Some(self.part_at(self.im?, element))
     }
@@ -77,7 +77,7 @@ impl NumberType {
     }
 }
 
-/// Returns the offset of a part if the part is within an element of `size` bytes.
+/// Returns the offset of a part \[bytes\]; `None` if the part exceeds an element of `size` bytes.
 fn offset_within(part: &CompoundMember, number: StoredNumber, size: usize) -> Option<usize> {
     let offset = usize::try_from(part.byte_offset).ok()?;
     if offset + number.size() <= size {
@@ -87,7 +87,7 @@ fn offset_within(part: &CompoundMember, number: StoredNumber, size: usize) -> Op
     }
 }
 
-/// Returns the number type; `None` if the elements are not real numbers.
+/// Returns the type of real numbers; `None` if the elements are not real numbers.
 fn stored_number(datatype: &Datatype) -> Option<StoredNumber> {
     match datatype {
         Datatype::FixedPoint {
@@ -143,7 +143,7 @@ fn is_big_endian(order: &DatatypeByteOrder) -> Option<bool> {
     }
 }
 
-/// Whether an enumeration has the two names of h5py's logical values.
+/// Returns whether an enumeration has the two names that h5py gives to logical values.
 fn has_truth_names(members: &[EnumMember]) -> bool {
     let names: Vec<_> = members.iter().map(|member| member.name.as_str()).collect();
     names == ["FALSE", "TRUE"]

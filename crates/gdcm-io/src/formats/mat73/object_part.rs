@@ -1,5 +1,5 @@
-//! Objects of MATLAB classes, in a separate part of the file (`#subsystem#/MCOS`), as in files up
-//! to version 7.
+//! Objects of MATLAB classes, stored in a separate part of the file (`#subsystem#/MCOS`), with the
+//! same cells as in files up to version 7.
 
 use hdf5_pure::{Dataset, File, Object};
 
@@ -11,18 +11,18 @@ use crate::formats::mat73::reader::Reader;
 use crate::formats::variables::Value;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Size of elements that may be 64-bit integers \[bytes\].
+/// Element size of 64-bit integers \[bytes\].
 const LONG_WORD: u64 = 8;
 
-/// Cells of the object part.
+/// Contents of the object part.
 pub(super) struct ObjectCells {
-    /// The first cell holds the bytes of the directory.
+    /// Cells; the first holds the directory.
     pub(super) cells: Vec<Value>,
     pub(super) long_words: LongWords,
 }
 
-/// Reads the object part, if there is one. Objects that cannot be read leave the other variables
-/// readable; only an exhausted budget is an error.
+/// Reads the object part. If it is missing or cannot be read, the objects are marked as unread and
+/// the other variables stay readable; the only error is an exhausted budget.
 pub(super) fn read_objects(
     file: &File,
     budget: &ReadingBudget<'_>,

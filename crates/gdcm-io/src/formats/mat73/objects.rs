@@ -1,21 +1,21 @@
-//! References to objects of MATLAB's classes.
+//! References to objects of MATLAB classes.
 
 use crate::formats::mat::Subsystem;
 use crate::formats::variables::{Array, Value};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Treatment of references to objects.
+/// Treatment of references to objects while a file is read.
 pub(super) enum Objects {
-    /// References remain integers, within the object part itself.
+    /// References remain integers: the object part itself is being read.
     References,
-    /// Objects cannot be read, with the reason.
+    /// Objects become opaque values, for this reason.
     Unread(String),
-    /// References are resolved.
+    /// References are replaced by the objects.
     Read(Subsystem),
 }
 
 impl Objects {
-    /// Returns the value of a reference; `class` is the class of its objects.
+    /// Returns the value for a reference; `class` is the class of the objects.
     pub(super) fn value(
         &self,
         class: &str,
@@ -34,7 +34,8 @@ impl Objects {
     }
 }
 
-/// Returns the words of a reference; `None` if a number is no unsigned 32-bit integer.
+/// Returns the words of a reference; `None` if a number is outside the range of unsigned 32-bit
+/// integers.
 fn reference_words(reference: &Array) -> Option<Vec<u32>> {
     let mut words = Vec::new();
     for &number in &reference.re {

@@ -1,4 +1,4 @@
-//! Values of datasets and groups, including nested values.
+//! Values of datasets and groups, which may contain further values.
 
 use hdf5_pure::{Dataset, Group, Object};
 
@@ -16,15 +16,16 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Maximum nesting depth of values.
 const DEEPEST: usize = 64;
-/// Memory of a value while it is read, without its elements: the library's view of its header, and
-/// the value itself \[bytes\].
+/// Memory of a value without its elements while it is read: the value, and the library's data about
+/// it \[bytes\].
 const HEADER: u64 = 1024;
-/// Memory that the library takes for each group member while it reads \[bytes\].
+/// Memory that the library needs for each member of a group \[bytes\].
 const MEMBER: u64 = 256;
 
 /// Reads values within a budget.
 ///
-/// In the methods, `path` names a value in faults, such as "sys.A"; `depth` is its nesting depth.
+/// In the methods, `path` is the name of a value in errors, such as "sys.A", and `depth` its
+/// nesting depth.
 pub(super) struct Reader<'r> {
     pub(super) budget: &'r ReadingBudget<'r>,
     pub(super) objects: &'r Objects,
@@ -35,7 +36,7 @@ impl Reader<'_> {
     pub(super) fn variables(&self, root: &Group) -> Result<Vec<Variable>, VariableFault> {
         let mut variables = Vec::new();
         for (name, object) in self.members(root, "")? {
-            // These groups hold contents to which other variables refer.
+            // Skip the groups that hold the contents of other variables.
             if name != "#refs#" && name != "#subsystem#" {
                 let value = self.value(&object, &name, 0)?;
                 variables.push(Variable { name, value });
@@ -44,7 +45,7 @@ impl Reader<'_> {
         Ok(variables)
     }
 
-    /// Reads a dataset or group.
+    /// Reads a dataset or a group. An unsupported dataset or group becomes an opaque value.
     pub(super) fn value(
         &self,
         object: &Object,
@@ -64,7 +65,7 @@ impl Reader<'_> {
             )),
         };
         match value {
-            // The other variables remain readable.
+            // An unsupported value must not prevent reading the other variables.
             Err(VariableFault::Unsupported { what, remedy, .. }) => Ok(Value::opaque(what, remedy)),
             value => value,
         }
@@ -102,12 +103,12 @@ impl Reader<'_> {
             Some(records) => Ok(Value::Struct(records)),
             None => Ok(Value::opaque(
                 "an HDF5 dataset",
-                "it holds neither numbers nor texts",
+                "it holds neither numbers nor strings",
             )),
         }
     }
 
-    /// Interprets the numbers of a dataset by its class.
+    /// Converts the numbers in a dataset to a value, depending on its MATLAB class.
     fn number_value(
         &self,
         mut array: Array,
@@ -128,7 +129,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Reads a cell for each reference.
+    /// Reads a cell array, whose elements are references to values.
     fn cell(
         &self,
         dataset: &Dataset,
@@ -150,7 +151,7 @@ impl Reader<'_> {
         }))
     }
 
-    /// Resolves the references of a dataset, in file order.
+    /// Returns the objects to which the references in a dataset point, in file order.
     pub(super) fn referenced_objects(
         &self,
         dataset: &Dataset,
@@ -166,8 +167,8 @@ impl Reader<'_> {
             .map_err(|error| library_fault(&error, path))
     }
 
-    /// Reads a group: a struct, a struct array, a sparse matrix, or an object of an `@`-folder
-    /// class.
+    /// Reads a group: a struct, a struct array, a sparse matrix, or an object of an old-style (`@`
+    /// folder) class.
     fn group_value(&self, group: &Group, path: &str, depth: usize) -> Result<Value, VariableFault> {
         let attributes = MatlabAttributes::read(group.attrs(), path)?;
         let members = self.members(group, path)?;
@@ -186,7 +187,7 @@ impl Reader<'_> {
             return Ok(function_handle());
         }
         if attributes.encoding == OBJECT {
-            return Ok(Value::opaque(class, "enumerations are not read"));
+            return Ok(Value::opaque(class, "enumerations are not supported"));
         }
         let members = self.in_field_order(members, &attributes.fields, path)?;
         let records = if is_struct_array(&attributes, &members, path)? {
@@ -229,8 +230,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Sorts members by MATLAB's field order, which is stored only if it differs from the order by
-    /// name; other members follow.
+    /// Sorts members by the field order that MATLAB stores, if it differs from the order by name;
+    /// members that are not listed follow.
     fn in_field_order(
         &self,
         mut members: Vec<(String, Object)>,
@@ -248,7 +249,7 @@ impl Reader<'_> {
         Ok(members)
     }
 
-    /// Reads a struct with a single record, a field for each member.
+    /// Reads a struct with a single record, whose fields are the members.
     fn scalar_struct(
         &self,
         members: Vec<(String, Object)>,
@@ -267,8 +268,7 @@ impl Reader<'_> {
         Ok(StructArray::one(fields))
     }
 
-    /// Reads a struct with several records: each member is a dataset with references to the values
-    /// of a field.
+    /// Reads a struct array. Each member is a dataset with references to the values of a field.
     fn struct_array(
         &self,
         members: &[(String, Object)],
@@ -287,7 +287,7 @@ impl Reader<'_> {
             if !records.fields.is_empty() && records.shape != shape {
                 return Err(damaged(
                     &field_path(path, name),
-                    "the value count of a field differs from the record count",
+                    "a field has more or fewer values than there are records",
                 ));
             }
             records.shape = shape;
@@ -303,10 +303,11 @@ impl Reader<'_> {
 }
 
 fn function_handle() -> Value {
-    Value::opaque("function_handle", "functions are not data")
+    Value::opaque("function_handle", "functions cannot be read as data")
 }
 
-/// Whether a struct has several records: its members are references that are not marked as cells.
+/// Returns whether a group is a struct array: its members are datasets of references that are not
+/// marked as cells.
 fn is_struct_array(
     attributes: &MatlabAttributes,
     members: &[(String, Object)],
@@ -335,8 +336,8 @@ fn is_struct_array(
     Ok(true)
 }
 
-/// Converts an array of dimensions, one of which is zero, to an empty array with this shape: Octave
-/// stores the dimensions of an empty array instead of its elements, and marks the group that
+/// Replaces an array of dimensions, one of which is zero, by an empty array of this shape. For an
+/// empty array, Octave stores the dimensions instead of the elements, and marks the group that
 /// contains it.
 fn restore_octave_empty(value: &mut Value) {
     if let Value::Array(sides) = value
@@ -349,7 +350,7 @@ fn restore_octave_empty(value: &mut Value) {
     }
 }
 
-/// Returns the path to a field, or to a variable in the root group.
+/// Returns the path of a field, or of a variable in the root group.
 fn field_path(path: &str, name: &str) -> String {
     if path.is_empty() {
         name.to_owned()

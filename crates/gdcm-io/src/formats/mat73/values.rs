@@ -1,4 +1,5 @@
-//! Values that need more than numbers: texts, empty arrays, compound records and sparse matrices.
+//! Values other than arrays of numbers: strings, empty arrays, compound records and sparse
+//! matrices.
 
 use hdf5_pure::{CompoundMember, Dataset, Datatype, Object, StringPadding, VlenStringReadOptions};
 
@@ -12,7 +13,7 @@ use crate::formats::strides::count;
 use crate::formats::variables::{Array, CellArray, ElementKind, StructArray, TextArray, Value};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Returns the rows of a character array, stored as UTF-16 codes, as texts.
+/// Converts a character array, stored as UTF-16 codes, to a string for each row.
 pub(super) fn character_rows(
     codes: &Array,
     path: &str,
@@ -27,7 +28,7 @@ pub(super) fn character_rows(
     text_rows(&units, &codes.shape, path, budget)
 }
 
-/// Reads the strings of a dataset, if its type is a string type of fixed or variable length.
+/// Reads the strings of a dataset, of fixed or variable length; `None` if its type is not a string.
 pub(super) fn strings(
     dataset: &Dataset,
     elements: &Elements,
@@ -61,7 +62,7 @@ pub(super) fn strings(
     }))
 }
 
-/// Decodes a fixed-length text without its padding.
+/// Decodes a string of fixed length and removes its padding.
 fn decode_fixed_text(bytes: &[u8], padding: &StringPadding) -> String {
     let text = String::from_utf8_lossy(bytes);
     let end = text.find('\0').unwrap_or(text.len());
@@ -82,7 +83,7 @@ fn variable_strings(
     if count == 0 {
         return Ok(Vec::new());
     }
-    // Every string may refer to the same long string.
+    // Take the total length from the budget: all strings may refer to the same long string.
     let length = dataset
         .vlen_string_payload_size()
         .map_err(|error| library_fault(&error, path))?;
@@ -100,7 +101,7 @@ fn variable_strings(
     }
 }
 
-/// Returns an empty value, whose shape is stored as elements.
+/// Returns an empty value; `elements` holds its shape.
 pub(super) fn empty_value(
     attributes: &MatlabAttributes,
     elements: &Elements,
@@ -130,7 +131,7 @@ pub(super) fn empty_value(
             let codes = empty_array(shape, ElementKind::Integer);
             Value::Text(character_rows(&codes, path, budget)?)
         }
-        // GNU Octave writes no class here.
+        // GNU Octave writes no class for numeric arrays.
         "double" | "single" | "" => Value::Array(empty_array(shape, ElementKind::Float)),
         "logical" => Value::Array(empty_array(shape, ElementKind::Logical)),
         "int8" | "int16" | "int32" | "int64" | "uint8" | "uint16" | "uint32" | "uint64" => {
@@ -140,8 +141,8 @@ pub(super) fn empty_value(
     })
 }
 
-/// Returns the elements as dimensions; `None` if they are not 64-bit integers or exceed the address
-/// range.
+/// Returns the elements as the dimensions of an array; `None` if they are not 64-bit integers or
+/// exceed `usize`.
 fn stored_shape(
     elements: &Elements,
     path: &str,
@@ -165,8 +166,8 @@ fn empty_array(shape: Vec<usize>, kind: ElementKind) -> Array {
     }
 }
 
-/// Returns a record for each element of a compound type: numbers, fixed-length texts, and opaque
-/// values for other members. Returns `None` for other types.
+/// Converts the elements of a compound type to records, with numbers, strings of fixed length, and
+/// opaque values for all other members. Returns `None` for any other type.
 pub(super) fn compound_records(
     elements: &Elements,
     path: &str,
@@ -177,7 +178,7 @@ pub(super) fn compound_records(
     };
     let mut fields = Vec::with_capacity(members.len());
     for member in members {
-        // A value, its shape and its single number.
+        // Memory of a value, its shape and its number.
         let size = size_of::<Value>() as u64 + 24;
         budget.take(elements.count() as u64, size, path)?;
         let mut values = Vec::new();
@@ -216,22 +217,22 @@ fn member_value(
     }
     Ok(Value::opaque(
         "a field of a record",
-        "it is neither a number nor a text with a fixed length",
+        "it is neither a number nor a string of fixed length",
     ))
 }
 
-/// A group with a sparse matrix in compressed columns (`MATLAB_sparse`).
+/// Group with a sparse matrix in compressed sparse column format (`MATLAB_sparse`).
 pub(super) struct SparseGroup<'g> {
     pub(super) height: u64,
     pub(super) is_logical: bool,
-    /// Members of the group by name: row indices `ir`, column starts `jc` and numbers `data`.
+    /// Members of the group: row indices `ir`, column starts `jc` and numbers `data`.
     pub(super) members: &'g [(String, Object)],
     pub(super) path: &'g str,
     pub(super) budget: &'g ReadingBudget<'g>,
 }
 
 impl SparseGroup<'_> {
-    /// Returns the full matrix.
+    /// Expands the sparse matrix to a full matrix.
     pub(super) fn full_matrix(&self) -> Result<Array, VariableFault> {
         let starts = self.integers("jc")?.ok_or_else(|| self.contradiction())?;
         let rows = self.integers("ir")?.unwrap_or_default();
@@ -261,7 +262,7 @@ impl SparseGroup<'_> {
             .full_matrix(self.path, self.budget, || self.contradiction())
     }
 
-    /// Reads the nonzero numbers; their dataset is absent if there are none.
+    /// Reads the nonzero numbers; without a dataset `data` there are none.
     fn data(&self) -> Result<Array, VariableFault> {
         let Some(elements) = self.member("data")? else {
             return Ok(Array::matrix(0, 0, Vec::new()));
@@ -270,12 +271,12 @@ impl SparseGroup<'_> {
             Some(numbers) => Ok(numbers),
             None => Err(damaged(
                 self.path,
-                "the elements of a sparse matrix are no numbers",
+                "the elements of a sparse matrix are not numbers",
             )),
         }
     }
 
-    /// Reads the integers of a member, if the group has it.
+    /// Reads the integers of the member `name`; `None` if the group has no such member.
     fn integers(&self, name: &str) -> Result<Option<Vec<usize>>, VariableFault> {
         let Some(elements) = self.member(name)? else {
             return Ok(None);
@@ -283,7 +284,7 @@ impl SparseGroup<'_> {
         let Some(words) = elements.words(self.path, self.budget)? else {
             return Err(damaged(
                 self.path,
-                "the indices of a sparse matrix are no integers",
+                "the indices of a sparse matrix are not integers",
             ));
         };
         Ok(Some(
@@ -305,6 +306,6 @@ impl SparseGroup<'_> {
     }
 
     fn contradiction(&self) -> VariableFault {
-        damaged(self.path, "the sparse matrix contradicts itself")
+        damaged(self.path, "the sparse matrix is inconsistent")
     }
 }

@@ -1,26 +1,26 @@
-//! Element types of arrays.
+//! Types of array elements.
 
 use serde_json::Value as Json;
 
 use crate::formats::strides::{NumberClass, StoredNumber, count};
 use crate::reading_budget::VariableFault;
 
-/// Type of an array element: a `dtype.descr` of `NumPy`.
+/// Type of an array element, given by `dtype.descr` of NumPy.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Element {
     Number(StoredNumber),
-    /// Two floats: real and imaginary part.
+    /// Complex number: two floats, the real and the imaginary part.
     Complex(StoredNumber),
-    /// 32-bit characters, padded with zeros.
+    /// String of 32-bit characters, padded with zeros.
     Unicode {
         characters: usize,
         big_endian: bool,
     },
-    /// Bytes, padded with zeros.
+    /// String of bytes, padded with zeros.
     Bytes {
         count: usize,
     },
-    /// Consecutive fields.
+    /// Record of consecutive fields.
     Record {
         fields: Vec<Field>,
         /// Record size \[bytes\].
@@ -30,10 +30,10 @@ pub(super) enum Element {
 
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Field {
-    /// Empty for padding bytes.
+    /// Field name; empty for padding bytes.
     pub(super) name: String,
     pub(super) element: Element,
-    /// A field may be an array, stored by rows.
+    /// Shape of the field if it is an array, which is stored in row-major order.
     pub(super) shape: Vec<usize>,
     /// Offset of the field in its record \[bytes\].
     pub(super) offset: usize,
@@ -56,7 +56,7 @@ impl Element {
         match descr {
             Json::String(code) => Self::parse_code(code),
             Json::Array(fields) => Self::parse_record(fields),
-            _ => Err(damaged("the element type is neither a text nor a list")),
+            _ => Err(damaged("the element type is neither a string nor a list")),
         }
     }
 
@@ -109,7 +109,7 @@ impl Element {
         })
     }
 
-    /// Parses the fields of a record, which are stored without gaps.
+    /// Parses the fields of a record; each begins where the preceding field ends.
     fn parse_record(list: &[Json]) -> Result<Self, VariableFault> {
         let mut fields = Vec::with_capacity(list.len());
         let mut size = 0_usize;
@@ -118,7 +118,7 @@ impl Element {
             size = field
                 .end()
                 .ok_or_else(|| damaged("a record is too large"))?;
-            // Padding bytes have no name.
+            // Skip padding bytes, which are fields without a name.
             if !field.name.is_empty() {
                 fields.push(field);
             }
@@ -127,7 +127,7 @@ impl Element {
     }
 }
 
-/// Rejects unsupported element classes, with export instructions.
+/// Rejects unsupported types (Python objects, dates and times), with export instructions.
 fn refuse_class(class: &str, code: &str) -> Result<(), VariableFault> {
     match class {
         "O" => Err(VariableFault::unsupported(
@@ -145,7 +145,7 @@ fn refuse_class(class: &str, code: &str) -> Result<(), VariableFault> {
 }
 
 impl Field {
-    /// Parses a field at an offset: name, type and, for an array, its shape.
+    /// Parses a field at `offset` \[bytes\]: name, type and, for an array, its shape.
     fn parse(entry: &Json, offset: usize) -> Result<Self, VariableFault> {
         let Json::Array(parts) = entry else {
             return Err(wrong_field());
@@ -167,7 +167,7 @@ impl Field {
         })
     }
 
-    /// Returns the offset after the field \[bytes\]; `None` on overflow.
+    /// Returns the offset of the byte after the field; `None` on overflow.
     fn end(&self) -> Option<usize> {
         let length = count(&self.shape)?.checked_mul(self.element.size())?;
         self.offset.checked_add(length)
@@ -186,7 +186,7 @@ fn field_name(name: &Json) -> Option<&str> {
     }
 }
 
-/// Parses the length of each dimension.
+/// Parses the length of each dimension; `None` unless all are non-negative integers.
 pub(super) fn parse_sides(shape: &Json) -> Option<Vec<usize>> {
     let Json::Array(sides) = shape else {
         return None;
@@ -198,14 +198,17 @@ pub(super) fn parse_sides(shape: &Json) -> Option<Vec<usize>> {
 }
 
 fn wrong_field() -> VariableFault {
-    damaged("a field of the records has no name and type")
+    damaged("a field of the records lacks a name or a type")
 }
 
 fn unknown_code(code: &str) -> VariableFault {
-    damaged(format!("\"{}\" is no element type", code.escape_default()))
+    damaged(format!(
+        "\"{}\" is not an element type",
+        code.escape_default()
+    ))
 }
 
-/// Returns the fault for a description that `NumPy` does not write, at the header.
+/// Returns the error for a header that NumPy would not write.
 fn damaged(what: impl Into<String>) -> VariableFault {
     VariableFault::damaged("", what, 8)
 }

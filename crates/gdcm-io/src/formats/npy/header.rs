@@ -1,4 +1,4 @@
-//! Header before the elements of an array.
+//! Header of an array file.
 
 use serde_json::{Map, Value as Json};
 
@@ -6,42 +6,43 @@ use crate::formats::npy::element::{Element, parse_sides};
 use crate::formats::npy::python_literal::parse_literal;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Signature at the beginning.
+/// Signature at the beginning of the file.
 pub(super) const MAGIC: &[u8; 6] = b"\x93NUMPY";
-/// Offset of the version in the file.
+/// Offset of the version in the file \[bytes\].
 const VERSION_AT: usize = 6;
-/// Offset of the header length in the file, reported as the position of faults in the header.
+/// Offset of the header length in the file \[bytes\], used as the position of errors in the header.
 const LENGTH_AT: usize = 8;
-/// Fault in a header with other keys.
-const MISSING_KEY: &str = "the header has not the keys descr, fortran_order and shape";
+/// Error message for a header whose keys are not the required keys.
+const MISSING_KEY: &str = "the header does not have exactly the keys descr, fortran_order and \
+    shape";
 
 /// Header of a `.npy` file (`numpy.lib.format`, versions 1.0 to 3.0).
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Header {
     pub(super) element: Element,
     pub(super) column_major: bool,
-    /// Shape as stored: any number of dimensions, including none.
+    /// Shape as stored, with any number of dimensions, including none.
     pub(super) shape: Vec<usize>,
-    /// Offset at which the elements begin \[bytes\].
+    /// Offset of the first element \[bytes\].
     pub(super) length: usize,
 }
 
-/// Text of a header, a Python dictionary.
+/// Text of a header, which is a Python dictionary.
 struct HeaderText {
     text: String,
-    /// Offset of the end of the text \[bytes\].
+    /// Offset of the byte after the text.
     end: usize,
 }
 
 impl Header {
-    /// Parses the header; `name` is the array name in errors.
+    /// Parses the header of a file; `name` is the array name in errors.
     pub(super) fn parse(
         bytes: &[u8],
         name: &str,
         budget: &ReadingBudget<'_>,
     ) -> Result<Self, VariableFault> {
         let HeaderText { text, end } = HeaderText::read(bytes, name)?;
-        // Memory of the JSON text and of the parsed tree.
+        // The memory of the JSON text and of the parsed tree, per byte of text.
         budget.take(text.len() as u64, 40, name)?;
         let header = parse_literal(&text).map_err(|what| damaged(name, what))?;
         let entries = match header.as_object() {
@@ -55,7 +56,7 @@ impl Header {
             return Err(damaged(name, "fortran_order is neither True nor False"));
         };
         let Some(shape) = parse_sides(shape) else {
-            return Err(damaged(name, "the shape is no tuple of whole numbers"));
+            return Err(damaged(name, "the shape is not a tuple of integers"));
         };
         let element = Element::parse(descr).map_err(|fault| fault.of(|| name.to_owned()))?;
         Ok(Self {
@@ -70,10 +71,7 @@ impl Header {
 impl HeaderText {
     fn read(bytes: &[u8], name: &str) -> Result<Self, VariableFault> {
         if !bytes.starts_with(MAGIC) {
-            return Err(VariableFault::other_bytes(
-                "an array of NumPy (.npy)",
-                bytes,
-            ));
+            return Err(VariableFault::other_bytes("a NumPy array (.npy)", bytes));
         }
         let Some(&version) = bytes.get(VERSION_AT) else {
             return Err(VariableFault::cut_off(name, bytes.len()));
@@ -85,7 +83,7 @@ impl HeaderText {
                 return Err(VariableFault::unsupported(
                     name,
                     format!("version {version} of the .npy format"),
-                    "save it with numpy.save of a plain array",
+                    "save a plain array with numpy.save",
                 ));
             }
         };
@@ -100,8 +98,8 @@ impl HeaderText {
         let Some(text) = bytes.get(begin..end) else {
             return Err(VariableFault::cut_off(name, bytes.len()));
         };
-        // Versions 1 and 2 use Latin-1, whose codes are the first characters of Unicode; version 3
-        // uses UTF-8.
+        // The header is in Latin-1 for versions 1 and 2, whose codes are the first Unicode
+        // characters, and in UTF-8 for version 3.
         let text = match version {
             3 => String::from_utf8(text.to_vec()).map_err(|_| {
                 VariableFault::damaged(name, "the header is not UTF-8", begin as u64)

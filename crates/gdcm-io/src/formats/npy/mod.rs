@@ -1,9 +1,9 @@
-//! `NumPy` files: `.npy` files with a single array, `.npz` archives with several.
+//! NumPy files: `.npy` files with a single array, and `.npz` archives with several.
 //!
-//! The format follows NEP 1 and `numpy.lib.format`, versions 1.0 to 3.0. `NumPy` has arrays with
-//! zero and one dimension, this program does not: a scalar becomes 1 x 1, an array with n elements
-//! the row 1 x n. Any other shape is kept; rows stay rows in either storage order. Pickled Python
-//! objects are programs and are refused.
+//! The format follows NEP 1 and `numpy.lib.format`, versions 1.0 to 3.0. Arrays of this program
+//! have at least two dimensions: a scalar becomes 1 x 1, and a one-dimensional array with n
+//! elements becomes 1 x n. Any other shape is kept, in either storage order. Pickled Python objects
+//! are rejected, because unpickling executes code.
 
 mod element;
 mod header;
@@ -21,9 +21,9 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 
 pub use crate::formats::npy::writer::write_npz;
 
-/// A NumPy array.
+/// Importer of NumPy arrays.
 pub(crate) const NPY: Importer = Importer {
-    name: "an array of NumPy",
+    name: "a NumPy array",
     endings: &["npy"],
     recognises: |bytes, _| bytes.starts_with(MAGIC),
     read: |bytes, path, budget| {
@@ -38,8 +38,9 @@ pub(crate) const NPY: Importer = Importer {
 /// Reads a `.npy` file (`numpy.lib.format`, versions 1.0 to 3.0) as a single variable called
 /// `name`.
 ///
-/// A scalar becomes 1 x 1, an array with n elements the row 1 x n. Booleans, integers, floats and
-/// complex numbers become an [`Array`], texts a [`TextArray`], records a [`StructArray`].
+/// A scalar becomes 1 x 1, and a one-dimensional array with n elements becomes 1 x n. Booleans,
+/// integers, floats and complex numbers become an [`Array`], strings a [`TextArray`], and records a
+/// [`StructArray`].
 pub fn read_npy(
     bytes: &[u8],
     name: &str,
@@ -58,7 +59,7 @@ pub fn read_npy(
         return Err(VariableFault::unsupported(
             name,
             "data after the array",
-            "save a single array in each .npy file, several with numpy.savez",
+            "save a single array in each .npy file, or several with numpy.savez",
         ));
     }
     let stored = StoredArray {
@@ -75,7 +76,7 @@ pub fn read_npy(
 }
 
 fn too_many_elements(name: &str) -> VariableFault {
-    VariableFault::damaged(name, "the element count of the shape overflows", 8)
+    VariableFault::damaged(name, "the number of elements in the shape is too large", 8)
 }
 
 /// Array elements as stored in a file.
@@ -87,7 +88,7 @@ struct StoredArray<'a> {
 }
 
 impl<'a> StoredArray<'a> {
-    /// Returns the bytes of the element at a position.
+    /// Returns the bytes of the element at a position in the file.
     fn at(&self, place: usize) -> &'a [u8] {
         let size = self.element.size();
         self.data
@@ -96,7 +97,7 @@ impl<'a> StoredArray<'a> {
     }
 }
 
-/// Reads values within a budget; `name` is the variable name in faults.
+/// Reads values within a budget; `name` is the variable name in errors.
 struct ArrayReader<'r> {
     name: &'r str,
     budget: &'r ReadingBudget<'r>,
@@ -134,8 +135,8 @@ impl ArrayReader<'_> {
                 Ok(Value::Text(TextArray { shape, texts }))
             }
             Element::Record { fields, .. } => {
-                // A header can announce arbitrarily many records without fields, or fields without
-                // elements, that take no bytes in the file.
+                // A header can announce any number of records without fields, or of fields without
+                // elements, which occupy no bytes in the file.
                 self.budget.take(count, RECORD, self.name)?;
                 let mut values = Vec::new();
                 for field in fields {
@@ -149,7 +150,7 @@ impl ArrayReader<'_> {
         }
     }
 
-    /// Returns the positions of the elements in the file, in the order used by this program.
+    /// Returns the position of each element in the file, in column-major order.
     fn places(&self, stored: &StoredArray<'_>) -> Result<Places, VariableFault> {
         let places = if stored.column_major {
             Places::column_major(stored.shape)
@@ -159,7 +160,7 @@ impl ArrayReader<'_> {
         places.ok_or_else(|| too_many_elements(self.name))
     }
 
-    /// Decodes the number at an offset in each element \[bytes\].
+    /// Decodes a number in each element; `offset` is its position within the element \[bytes\].
     fn numbers(
         &self,
         stored: &StoredArray<'_>,
@@ -176,7 +177,7 @@ impl ArrayReader<'_> {
         Ok(numbers)
     }
 
-    /// Decodes the text in each element.
+    /// Decodes each element as a string.
     fn texts(
         &self,
         stored: &StoredArray<'_>,
@@ -215,7 +216,7 @@ impl ArrayReader<'_> {
     }
 }
 
-/// Decodes 32-bit characters without the zeros at the end.
+/// Decodes 32-bit characters and removes the zeros at the end.
 fn decode_unicode(bytes: &[u8], big_endian: bool) -> String {
     let (characters, _) = bytes.as_chunks::<4>();
     let mut text = String::new();
@@ -230,7 +231,7 @@ fn decode_unicode(bytes: &[u8], big_endian: bool) -> String {
     text.trim_end_matches('\0').to_owned()
 }
 
-/// Decodes bytes, as UTF-8, without the zeros at the end.
+/// Decodes UTF-8 bytes and removes the zeros at the end.
 fn decode_bytes(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes)
         .trim_end_matches('\0')
@@ -298,7 +299,7 @@ mod archive_tests {
 
     #[test]
     fn an_archive_that_unpacks_to_more_than_is_allowed_is_refused_before_it_is_unpacked() {
-        // 8 MB of zeros in 8 kB.
+        // This file expands from 8 kB to 8 MB of zeros.
         assert_eq!(
             read(&file("bomb")),
             Err(VariableFault::TooLarge {
@@ -332,7 +333,7 @@ mod archive_tests {
             read(&other)
                 .unwrap_err()
                 .to_string()
-                .contains("an entry packed by method 12 cannot be read")
+                .contains("an entry compressed with method 12 cannot be read")
         );
     }
 
@@ -403,7 +404,7 @@ mod array_file_tests {
 
     #[test]
     fn a_matrix_keeps_its_rows_and_columns() {
-        // [[1, 2, 3], [4, 5, 6]], by rows and by columns, in all three header versions.
+        // [[1, 2, 3], [4, 5, 6]] in row-major and column-major order, in all three header versions.
         for file in [
             "matrix_c",
             "matrix_fortran",

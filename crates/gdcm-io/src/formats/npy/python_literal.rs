@@ -1,13 +1,13 @@
-//! Python literals in the headers of arrays.
+//! Parser of the Python literals in array headers.
 
 use serde_json::Value as Json;
 
-/// Converts a header, which is a Python literal, to JSON: quotes, tuples as lists, trailing commas,
-/// and the words for true and false.
+/// Converts a header, which is a Python literal, to JSON: quotation marks, tuples to lists,
+/// trailing commas, and the words True and False.
 ///
 /// # Errors
 ///
-/// The reason, for anything that `NumPy` does not write into a header.
+/// The reason, for anything that NumPy does not write into a header.
 pub(super) fn parse_literal(text: &str) -> Result<Json, &'static str> {
     let mut json = String::with_capacity(text.len());
     let mut rest = text;
@@ -36,24 +36,26 @@ pub(super) fn parse_literal(text: &str) -> Result<Json, &'static str> {
         rest = &rest[length..];
     }
     serde_json::from_str(&json)
-        .map_err(|_| "the header is no dictionary of texts, numbers and tuples")
+        .map_err(|_| "the header is not a dictionary of strings, numbers and tuples")
 }
 
-/// Converts the text at the beginning of `rest`; returns its length with both quotes.
+/// Converts the string at the beginning of `rest`; returns its length including both quotation
+/// marks \[bytes\].
 fn convert_text(rest: &str, quote: char, json: &mut String) -> Result<usize, &'static str> {
     let Some(end) = rest[1..].find(quote) else {
-        return Err("a text in the header does not end");
+        return Err("a string in the header is not closed");
     };
     let text = &rest[1..=end];
-    // Escapes occur only in field names with quotes, backslashes or control characters.
+    // Escapes occur only in unusual field names: with quotation marks, backslashes or control
+    // characters.
     if text.contains('\\') {
-        return Err("the header holds an escape");
+        return Err("the header contains an escape sequence");
     }
     json.push_str(&Json::from(text).to_string());
     Ok(end + 2)
 }
 
-/// Converts the word at the beginning of `rest`; returns its length.
+/// Converts the word at the beginning of `rest`; returns its length \[bytes\].
 fn convert_word(rest: &str, json: &mut String) -> Result<usize, &'static str> {
     let end = rest
         .find(|sign: char| !sign.is_alphanumeric())
@@ -61,7 +63,7 @@ fn convert_word(rest: &str, json: &mut String) -> Result<usize, &'static str> {
     match &rest[..end] {
         "True" => json.push_str("true"),
         "False" => json.push_str("false"),
-        _ => return Err("the header holds an unknown word"),
+        _ => return Err("the header contains an unknown word"),
     }
     Ok(end)
 }

@@ -1,4 +1,4 @@
-//! Writes archives for `NumPy` (".npz").
+//! Writer of archives for NumPy (".npz").
 
 use std::collections::HashSet;
 use std::io::Write;
@@ -11,21 +11,23 @@ use crate::formats::npy::header::MAGIC;
 use crate::formats::variables::{Array, ElementKind, TextArray, Value, Variable};
 use crate::reading_budget::VariableFault;
 
-/// Alignment of the elements, required by `numpy.lib.format` \[bytes\].
+/// Alignment of the elements \[bytes\], required by `numpy.lib.format`.
 const ALIGNMENT: usize = 64;
-/// Bytes before the header text: signature, version and length.
+/// Length of signature, version and header length, which precede the header text \[bytes\].
 const BEFORE_TEXT: usize = 10;
-/// All integers up to this value are exact as floats.
+/// 2^53: all integers up to this value are exact as floats.
 const LARGEST_EXACT_INTEGER: f64 = 9_007_199_254_740_992.0;
 
-/// Writes arrays and texts as an `.npz` archive that `numpy.load` opens without pickles.
+/// Writes arrays and strings as an `.npz` archive that `numpy.load` opens with
+/// `allow_pickle=False`.
 ///
-/// Arrays keep their shape and are stored by columns (`fortran_order`): floats as `<f8`, complex
-/// numbers as `<c16`, integers as `<i8`, logical values as `|b1`, texts as `<U`.
+/// Arrays keep their shape and are stored in column-major order (`fortran_order`): floats as `<f8`,
+/// complex numbers as `<c16`, integers as `<i8`, logical values as `|b1`, and strings as `<U`.
 ///
 /// # Errors
 ///
-/// Duplicate names, names that are too long, and values that are neither arrays nor texts.
+/// [`VariableFault`] for a duplicate name, a name that is too long, and a value that is neither an
+/// array nor strings.
 pub fn write_npz(variables: &[Variable]) -> Result<Vec<u8>, VariableFault> {
     let mut bytes = Vec::new();
     let mut archive = ZipArchiveWriter::new(&mut bytes);
@@ -51,11 +53,15 @@ pub fn write_npz(variables: &[Variable]) -> Result<Vec<u8>, VariableFault> {
 }
 
 fn refused(name: &str, what: &str) -> VariableFault {
-    let remedy = "write arrays and texts under short names";
-    VariableFault::unsupported(name, format!("{what} cannot be written, so it"), remedy)
+    let remedy = "write only arrays and strings, under shorter names or in several files";
+    VariableFault::unsupported(
+        name,
+        format!("{what} cannot be written, and therefore"),
+        remedy,
+    )
 }
 
-/// Writes a packed entry with the `.npy` file of an array.
+/// Adds an array to an archive as a compressed `.npy` file.
 fn write_entry(
     archive: &mut ZipArchiveWriter<&mut Vec<u8>>,
     name: &str,
@@ -74,7 +80,7 @@ fn write_entry(
     Ok(())
 }
 
-/// Encodes numbers as a `.npy` file; integers beyond the exact range stay floats.
+/// Encodes numbers as a `.npy` file. Integers beyond the exact range are written as floats.
 fn encode_numbers(array: &Array) -> Vec<u8> {
     let re = &array.re;
     let shape = &array.shape;
@@ -106,9 +112,9 @@ fn is_exact_integer(value: f64) -> bool {
     value.fract() == 0.0 && value.abs() <= LARGEST_EXACT_INTEGER
 }
 
-/// Encodes texts as a `.npy` file, padded with zeros to the same length.
+/// Encodes strings as a `.npy` file; shorter strings are padded with zeros.
 fn encode_texts(texts: &TextArray) -> Vec<u8> {
-    // NumPy also writes empty texts with space for a single character.
+    // Like NumPy, reserve at least one character, even if all strings are empty.
     let mut longest = 1;
     for text in &texts.texts {
         longest = longest.max(text.chars().count());
@@ -125,11 +131,11 @@ fn encode_texts(texts: &TextArray) -> Vec<u8> {
     encode_file(&format!("<U{longest}"), &texts.shape, &data)
 }
 
-/// Puts the header before the data.
+/// Returns a `.npy` file: header and data.
 fn encode_file(descr: &str, shape: &[usize], data: &[u8]) -> Vec<u8> {
     let shape: String = shape.iter().map(|side| format!("{side}, ")).collect();
     let text = format!("{{'descr': '{descr}', 'fortran_order': True, 'shape': ({shape}), }}");
-    // Blanks fill the header up to the alignment, and a line break ends it.
+    // The header is padded with blanks up to the alignment, and ends in a line feed.
     let length = (BEFORE_TEXT + text.len() + 1).next_multiple_of(ALIGNMENT) - BEFORE_TEXT;
     let header = format!("{text:<width$}\n", width = length - 1);
     [

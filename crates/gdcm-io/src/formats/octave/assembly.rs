@@ -1,4 +1,5 @@
-//! Values assembled from their parts, which the text and binary encodings give in the same order.
+//! Assembly of values from their parts, which the text and binary encodings store in the same
+//! order.
 
 use crate::formats::octave::form::{Element, Form, NumberParts};
 use crate::formats::sparse_matrix::SparseEntries;
@@ -9,7 +10,7 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 /// Maximum nesting depth of values.
 const DEEPEST: usize = 64;
 
-/// Length of each dimension, and whether numbers are stored by rows.
+/// Length of each dimension, and whether numbers are in row-major order.
 pub(super) struct Sides {
     pub(super) shape: Vec<usize>,
     pub(super) by_rows: bool,
@@ -21,14 +22,14 @@ pub(super) struct ValueHeading {
     pub(super) type_name: String,
 }
 
-/// Reads the consecutive parts of values in the text or binary encoding; `variable` is the name of
-/// the value in faults.
+/// Reads the consecutive parts of values in one of the encodings; `variable` is the name of the
+/// value in errors.
 pub(super) trait Parts {
     fn budget(&self) -> &ReadingBudget<'_>;
     /// Reads the next name and type.
     fn heading(&mut self, variable: &str) -> Result<ValueHeading, VariableFault>;
     fn sides(&mut self, variable: &str) -> Result<Sides, VariableFault>;
-    /// Reads `count` numbers; a complex number is a pair.
+    /// Reads `count` elements; each complex element yields two numbers.
     fn numbers(
         &mut self,
         element: Element,
@@ -37,10 +38,10 @@ pub(super) trait Parts {
     ) -> Result<Vec<f64>, VariableFault>;
     fn sparse(&mut self, element: Element, variable: &str) -> Result<SparseEntries, VariableFault>;
     fn text(&mut self, variable: &str) -> Result<TextArray, VariableFault>;
-    /// Reads the field count of a record.
+    /// Reads the number of fields in a struct or an object.
     fn field_count(&mut self, form: Form, variable: &str) -> Result<usize, VariableFault>;
     fn class(&mut self, variable: &str) -> Result<String, VariableFault>;
-    /// Returns a fault at this position.
+    /// Returns an error at this position in the file.
     fn fault(&self, variable: &str, what: &str) -> VariableFault;
 }
 
@@ -53,7 +54,7 @@ pub(super) fn read_value(
     Assembler { parts }.value(type_name, variable, 0)
 }
 
-/// Assembles values; `depth` is the nesting depth of a value.
+/// Assembles values; `depth` in the methods is the nesting depth of a value.
 struct Assembler<'p> {
     parts: &'p mut dyn Parts,
 }
@@ -74,8 +75,8 @@ impl Assembler<'_> {
         let Some(form) = Form::from_type_name(local_type) else {
             return Err(VariableFault::unsupported(
                 variable,
-                format!("a {type_name} of GNU Octave"),
-                "save it without this variable, or with -v7",
+                format!("a GNU Octave {type_name}"),
+                "save the file without this variable, or with -v7",
             ));
         };
         Ok(match form {
@@ -105,7 +106,10 @@ impl Assembler<'_> {
         })
     }
 
-    /// Counts the elements and takes `size` bytes for each.
+    /// Returns the number of elements after taking `size` bytes for each from the budget.
+    ///
+    /// # Errors
+    /// [`VariableFault`] if the number overflows, or the budget is exhausted.
     fn take_elements(
         &self,
         shape: &[usize],
@@ -113,7 +117,9 @@ impl Assembler<'_> {
         variable: &str,
     ) -> Result<usize, VariableFault> {
         let Some(count) = count(shape) else {
-            return Err(self.parts.fault(variable, "the element count overflows"));
+            return Err(self
+                .parts
+                .fault(variable, "the number of elements is too large"));
         };
         self.parts.budget().take(count as u64, size, variable)?;
         Ok(count)
@@ -153,14 +159,17 @@ impl Assembler<'_> {
 
     fn full_matrix(&self, entries: &SparseEntries, variable: &str) -> Result<Array, VariableFault> {
         entries.full_matrix(variable, self.parts.budget(), || {
-            self.parts.fault(variable, "a number is outside the matrix")
+            self.parts
+                .fault(variable, "an element is outside the matrix")
         })
     }
 
     fn range(&mut self, variable: &str) -> Result<Array, VariableFault> {
         let numbers = self.parts.numbers(Element::FLOAT, 3, variable)?;
         let &[first, limit, step] = numbers.as_slice() else {
-            return Err(self.parts.fault(variable, "a range has three numbers"));
+            return Err(self
+                .parts
+                .fault(variable, "a range does not have three numbers"));
         };
         let range = Range { first, limit, step };
         range.array(variable, self.parts.budget())
@@ -178,7 +187,7 @@ impl Assembler<'_> {
         Ok(CellArray { shape, values })
     }
 
-    /// Reads the records in a struct or an object. In a struct array or an object, a field is a
+    /// Reads the records of a struct or an object. In a struct array or an object, each field is a
     /// cell array with a value for each record.
     fn records(
         &mut self,
@@ -199,7 +208,7 @@ impl Assembler<'_> {
             if values.len() != count {
                 return Err(self.parts.fault(
                     &inner,
-                    "the value count of a field differs from the record count",
+                    "a field has more or fewer values than there are records",
                 ));
             }
             fields.push((name, values));
@@ -217,13 +226,14 @@ pub(super) struct Range {
 }
 
 impl Range {
-    /// Returns the numbers as a row.
+    /// Converts the range to a row of numbers.
     pub(super) fn array(
         self,
         variable: &str,
         budget: &ReadingBudget<'_>,
     ) -> Result<Array, VariableFault> {
-        // As in Octave, the limit is reached even if rounding makes the last step fall short of it.
+        // The factor includes the limit even if rounding puts the last step just short of it, as in
+        // Octave.
         let steps = ((self.limit - self.first) / self.step * (1.0 + f64::EPSILON)).floor();
         let length = if steps >= 0.0 {
             (steps as usize).saturating_add(1)
@@ -238,7 +248,7 @@ impl Range {
     }
 }
 
-/// Returns the rows of a byte array, stored by columns, as texts.
+/// Splits a byte array in column-major order into a string for each row.
 pub(super) fn text_rows(letters: &[u8], height: usize) -> TextArray {
     if letters.is_empty() {
         return TextArray::one("");
@@ -254,8 +264,8 @@ pub(super) fn text_rows(letters: &[u8], height: usize) -> TextArray {
     }
 }
 
-/// Returns the fault for character arrays with more than two dimensions.
+/// Returns the error for a character array with more than two dimensions, which is not supported.
 pub(super) fn texts_in_pages(variable: &str) -> VariableFault {
-    let what = "a text array with more than two dimensions";
+    let what = "a character array with more than two dimensions";
     VariableFault::unsupported(variable, what, "save it as a cell array")
 }

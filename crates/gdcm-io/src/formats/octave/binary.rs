@@ -1,5 +1,5 @@
-//! GNU Octave's `save -binary`: after "Octave-1-L" or "Octave-1-B", values with the lengths of
-//! their names and parts.
+//! GNU Octave's `save -binary` format: after "Octave-1-L" (little endian) or "Octave-1-B" (big
+//! endian), values whose names and parts are preceded by their lengths.
 
 use crate::formats::octave::assembly::{
     Parts, Sides, ValueHeading, read_value, text_rows, texts_in_pages,
@@ -11,22 +11,23 @@ use crate::formats::variables::{TextArray, Value, Variable};
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Signature before the letter of the byte order.
+/// Signature, which is followed by the letter of the byte order.
 const MAGIC: &[u8] = b"Octave-1-";
-/// Header length: signature, byte order and float format \[bytes\].
+/// Length of signature, byte order and float format \[bytes\].
 const HEADER: usize = MAGIC.len() + 2;
-/// Marks a type with a name.
+/// Byte that announces a type name.
 const NAMED_TYPE: u8 = 0xff;
 
-/// Files written by `save -binary`.
+/// Importer of files written by `save -binary`.
 pub(crate) const OCTAVE_BINARY: Importer = Importer {
-    name: "a file of GNU Octave, as it writes with -binary",
+    name: "a GNU Octave file, written with -binary",
     endings: &["bin", "mat"],
     recognises: |bytes, _| bytes.starts_with(MAGIC),
     read: |bytes, path, budget| Contents::variables(read_variables(bytes, budget), path),
 };
 
-/// Reads the variables, up to a variable with an unknown type.
+/// Reads the variables up to the first with an unknown type, which becomes opaque and ends the
+/// reading.
 fn read_variables(
     bytes: &[u8],
     budget: &ReadingBudget<'_>,
@@ -44,7 +45,7 @@ fn read_variables(
         match read_value(&mut reader, &type_name, &name) {
             Ok(value) => variables.push(Variable { name, value }),
             Err(VariableFault::Unsupported { what, remedy, .. }) => {
-                // The value has no length, so the following values cannot be found.
+                // The length of the value is unknown, so later values cannot be found.
                 let why = format!("this value and all later values cannot be read; {remedy}");
                 let value = Value::opaque(what, why);
                 variables.push(Variable { name, value });
@@ -56,10 +57,10 @@ fn read_variables(
     Ok(variables)
 }
 
-/// A file while it is read.
+/// State of reading a file.
 struct BinaryReader<'b> {
     bytes: &'b [u8],
-    /// Position of the next byte.
+    /// Offset of the next byte.
     at: usize,
     big_endian: bool,
     budget: &'b ReadingBudget<'b>,
@@ -87,10 +88,10 @@ impl<'b> BinaryReader<'b> {
 
     fn length(&mut self, variable: &str) -> Result<usize, VariableFault> {
         let length = self.int(variable)?;
-        usize::try_from(length).map_err(|_| self.fault(variable, "a length is below zero"))
+        usize::try_from(length).map_err(|_| self.fault(variable, "a length is negative"))
     }
 
-    /// Reads `count` lengths or indices.
+    /// Reads `count` lengths or indices, which must not be negative.
     fn lengths(&mut self, count: usize, variable: &str) -> Result<Vec<usize>, VariableFault> {
         let mut lengths = Vec::new();
         for _ in 0..count {
@@ -104,7 +105,7 @@ impl<'b> BinaryReader<'b> {
         Ok(String::from_utf8_lossy(self.take(length, variable)?).into_owned())
     }
 
-    /// Returns the stored number type: floats may be stored as integers or shorter floats if
+    /// Returns the number type as stored: floats may be stored as integers or as shorter floats if
     /// nothing is lost.
     fn number_type(
         &mut self,
@@ -121,7 +122,8 @@ impl<'b> BinaryReader<'b> {
     }
 }
 
-/// Returns the storage type for floats, given the byte before the numbers.
+/// Returns the storage type of floats for the code byte that precedes them; `None` for an unknown
+/// code.
 fn float_storage(code: u8) -> Option<StorageType> {
     let (class, size) = match code {
         0 => (NumberClass::Unsigned, 1),
@@ -158,8 +160,8 @@ impl Parts for BinaryReader<'_> {
     }
 
     fn sides(&mut self, variable: &str) -> Result<Sides, VariableFault> {
-        // A negative dimension count precedes the dimensions; some matrices store two dimensions
-        // without it.
+        // The number of dimensions precedes them, with a minus sign. Without it, `first` is the
+        // number of rows of a matrix.
         let first = self.int(variable)?;
         let shape = match usize::try_from(first) {
             Ok(rows) => vec![rows, self.length(variable)?],
@@ -211,7 +213,7 @@ impl Parts for BinaryReader<'_> {
         };
         columns
             .into_entries()
-            .ok_or_else(|| self.fault(variable, "the sparse matrix contradicts itself"))
+            .ok_or_else(|| self.fault(variable, "the sparse matrix is inconsistent"))
     }
 
     fn text(&mut self, variable: &str) -> Result<TextArray, VariableFault> {

@@ -1,4 +1,4 @@
-//! Storage forms of values, given by the names of their types.
+//! Storage forms of values, which follow from the names of their types.
 
 use crate::formats::strides::NumberClass;
 use crate::formats::variables::{Array, ElementKind};
@@ -7,21 +7,20 @@ use crate::formats::variables::{Array, ElementKind};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct StorageType {
     pub(super) class: NumberClass,
-    /// Size \[bytes\].
     pub(super) size: usize,
 }
 
-/// Element type of an array.
+/// Type of the elements in an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Element {
-    /// Integers and logical values have a fixed storage type. Floats have none: in the binary
-    /// encoding a byte before the numbers gives it.
+    /// Storage type in the binary encoding. `None` for floats: a byte before the numbers gives
+    /// their storage type.
     pub(super) storage: Option<StorageType>,
     /// Whether each number has an imaginary part.
     pub(super) is_complex: bool,
 }
 
-/// Real parts, and imaginary parts if the numbers are complex.
+/// Real parts of numbers, and imaginary parts if they are complex.
 pub(super) struct NumberParts {
     pub(super) re: Vec<f64>,
     pub(super) im: Option<Vec<f64>>,
@@ -41,7 +40,8 @@ impl Element {
         }
     }
 
-    /// Separates real and imaginary parts; complex numbers are stored in pairs.
+    /// Separates real and imaginary parts, which alternate in `numbers` if the elements are
+    /// complex.
     pub(super) fn parts(self, numbers: Vec<f64>) -> NumberParts {
         if !self.is_complex {
             return NumberParts {
@@ -55,7 +55,7 @@ impl Element {
         }
     }
 
-    /// Returns an array from numbers in the order used by this program.
+    /// Returns an array from numbers in column-major order.
     pub(super) fn array(self, shape: Vec<usize>, numbers: Vec<f64>) -> Array {
         let NumberParts { re, im } = self.parts(numbers);
         Array {
@@ -67,28 +67,28 @@ impl Element {
     }
 }
 
-/// Storage form of a value.
+/// Storage form of a value, on which its parts depend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Form {
     Scalar(Element),
     Matrix(Element),
-    /// Only the diagonal is stored.
+    /// Diagonal matrix, of which only the diagonal is stored.
     Diagonal(Element),
-    /// Only nonzero numbers are stored.
+    /// Sparse matrix, of which only the nonzero numbers are stored.
     Sparse(Element),
-    /// First number, limit and step.
+    /// Equally spaced numbers, stored as first number, limit and step.
     Range,
     Text,
     Cell,
     ScalarStruct,
     StructArray,
-    /// An object of an `@`-folder class.
+    /// Object of an old-style (`@` folder) class.
     Class,
 }
 
 impl Form {
     /// Returns the form for a type name, such as "matrix", "float complex scalar", "uint8 matrix"
-    /// or "sparse bool matrix".
+    /// or "sparse bool matrix"; `None` for an unknown name.
     pub(super) fn from_type_name(name: &str) -> Option<Self> {
         match name {
             "string" | "sq_string" | "null_string" | "null_sq_string" => Some(Self::Text),
@@ -101,7 +101,7 @@ impl Form {
         }
     }
 
-    /// Interprets the name of a numeric type word by word.
+    /// Interprets the words of a numeric type name; `None` if a word is unknown.
     fn from_number_words(name: &str) -> Option<Self> {
         let mut element = Element::FLOAT;
         let mut form: Option<fn(Element) -> Self> = None;
@@ -118,7 +118,7 @@ impl Form {
                 "diagonal" => form = Some(Self::Diagonal),
                 "sparse" => form = Some(Self::Sparse),
                 "scalar" => form = Some(Self::Scalar),
-                // "diagonal matrix" and "sparse matrix" keep their form.
+                // "diagonal matrix" and "sparse matrix" keep the form of their first word.
                 "matrix" => form = form.or(Some(Self::Matrix)),
                 _ => element.storage = Some(integer_storage(word)?),
             }
@@ -132,7 +132,7 @@ impl Form {
     }
 }
 
-/// Returns the storage type for an integer type name, such as "int8" or "uint64".
+/// Returns the storage type for the name of an integer type, such as "int8" or "uint64".
 fn integer_storage(name: &str) -> Option<StorageType> {
     let size = match name.trim_start_matches('u').strip_prefix("int")? {
         "8" => 1,

@@ -1,7 +1,8 @@
-//! GNU Octave's `save -hdf5`: each value is a group with its type and parts.
+//! GNU Octave's `save -hdf5` format: each value is a group with its type and its parts.
 //!
-//! The container is read as any HDF5 file, with groups as structs; here they are converted to the
-//! values they represent. Arrays are stored by columns, with their dimensions reversed.
+//! The file is read like any HDF5 file, with groups as structs, which are then converted to the
+//! values that they represent. Arrays are stored in column-major order with their dimensions
+//! reversed.
 
 use crate::formats::octave::assembly::{Range, text_rows};
 use crate::formats::octave::form::Form;
@@ -12,10 +13,10 @@ use crate::formats::variables::{
 };
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Fault in a field of a struct array.
-const FIELD_LENGTH: &str = "the value count of a field differs from the record count";
+/// Error message for a struct array whose fields have different numbers of values.
+const FIELD_LENGTH: &str = "a field has more or fewer values than there are records";
 
-/// Converts the groups of a file written by Octave to values; returns the values of other files
+/// Converts the groups of a file written by Octave to values; returns the values of any other file
 /// unchanged.
 pub(crate) fn convert_hdf5_groups(
     variables: Vec<Variable>,
@@ -35,14 +36,14 @@ pub(crate) fn convert_hdf5_groups(
     Ok(converted)
 }
 
-/// A group with a value: members `type` and `value`.
+/// Group that represents a value, with the members `type` and `value`.
 struct OctaveGroup<'v> {
     type_name: &'v str,
     value: &'v Value,
 }
 
 impl<'v> OctaveGroup<'v> {
-    /// Returns type and value, if the group has exactly these members.
+    /// Returns the type and the value; `None` if the group has other members.
     fn from_value(value: &'v Value) -> Option<Self> {
         let Value::Struct(records) = value else {
             return None;
@@ -63,14 +64,14 @@ impl<'v> OctaveGroup<'v> {
     }
 }
 
-/// Converts a group to its value; `variable` is the name in faults.
+/// Converts a group to the value that it represents; `variable` is its name in errors.
 fn convert_group(
     group: &Value,
     variable: &str,
     budget: &ReadingBudget<'_>,
 ) -> Result<Value, VariableFault> {
     let Some(OctaveGroup { type_name, value }) = OctaveGroup::from_value(group) else {
-        return Err(damaged(variable, "a group has no type and no value"));
+        return Err(damaged(variable, "a group lacks a type or a value"));
     };
     budget.take(1, size_of::<Value>() as u64, variable)?;
     let Some(form) = Form::from_type_name(type_name) else {
@@ -108,14 +109,15 @@ fn convert_group(
 }
 
 fn unknown_value(type_name: &str) -> Value {
-    Value::opaque(format!("a {type_name} of GNU Octave"), "save it with -v7")
+    Value::opaque(format!("a GNU Octave {type_name}"), "save it with -v7")
 }
 
 fn damaged(variable: &str, what: &str) -> VariableFault {
     VariableFault::damaged(variable, what, 0)
 }
 
-/// Returns the array with its dimensions reversed.
+/// Returns an array with its dimensions reversed: the elements, which were read in row-major order,
+/// are put back into file order.
 fn with_reversed_sides(
     array: &Array,
     variable: &str,
@@ -123,7 +125,7 @@ fn with_reversed_sides(
 ) -> Result<Array, VariableFault> {
     budget.take(array.len() as u64, 16, variable)?;
     let Some(places) = Places::row_major(&array.shape) else {
-        return Err(damaged(variable, "the element count overflows"));
+        return Err(damaged(variable, "the number of elements is too large"));
     };
     let places: Vec<usize> = places.collect();
     Ok(Array {
@@ -134,7 +136,7 @@ fn with_reversed_sides(
     })
 }
 
-/// Moves each value to its position in the file.
+/// Moves each value to its position in the file; `places` holds the positions.
 fn in_file_order(values: &[f64], places: &[usize]) -> Vec<f64> {
     let mut moved = vec![0.0; values.len()];
     for (&place, &value) in places.iter().zip(values) {
@@ -143,16 +145,16 @@ fn in_file_order(values: &[f64], places: &[usize]) -> Vec<f64> {
     moved
 }
 
-/// Returns the rows of a byte array as texts.
+/// Converts a byte array to a string for each row.
 fn texts(codes: &Array) -> TextArray {
     let letters: Vec<u8> = codes.re.iter().map(|&code| code as i64 as u8).collect();
     text_rows(&letters, codes.shape.first().copied().unwrap_or(0))
 }
 
-/// Parts of a value, the members of its group.
+/// Parts of a value, which are the members of its group.
 struct GroupParts<'v> {
     parts: &'v StructArray,
-    /// Name of the value in faults.
+    /// Name of the value in errors.
     variable: &'v str,
     budget: &'v ReadingBudget<'v>,
 }
@@ -170,11 +172,12 @@ impl<'v> GroupParts<'v> {
     fn range_number(&self, name: &str) -> Result<f64, VariableFault> {
         match self.number(name) {
             Some(number) => Ok(number),
-            None => Err(self.damaged("a range has no base, limit and step")),
+            None => Err(self.damaged("a range lacks its base, limit or step")),
         }
     }
 
-    /// Converts a cell array: its dimensions `dims`, and a member such as `_0` for each value.
+    /// Converts a cell array, which has the dimensions `dims` and a member such as `_0` for each
+    /// value.
     fn cell(&self) -> Result<CellArray, VariableFault> {
         let shape: Vec<usize> = self
             .numbers("dims")
@@ -193,7 +196,10 @@ impl<'v> GroupParts<'v> {
             }
         }
         if count(&shape) != Some(values.len()) {
-            return Err(self.damaged("the value count of a cell array does not fit its sides"));
+            return Err(self.damaged(
+                "the number of values in a cell array does not match its \
+                dimensions",
+            ));
         }
         Ok(CellArray { shape, values })
     }
@@ -203,7 +209,7 @@ impl<'v> GroupParts<'v> {
             return Err(self.damaged("an object has no class"));
         };
         let class = class.texts.first().cloned().unwrap_or_default();
-        // The fields are in a separate group beside the class name.
+        // The fields are in a separate group next to the class name.
         let Some(Value::Struct(fields)) = self.member("value") else {
             return Err(self.damaged("an object has no fields"));
         };
@@ -217,8 +223,8 @@ impl<'v> GroupParts<'v> {
         })
     }
 
-    /// Converts struct fields; with `in_cells`, a field may be a cell array with a value for each
-    /// record.
+    /// Converts the fields of a struct. With `in_cells`, a field may be a cell array with a value
+    /// for each record.
     fn records(&self, in_cells: bool) -> Result<StructArray, VariableFault> {
         let mut records = StructArray::one(Vec::new());
         for (name, values) in &self.parts.fields {
@@ -270,7 +276,7 @@ impl<'v> GroupParts<'v> {
     }
 
     fn sparse_contradiction(&self) -> VariableFault {
-        self.damaged("the sparse matrix contradicts itself")
+        self.damaged("the sparse matrix is inconsistent")
     }
 
     fn damaged(&self, what: &str) -> VariableFault {
@@ -281,12 +287,12 @@ impl<'v> GroupParts<'v> {
         self.parts.field(name)?.first()
     }
 
-    /// Returns the first number of a member.
+    /// Returns the first number of the member `name`; `None` if there is none.
     fn number(&self, name: &str) -> Option<f64> {
         self.numbers(name).first().copied()
     }
 
-    /// Returns the numbers of a member; none if there is no such member.
+    /// Returns the numbers of the member `name`; empty if there is none.
     fn numbers(&self, name: &str) -> &'v [f64] {
         match self.member(name) {
             Some(Value::Array(array)) => &array.re,

@@ -1,10 +1,10 @@
-//! Files written by GNU Octave's `save`: `-text` (the default), `-binary` and `-hdf5`, with or
-//! without `-zip`.
+//! Files written by GNU Octave's `save` with `-text` (the default), `-binary` or `-hdf5`,
+//! compressed (`-zip`) or not.
 //!
-//! The formats are documented only by the Octave 7 source (`ls-oct-text.cc`, `ls-oct-binary.cc`,
-//! `ls-hdf5.cc` and the `ov-*.cc` files). Each value follows its name and type name; its form
-//! depends on the type. Text and binary encodings give the parts in the same order, so both share
-//! the assembly.
+//! The formats are documented only by the source of Octave 7 (`ls-oct-text.cc`, `ls-oct-binary.cc`,
+//! `ls-hdf5.cc` and the `ov-*.cc` files). Each value is preceded by its name and type, on which its
+//! storage form depends. The text and binary encodings store the parts of a value in the same
+//! order, so both use the same assembly code.
 
 mod assembly;
 mod binary;
@@ -43,7 +43,7 @@ mod tests {
         }
     }
 
-    /// Values saved by Octave 7.3 in three forms.
+    /// The same variables, saved by Octave 7.3 in each format.
     const FORMS: [&str; 3] = ["kinds.txt", "kinds.bin", "kinds.h5.gz"];
 
     fn each_form(check: impl Fn(&dyn Fn(&str) -> Value, &str)) {

@@ -1,4 +1,5 @@
-//! GNU Octave's `save -text`: lines `# name: A`, `# type: matrix`, `# rows: 8`, and numbers.
+//! GNU Octave's `save -text` format: lines such as `# name: A`, `# type: matrix` and `# rows: 8`,
+//! followed by numbers.
 
 use crate::file_error::FileError;
 use crate::formats::octave::assembly::{Parts, Sides, ValueHeading, read_value, texts_in_pages};
@@ -9,12 +10,12 @@ use crate::formats::variables::{TextArray, Value, Variable};
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Maximum offset of the first variable \[bytes\].
+/// Length of the beginning of a file in which the first variable must appear \[bytes\].
 const HEAD: usize = 2000;
 
-/// Files written by `save -text`.
+/// Importer of files written by `save -text`.
 pub(crate) const OCTAVE_TEXT: Importer = Importer {
-    name: "a file of GNU Octave, as it writes with -text",
+    name: "a GNU Octave file, written with -text",
     endings: &["txt", "mat", "dat"],
     recognises: |bytes, _| begins_with_variable(bytes),
     read: |bytes, path, budget| {
@@ -23,7 +24,7 @@ pub(crate) const OCTAVE_TEXT: Importer = Importer {
     },
 };
 
-/// Whether the first lines are comments or empty, up to a variable's name and type.
+/// Returns whether a variable's name and type follow after comments and empty lines only.
 fn begins_with_variable(bytes: &[u8]) -> bool {
     let head = String::from_utf8_lossy(&bytes[..bytes.len().min(HEAD)]);
     for line in head.lines() {
@@ -53,8 +54,7 @@ fn read_variables(text: &str, budget: &ReadingBudget<'_>) -> Result<Vec<Variable
         let ValueHeading { name, type_name } = reader.heading("")?;
         let value = match read_value(&mut reader, &type_name, &name) {
             Ok(value) => value,
-            // The other values remain readable: only a value begins with a name at the start of a
-            // line.
+            // Reading continues with the next value, which begins at the next line with a name.
             Err(VariableFault::Unsupported { what, remedy, .. }) => Value::opaque(what, remedy),
             Err(fault) => return Err(fault),
         };
@@ -63,10 +63,10 @@ fn read_variables(text: &str, budget: &ReadingBudget<'_>) -> Result<Vec<Variable
     Ok(variables)
 }
 
-/// A text while it is read.
+/// State of reading a text.
 struct TextReader<'t> {
     text: &'t str,
-    /// Position of the next byte.
+    /// Offset of the next byte.
     at: usize,
     budget: &'t ReadingBudget<'t>,
 }
@@ -76,7 +76,7 @@ impl<'t> TextReader<'t> {
         &self.text[self.at..]
     }
 
-    /// Returns the next line, with any line ending.
+    /// Returns the next line without its line ending.
     fn line(&mut self) -> Option<&'t str> {
         let rest = self.rest();
         if rest.is_empty() {
@@ -87,7 +87,7 @@ impl<'t> TextReader<'t> {
         Some(rest[..end].trim_end_matches('\r'))
     }
 
-    /// Moves to the next line that names a value; `false` if there is none.
+    /// Moves to the next line that begins a value with its name; returns false if there is none.
     fn find_name(&mut self) -> bool {
         loop {
             let begin = self.at;
@@ -117,14 +117,14 @@ impl<'t> TextReader<'t> {
         }
     }
 
-    /// Returns the whole number after `# key: ` on the next nonempty line.
+    /// Returns the non-negative integer after `# key: ` on the next nonempty line.
     fn key_number(&mut self, key: &str, variable: &str) -> Result<usize, VariableFault> {
         let text = self.key(key, variable)?;
         text.parse()
             .map_err(|_| self.fault(variable, &format!("{key}: expected a whole number")))
     }
 
-    /// Whether the next nonempty line begins with `# key`.
+    /// Returns whether the next nonempty line begins with `# key`.
     fn has_key(&self, key: &str) -> bool {
         match self.rest().trim_start().strip_prefix("# ") {
             Some(rest) => rest.starts_with(key),
@@ -132,7 +132,7 @@ impl<'t> TextReader<'t> {
         }
     }
 
-    /// Returns the next word, on this line or a later line.
+    /// Returns the next word, which may be on a later line.
     fn word(&mut self, variable: &str) -> Result<&'t str, VariableFault> {
         let rest = self.rest();
         let Some(begin) = rest.find(|letter: char| !letter.is_whitespace()) else {
@@ -151,7 +151,7 @@ impl<'t> TextReader<'t> {
     }
 
     fn number(&self, word: &str, variable: &str) -> Result<f64, VariableFault> {
-        // Octave's "not available".
+        // Octave writes NA for a missing number.
         if word == "NA" {
             return Ok(f64::NAN);
         }
@@ -159,8 +159,8 @@ impl<'t> TextReader<'t> {
             .map_err(|_| self.fault(variable, "expected a number"))
     }
 
-    /// Returns the next text with `length` bytes, which may contain line breaks. If no line ends
-    /// after these bytes, as in a file with another encoding, returns the next line.
+    /// Returns the next `length` bytes, which may contain line breaks. If no line ends after them,
+    /// which happens after a change of encoding, returns the next line instead.
     fn text_with_length(
         &mut self,
         length: usize,
@@ -181,14 +181,14 @@ impl<'t> TextReader<'t> {
     }
 }
 
-/// Returns the text after `# key:`.
+/// Returns the text after `# key:`; `None` if the line has another key.
 fn text_after_key<'t>(line: &'t str, key: &str) -> Option<&'t str> {
     line.strip_prefix("# ")?
         .strip_prefix(key)?
         .strip_prefix(':')
 }
 
-/// Splits a complex number `(re,im)` into its parts.
+/// Splits a complex number `(re,im)` into its two parts.
 fn complex_parts(word: &str) -> Option<(&str, &str)> {
     word.strip_prefix('(')?.strip_suffix(')')?.split_once(',')
 }
@@ -221,7 +221,7 @@ impl Parts for TextReader<'_> {
             shape.push(self.index(variable)?);
         }
         if shape.len() < 2 {
-            return Err(self.fault(variable, "expected two dimensions or more"));
+            return Err(self.fault(variable, "expected at least two dimensions"));
         }
         Ok(Sides {
             shape,
@@ -261,13 +261,14 @@ impl Parts for TextReader<'_> {
         let mut columns = Vec::new();
         let mut numbers = Vec::new();
         for _ in 0..count {
-            // Octave counts from 1; an index of 0 wraps to a place outside the matrix.
+            // Indices count from 1 in Octave; the invalid index 0 wraps to a large number and is
+            // rejected below.
             let row = self.index(variable)?.wrapping_sub(1);
             let column = self.index(variable)?.wrapping_sub(1);
             if row >= height || column >= width {
-                return Err(self.fault(variable, "a number is outside the matrix"));
+                return Err(self.fault(variable, "an element is outside the matrix"));
             }
-            // Vectors grow by doubling.
+            // Take twice the memory of an entry: vectors grow by doubling.
             self.budget.take(1, 48, variable)?;
             rows.push(row);
             columns.push(column);

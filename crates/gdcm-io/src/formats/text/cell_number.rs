@@ -1,6 +1,6 @@
-//! Numbers in table cells, in the notations of various programs.
+//! Numbers in table cells, in the notations of different programs.
 
-/// Words that programs write for a missing number.
+/// Words that programs write instead of a missing number.
 const MISSING: [&str; 14] = [
     "nan",
     "-nan",
@@ -18,13 +18,13 @@ const MISSING: [&str; 14] = [
     ".",
 ];
 
-/// Maximum length of a number with a decimal comma or a Fortran exponent \[bytes\].
+/// Maximum length of a number in a notation that Rust does not parse \[bytes\].
 const LONGEST: usize = 400;
 
-/// Parses the number in a cell: NaN for a missing number, `None` for anything else.
+/// Parses the number in a cell: NaN for a missing number, `None` for anything that is not a number.
 ///
-/// `decimal_comma` selects comma or point as the decimal mark; the other mark is not accepted, as
-/// it may group thousands.
+/// The decimal mark is a comma if `decimal_comma`, otherwise a point; the other mark is rejected,
+/// as it may group thousands.
 pub(super) fn cell_number(cell: &str, decimal_comma: bool) -> Option<f64> {
     let cell = cell.trim();
     if cell.is_empty() {
@@ -40,7 +40,7 @@ pub(super) fn cell_number(cell: &str, decimal_comma: bool) -> Option<f64> {
     foreign_number(cell, decimal_comma)
 }
 
-/// Whether a cell is a number or a missing number, with either decimal mark.
+/// Returns whether a cell is a number, with either decimal mark, or a missing number.
 pub(super) fn is_number(cell: &str) -> bool {
     cell_number(cell, false).is_some() || cell_number(cell, true).is_some()
 }
@@ -53,14 +53,14 @@ pub(super) fn has_number(cell: &str, decimal_comma: bool) -> bool {
 fn is_missing(cell: &str) -> bool {
     let unsigned = cell.trim_start_matches('-');
     MISSING.iter().any(|word| cell.eq_ignore_ascii_case(word))
-        // NaN from the older Windows C library.
+        // Notation of NaN in the older Windows C library.
         || ["1.#IND", "1.#QNAN", "1.#SNAN"].iter().any(|start| unsigned.starts_with(start))
-        // Fortran writes asterisks for a number too wide for its field.
+        // Fortran writes asterisks if a number is too wide for its field.
         || cell.bytes().all(|byte| byte == b'*')
 }
 
-/// Parses a number with a decimal comma, a typographic minus, a Fortran exponent or the infinity of
-/// the older Windows C library.
+/// Parses notations that Rust does not parse: decimal comma, typographic minus sign, Fortran
+/// exponent, and infinity in the older Windows C library.
 fn foreign_number(cell: &str, decimal_comma: bool) -> Option<f64> {
     if cell.starts_with("1.#INF") {
         return Some(f64::INFINITY);
@@ -82,7 +82,7 @@ fn foreign_number(cell: &str, decimal_comma: bool) -> Option<f64> {
             _ => return None,
         });
     }
-    // Fortran omits the letter before a three-digit exponent: 1.0-103.
+    // Insert the exponent letter, which Fortran omits before three digits: 1.0-103.
     if let Some(at) = plain.rfind(['+', '-'])
         && at > 0
         && plain.len() - at == 4

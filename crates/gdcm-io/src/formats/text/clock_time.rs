@@ -1,9 +1,10 @@
-//! Clock times, with or without a date.
+//! Times of day, with or without a date.
 
 const DAY_S: f64 = 86_400.0;
 
-/// Parses a time such as "12:30:01.25", "12:30:01,25", "2026-03-01 12:30:01.25" or
-/// "2026-03-01T12:30:01.250Z" \[s\]: since midnight, or since 1970-01-01 with a date.
+/// Parses a time of day such as "12:30:01.25", "12:30:01,25", "2026-03-01 12:30:01.25" or
+/// "2026-03-01T12:30:01.250Z". Returns the seconds since midnight or, with a date, since
+/// 1970-01-01; `None` for any other text.
 pub(super) fn clock_s(text: &str) -> Option<f64> {
     let text = text.trim().trim_end_matches('Z').trim();
     let (date, time) = match text.split_once(['T', ' ']) {
@@ -30,14 +31,14 @@ pub(super) fn clock_s(text: &str) -> Option<f64> {
         Some(date) => DAY_S * days(date)?,
         None => 0.0,
     };
-    // During a leap second, the seconds read 60.
+    // Allow 60 s, which occurs during a leap second.
     if !(0.0..61.0).contains(&seconds) {
         return None;
     }
     Some(day_s + 3600.0 * hours + 60.0 * minutes + seconds)
 }
 
-/// Parses a whole number with one or two digits, up to `most`.
+/// Parses an integer of one or two digits; `None` if it exceeds `most`.
 fn two_digits(text: &str, most: u32) -> Option<f64> {
     let is_digits =
         !text.is_empty() && text.len() <= 2 && text.bytes().all(|byte| byte.is_ascii_digit());
@@ -51,7 +52,7 @@ fn two_digits(text: &str, most: u32) -> Option<f64> {
     Some(f64::from(value))
 }
 
-/// Days from 1970-01-01 to a date in the order year, month, day.
+/// Returns the number of days from 1970-01-01 to a date "year-month-day" or "year/month/day".
 fn days(date: &str) -> Option<f64> {
     let mut parts = date.split(['-', '/']).map(|part| part.parse::<i16>().ok());
     let year = parts.next()??;
@@ -70,7 +71,7 @@ mod clock_tests {
     fn times_with_a_date_and_without_are_seconds() {
         assert_eq!(clock_s("12:30:01.25"), Some(45_001.25));
         assert_eq!(clock_s("00:00:00,5"), Some(0.5));
-        // date -u -d "2026-03-01 12:30:01" +%s
+        // Reference value from `date -u -d "2026-03-01 12:30:01" +%s`.
         assert_eq!(clock_s("2026-03-01T12:30:01Z"), Some(1_772_368_201.0));
         assert_eq!(clock_s("2026/03/01 12:30:01"), Some(1_772_368_201.0));
         for wrong in [

@@ -1,10 +1,10 @@
-//! Meaning of frequency response columns, from names and units.
+//! Meaning of the columns of a frequency response table, from their names and units.
 
 use gdcm_model::units::physical_unit::PhysicalUnit;
 
 use crate::formats::text::response_label::ResponseLabel;
 
-/// Quantity in a frequency response column.
+/// Quantity that a column of a frequency response table holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quantity {
     Error,
@@ -16,7 +16,7 @@ pub(super) enum Quantity {
     Frequency,
 }
 
-/// A unit that determines how a column is read.
+/// Units that determine how a column is interpreted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum KnownUnit {
     RadianPerSecond,
@@ -25,28 +25,28 @@ pub(super) enum KnownUnit {
     Degree,
     Radian,
     Percent,
-    /// The coherence γ itself, not its square γ².
+    /// Coherence γ.
     Gamma,
-    /// The squared coherence γ².
+    /// Squared coherence γ².
     GammaSquared,
-    /// `rps`: radians or revolutions per second, ambiguous.
+    /// `rps`, which may mean radians or revolutions per second.
     Rps,
-    /// Any other unit; occurs for magnitudes, real and imaginary parts.
+    /// Any other unit, such as the unit of a magnitude or of a real part.
     Other,
 }
 
-/// Meaning of a column, from its name and unit.
+/// Meaning of a column, according to its name and unit.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ColumnMeaning {
     pub(super) quantity: Option<Quantity>,
     pub(super) unit: Option<KnownUnit>,
     pub(super) label: ResponseLabel,
-    /// Reason for the quantity: "its name contains phase".
+    /// Reason for the choice of the quantity, such as "its name contains phase".
     pub(super) reason: String,
 }
 
-/// Words in column names. The first quantity with a matching word applies: "phase error" is an
-/// error.
+/// Words in column names that indicate a quantity. The first quantity with a word in the name
+/// applies: "phase error" is an error.
 const WORDS: [(Quantity, &[&str]); 7] = [
     (
         Quantity::Error,
@@ -113,7 +113,7 @@ const WORDS: [(Quantity, &[&str]); 7] = [
     ),
 ];
 
-/// Units after a name, without brackets.
+/// Units that may follow a name without brackets.
 const UNIT_ENDINGS: [(&str, KnownUnit); 13] = [
     ("rad/s", KnownUnit::RadianPerSecond),
     ("rad/sec", KnownUnit::RadianPerSecond),
@@ -130,13 +130,12 @@ const UNIT_ENDINGS: [(&str, KnownUnit); 13] = [
     ("%", KnownUnit::Percent),
 ];
 
-/// Characters between a name and its unit.
+/// Characters that may separate a name from its unit.
 const BEFORE_UNIT: [char; 6] = ['_', ' ', '-', '.', '/', ','];
 
-/// Words for magnitudes that are not in decibels.
+/// Words that indicate a magnitude as a ratio, not in decibels.
 const ABSOLUTE: [&str; 6] = ["abs", "absolute", "lin", "linear", "ratio", "modulus"];
 
-/// A word in a column name.
 #[derive(Clone, Copy)]
 struct Word<'n> {
     /// Offset in the name \[bytes\].
@@ -145,7 +144,7 @@ struct Word<'n> {
 }
 
 impl ColumnMeaning {
-    /// Interprets the name and the unit in a heading.
+    /// Interprets a column by its name and its unit; without a given unit, the name may end in one.
     pub(super) fn interpret(name: &str, unit: Option<&str>) -> Self {
         let (name, unit) = match unit {
             Some(unit) => (name, Some(known_unit(unit))),
@@ -154,8 +153,7 @@ impl ColumnMeaning {
         let usual_unit = match name.trim().to_lowercase().as_str() {
             _ if unit == Some(KnownUnit::Other) => return Self::from_words(name, unit),
             "w" => Some(KnownUnit::RadianPerSecond),
-            // In frequency tables f is in Hz as often as in rad/s, so the user is asked for its
-            // unit.
+            // In frequency tables, f is in Hz as often as in rad/s: ask the user.
             "f" => None,
             _ => return Self::from_words(name, unit),
         };
@@ -183,7 +181,8 @@ impl ColumnMeaning {
         Self::from_unit_or_signs(name, unit)
     }
 
-    /// Interprets a name without any word in `WORDS` by its unit, or by the signs |…| and ∠.
+    /// Interprets a name that contains no word of `WORDS` by its unit, by vertical bars around it,
+    /// or by the sign ∠.
     fn from_unit_or_signs(name: &str, unit: Option<KnownUnit>) -> Self {
         let bare = name.trim();
         let has_strokes = bare.len() > 2 && bare.starts_with('|') && bare.ends_with('|');
@@ -211,7 +210,8 @@ impl ColumnMeaning {
 }
 
 impl Word<'_> {
-    /// Whether the word, with or without its final digits, is in the list `known`: "re1".
+    /// Returns whether the word is in the list `known`, with or without its final digits, as in
+    /// "re1".
     fn is_known(&self, known: &[&str]) -> bool {
         let lower = self.text.to_lowercase();
         known.contains(&lower.as_str()) || known.contains(&without_digits(&lower))
@@ -222,20 +222,20 @@ impl Word<'_> {
     }
 }
 
-/// Returns a word without the digits after it.
+/// Returns a word without the digits at its end.
 fn without_digits(word: &str) -> &str {
     word.trim_end_matches(|c: char| c.is_ascii_digit())
 }
 
-/// Returns the unit that the words in a name imply; `word` is the word that gives the quantity, in
-/// lower case.
+/// Returns the unit implied by the words of a name; `None` if the words imply none. `word` is the
+/// word that indicates the quantity, in lower case.
 fn usual_unit(quantity: Quantity, word: &str, words: &[Word<'_>]) -> Option<KnownUnit> {
     match quantity {
         Quantity::Frequency if matches!(word, "omega" | "om" | "ω") => {
             Some(KnownUnit::RadianPerSecond)
         }
         Quantity::Magnitude if words.iter().any(Word::is_absolute) => Some(KnownUnit::Other),
-        // Programs call both γ and γ² gamma.
+        // Exclude gamma and γ: programs use both names for γ and for γ².
         Quantity::Coherence if !matches!(word, "gamma" | "gam" | "γ") => {
             Some(KnownUnit::GammaSquared)
         }
@@ -249,7 +249,7 @@ fn known_unit(unit: &str) -> KnownUnit {
         "gamma2" | "gamma^2" | "γ²" | "γ2" | "γ^2" => return KnownUnit::GammaSquared,
         "rps" => return KnownUnit::Rps,
         "rev/s" | "rev/sec" => return KnownUnit::Hertz,
-        // Only for frequency columns.
+        // These units have this meaning only in frequency columns.
         "1/s" | "rads" | "rads^-1" | "rads-1" => return KnownUnit::RadianPerSecond,
         "1/sec" => return KnownUnit::Hertz,
         _ => {}
@@ -265,7 +265,7 @@ fn known_unit(unit: &str) -> KnownUnit {
     }
 }
 
-/// Splits a unit off a name: "mag_dB", "freqHz", "w_rad_s".
+/// Splits a name into its front part and the unit at its end: "mag_dB", "freqHz", "w_rad_s".
 fn split_unit(name: &str) -> (&str, Option<KnownUnit>) {
     let name = name.trim();
     for (ending, unit) in UNIT_ENDINGS {
@@ -280,7 +280,7 @@ fn split_unit(name: &str) -> (&str, Option<KnownUnit>) {
     (name, None)
 }
 
-/// Removes an ending in any case from a name; `None` if the name ends otherwise.
+/// Removes an ending from a name, ignoring case; `None` if the name does not have the ending.
 fn without_ending<'n>(name: &'n str, ending: &str) -> Option<&'n str> {
     let at = name.len().checked_sub(ending.len())?;
     let (front, end) = name.split_at_checked(at)?;
@@ -291,7 +291,8 @@ fn without_ending<'n>(name: &'n str, ending: &str) -> Option<&'n str> {
     }
 }
 
-/// Whether a name ends with a word in `WORDS` of at least two bytes, as "freq" before "Hz" does.
+/// Returns whether a name ends in one of `WORDS`, such as "freq" in "freqHz" before the unit.
+/// Ignores words of a single byte.
 fn ends_with_known_word(name: &str) -> bool {
     let name = name.to_lowercase();
     WORDS
@@ -300,7 +301,7 @@ fn ends_with_known_word(name: &str) -> bool {
         .any(|word| word.len() > 1 && name.ends_with(word))
 }
 
-/// Returns the words in a name: letters, digits and "²" without a break.
+/// Splits a name into words, which consist of letters, digits and "²".
 fn words_of(name: &str) -> Vec<Word<'_>> {
     let mut words = Vec::new();
     let mut begun = None;
@@ -327,7 +328,8 @@ fn words_of(name: &str) -> Vec<Word<'_>> {
     words
 }
 
-/// Returns a name without the words in `known`; digits after such a word are kept, as in "re1".
+/// Returns a name without the words in `known`; keeps digits at the end of such a word, as in
+/// "re1".
 fn without_words(name: &str, words: &[Word<'_>], known: &[&str]) -> String {
     let mut label = String::with_capacity(name.len());
     let mut from = 0;

@@ -1,4 +1,4 @@
-//! Number tables in columns, written by programs and people.
+//! Tables of numbers in columns, written by programs or by hand.
 
 use crate::formats::text::cell_number::cell_number;
 use crate::formats::text::encoding::refuse_binary;
@@ -12,36 +12,36 @@ use crate::formats::text::separator::Separator;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 const EXPECTED: &str = "a table of numbers in columns";
-/// Number of lines before the first row that are compared with a repeated heading.
+/// Number of lines before the first row among which a repeated heading is looked up.
 const COMPARED_HEADINGS: usize = 20;
 
-/// A table with number columns.
+/// Table of numbers in columns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextTable {
-    /// Column names, if the text has them.
+    /// Column names; `None` if the text has none.
     pub names: Option<Vec<String>>,
-    /// Unit for each column, if the text gives it.
+    /// Unit of each column, where the text gives it.
     pub units: Vec<Option<String>>,
-    /// The numbers, column by column. Missing numbers are NaN, which code that needs the numbers
-    /// rejects with their position.
+    /// Numbers by column. A missing number is NaN; code that needs the number reports its position.
     pub columns: Vec<Vec<f64>>,
-    /// Line number by row, from 1.
+    /// Line number of each row, counted from 1.
     pub lines: Vec<usize>,
     pub separator: Separator,
     pub decimal_comma: bool,
-    /// Comments and headings: line number and line.
+    /// Lines that are not rows, such as comments and headings, with their line numbers.
     pub skipped: Vec<(usize, String)>,
-    /// Notes on ambiguous readings.
+    /// Notes for the user on how ambiguous parts were read.
     pub notes: Vec<String>,
 }
 
 impl TextTable {
-    /// Returns a column name, if the text has it.
+    /// Returns the name of a column, if the text gives one.
     pub(super) fn name(&self, column: usize) -> Option<&str> {
         self.names.as_ref()?.get(column).map(String::as_str)
     }
 
-    /// Returns the column headings: "omega \[rad/s\]"; empty without a name.
+    /// Returns the column headings, with units such as "omega \[rad/s\]"; empty strings for columns
+    /// without a name.
     pub fn headings(&self) -> Vec<String> {
         (0..self.units.len())
             .map(|column| self.heading(column))
@@ -56,10 +56,11 @@ impl TextTable {
         }
     }
 
-    /// Returns the table with other headings, written as in [`TextTable::headings`].
+    /// Replaces the names and units of all columns by those in `headings`, in the notation of
+    /// [`TextTable::headings`].
     ///
     /// # Errors
-    /// There are more or fewer headings than columns.
+    /// [`VariableFault`] if the number of headings differs from the number of columns.
     pub fn with_headings(mut self, headings: &[String]) -> Result<Self, VariableFault> {
         if headings.len() != self.columns.len() {
             let found = format!(
@@ -78,12 +79,13 @@ impl TextTable {
         }
         self.names = Some(names);
         self.notes
-            .push("the headings of the columns are those of the rules".to_owned());
+            .push("the column headings are taken from the rules".to_owned());
         Ok(self)
     }
 }
 
-/// Reads a table with number columns: recognises its separator, decimal mark, names and units.
+/// Reads a table of numbers in columns, and recognises its separator, decimal mark, names and
+/// units.
 pub fn read_table(text: &str, budget: &ReadingBudget) -> Result<TextTable, VariableFault> {
     refuse_binary(text, EXPECTED)?;
     let Some(layout) = Layout::recognise(text, budget)? else {
@@ -99,17 +101,17 @@ pub fn read_table(text: &str, budget: &ReadingBudget) -> Result<TextTable, Varia
 fn no_numbers(text: &str) -> VariableFault {
     let found = match excerpt(text).as_str() {
         "" => "an empty file".to_owned(),
-        start => format!("no line that consists of numbers (it begins with \"{start}\")"),
+        start => format!("no row of numbers (the text begins with \"{start}\")"),
     };
     VariableFault::format(EXPECTED, found)
 }
 
-/// A table during reading.
+/// State of reading a table.
 struct Reading<'m> {
     layout: Layout,
     budget: &'m ReadingBudget<'m>,
     columns: Vec<Vec<f64>>,
-    /// Line number by row.
+    /// Line number of each row.
     lines: Vec<usize>,
     skipped: Vec<NumberedLine>,
     notes: Vec<String>,
@@ -117,7 +119,7 @@ struct Reading<'m> {
 
 impl<'m> Reading<'m> {
     fn new(layout: Layout, budget: &'m ReadingBudget<'m>) -> Result<Self, VariableFault> {
-        // Memory for a column header here, and for its unit and name later.
+        // Memory of an empty column, and later of its unit and name.
         budget.take(layout.columns as u64, 128, "")?;
         Ok(Self {
             layout,
@@ -134,7 +136,7 @@ impl<'m> Reading<'m> {
             return Ok(());
         }
         if comment(line).is_some() {
-            // "#N/A;1" and ";1;2" begin with a comment mark, but are rows.
+            // Check for rows first: "#N/A;1" and ";1;2" are rows that begin with a comment mark.
             return match self.layout.row_shape(line) {
                 Some(shape) if self.layout.fits(shape) => self.row(number, line),
                 _ => self.skip(number, line),
@@ -158,11 +160,12 @@ impl<'m> Reading<'m> {
     fn line_before_rows(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
         match self.layout.row_shape(line) {
             Some(shape) if self.layout.fits(shape) => self.row(number, line),
-            // A single number is not a table row; it may be a row count or a date.
+            // A single number in a wider table is no row: it may be a number of rows or a date.
             Some(RowShape { width: 1, .. }) => {
                 let columns = self.layout.columns;
                 self.notes.push(format!(
-                    "line {number} holds one number, the table has {columns} columns: skipped"
+                    "line {number} is skipped: it holds one number, but the table has {columns} \
+                    columns"
                 ));
                 self.skip(number, line)
             }
@@ -171,7 +174,7 @@ impl<'m> Reading<'m> {
         }
     }
 
-    /// Whether a line repeats the heading, as written by programs that continue a record.
+    /// Returns whether a line repeats the heading, as programs do when they continue a record.
     fn repeats_heading(&self, line: &str) -> bool {
         self.skipped_above_rows()
             .iter()
@@ -179,7 +182,7 @@ impl<'m> Reading<'m> {
             .any(|heading| heading.1.trim() == line.trim())
     }
 
-    /// Returns the skipped lines before the first row.
+    /// Returns the lines before the first row that were skipped.
     fn skipped_above_rows(&self) -> &[NumberedLine] {
         let first_row = self.lines.first().copied().unwrap_or(0);
         let count = self
@@ -217,7 +220,7 @@ impl<'m> Reading<'m> {
             self.layout.trailing = false;
             self.columns.push(Vec::new());
         }
-        // Vectors grow by doubling: up to half their memory may be unused.
+        // Take twice the memory of a row: vectors grow by doubling.
         self.budget.take(self.layout.columns as u64 + 1, 16, "")?;
         let mut cells = self.layout.cells(line);
         let mut ends_empty = false;
@@ -237,7 +240,7 @@ impl<'m> Reading<'m> {
                 width: self.layout.columns,
                 ends_empty,
             }),
-            // A trailing separator may leave one empty cell.
+            // One empty cell is allowed, after a trailing separator.
             Some(extra) => cells.next().is_none() && extra.trim().is_empty(),
         };
         if !is_complete {
@@ -247,16 +250,17 @@ impl<'m> Reading<'m> {
         Ok(())
     }
 
-    /// Describes a cell that is no number, or a line without any number.
+    /// Describes a cell that is not a number, or a line without numbers, with a remedy.
     fn no_number(&self, index: usize, cell: &str, line: &str) -> String {
-        /// Maximum number of examined cells.
+        /// Maximum number of cells examined in a line.
         const EXAMINED: usize = 20;
         let decimal_comma = self.layout.decimal_comma;
         let mut cells = self.layout.cells(line).take(EXAMINED);
         if cells.all(|cell| cell_number(&cell, decimal_comma).is_none()) {
             let start = excerpt(line);
             return format!(
-                "words among the rows (\"{start}\"); put # before them, or split the file if others follow"
+                "text among the rows (\"{start}\"); put # before it, or split the file if another \
+                table follows"
             );
         }
         let mark = if decimal_comma && cell.contains('.') {
@@ -265,7 +269,8 @@ impl<'m> Reading<'m> {
             ""
         };
         format!(
-            "column {} holds \"{}\", which is no number{mark}; correct it, or empty the cell",
+            "column {} holds \"{}\", which is not a number{mark}; correct it, or leave the cell \
+            empty",
             index + 1,
             excerpt(cell)
         )
@@ -287,8 +292,8 @@ impl<'m> Reading<'m> {
             "",
             number,
             format!(
-                "{found} columns, where the table has {expected} (between {separator}); \
-                 complete the line, or split the file where the columns change"
+                "{found} columns, but the table has {expected} (separated by {separator}); \
+                complete the line, or split the file where the columns change"
             ),
         )
     }
@@ -300,7 +305,8 @@ impl<'m> Reading<'m> {
         let heading = Heading::find(self.skipped_above_rows(), self.layout);
         self.notes.extend(heading.notes);
         if heading.names.is_none() && self.may_have_decimal_commas() {
-            let note = "each line has one comma: read as two columns; numbers with a decimal comma look the same";
+            let note = "each line has one comma, which is read as the separator of two columns; \
+                decimal commas would look the same";
             self.notes.push(note.to_owned());
         }
         Ok(TextTable {
@@ -315,8 +321,8 @@ impl<'m> Reading<'m> {
         })
     }
 
-    /// Whether the table could also be a single column with decimal commas: it has two columns of
-    /// whole numbers separated by commas.
+    /// Returns whether the table could instead be a single column with decimal commas: it has two
+    /// columns of integers, separated by commas.
     fn may_have_decimal_commas(&self) -> bool {
         self.layout.separator == Separator::Comma
             && self.layout.columns == 2
@@ -411,7 +417,7 @@ mod columns_tests {
         assert_eq!(table.columns[0], [1000.0, 2000.0]);
         assert_eq!(
             table.notes[0],
-            "line 1 holds one number, the table has 2 columns: skipped"
+            "line 1 is skipped: it holds one number, but the table has 2 columns"
         );
         assert_eq!(missing(&table), 1);
     }
@@ -421,25 +427,24 @@ mod columns_tests {
         let message = |text: &str| read(text).unwrap_err().to_string();
         assert_eq!(
             message("a,b,c\n1,2,3\n4,5\n"),
-            "line 3: 2 columns, where the table has 3 (between commas); \
+            "line 3: 2 columns, but the table has 3 (separated by commas); \
              complete the line, or split the file where the columns change"
         );
         assert_eq!(
             message("1,2,3\n4,x,6\n"),
-            "line 2: column 2 holds \"x\", which is no number; correct it, or empty the cell"
+            "line 2: column 2 holds \"x\", which is not a number; correct it, or leave the cell empty"
         );
         assert_eq!(
             message("1,5;2\n1.5;3\n1,6;2\n"),
-            "line 2: column 1 holds \"1.5\", which is no number (the decimal mark is the comma); \
-             correct it, or empty the cell"
+            "line 2: column 1 holds \"1.5\", which is not a number (the decimal mark is the comma); \
+             correct it, or leave the cell empty"
         );
         assert!(
-            message("t;x;\n1;2;\n3;4;\n5;\n")
-                .starts_with("line 4: 1 columns, where the table has 2")
+            message("t;x;\n1;2;\n3;4;\n5;\n").starts_with("line 4: 1 columns, but the table has 2")
         );
         assert_eq!(
             message("1,2\n3,4\nt,x\n"),
-            "line 3: words among the rows (\"t,x\"); put # before them, or split the file if others follow"
+            "line 3: text among the rows (\"t,x\"); put # before it, or split the file if another table follows"
         );
         assert_eq!(
             message(" \n"),
@@ -447,7 +452,7 @@ mod columns_tests {
         );
         assert!(
             message("hello world")
-                .contains("no line that consists of numbers (it begins with \"hello world\")")
+                .contains("no row of numbers (the text begins with \"hello world\")")
         );
     }
 

@@ -1,15 +1,15 @@
-//! Complex columns, `(1.5-2j)`, as columns with real and imaginary parts.
+//! Splitting of columns with complex numbers, such as `(1.5-2j)`, into real and imaginary parts.
 
 use crate::formats::text::cell_number::{cell_number, has_number};
 use crate::formats::text::lines::{comment, lines};
 use crate::formats::text::separator::Separator;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Number of lines examined.
+/// Number of lines examined for complex numbers.
 const SAMPLE: usize = 200;
 
-/// Replaces each complex column by two columns, with "re" and "im" before their headings; returns
-/// nothing if there is none. Line numbers are kept.
+/// Replaces each column of complex numbers by two columns, whose headings begin with "re" and "im".
+/// Returns `None` if there is no such column. Line numbers do not change.
 pub fn split_complex(text: &str, budget: &ReadingBudget) -> Result<Option<String>, VariableFault> {
     let Some(columns) = ComplexColumns::recognise(text) else {
         return Ok(None);
@@ -24,20 +24,21 @@ pub fn split_complex(text: &str, budget: &ReadingBudget) -> Result<Option<String
         }
         split.push('\n');
     }
-    // An empty line follows the last line end.
+    // The last line, after the final line end, is empty: remove its line feed.
     split.pop();
     Ok(Some(split))
 }
 
-/// Separator and complex columns in a text.
+/// Separator of a text, and its columns of complex numbers.
 struct ComplexColumns {
     separator: Separator,
-    /// Whether each column is complex.
+    /// Whether each column has complex numbers.
     is_complex: Vec<bool>,
 }
 
 impl ComplexColumns {
-    /// Finds the first number row with a complex number.
+    /// Recognises the columns from the first row with a complex number; `None` if there is no such
+    /// row.
     fn recognise(text: &str) -> Option<Self> {
         lines(text)
             .filter(|(_, line)| comment(line).is_none())
@@ -51,8 +52,8 @@ impl ComplexColumns {
             .find_map(|separator| Self::from_separated_line(line, separator))
     }
 
-    /// Interprets the cells in a line; `None` unless there are at least two, all are
-    /// numbers, and some are complex.
+    /// Recognises the columns from a row. Returns `None` unless the row has at least two cells, all
+    /// numbers, and some of them complex.
     fn from_separated_line(line: &str, separator: Separator) -> Option<Self> {
         let mut is_complex = Vec::new();
         for cell in separator.cells(line) {
@@ -73,7 +74,8 @@ impl ComplexColumns {
         }
     }
 
-    /// Splits the complex cells in a line; `None` if the cell count differs.
+    /// Splits the cells in the complex columns of a line; `None` if the number of cells differs
+    /// from the number of columns.
     fn split_line(&self, line: &str) -> Option<String> {
         let cells: Vec<_> = self.separator.cells(line).collect();
         if cells.len() != self.is_complex.len() {
@@ -92,7 +94,7 @@ impl ComplexColumns {
         Some(self.separator.line(split.into_iter()))
     }
 
-    /// Returns the real and imaginary part of a number, or the two headings made from a heading.
+    /// Splits a cell: a number into its real and imaginary part, a heading into two headings.
     fn parts_or_headings(&self, cell: &str) -> ComplexText {
         if let Some(parts) = ComplexText::parse(cell) {
             return parts;
@@ -116,7 +118,7 @@ impl ComplexColumns {
     }
 }
 
-/// Real and imaginary part, as text.
+/// Real and imaginary part of a number, or their headings.
 struct ComplexText {
     re: String,
     im: String,
@@ -130,7 +132,8 @@ impl ComplexText {
         }
     }
 
-    /// Parses "(1.5-2j)", "1.5 + 2i", "2e-3j", "(1+-2j)".
+    /// Parses a complex number such as "(1.5-2j)", "1.5 + 2i", "2e-3j" or "(1+-2j)"; `None` for any
+    /// other text.
     fn parse(cell: &str) -> Option<Self> {
         let cell: String = cell
             .chars()
@@ -157,8 +160,8 @@ impl ComplexText {
     }
 }
 
-/// Returns the offset of the sign between real and imaginary part: the last sign that is neither at
-/// the beginning nor in an exponent.
+/// Returns the offset of the sign between the real and the imaginary part: the last sign that is
+/// neither at the beginning nor in an exponent.
 fn last_sign(number: &str) -> Option<usize> {
     let (at, _) = number.char_indices().rfind(|(at, letter)| {
         *at > 0 && matches!(letter, '+' | '-') && !number[..*at].ends_with(['e', 'E', 'd', 'D'])

@@ -1,15 +1,15 @@
-//! Character encodings in text files.
+//! Character encodings of text files.
 
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Characters 0x80 to 0x9f in code page 1252; its five undefined codes remain control characters.
+/// Characters 0x80 to 0x9f of code page 1252; its five undefined codes become control characters.
 const WINDOWS_1252: [char; 32] = [
     '€', '\u{81}', '‚', 'ƒ', '„', '…', '†', '‡', 'ˆ', '‰', 'Š', '‹', 'Œ', '\u{8d}', 'Ž', '\u{8f}',
     '\u{90}', '‘', '’', '“', '”', '•', '–', '—', '˜', '™', 'š', '›', 'œ', '\u{9d}', 'ž', 'Ÿ',
 ];
 
-/// Decodes a text: UTF-8 with or without a byte order mark, UTF-16 with a byte order mark, or code
-/// page 1252 if the bytes are not UTF-8.
+/// Decodes a text file: UTF-16 if a byte order mark announces it, UTF-8 if the bytes are valid,
+/// otherwise code page 1252.
 pub fn decode(bytes: &[u8], budget: &ReadingBudget) -> Result<String, VariableFault> {
     if let Some(body) = bytes.strip_prefix(&[0xff, 0xfe]) {
         return utf16(body, u16::from_le_bytes, budget);
@@ -21,7 +21,7 @@ pub fn decode(bytes: &[u8], budget: &ReadingBudget) -> Result<String, VariableFa
     if let Some(at) = body.iter().position(|&byte| byte == 0) {
         return Err(no_text("a text", at));
     }
-    // A character from code page 1252 takes at most three bytes in UTF-8.
+    // A character of code page 1252 needs at most three bytes in UTF-8.
     budget.take(body.len() as u64, 3, "")?;
     Ok(match std::str::from_utf8(body) {
         Ok(text) => text.to_owned(),
@@ -36,7 +36,8 @@ fn windows_1252(byte: u8) -> char {
     }
 }
 
-/// Decodes UTF-16 without its byte order mark; `word` gives the byte order.
+/// Decodes UTF-16 after its byte order mark; `word` combines two bytes in the byte order of the
+/// file.
 fn utf16(
     body: &[u8],
     word: fn([u8; 2]) -> u16,
@@ -53,7 +54,7 @@ fn utf16(
         .collect())
 }
 
-/// Rejects binary data: a text with numbers contains no zero byte.
+/// Rejects binary files, which are recognised by zero bytes.
 pub(super) fn refuse_binary(text: &str, expected: &'static str) -> Result<(), VariableFault> {
     match text.find('\0') {
         Some(at) => Err(no_text(expected, at)),
@@ -62,10 +63,7 @@ pub(super) fn refuse_binary(text: &str, expected: &'static str) -> Result<(), Va
 }
 
 fn no_text(expected: &'static str, at: usize) -> VariableFault {
-    VariableFault::format(
-        expected,
-        format!("a file that is no text (byte {at} of it is zero)"),
-    )
+    VariableFault::format(expected, format!("a binary file (byte {at} is zero)"))
 }
 
 #[cfg(test)]
@@ -110,7 +108,7 @@ mod encoding_tests {
         let fault = refuse_binary("ab\0c", "a table").unwrap_err();
         assert_eq!(
             fault.to_string(),
-            "expected a table, found a file that is no text (byte 2 of it is zero)"
+            "expected a table, found a binary file (byte 2 is zero)"
         );
     }
 }

@@ -1,4 +1,4 @@
-//! Frequency responses in a table, recognised by column names and units.
+//! Frequency responses in a table, recognised by the names and units of its columns.
 
 use crate::formats::text::columns::TextTable;
 use crate::formats::text::response_columns::{RecognisedResponse, ResponsePoints, column_place};
@@ -6,20 +6,23 @@ use crate::formats::text::response_recognition::{FrequencyColumn, Recognition};
 use crate::formats::text::unrecognised::{Unrecognised, units_missing, unrecognised};
 use crate::reading_budget::VariableFault;
 
-/// Meaning of the columns in a table.
+/// Meaning of the columns of a frequency response table.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct FrequencyColumns {
     frequency: FrequencyColumn,
-    /// The responses, in column order.
+    /// Frequency responses, in the order of their columns.
     pub(crate) responses: Vec<RecognisedResponse>,
-    /// Each decision with its reason.
+    /// Notes for the user: each choice with its reason.
     pub(crate) notes: Vec<String>,
-    /// Unused columns: their names, or their numbers if they have no name.
+    /// Unused columns, by name or, without a name, by number.
     pub(crate) unused: Vec<String>,
 }
 
 impl FrequencyColumns {
-    /// Recognises the columns by their names and units; ambiguities become questions.
+    /// Recognises the columns by their names and units.
+    ///
+    /// # Errors
+    /// [`Unrecognised`] if no frequency response is found, or the user must be asked about a unit.
     pub(crate) fn recognise(table: &TextTable) -> Result<Self, Unrecognised> {
         let mut recognition = Recognition::new(table);
         let frequency = recognition.frequency()?;
@@ -29,7 +32,7 @@ impl FrequencyColumns {
         }
         if responses.is_empty() {
             return Err(unrecognised(
-                "no magnitude with a phase and no real part with an imaginary part",
+                "neither magnitude and phase nor real and imaginary part",
             ));
         }
         let mut columns = Self {
@@ -39,17 +42,19 @@ impl FrequencyColumns {
             unused: recognition.unused,
         };
         if columns.is_decreasing(table) {
-            let note = "the frequencies fall: taken from the last line to the first";
+            let note = "the frequencies decrease: the rows are read in reverse order";
             columns.notes.push(note.to_owned());
         }
         Ok(columns)
     }
 
-    /// Returns the points for every response, in rad/s and as complex numbers.
+    /// Returns the points of each response.
     ///
-    /// Decreasing frequencies are reversed. A frequency that is missing, negative, or not above the
-    /// preceding frequency is rejected with its line, and so is a row with only one part of a
-    /// complex number.
+    /// Rows with decreasing frequencies are put in reverse order.
+    ///
+    /// # Errors
+    /// [`VariableFault`] with the line if a frequency is missing, negative or not above the
+    /// preceding frequency, or if a row has only one part of a complex number.
     pub(crate) fn values(&self, table: &TextTable) -> Result<Vec<ResponsePoints>, VariableFault> {
         if self.is_decreasing(table) {
             self.increasing_values(&reversed(table))
@@ -58,7 +63,7 @@ impl FrequencyColumns {
         }
     }
 
-    /// Whether the frequencies decrease strictly.
+    /// Returns whether the frequencies are strictly decreasing.
     fn is_decreasing(&self, table: &TextTable) -> bool {
         let frequencies = &table.columns[self.frequency.column];
         frequencies.len() > 1 && frequencies.is_sorted_by(|above, below| above > below)
@@ -72,7 +77,10 @@ impl FrequencyColumns {
             .collect()
     }
 
-    /// Returns the frequencies \[rad/s\], which must increase strictly.
+    /// Returns the frequencies \[rad/s\].
+    ///
+    /// # Errors
+    /// [`VariableFault`] with the line unless they are strictly increasing and not negative.
     fn omega(&self, table: &TextTable) -> Result<Vec<f64>, VariableFault> {
         let FrequencyColumn { column, factor } = self.frequency;
         let frequencies = &table.columns[column];
@@ -99,19 +107,21 @@ fn reversed(table: &TextTable) -> TextTable {
     table
 }
 
-/// Describes the fault in a frequency that follows `before`.
+/// Describes why a frequency is invalid, with a remedy; `None` if it is valid. `before` is the
+/// preceding frequency.
 fn frequency_fault(value: f64, before: f64) -> Option<String> {
     if !value.is_finite() {
-        Some("is missing or infinite; complete it or take the line out".to_owned())
+        Some("is missing or infinite; complete it or remove the line".to_owned())
     } else if value < 0.0 {
-        Some(format!("is negative ({value}); take the line out"))
+        Some(format!("is negative ({value}); remove the line"))
     } else if value == before {
         Some(format!(
-            "occurs on two lines ({value}); take one of the lines out"
+            "occurs on two lines ({value}); remove one of the lines"
         ))
     } else if value < before {
         Some(format!(
-            "is below the frequency before it ({value} after {before}); sort the lines by frequency"
+            "is below the preceding frequency ({value} after {before}); sort the lines by \
+            frequency"
         ))
     } else {
         None
@@ -141,7 +151,7 @@ mod recognition_tests {
             .to_string()
     }
 
-    /// γ² in this column, as a fraction of 1.
+    /// Returns a column that holds γ² as a fraction of 1.
     fn squared(column: usize) -> Option<CoherenceColumn> {
         Some(CoherenceColumn {
             column,
@@ -155,7 +165,7 @@ mod recognition_tests {
         FrequencyColumns::recognise(&table).unwrap_err().unsaid
     }
 
-    /// The first column as the frequency.
+    /// Returns the frequency column, the first column.
     fn frequency(factor: f64) -> FrequencyColumn {
         FrequencyColumn { column: 0, factor }
     }
@@ -336,9 +346,9 @@ mod recognition_tests {
             found
                 .notes
                 .iter()
-                .any(|note| note.contains("column 4 (\"mag X/Y\") is left out"))
+                .any(|note| note.contains("column 4 (\"mag X/Y\") is ignored"))
         );
-        assert!(fault("w,mag\n1,2\n2,3\n").contains("no magnitude with a phase"));
+        assert!(fault("w,mag\n1,2\n2,3\n").contains("neither magnitude and phase"));
         assert!(fault("mag,phase\n1,2\n2,1\n").contains("no frequency"));
     }
 }
@@ -384,10 +394,10 @@ mod frequency_values_tests {
         let start = "the frequency in column 1 (\"omega\")";
         assert_eq!(
             message(["1", "2", "2"]),
-            format!("line 4: {start} occurs on two lines (2); take one of the lines out")
+            format!("line 4: {start} occurs on two lines (2); remove one of the lines")
         );
         assert!(message(["1", "3", "2"]).starts_with(&format!(
-            "line 4: {start} is below the frequency before it (2 after 3)"
+            "line 4: {start} is below the preceding frequency (2 after 3)"
         )));
         assert!(message(["1", "", "2"]).starts_with(&format!("line 3: {start} is missing")));
         assert!(message(["-1", "1", "2"]).starts_with(&format!("line 2: {start} is negative")));

@@ -1,4 +1,4 @@
-//! Column names and units from the preceding lines.
+//! Column names and units, from the lines before the numbers.
 
 use crate::formats::text::cell_number::has_number;
 use crate::formats::text::heading_units::{is_unit, name_and_unit};
@@ -9,29 +9,29 @@ use crate::formats::text::separator::Separator;
 /// Number of lines before the first row that are searched for names and units.
 const SEARCHED: usize = 100;
 
-/// A line and its number, from 1.
+/// A line with its number, counted from 1.
 pub(super) type NumberedLine = (usize, String);
 
-/// Column names and units.
+/// Names and units of the columns.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Heading {
-    /// A name for each column.
+    /// Column names; `None` if no line gives them.
     pub(super) names: Option<Vec<String>>,
-    /// Unit for each column, if given.
+    /// Unit of each column, where a line gives it.
     pub(super) units: Vec<Option<String>>,
-    /// Notes on the lines that were used.
+    /// Notes for the user on the lines from which names and units were taken.
     pub(super) notes: Vec<String>,
 }
 
-/// A line that has a cell for each column.
+/// A line with as many cells as the table has columns.
 struct FittingLine {
     number: usize,
     cells: Vec<String>,
 }
 
 impl Heading {
-    /// Finds names and units in the lines before the numbers: the nearest line with a cell for each
-    /// column, preferably without a comment mark; a line with units may follow it.
+    /// Finds names and units in the lines before the numbers. The names are in the nearest line
+    /// with a cell for each column, preferably not a comment; a line with units may come between.
     pub(super) fn find(above: &[NumberedLine], layout: Layout) -> Self {
         let mut heading = Heading {
             names: None,
@@ -54,10 +54,9 @@ impl Heading {
             names = before;
         }
         heading.take_names(&names.cells);
-        heading.notes.push(format!(
-            "line {} gives the names of the columns",
-            names.number
-        ));
+        heading
+            .notes
+            .push(format!("line {} gives the column names", names.number));
         heading
     }
 
@@ -73,7 +72,7 @@ impl Heading {
         self.names = Some(names);
     }
 
-    /// Notes a line that looks like names but has more or fewer cells.
+    /// Notes that the nearest line has several cells, but not as many as there are columns.
     fn note_misfit(&mut self, above: &[NumberedLine], layout: Layout) {
         let nearest = above
             .iter()
@@ -86,14 +85,14 @@ impl Heading {
         if found > 1 {
             let columns = layout.columns;
             self.notes.push(format!(
-                "line {number} has {found} words for {columns} columns: not read as their names"
+                "line {number} has {found} words for {columns} columns: it is not read as column \
+                names"
             ));
         }
     }
 }
 
-/// Returns the lines that have a cell for each column, nearest to the numbers first; lines with a
-/// comment mark follow the others.
+/// Returns the lines with a cell for each column, nearest to the numbers first, comments last.
 fn fitting_lines(above: &[NumberedLine], layout: Layout) -> Vec<FittingLine> {
     let candidates: Vec<_> = above
         .iter()
@@ -119,8 +118,8 @@ fn fitting_lines(above: &[NumberedLine], layout: Layout) -> Vec<FittingLine> {
     fitting
 }
 
-/// Splits a heading into a cell for each column; its separator may differ from the separator
-/// between the numbers.
+/// Splits a heading into a cell for each column; `None` if this is impossible. The separator may
+/// differ from the separator between the numbers.
 fn heading_cells(line: &str, layout: Layout) -> Option<Vec<String>> {
     let columns = layout.columns;
     if layout.separator != Separator::Blanks
@@ -147,8 +146,9 @@ fn heading_cells(line: &str, layout: Layout) -> Option<Vec<String>> {
         .or_else(|| fitted(trimmed_cells(line, Separator::Blanks, columns), layout))
 }
 
-/// Returns the cells if there is one for each column, some contain letters, and the line is not a
-/// number row with an error. An additional empty cell at the end is removed.
+/// Returns the cells if they can be a heading: their number equals the number of columns, some
+/// contain letters, and they are not a row with errors. Removes an additional empty cell at the
+/// end.
 fn fitted(mut cells: Vec<String>, layout: Layout) -> Option<Vec<String>> {
     let ends_empty = cells.last().is_some_and(|cell| cell.trim().is_empty());
     if cells.len() == layout.columns + 1 && ends_empty {
@@ -164,8 +164,8 @@ fn has_letters(cell: &str) -> bool {
     cell.chars().any(char::is_alphabetic)
 }
 
-/// Splits a line at a separator into at most two cells more than there are columns, enough to
-/// detect that a line has too many.
+/// Splits a line into at most two cells more than there are columns, which suffices to detect that
+/// it has too many.
 fn trimmed_cells(line: &str, separator: Separator, columns: usize) -> Vec<String> {
     separator
         .cells(line)
@@ -174,7 +174,8 @@ fn trimmed_cells(line: &str, separator: Separator, columns: usize) -> Vec<String
         .collect()
 }
 
-/// Whether a line is probably a number row with an error.
+/// Returns whether a line is probably a row with errors: the first cell and more than half of all
+/// cells are numbers.
 pub(super) fn is_mostly_numbers(cells: &[String], layout: Layout) -> bool {
     let Some(first) = cells.first() else {
         return false;
@@ -190,7 +191,7 @@ pub(super) fn is_mostly_numbers(cells: &[String], layout: Layout) -> bool {
     2 * numbers > cells.len()
 }
 
-/// Splits at two or more blanks, so that names can contain single blanks.
+/// Splits a line at two or more blanks, so that names can contain single blanks.
 fn cells_at_wide_blanks(line: &str, columns: usize) -> Vec<String> {
     line.trim()
         .split("  ")
@@ -201,7 +202,7 @@ fn cells_at_wide_blanks(line: &str, columns: usize) -> Vec<String> {
         .collect()
 }
 
-/// Splits at blanks; text in brackets belongs to the preceding cell.
+/// Splits a line at blanks; text in brackets is joined to the preceding cell.
 fn cells_with_brackets_joined(line: &str, columns: usize) -> Vec<String> {
     const OPENING: [char; 3] = ['[', '(', '{'];
     const CLOSING: [char; 3] = [']', ')', '}'];
@@ -227,8 +228,8 @@ fn cells_with_brackets_joined(line: &str, columns: usize) -> Vec<String> {
     cells
 }
 
-/// Whether a heading names one column more than `layout` has: the empty cells after a trailing
-/// separator are then a column.
+/// Returns whether a heading has one name more than `layout` has columns: then the empty cells
+/// after a trailing separator are a column.
 pub(super) fn names_one_more_column(above: &[NumberedLine], layout: Layout) -> bool {
     above.iter().any(|(_, line)| {
         let named = layout
@@ -241,7 +242,7 @@ pub(super) fn names_one_more_column(above: &[NumberedLine], layout: Layout) -> b
     })
 }
 
-/// Returns the unit in a cell, without its brackets; `None` if it is empty.
+/// Returns the unit in a cell, without its brackets; `None` for an empty cell.
 fn unit_of(cell: &str) -> Option<String> {
     let unit = cell
         .trim()
@@ -254,7 +255,7 @@ fn unit_of(cell: &str) -> Option<String> {
     }
 }
 
-/// Whether at least half the cells are units and the others are empty.
+/// Returns whether at least half of the cells are units and the others are empty.
 fn is_units_line(cells: &[String]) -> bool {
     let units: Vec<_> = cells.iter().filter_map(|cell| unit_of(cell)).collect();
     2 * units.len() >= cells.len() && units.iter().all(|unit| is_unit(unit))
@@ -324,7 +325,7 @@ mod heading_tests {
         assert_eq!(heading.names, None);
         assert_eq!(
             heading.notes,
-            ["line 2 has 2 words for 3 columns: not read as their names"]
+            ["line 2 has 2 words for 3 columns: it is not read as column names"]
         );
     }
 

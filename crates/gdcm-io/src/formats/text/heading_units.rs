@@ -1,8 +1,8 @@
-//! Units in column headings.
+//! Recognition of units in column headings.
 
 use gdcm_model::names::signed_name::parse_direction;
 
-/// Unit words, in lower case.
+/// Words that occur in units, in lower case.
 const WORDS: [&str; 68] = [
     "rad", "radian", "radians", "mrad", "deg", "degree", "degrees", "°", "s", "sec", "secs",
     "second", "seconds", "ms", "us", "µs", "min", "h", "hr", "hz", "khz", "cps", "rps", "rpm",
@@ -12,7 +12,8 @@ const WORDS: [&str; 68] = [
     "norm", "abs", "unitless",
 ];
 
-/// Whether a text contains only unit words, numbers and signs: "deg/s", "rad/s^2", "%", "1/s".
+/// Returns whether a text consists of unit words, numbers and operators, with at least one unit
+/// word: "deg/s", "rad/s^2", "%", "1/s".
 pub(super) fn is_unit(text: &str) -> bool {
     let text = text.trim().to_lowercase();
     if matches!(text.as_str(), "-" | "1" | "--" | "none") {
@@ -20,7 +21,7 @@ pub(super) fn is_unit(text: &str) -> bool {
     }
     let mut has_word = false;
     for word in text.split(['/', '*', '^', '·', ' ', '.', '-', '(', ')', '²', '³']) {
-        // Also true of empty words, between two signs.
+        // Skip numbers, and empty words between two operators.
         if word.bytes().all(|byte| byte.is_ascii_digit()) {
             continue;
         }
@@ -34,8 +35,8 @@ pub(super) fn is_unit(text: &str) -> bool {
 
 /// Splits a heading into name and unit: "omega \[rad/s\]", "P (deg/s)", "_Vind,_kias".
 ///
-/// Square brackets hold a unit unless they contain an integer; round brackets and text after a
-/// comma hold a unit only if all their words are unit words: "re(LAT->P)" names a response.
+/// Text in square brackets is a unit unless it is an integer. Text in other brackets or after a
+/// comma is a unit only if it consists of unit words: "re(LAT->P)" names a response.
 pub(super) fn name_and_unit(heading: &str) -> (String, Option<String>) {
     let heading = heading.trim().trim_matches(['"', '\'']).trim();
     for (open, close) in [('[', ']'), ('(', ')'), ('{', '}')] {
@@ -46,7 +47,7 @@ pub(super) fn name_and_unit(heading: &str) -> (String, Option<String>) {
             continue;
         };
         let holds_unit = (open == '[' && !is_index(unit)) || is_unit(unit);
-        // "az [+down]" gives a sign convention.
+        // Text such as "+down" in "az [+down]" is a sign convention, not a unit.
         if holds_unit && parse_direction(unit).is_none() {
             let unit = unit.trim();
             let unit = if unit.is_empty() {
@@ -66,12 +67,12 @@ pub(super) fn name_and_unit(heading: &str) -> (String, Option<String>) {
     (clean(heading), None)
 }
 
-/// Whether brackets hold an index, as in `xyz[0]`.
+/// Returns whether the text in brackets is an index, as in `xyz[0]`.
 fn is_index(text: &str) -> bool {
     !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
 }
 
-/// Returns a text without surrounding blanks and underscores.
+/// Removes blanks and underscores at both ends of a text.
 fn clean(text: &str) -> String {
     text.trim_matches(|c: char| c.is_whitespace() || c == '_')
         .to_owned()

@@ -1,4 +1,4 @@
-//! Line layout in a table: separator, decimal mark, and column count.
+//! Layout of the lines in a table: separator, decimal mark and number of columns.
 
 use std::collections::BTreeMap;
 
@@ -10,29 +10,29 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 /// Number of rows examined to recognise the layout.
 const SAMPLE: usize = 200;
 
-/// Line layout in a table.
+/// Layout of the lines in a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Layout {
     pub(super) separator: Separator,
     pub(super) decimal_comma: bool,
-    /// Column count, without the empty column after a trailing separator on every line.
+    /// Number of columns, not counting an empty column after a trailing separator.
     pub(super) columns: usize,
-    /// Whether a trailing separator on the examined lines leaves an empty cell.
+    /// Whether the examined lines end in a trailing separator, after which there is an empty cell.
     pub(super) trailing: bool,
 }
 
-/// Shape of a line of numbers.
+/// Number and form of the cells in a line of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct RowShape {
-    /// Cell count.
+    /// Number of cells.
     pub(super) width: usize,
     /// Whether the last cell is empty.
     pub(super) ends_empty: bool,
 }
 
 impl Layout {
-    /// Finds the separator and the decimal mark for which most lines are rows with the same width;
-    /// prefers the wider table in a tie; returns nothing if no line is a row.
+    /// Finds the separator and the decimal mark with which the largest number of lines are rows of
+    /// equal width; in a tie, the wider rows. Returns `None` if no line is a row.
     pub(super) fn recognise(
         text: &str,
         budget: &ReadingBudget,
@@ -59,12 +59,13 @@ impl Layout {
         Ok(best.map(|best| best.layout))
     }
 
-    /// Returns the cells in a row, without a trailing comment.
+    /// Returns the cells in a line, without a comment at its end.
     pub(super) fn cells(self, line: &str) -> Cells<'_> {
         self.separator.cells(without_comment(line))
     }
 
-    /// Returns the shape of a line if all cells are numbers or missing, and not all are missing.
+    /// Returns the shape of a line; `None` unless all cells are numbers or missing numbers, and at
+    /// least one is a number.
     pub(super) fn row_shape(self, line: &str) -> Option<RowShape> {
         let mut shape = RowShape {
             width: 0,
@@ -80,8 +81,8 @@ impl Layout {
         if has_number { Some(shape) } else { None }
     }
 
-    /// Whether a row has this layout: an additional empty cell may follow a trailing separator. If
-    /// all lines end in a separator, the empty cell after it is not counted.
+    /// Returns whether a row has the columns of this layout; one more empty cell may follow a
+    /// trailing separator.
     pub(super) fn fits(self, row: RowShape) -> bool {
         let expected = if self.trailing && row.ends_empty {
             self.columns + 1
@@ -92,7 +93,8 @@ impl Layout {
     }
 }
 
-/// Returns a tally for each separator and decimal mark; decimal points precede decimal commas.
+/// Returns an empty tally for each separator and decimal mark; those with a decimal point come
+/// first.
 fn candidates() -> Vec<Tally> {
     let mut tallies = Vec::with_capacity(2 * Separator::ALL.len());
     for decimal_comma in [false, true] {
@@ -108,24 +110,24 @@ fn candidates() -> Vec<Tally> {
     tallies
 }
 
-/// Rows found with one separator and decimal mark.
+/// Rows found with one separator and one decimal mark.
 struct Tally {
     separator: Separator,
     decimal_comma: bool,
-    /// Rows by their width.
+    /// Number of rows by row width.
     widths: BTreeMap<usize, RowCount>,
     rows: usize,
 }
 
-/// Rows with the same width.
+/// Numbers of rows that have the same width.
 #[derive(Clone, Copy, Default)]
 struct RowCount {
     rows: usize,
-    /// Rows whose last cell is empty.
+    /// Number of rows whose last cell is empty.
     ending_empty: usize,
 }
 
-/// A layout and the number of examined rows with this layout.
+/// A layout, and the number of examined rows that have it.
 #[derive(Clone, Copy)]
 struct Score {
     rows: usize,
@@ -133,7 +135,8 @@ struct Score {
 }
 
 impl Score {
-    /// Whether this layout has more rows, or as many rows and more columns.
+    /// Returns whether this layout has more rows than `other`, or equally many rows with more
+    /// columns.
     fn beats(self, other: Score) -> bool {
         (self.rows, self.layout.columns) > (other.rows, other.layout.columns)
     }
@@ -155,7 +158,8 @@ impl Tally {
         }
     }
 
-    /// Returns the layout with the most frequent width, the larger width in a tie.
+    /// Returns the layout with the most frequent row width, in a tie the larger; `None` without
+    /// rows.
     fn score(&self) -> Option<Score> {
         let (&width, count) = self
             .widths

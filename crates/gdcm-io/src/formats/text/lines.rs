@@ -1,13 +1,14 @@
-//! Text lines: their ends, comments, rules, and excerpts for messages.
+//! Lines of a text: line endings, comments, ruled lines, and excerpts for messages.
 
 /// Marks that begin a comment line.
 const COMMENT_MARKS: [&str; 5] = ["#", "%", "//", "!", ";"];
-/// Marks that begin a comment after the cells, with the blanks around them.
+/// Marks that begin a comment after the cells of a line, with the blanks around them.
 const TRAILING_MARKS: [&str; 7] = [" # ", " % ", " ! ", " // ", "\t# ", "\t% ", "\t! "];
 /// Maximum length of an excerpt in a message \[characters\].
 const EXCERPT: usize = 40;
 
-/// Iterator over numbered lines, from 1; a line ends in a line feed, a carriage return, or both.
+/// Iterator over lines and their numbers, from 1; a line ends in a line feed, a carriage return, or
+/// both.
 pub(super) struct Lines<'t> {
     rest: Option<&'t str>,
     number: usize,
@@ -36,15 +37,15 @@ impl<'t> Iterator for Lines<'t> {
     }
 }
 
-/// Returns the text after the mark in a comment line.
+/// Returns the text after the mark of a comment line; `None` for any other line.
 pub(super) fn comment(line: &str) -> Option<&str> {
     let line = line.trim_start();
     let mark = COMMENT_MARKS.iter().find(|&&mark| line.starts_with(mark))?;
     Some(line.trim_start_matches(mark))
 }
 
-/// Returns a line without a trailing comment, whose mark is between blanks: "#N/A" and "50%"
-/// contain such characters too.
+/// Returns a line without the comment at its end. The mark must be between blanks, because "#N/A"
+/// and "50%" contain the same characters.
 pub(super) fn without_comment(line: &str) -> &str {
     if !line.contains(['#', '%', '!', '/']) {
         return line;
@@ -56,16 +57,16 @@ pub(super) fn without_comment(line: &str) -> &str {
     }
 }
 
-/// Whether a line is only a rule: "-----", "|---|---|", "=====".
+/// Returns whether a line is a ruled line such as "-----", "|---|---|" or "=====".
 pub(super) fn is_rule(line: &str) -> bool {
     line.trim().len() >= 3
         && line.bytes().all(|byte| b"-=+|:_ \t".contains(&byte))
         && !line.trim().contains("- -")
 }
 
-/// Shortens a text for a message: its first line, at most 40 characters, visible characters only.
+/// Shortens a text for a message to at most 40 visible characters of its first line.
 pub(super) fn excerpt(text: &str) -> String {
-    // Only the displayed part is examined: a line may be as long as the text.
+    // Examine only what is displayed: a line may be as long as the text.
     let mut shown = String::new();
     let mut is_cut = false;
     for (index, character) in text.trim_start().chars().enumerate() {

@@ -1,18 +1,18 @@
-//! MATLAB functions that create values from their arguments: models, structs, and filled matrices.
+//! MATLAB functions that create models, structs and filled matrices from their arguments.
 
 use crate::formats::text::matlab_scanner::{Position, REMEDY, ValueError, refused};
 use crate::formats::variables::{Array, StructArray, Value};
 use crate::reading_budget::ReadingBudget;
 
-/// A supported MATLAB function.
+/// A supported MATLAB function, by the kind of value that it creates.
 #[derive(Clone, Copy)]
 pub(super) enum Function {
-    /// Creates a record with these fields from the first arguments. Name-value pairs follow, after
-    /// an optional sample time except for `struct`.
+    /// A record: the first arguments are these fields, then follow an optional sample time (not for
+    /// `struct`) and name-value pairs.
     Record(&'static [&'static str]),
-    /// Creates a matrix with equal numbers, or the identity.
+    /// A matrix of zeros, of ones, or the identity matrix.
     Fill(Fill),
-    /// `string` and `char`: returns a text unchanged.
+    /// A string, returned unchanged (`string` and `char`).
     Text,
 }
 
@@ -23,17 +23,17 @@ pub(super) enum Fill {
     Identity,
 }
 
-/// A function call in the text.
+/// A function call in a statement.
 #[derive(Clone, Copy)]
 pub(super) struct Call<'n> {
     pub(super) name: &'n str,
     pub(super) function: Function,
-    /// Position of the name.
+    /// Position of the function name.
     pub(super) place: Position,
 }
 
 impl Function {
-    /// Returns the function with a name; `None` for functions that are not read.
+    /// Returns the function with a name; `None` for a function that is not supported.
     pub(super) fn find(name: &str) -> Option<Self> {
         Some(match name {
             "ss" => Self::Record(&["A", "B", "C", "D"]),
@@ -50,7 +50,7 @@ impl Function {
 }
 
 impl Call<'_> {
-    /// Creates the value that the function returns.
+    /// Returns the value of the function.
     pub(super) fn value(
         self,
         arguments: Vec<Value>,
@@ -63,14 +63,14 @@ impl Call<'_> {
             },
             Function::Text => match arguments.as_slice() {
                 [text @ Value::Text(_)] => Ok(text.clone()),
-                // Without a text, the arguments are read as in `zeros`.
+                // Treat other arguments as dimensions, like those of `zeros`.
                 sizes => self.filled(Fill::Zeros, sizes, budget),
             },
             Function::Fill(fill) => self.filled(fill, &arguments, budget),
         }
     }
 
-    /// Builds a matrix from its row and column counts.
+    /// Creates a matrix from its numbers of rows and columns; a single number is used for both.
     fn filled(
         self,
         fill: Fill,
@@ -85,7 +85,7 @@ impl Call<'_> {
         let Some(MatrixSize { rows, columns }) = size else {
             return refused(
                 format!(
-                    "{}(…) is read with its numbers of rows and columns only; {REMEDY}",
+                    "{}(…) is supported only with numbers of rows and columns; {REMEDY}",
                     self.name
                 ),
                 self.place,
@@ -105,7 +105,7 @@ impl Call<'_> {
     }
 }
 
-/// Row and column counts.
+/// Numbers of rows and columns.
 struct MatrixSize {
     rows: usize,
     columns: usize,
@@ -120,7 +120,8 @@ impl MatrixSize {
     }
 }
 
-/// Parses a row or column count; negative numbers count as 0, as in MATLAB.
+/// Converts a value to a number of rows or columns. Negative numbers become 0, as in MATLAB;
+/// returns `None` for any other value.
 fn count_from(value: &Value) -> Option<usize> {
     let Value::Array(array) = value else {
         return None;
@@ -131,8 +132,11 @@ fn count_from(value: &Value) -> Option<usize> {
     Some(array.re[0].max(0.0) as usize)
 }
 
-/// Builds a record from arguments and field names, followed by the optional sample time Ts \[s\]
-/// and name-value pairs.
+/// Builds a record: the first arguments are the fields `names`, then follow an optional sample time
+/// `Ts` \[s\] and name-value pairs.
+///
+/// # Errors
+/// The reason if arguments are missing or of the wrong type.
 fn record(function: &str, names: &[&str], arguments: Vec<Value>) -> Result<Value, String> {
     let mut rest = arguments.into_iter().peekable();
     let mut fields: Vec<(String, Vec<Value>)> = Vec::new();
@@ -164,7 +168,9 @@ fn record(function: &str, names: &[&str], arguments: Vec<Value>) -> Result<Value
         };
         if names.is_empty() && matches!(value, Value::Cell(_)) {
             return Err(
-                "struct(…) of cells is an array of records; write s.name = {…} instead".to_owned(),
+                "struct(…) with cells creates a struct array, which is not supported; write \
+                s.name = {…} instead"
+                    .to_owned(),
             );
         }
         let name = name.texts.concat();

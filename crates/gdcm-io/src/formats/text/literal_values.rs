@@ -1,4 +1,4 @@
-//! Values in MATLAB or Octave statements: numbers, texts, matrices, cells, and models.
+//! Values in MATLAB or Octave statements: numbers, strings, matrices, cell arrays and models.
 
 use crate::formats::strides::first_index_fastest;
 use crate::formats::text::literal_functions::{Call, Function};
@@ -9,16 +9,17 @@ use crate::formats::text::workspace::Workspace;
 use crate::formats::variables::{Array, CellArray, ElementKind, TextArray, Value};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Operators between blanks; with a blank only before it, a sign begins an element: `[1 -2]`.
+/// Operators within brackets if blanks surround them. After a blank only, a sign begins the next
+/// element: `[1 -2]`.
 const OPERATORS: &str = "+-*/^:.\\";
-/// Operators directly after an element; the quote transposes.
+/// Operators within brackets if no blank precedes them; the quotation mark transposes.
 const ATTACHED_OPERATORS: &str = "+-*/^:.\\'";
 
-/// Reads values at the scanner position.
+/// Reads values, beginning at the position of the scanner.
 pub(super) struct ValueReader<'r, 't, 'm> {
     pub(super) scanner: &'r mut Scanner<'t>,
     pub(super) budget: &'r ReadingBudget<'m>,
-    /// The variables assigned so far.
+    /// Variables assigned by earlier statements.
     pub(super) workspace: &'r Workspace<'t>,
 }
 
@@ -27,21 +28,21 @@ struct ComplexNumber {
     im: f64,
 }
 
-/// Elements between brackets, row by row.
+/// Elements between brackets, in row-major order.
 struct Rows<T> {
     rows: usize,
     columns: usize,
     elements: Vec<T>,
 }
 
-/// A matrix element.
+/// Element of a matrix.
 enum Element {
     Number { re: f64, im: f64 },
     Text(String),
 }
 
 impl ValueReader<'_, '_, '_> {
-    /// Reads a value that is followed by nothing else in its statement.
+    /// Reads a value; rejects a statement that continues after it.
     pub(super) fn whole_value(&mut self) -> Result<Value, ValueError> {
         let value = self.value(0)?;
         self.scanner.pass_blanks()?;
@@ -51,7 +52,7 @@ impl ValueReader<'_, '_, '_> {
         }
     }
 
-    /// Reads a value that is nested in `depth` other values.
+    /// Reads a value; `depth` is its nesting depth.
     fn value(&mut self, depth: usize) -> Result<Value, ValueError> {
         if depth > MOST_NESTED {
             return Err(VariableFault::too_deep("").into());
@@ -69,7 +70,7 @@ impl ValueReader<'_, '_, '_> {
             Some('[') => self.matrix(),
             Some('{') => self.cell_array(place, depth),
             Some('\'' | '"') => Ok(Value::text(self.scanner.quoted(self.budget)?)),
-            Some('@') => refused(format!("functions are not read; {REMEDY}"), place),
+            Some('@') => refused(format!("functions are not supported; {REMEDY}"), place),
             None | Some('\n' | '\r' | ';' | ',') => {
                 refused("a value is missing here; write it", place)
             }
@@ -77,14 +78,14 @@ impl ValueReader<'_, '_, '_> {
         }
     }
 
-    /// Reads a function call, or copies a variable or a field.
+    /// Reads a function call, or a copy of a variable or field.
     fn named_value(&mut self, place: Position, depth: usize) -> Result<Value, ValueError> {
         let path = self.scanner.path(self.budget)?;
         let before = self.scanner.clone();
         self.scanner.pass_blanks()?;
         match path.as_slice() {
             [] => refused(
-                format!("this is no number, text or matrix; {REMEDY}"),
+                format!("this is not a number, string or matrix; {REMEDY}"),
                 place,
             ),
             [function] if self.scanner.take("(") => self.call(function, place, depth),
@@ -95,8 +96,8 @@ impl ValueReader<'_, '_, '_> {
         }
     }
 
-    /// Reads a signed number, or a complex number such as `1 - 2i`, if there is one at this
-    /// position.
+    /// Reads a real number, or a complex number such as `1 - 2i`, at this position; `None` if there
+    /// is no number.
     fn complex(&mut self, in_matrix: bool) -> Result<Option<ComplexNumber>, ValueError> {
         let before = self.scanner.clone();
         let Some(Number {
@@ -110,7 +111,7 @@ impl ValueReader<'_, '_, '_> {
         let behind = self.scanner.clone();
         let is_spaced = self.scanner.pass_blanks()?;
         let is_sign = matches!(self.scanner.peek(), Some('+' | '-'));
-        // In `[1 -2i]` the blank separates two elements; in `[1 - 2i]` it does not.
+        // The blank in `[1 -2i]` separates two elements, but not in `[1 - 2i]`.
         let is_separate = in_matrix
             && is_spaced
             && !self.scanner.rest()[usize::from(is_sign)..].starts_with([' ', '\t']);
@@ -132,7 +133,7 @@ impl ValueReader<'_, '_, '_> {
         }))
     }
 
-    /// Reads a number, with or without signs before it.
+    /// Reads a number with any signs before it; `None` if there is no number.
     fn signed(&mut self) -> Result<Option<Number>, ValueError> {
         let mut sign = 1.0;
         loop {
@@ -162,8 +163,8 @@ impl ValueReader<'_, '_, '_> {
         }))
     }
 
-    /// Reads elements in rows after an opening bracket up to the closing bracket; blanks separate
-    /// elements.
+    /// Reads rows of elements from an opening bracket to the closing bracket; `element` reads an
+    /// element.
     fn rows<T>(
         &mut self,
         close: char,
@@ -174,7 +175,7 @@ impl ValueReader<'_, '_, '_> {
         let mut elements = Vec::new();
         let mut columns = 0;
         let mut rows = 0;
-        // Element count in the current row.
+        // Number of elements in the current row.
         let mut row = 0;
         loop {
             let is_spaced = self.scanner.pass_blanks()?;
@@ -188,7 +189,8 @@ impl ValueReader<'_, '_, '_> {
                 rows += 1;
                 if row != columns {
                     let what = format!(
-                        "row {rows} has {row} columns, the first {columns}; complete the shorter"
+                        "row {rows} has {row} columns, but the first row has {columns}; complete \
+                        the shorter row"
                     );
                     return refused(what, opening);
                 }
@@ -218,8 +220,8 @@ impl ValueReader<'_, '_, '_> {
         }
     }
 
-    /// Whether a character after an element in brackets is an operator, which would have to be
-    /// computed: `[1 - 2]`, `[1-2]`, but not `[1 -2]` or `[1, - 2]`.
+    /// Returns whether a character after an element is an operator, which this reader cannot
+    /// evaluate: true in `[1 - 2]` and `[1-2]`, false in `[1 -2]` and `[1, - 2]`.
     fn is_operator(&self, sign: char, is_spaced: bool) -> bool {
         let before = self.scanner.text[..self.scanner.at]
             .trim_end()
@@ -250,7 +252,8 @@ impl ValueReader<'_, '_, '_> {
         }))
     }
 
-    /// Reads a matrix of numbers, transposed if a quote follows it, or of texts in double quotes.
+    /// Reads a matrix of numbers, transposed if a quotation mark follows it, or of strings in
+    /// double quotation marks.
     fn matrix(&mut self) -> Result<Value, ValueError> {
         let opening = self.scanner.position();
         let Rows {
@@ -262,7 +265,7 @@ impl ValueReader<'_, '_, '_> {
         self.budget
             .take(count as u64, 2 * size_of::<Element>() as u64, "")?;
         let is_transposed = self.scanner.take("'");
-        // Values are stored column by column: the rows become the columns of the transpose.
+        // Values are stored in column-major order: row-major order is the storage of the transpose.
         let (shape, elements) = if is_transposed {
             (vec![columns, rows], elements)
         } else {
@@ -276,7 +279,7 @@ impl ValueReader<'_, '_, '_> {
             match element {
                 Element::Number { re, im } => {
                     real_parts.push(re);
-                    // The quote transposes and conjugates.
+                    // The quotation mark denotes the conjugate transpose.
                     imaginary_parts.push(if is_transposed { -im } else { im });
                 }
                 Element::Text(text) => texts.push(text),
@@ -297,7 +300,7 @@ impl ValueReader<'_, '_, '_> {
         }
         if texts.len() < count || is_transposed {
             return refused(
-                "numbers and texts cannot be in the same brackets; write {…} instead of […]",
+                "numbers and strings cannot be mixed in brackets; write {…} instead of […]",
                 opening,
             );
         }
@@ -311,18 +314,22 @@ impl ValueReader<'_, '_, '_> {
         }
         match self.scanner.peek() {
             Some('"') => Ok(Element::Text(self.scanner.quoted(self.budget)?)),
-            Some('\'') => refused("texts in brackets are not joined; write {'A', 'B'}", place),
+            Some('\'') => refused(
+                "strings in brackets are not joined; write {'A', 'B'}",
+                place,
+            ),
             _ => refused(
-                format!("only numbers are read in brackets; {REMEDY}"),
+                format!("only numbers are supported in brackets; {REMEDY}"),
                 place,
             ),
         }
     }
 
-    /// Reads the arguments after an opening bracket, and creates the value of the function.
+    /// Reads the arguments after the opening bracket of a function call, and returns the value of
+    /// the function.
     fn call(&mut self, name: &str, place: Position, depth: usize) -> Result<Value, ValueError> {
         let Some(function) = Function::find(name) else {
-            return refused(format!("{name}(…) is not computed here; {REMEDY}"), place);
+            return refused(format!("{name}(…) is not evaluated; {REMEDY}"), place);
         };
         let mut arguments = Vec::new();
         loop {
@@ -349,10 +356,7 @@ impl ValueReader<'_, '_, '_> {
     }
 }
 
-/// Returns the error for an expression, which the reader does not evaluate.
+/// Returns the error for an expression, because this reader evaluates none.
 fn not_computed<T>(place: Position) -> Result<T, ValueError> {
-    refused(
-        format!("expressions are not computed here; {REMEDY}"),
-        place,
-    )
+    refused(format!("expressions are not evaluated; {REMEDY}"), place)
 }

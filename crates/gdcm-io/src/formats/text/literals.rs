@@ -1,8 +1,8 @@
 //! Variables written as MATLAB or Octave statements: `A = [1 2; 3 4e-3]; % comment`.
 //!
-//! Supported are numbers, texts, matrices and cell arrays of these, variables and fields on either
-//! side of `=`, and models created by `ss`, `tf` and `zpk`. Nothing is computed or run: other
-//! statements are reported with a remedy.
+//! Supported are numbers, strings, matrices and cell arrays of these, variables and fields on
+//! either side of `=`, and models created by `ss`, `tf` and `zpk`. Expressions are not evaluated
+//! and other statements not executed; they are reported with a remedy.
 
 use crate::formats::text::encoding::refuse_binary;
 use crate::formats::text::lines::excerpt;
@@ -14,7 +14,7 @@ use crate::formats::text::workspace::Workspace;
 use crate::formats::variables::{Value, Variable};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Words that begin a block, whose statements may run never, once or repeatedly.
+/// Words that begin a block, whose statements may be executed any number of times.
 const BLOCKS: [&str; 8] = [
     "if",
     "for",
@@ -38,17 +38,21 @@ const BLOCK_ENDS: [&str; 9] = [
     "end_unwind_protect",
 ];
 
-/// Variables and notes from the statements.
+/// Variables assigned by MATLAB or Octave statements, with notes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Statements {
-    /// The variables in the order of their first assignments, with their last values. A value that
-    /// is not supported is [`Value::Opaque`] with the reason, its line and its column.
+    /// Variables in the order of their first assignments, with their last values. An unsupported
+    /// value is [`Value::Opaque`] with the reason, its line and its column.
     pub variables: Vec<Variable>,
-    /// Statements that were not run.
+    /// Notes for the user on statements that were skipped.
     pub notes: Vec<String>,
 }
 
 /// Reads variables from MATLAB or Octave statements.
+///
+/// # Errors
+/// [`VariableFault`] for binary data and unclosed brackets, and if the budget is exhausted.
+/// Unsupported statements are noted instead.
 pub fn read_literals(text: &str, budget: &ReadingBudget) -> Result<Statements, VariableFault> {
     refuse_binary(text, "MATLAB statements")?;
     let mut reading = Reading {
@@ -68,17 +72,17 @@ pub fn read_literals(text: &str, budget: &ReadingBudget) -> Result<Statements, V
     })
 }
 
-/// Statements during reading.
+/// State of reading statements.
 struct Reading<'t, 'm> {
     scanner: Scanner<'t>,
     budget: &'m ReadingBudget<'m>,
     workspace: Workspace<'t>,
     notes: Vec<String>,
-    /// Open conditions and loops.
+    /// Number of conditions and loops that are not closed.
     open_blocks: usize,
 }
 
-/// Where a statement begins.
+/// Beginning of a statement.
 #[derive(Clone, Copy)]
 struct Beginning {
     position: Position,
@@ -108,7 +112,8 @@ impl<'t> Reading<'t, '_> {
         }
     }
 
-    /// Reads a statement that may begin with a name.
+    /// Reads a statement other than an assignment of function results; if no name begins it, it is
+    /// skipped with a note.
     fn named_statement(&mut self, begin: Beginning) -> Result<(), VariableFault> {
         let path = self.scanner.path(self.budget)?;
         let behind = self.scanner.clone();
@@ -121,7 +126,7 @@ impl<'t> Reading<'t, '_> {
             [] => self.pass_over(begin, "is not understood"),
             [word] if BLOCKS.contains(word) => {
                 self.open_blocks += 1;
-                self.pass_over(begin, "is not run, and values set in it are not read")
+                self.pass_over(begin, "is not executed, and values set in it are not read")
             }
             [word] if BLOCK_ENDS.contains(word) => {
                 self.open_blocks = self.open_blocks.saturating_sub(1);
@@ -131,16 +136,17 @@ impl<'t> Reading<'t, '_> {
                 let changes_part = self.scanner.changes_part();
                 self.scanner = behind;
                 if !changes_part {
-                    return self.pass_over(begin, "is not run");
+                    return self.pass_over(begin, "is not executed");
                 }
-                let why = "only a part of it is set here; write the whole value in one statement";
+                let why = "only a part of the variable is set here; write the whole value in one \
+                    statement";
                 self.set_unread(&[name], begin.position, why)?;
                 self.scanner.pass_statement(self.budget)
             }
         }
     }
 
-    /// Skips a statement with a note.
+    /// Skips a statement, and notes the reason `why`.
     fn pass_over(&mut self, begin: Beginning, why: &str) -> Result<(), VariableFault> {
         let note = format!(
             "line {} (\"{}\") {why}",
@@ -152,13 +158,13 @@ impl<'t> Reading<'t, '_> {
         self.scanner.pass_statement(self.budget)
     }
 
-    /// Skips "[a, b] = …", results from a function, which is not run.
+    /// Skips "[a, b] = …" and makes the variables opaque, because functions are not executed.
     fn function_results(&mut self, begin: Beginning) -> Result<(), VariableFault> {
         let line = self.scanner.rest_of_line();
         let Some(names) = assigned_names(line) else {
-            return self.pass_over(begin, "is not run");
+            return self.pass_over(begin, "is not executed");
         };
-        let why = "it is the result of a function, which is not run; write its value";
+        let why = "it is the result of a function, which is not executed; write its value";
         for name in names.split(|c: char| !is_of_word(c)) {
             if begins_word(name) {
                 self.set_unread(&[name], begin.position, why)?;
@@ -167,7 +173,7 @@ impl<'t> Reading<'t, '_> {
         self.scanner.pass_statement(self.budget)
     }
 
-    /// Reads an assigned value; a value that is not supported makes the variable opaque.
+    /// Reads the value of an assignment; an unsupported value makes the variable opaque.
     fn assignment(&mut self, path: &[&'t str], begin: Position) -> Result<(), VariableFault> {
         let before = self.scanner.clone();
         match self.assigned_value(begin) {
@@ -186,7 +192,8 @@ impl<'t> Reading<'t, '_> {
     fn assigned_value(&mut self, begin: Position) -> Result<Value, ValueError> {
         if self.open_blocks > 0 {
             return refused(
-                "it is set within a condition or a loop, which is not run; write its value outside",
+                "it is set within a condition or a loop, which is not executed; write its value \
+                outside",
                 begin,
             );
         }
@@ -198,7 +205,7 @@ impl<'t> Reading<'t, '_> {
         reader.whole_value()
     }
 
-    /// Sets a variable to an unreadable value.
+    /// Makes a variable or field opaque, for the reason `what`.
     fn set_unread(
         &mut self,
         path: &[&'t str],
@@ -213,7 +220,7 @@ impl<'t> Reading<'t, '_> {
     }
 }
 
-/// Returns the names in "[a, b] = …"; `None` if the line is no such assignment.
+/// Returns the names in "[a, b] = …"; `None` if the line is not such an assignment.
 fn assigned_names(line: &str) -> Option<&str> {
     let (names, behind) = line.split_once(']')?;
     let behind = behind.trim_start();
@@ -368,7 +375,7 @@ mod tests {
         assert_eq!(literals.variables.len(), 1);
         assert_eq!(
             literals.notes[0],
-            "line 1 (\"function out = f(x)\") is not run"
+            "line 1 (\"function out = f(x)\") is not executed"
         );
         assert_eq!(literals.notes.len(), 6);
     }
@@ -388,13 +395,13 @@ mod tests {
         assert_eq!(
             reasons,
             [
-                &format!("A line 1, column 5: inv(…) is not computed here; {REMEDY}"),
-                "B line 3, column 5: A could not be read itself",
-                "C line 4, column 11: it is set within a condition or a loop, which is not run; write its value outside",
-                "D line 8, column 1: only a part of it is set here; write the whole value in one statement",
-                "E line 6, column 1: only a part of it is set here; write the whole value in one statement",
-                "F line 7, column 1: it is the result of a function, which is not run; write its value",
-                "G line 7, column 1: it is the result of a function, which is not run; write its value",
+                &format!("A line 1, column 5: inv(…) is not evaluated; {REMEDY}"),
+                "B line 3, column 5: A itself could not be read",
+                "C line 4, column 11: it is set within a condition or a loop, which is not executed; write its value outside",
+                "D line 8, column 1: only a part of the variable is set here; write the whole value in one statement",
+                "E line 6, column 1: only a part of the variable is set here; write the whole value in one statement",
+                "F line 7, column 1: it is the result of a function, which is not executed; write its value",
+                "G line 7, column 1: it is the result of a function, which is not executed; write its value",
                 "H",
             ]
         );
@@ -404,7 +411,7 @@ mod tests {
     fn errors_give_the_place_and_the_remedy() {
         assert_eq!(
             why("A = [1 2; 3];"),
-            "line 1, column 5: row 2 has 1 columns, the first 2; complete the shorter"
+            "line 1, column 5: row 2 has 1 columns, but the first row has 2; complete the shorter row"
         );
         assert_eq!(
             why("\nA = \n"),
@@ -412,20 +419,20 @@ mod tests {
         );
         assert_eq!(
             why("A = @(x) x"),
-            format!("line 1, column 5: functions are not read; {REMEDY}")
+            format!("line 1, column 5: functions are not supported; {REMEDY}")
         );
         assert_eq!(
             why("A = 'open"),
-            "line 1, column 5: a text begins here and has no end; close it with '"
+            "line 1, column 5: the string that begins here is not closed; close it with '"
         );
-        let part = "line 1, column 8: only a part of it is set here; write the whole value in one statement";
+        let part = "line 1, column 8: only a part of the variable is set here; write the whole value in one statement";
         assert_eq!(why("A = 1; A += 2"), part);
         assert_eq!(why("A = 1; A++"), part);
         assert_eq!(
             why("A = x(1)"),
-            format!("line 1, column 5: x(…) is not computed here; {REMEDY}")
+            format!("line 1, column 5: x(…) is not evaluated; {REMEDY}")
         );
-        assert_eq!(why("A = 3x"), "line 1, column 5: \"3x\" is no number");
+        assert_eq!(why("A = 3x"), "line 1, column 5: \"3x\" is not a number");
     }
 
     #[test]

@@ -1,29 +1,29 @@
-//! Scanner for MATLAB or Octave statements: blanks and comments, names, texts and numbers.
+//! Scanner for MATLAB or Octave statements: blanks and comments, names, strings and numbers.
 
 use crate::formats::text::lines::excerpt;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Remedy for unsupported statements.
+/// Remedy in messages about unsupported statements.
 pub(super) const REMEDY: &str =
-    "write its numbers, or save the workspace in MATLAB: save -v7 workspace.mat";
-/// Maximum nesting depth of values; each level takes stack space.
+    "write the numbers, or save the workspace in MATLAB: save -v7 workspace.mat";
+/// Maximum nesting depth of values, which are read recursively.
 pub(super) const MOST_NESTED: usize = 64;
 
-/// Whether a name can contain this character.
+/// Returns whether a name can contain this character.
 pub(super) fn is_of_word(character: char) -> bool {
     character.is_alphanumeric() || character == '_'
 }
 
-/// Whether a text begins like a name.
+/// Returns whether a text begins like a name.
 pub(super) fn begins_word(text: &str) -> bool {
     text.starts_with(|first: char| first.is_alphabetic() || first == '_')
 }
 
-/// Reason why a value was not read.
+/// Reason why a value cannot be read.
 pub(super) enum ValueError {
-    /// The value is not supported; other values may be readable.
+    /// The value at position `at` is not supported; reading continues with other values.
     NotUnderstood { what: String, at: Position },
-    /// A fault that ends the reading.
+    /// An error that ends the reading.
     Fault(VariableFault),
 }
 
@@ -40,28 +40,28 @@ pub(super) fn refused<T>(what: impl Into<String>, at: Position) -> Result<T, Val
     })
 }
 
-/// A line and a column, both from 1.
+/// Line and column in the text, both counted from 1.
 #[derive(Clone, Copy)]
 pub(super) struct Position {
     pub(super) line: usize,
     pub(super) column: usize,
 }
 
-/// An unsigned number.
+/// An unsigned real or imaginary number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Number {
     pub(super) value: f64,
     pub(super) is_imaginary: bool,
 }
 
-/// A text with the current position.
+/// A text, and the current position in it.
 #[derive(Clone)]
 pub(super) struct Scanner<'t> {
     pub(super) text: &'t str,
-    /// Offset in the text \[bytes\].
+    /// Offset of the current position \[bytes\].
     pub(super) at: usize,
     line: usize,
-    /// Offset at which the line begins \[bytes\].
+    /// Offset of the beginning of the current line \[bytes\].
     line_start: usize,
 }
 
@@ -87,7 +87,7 @@ impl<'t> Scanner<'t> {
         self.rest().chars().next()
     }
 
-    /// Moves past a sign if it is next; returns whether it was.
+    /// Moves past `sign` if it comes next; returns whether it does.
     pub(super) fn take(&mut self, sign: &str) -> bool {
         let is_next = self.rest().starts_with(sign);
         if is_next {
@@ -96,9 +96,9 @@ impl<'t> Scanner<'t> {
         is_next
     }
 
-    /// Returns the current position; in a line beyond 2000 bytes the column is counted in bytes.
+    /// Returns the current position. The column counts characters, in very long lines bytes.
     pub(super) fn position(&self) -> Position {
-        /// Maximum length of text in which characters are counted \[bytes\].
+        /// Maximum number of bytes before the position in which characters are counted.
         const COUNTED: usize = 2000;
         let before = &self.text[self.line_start..self.at];
         let characters = if before.len() > COUNTED {
@@ -123,12 +123,12 @@ impl<'t> Scanner<'t> {
         self.line_start = self.at;
     }
 
-    /// Moves to the line end.
+    /// Moves to the end of the line, before the line feed.
     fn pass_line(&mut self) {
         self.at += self.rest().find(['\n', '\r']).unwrap_or(self.rest().len());
     }
 
-    /// Skips blanks, comments and continued line ends; returns whether there were any.
+    /// Skips blanks, comments, and line ends after "..."; returns whether there were any.
     pub(super) fn pass_blanks(&mut self) -> Result<bool, VariableFault> {
         let from = self.at;
         while let Some(character) = self.peek() {
@@ -157,8 +157,8 @@ impl<'t> Scanner<'t> {
         self.text[self.line_start..self.at].trim().is_empty()
     }
 
-    /// Whether the rest of the line is a comment mark and this bracket, which begin or end a block
-    /// comment.
+    /// Returns whether the rest of the line is a comment mark and `bracket`, which begin or end a
+    /// block comment.
     fn is_block_mark(&self, bracket: char) -> bool {
         let line = self.rest_of_line().trim();
         let Some(rest) = line.strip_prefix(['%', '#']) else {
@@ -188,7 +188,7 @@ impl<'t> Scanner<'t> {
         }
     }
 
-    /// Reads a name, if there is one at this position.
+    /// Reads the name at this position; `None` if there is none.
     pub(super) fn name(&mut self) -> Option<&'t str> {
         let rest = self.rest();
         if !begins_word(rest) {
@@ -199,7 +199,8 @@ impl<'t> Scanner<'t> {
         Some(&rest[..end])
     }
 
-    /// Reads names separated by points, if there are any at this position: "sys.A".
+    /// Reads the names at this position, separated by points as in "sys.A"; empty if there are
+    /// none.
     pub(super) fn path(&mut self, budget: &ReadingBudget) -> Result<Vec<&'t str>, VariableFault> {
         let mut path: Vec<&'t str> = self.name().into_iter().collect();
         while let Some(first) = path.first() {
@@ -218,7 +219,8 @@ impl<'t> Scanner<'t> {
         Ok(path)
     }
 
-    /// Reads a text up to its closing quote on the same line; a doubled quote is a character.
+    /// Reads a string up to the closing quotation mark on the same line; a doubled quotation mark
+    /// stands for a single one.
     pub(super) fn quoted(&mut self, budget: &ReadingBudget) -> Result<String, ValueError> {
         let opening = self.position();
         let quote = self.peek().unwrap_or('\'');
@@ -229,7 +231,7 @@ impl<'t> Scanner<'t> {
             let end = rest.find([quote, '\n', '\r']);
             let Some(end) = end.filter(|&end| rest[end..].starts_with(quote)) else {
                 return refused(
-                    format!("a text begins here and has no end; close it with {quote}"),
+                    format!("the string that begins here is not closed; close it with {quote}"),
                     opening,
                 );
             };
@@ -244,7 +246,7 @@ impl<'t> Scanner<'t> {
         }
     }
 
-    /// Reads an unsigned number, if there is one at this position.
+    /// Reads the unsigned number at this position; `None` if there is none.
     pub(super) fn number(&mut self) -> Result<Option<Number>, ValueError> {
         let rest = self.rest();
         let place = self.position();
@@ -267,14 +269,17 @@ impl<'t> Scanner<'t> {
                 is_imaginary,
             })),
             _ => refused(
-                format!("\"{}\" is no number", excerpt(&rest[..end + tail])),
+                format!("\"{}\" is not a number", excerpt(&rest[..end + tail])),
                 place,
             ),
         }
     }
 
-    /// Moves to the end of the statement. An unclosed bracket is a fault, as all text after it
-    /// would belong to the statement.
+    /// Moves to the end of the statement.
+    ///
+    /// # Errors
+    /// [`VariableFault`] for an unclosed square or curly bracket, because all following text would
+    /// belong to the statement.
     pub(super) fn pass_statement(&mut self, budget: &ReadingBudget) -> Result<(), VariableFault> {
         let mut open = OpenBrackets::default();
         loop {
@@ -305,7 +310,8 @@ impl<'t> Scanner<'t> {
         }
     }
 
-    /// Whether a quote begins a text; a single quote after an operand transposes it.
+    /// Returns whether a quotation mark begins a string; a single one after an operand denotes the
+    /// transpose.
     fn begins_text(&self, quote: char, is_spaced: bool, open: &OpenBrackets) -> bool {
         if quote == '"' || (is_spaced && open.is_in_matrix()) {
             return true;
@@ -315,7 +321,7 @@ impl<'t> Scanner<'t> {
         !is_operand
     }
 
-    /// Moves past a text, or past the whole line if the text has no end.
+    /// Moves past a string, or to the end of the line if the string is not closed.
     fn pass_text(&mut self, budget: &ReadingBudget) -> Result<(), VariableFault> {
         match self.quoted(budget) {
             Err(ValueError::Fault(fault)) => return Err(fault),
@@ -325,7 +331,8 @@ impl<'t> Scanner<'t> {
         Ok(())
     }
 
-    /// Whether the text after a name changes part of the value: "+= 1", "++", "(2,1) = 3".
+    /// Returns whether the text after a name changes its value in part or in place: "+= 1", "++",
+    /// "(2,1) = 3".
     pub(super) fn changes_part(&self) -> bool {
         let line = self.rest_of_line();
         match line.chars().next() {
@@ -337,7 +344,7 @@ impl<'t> Scanner<'t> {
     }
 }
 
-/// Whether an operator and the text after it change a value: "+= 1", "++".
+/// Returns whether the operator `sign` and the text after it change a value in place: "+= 1", "++".
 fn is_update(sign: char, behind: &str) -> bool {
     if behind.starts_with('=') {
         return true;
@@ -348,8 +355,8 @@ fn is_update(sign: char, behind: &str) -> bool {
     rest.trim_start().is_empty() || rest.starts_with(';')
 }
 
-/// Whether a line that begins with an opening bracket assigns to an element or to its field:
-/// "(2,1) = 3", "{2}.name = 3".
+/// Returns whether a line that begins with an opening bracket assigns to an element, or to a field
+/// of an element: "(2,1) = 3", "{2}.name = 3".
 fn is_indexed_assignment(line: &str, open: char, close: char) -> bool {
     let mut depth = 0_usize;
     for (at, character) in line.char_indices() {
@@ -369,7 +376,7 @@ fn is_indexed_assignment(line: &str, open: char, close: char) -> bool {
     false
 }
 
-/// Open brackets in a statement, from the outermost.
+/// Open brackets in a statement, the outermost first.
 #[derive(Default)]
 struct OpenBrackets(Vec<OpenBracket>);
 
@@ -401,8 +408,8 @@ impl OpenBrackets {
         Ok(())
     }
 
-    /// Closes the last matching bracket with all brackets inside it; ignores a closing bracket
-    /// without an opening bracket.
+    /// Closes the innermost open bracket that matches, with all brackets inside it; ignores
+    /// `closing` if none matches.
     fn close(&mut self, closing: char) {
         let opening = match closing {
             ')' => '(',
@@ -414,8 +421,8 @@ impl OpenBrackets {
         }
     }
 
-    /// Closes the innermost round brackets, up to a square or curly bracket: a round bracket
-    /// extends at most to the end of its line.
+    /// Closes the round brackets inside the innermost square or curly bracket, because round
+    /// brackets end with their line.
     fn end_line(&mut self) {
         while self.0.last().is_some_and(|open| open.bracket == '(') {
             self.0.pop();
@@ -450,7 +457,7 @@ fn past_digits(bytes: &[u8], from: usize) -> usize {
     at
 }
 
-/// Returns the offset after digits with a decimal point.
+/// Returns the offset after digits, which may include a decimal point.
 fn past_mantissa(bytes: &[u8]) -> usize {
     let end = past_digits(bytes, 0);
     // A point before an operator belongs to the operator: "1./x", "2.^n", "1...".
@@ -464,7 +471,7 @@ fn past_mantissa(bytes: &[u8]) -> usize {
     }
 }
 
-/// Returns the offset after the exponent that begins at `from`, or `from` if there is none.
+/// Returns the offset after the exponent that begins at `from`; `from` if there is no exponent.
 fn past_exponent(bytes: &[u8], from: usize) -> usize {
     if !matches!(bytes.get(from), Some(b'e' | b'E' | b'd' | b'D')) {
         return from;

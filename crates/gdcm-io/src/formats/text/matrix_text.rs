@@ -1,4 +1,4 @@
-//! Matrices as text: one in a file, or several with names, as programs print them.
+//! Matrices as text, as programs print them: a single matrix, or several with their names.
 
 use std::collections::HashSet;
 
@@ -9,16 +9,19 @@ use crate::formats::text::lines::{comment, excerpt, is_rule, lines};
 use crate::formats::variables::{Array, Value, Variable};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Matrices read from a text.
+/// Matrices read from a text, with notes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedMatrices {
-    /// The matrices in their order.
+    /// Matrices in the order of their appearance.
     pub variables: Vec<Variable>,
-    /// Notes on skipped parts and on decisions.
+    /// Notes for the user on skipped lines and on choices.
     pub notes: Vec<String>,
 }
 
-/// Reads a single matrix, a row on each line; skips a line with names above it.
+/// Reads a single matrix with a row on each line; skips a line with names above the rows.
+///
+/// # Errors
+/// [`VariableFault`] if a row is incomplete, or there are no numbers.
 pub fn read_matrix(
     text: &str,
     name: &str,
@@ -31,7 +34,7 @@ pub fn read_matrix(
         .find(|(_, line)| cell_number(line, table.decimal_comma).is_some());
     if let Some((line, _)) = single_number {
         let what = format!(
-            "a single number, where other rows have {}; complete the row",
+            "a single number, but other rows have {}; complete the row",
             table.columns.len()
         );
         return Err(VariableFault::line(name, *line, what));
@@ -48,7 +51,7 @@ pub fn read_matrix(
 /// A common factor ("1.0e+03 *") is applied, columns printed in several parts ("Columns 1 through
 /// 6") are joined, and row and column names are skipped.
 pub fn read_matrices(text: &str, budget: &ReadingBudget) -> Result<NamedMatrices, VariableFault> {
-    refuse_binary(text, "matrices under their names")?;
+    refuse_binary(text, "matrices with names")?;
     let mut reading = Reading {
         matrices: Vec::new(),
         notes: Vec::new(),
@@ -63,10 +66,10 @@ pub fn read_matrices(text: &str, budget: &ReadingBudget) -> Result<NamedMatrices
     reading.finish()
 }
 
-/// Rows that are printed together.
+/// Part of a matrix: consecutive rows with a group of columns.
 #[derive(Default)]
 struct Part {
-    /// Line number by row, in the whole text.
+    /// Line number of each row in the whole text.
     line_numbers: Vec<usize>,
     text: String,
 }
@@ -74,13 +77,14 @@ struct Part {
 /// A matrix whose rows are being read.
 struct OpenMatrix {
     name: String,
-    /// Line number of the name.
+    /// Line number of the matrix name.
     line: usize,
-    /// Whether an equals sign follows the name, so that a single word below it names a column.
+    /// Whether an equals sign follows the matrix name; then a single word below it is a column
+    /// name.
     assigned: bool,
-    /// Common factor.
+    /// Factor by which all numbers are multiplied.
     scale: f64,
-    /// Whether the rows have names.
+    /// Whether each row begins with a name.
     labelled: bool,
     parts: Vec<Part>,
 }
@@ -123,8 +127,8 @@ impl Reading<'_> {
         self.other_line(number, line, has_row_names)
     }
 
-    /// Handles a line that holds neither a name nor a row: column names, a row with an error, or
-    /// words to be skipped.
+    /// Reads a line that is neither a name nor a row: a line with column names, a row with errors,
+    /// or a line to be skipped.
     fn other_line(
         &mut self,
         number: usize,
@@ -140,7 +144,7 @@ impl Reading<'_> {
             return self.column_names(number, line);
         }
         if 2 * numbers >= words {
-            let what = format!("\"{}\" is no row of numbers; correct it", excerpt(line));
+            let what = format!("\"{}\" is not a row of numbers; correct it", excerpt(line));
             return Err(VariableFault::line("", number, what));
         }
         self.notes
@@ -148,7 +152,7 @@ impl Reading<'_> {
         Ok(())
     }
 
-    /// Whether column names may follow: the last matrix has an equals sign and no rows yet.
+    /// Returns whether column names may follow: the last matrix has an equals sign and no rows yet.
     fn awaits_columns(&self) -> bool {
         self.matrices
             .last()
@@ -177,7 +181,7 @@ impl Reading<'_> {
         }
     }
 
-    /// Takes a line with column names: the rows below it have names too.
+    /// Reads a line with column names; the rows below it then begin with names.
     fn column_names(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
         if let Some(matrix) = self.matrices.last_mut() {
             matrix.labelled = true;
@@ -190,7 +194,7 @@ impl Reading<'_> {
         Ok(())
     }
 
-    /// Begins another part for the last matrix, unless its last part is still empty.
+    /// Begins another part of the last matrix, unless its last part has no rows yet.
     fn begin_part(&mut self) {
         if let Some(matrix) = self.matrices.last_mut()
             && matrix
@@ -237,7 +241,7 @@ impl Reading<'_> {
             }
             if matrix.scale != 1.0 {
                 self.notes.push(format!(
-                    "{name} is printed with the factor {:e}, and so with few digits",
+                    "{name} is printed with the factor {:e}, and therefore with few digits",
                     matrix.scale
                 ));
             }
@@ -249,7 +253,7 @@ impl Reading<'_> {
         }
         if variables.is_empty() {
             return Err(VariableFault::format(
-                "matrices under their names",
+                "matrices with names",
                 "no name with numbers below it",
             ));
         }
@@ -271,7 +275,7 @@ impl OpenMatrix {
 }
 
 impl Part {
-    /// Reads the rows; faults give the line in the whole text.
+    /// Reads the rows of the part; errors contain the line in the whole text.
     fn table(&self, name: &str, budget: &ReadingBudget) -> Result<TextTable, VariableFault> {
         let table = read_table(&self.text, budget).map_err(|fault| match fault {
             VariableFault::Line { line, what, .. } => {
@@ -282,7 +286,7 @@ impl Part {
         match table.skipped.first() {
             Some((line, text)) => {
                 let what = format!(
-                    "\"{}\" is no row like the others; complete it",
+                    "\"{}\" is not a row like the others; complete it",
                     excerpt(text)
                 );
                 Err(VariableFault::line(name, self.line_number(*line), what))
@@ -291,7 +295,7 @@ impl Part {
         }
     }
 
-    /// Returns the line number in the whole text; `line` is the line number in the part.
+    /// Returns the line number in the whole text for a line number in the part.
     fn line_number(&self, line: usize) -> usize {
         let number = self.line_numbers.get(line.saturating_sub(1));
         number.copied().unwrap_or(line)
@@ -303,7 +307,7 @@ fn is_number_word(word: &str) -> bool {
     !word.is_empty() && is_number(word)
 }
 
-/// Whether a line contains only numbers, with any separator.
+/// Returns whether a line contains only numbers, with any separator.
 fn is_row_of_numbers(line: &str) -> bool {
     let mut has_number = false;
     for word in line.split(|c: char| c.is_whitespace() || matches!(c, ',' | ';' | '|')) {
@@ -318,7 +322,7 @@ fn is_row_of_numbers(line: &str) -> bool {
     has_number
 }
 
-/// Joins tables side by side to one matrix, multiplied by a factor.
+/// Joins the columns of tables into a matrix, and multiplies it by `scale`.
 fn joined(
     tables: &[TextTable],
     scale: f64,
@@ -346,19 +350,20 @@ fn joined(
     Ok(Value::Array(Array::matrix(rows, columns, values)))
 }
 
-// Lines that programs print above matrix rows.
+// Lines that programs print above the rows of a matrix.
 
-/// A line that names a matrix.
+/// A line with the name of a matrix.
 #[derive(Debug, PartialEq, Eq)]
 struct NameLine<'t> {
     name: &'t str,
     /// Whether an equals sign follows the name.
     assigned: bool,
-    /// Numbers on the same line.
+    /// Text after the name on the same line, such as numbers.
     rest: &'t str,
 }
 
-/// Parses "A", "A =", "A:", "A (3x2)", "A = 5" and "A,,,".
+/// Parses a line with a name, such as "A", "A =", "A:", "A (3x2)", "A = 5" or "A,,,"; `None` for
+/// any other line.
 fn name_line(line: &str) -> Option<NameLine<'_>> {
     let line = line.trim().trim_end_matches([',', ';', '\t', ' ']);
     let end = line
@@ -387,7 +392,7 @@ fn name_line(line: &str) -> Option<NameLine<'_>> {
     })
 }
 
-/// Returns a text without a leading size: "(3x2)", "\[3 x 2\]", "3x2".
+/// Removes leading matrix dimensions from a text: "(3x2)", "\[3 x 2\]", "3x2".
 fn without_size(text: &str) -> &str {
     let inner = text.trim_start_matches(['(', '[']);
     let (size, rest) = inner.split_at(inner.find([')', ']']).unwrap_or(inner.len()));
@@ -405,7 +410,7 @@ fn is_count(word: &str) -> bool {
     !word.is_empty() && word.bytes().all(|byte| byte.is_ascii_digit())
 }
 
-/// Returns the factor in a line such as "1.0e+03 *".
+/// Returns the factor in a line such as "1.0e+03 *"; `None` for any other line.
 fn scale_line(line: &str) -> Option<f64> {
     let factor = line.trim().strip_suffix('*')?.trim();
     let factor: f64 = factor.parse().ok()?;
@@ -416,7 +421,7 @@ fn scale_line(line: &str) -> Option<f64> {
     }
 }
 
-/// Whether a line announces columns: "Columns 1 through 6", "Column 7:".
+/// Returns whether a line announces a group of columns: "Columns 1 through 6", "Column 7:".
 fn is_columns_line(line: &str) -> bool {
     let mut words = line.trim().trim_end_matches(':').split_whitespace();
     matches!(words.next(), Some("Columns" | "Column"))
@@ -466,7 +471,7 @@ mod matrix_text_tests {
             .to_string();
         assert_eq!(
             ragged,
-            "variable A: line 1: a single number, where other rows have 2; complete the row"
+            "variable A: line 1: a single number, but other rows have 2; complete the row"
         );
     }
 
@@ -512,7 +517,7 @@ mod matrix_text_tests {
         let message = |text: &str| read(text).unwrap_err().to_string();
         assert!(message("1 2\n").starts_with("line 1: numbers without a name"));
         assert!(message("A =\n1 2\n\n3\n").starts_with("variable A: line 4: "));
-        assert!(message("A =\n1 2\n3 x\n").starts_with("line 3: \"3 x\" is no row of numbers"));
+        assert!(message("A =\n1 2\n3 x\n").starts_with("line 3: \"3 x\" is not a row of numbers"));
         assert_eq!(message("A\n1\nA\n2\n"), "duplicate name \"A\"; rename one");
         assert!(message("A =\n").contains("no name with numbers below it"));
     }

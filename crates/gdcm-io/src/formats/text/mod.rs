@@ -1,4 +1,5 @@
-//! Texts with numbers: tables in columns, frequency responses, matrices and MATLAB statements.
+//! Text files with numbers: tables in columns, frequency responses, matrices, and MATLAB
+//! statements.
 
 mod cell_number;
 mod clock_time;
@@ -39,7 +40,7 @@ pub(crate) use unrecognised::Unrecognised;
 pub use unrecognised::UnsaidUnit;
 pub(crate) use word_columns::{NumberedText, numbered_words};
 
-/// MATLAB and Octave statements.
+/// Importer of MATLAB and Octave statements.
 pub(crate) const LITERALS: Importer = Importer {
     name: "MATLAB statements",
     endings: &["m"],
@@ -62,7 +63,7 @@ pub(crate) const LITERALS: Importer = Importer {
     },
 };
 
-/// Numbers in columns, or matrices.
+/// Importer of text files with numbers in columns, or matrices.
 pub(crate) const TEXT: Importer = Importer {
     name: "a text",
     endings: &["csv", "txt", "tsv", "dat", "asc", "prn", "log", "out"],
@@ -74,9 +75,9 @@ pub(crate) const TEXT: Importer = Importer {
     },
 };
 
-/// Returns the first lines in a text, without MATLAB comments and empty lines.
+/// Returns the first lines of a text, without empty lines and comments (`%`, `#`).
 fn first_lines(bytes: &[u8]) -> Vec<String> {
-    /// Length of the examined beginning \[bytes\].
+    /// Number of bytes examined at the beginning.
     const HEAD: usize = 4000;
     let head = String::from_utf8_lossy(&bytes[..bytes.len().min(HEAD)]);
     head.lines()
@@ -86,8 +87,8 @@ fn first_lines(bytes: &[u8]) -> Vec<String> {
         .collect()
 }
 
-/// Whether a text begins by assigning numbers or texts to a name, such as `A = [1 2` or
-/// `Ts = 0.02;`. A table may begin with `Fs = 50`.
+/// Returns whether a text begins with an assignment of numbers or strings, such as `A = [1 2` or
+/// `Ts = 0.02;`. A line such as `Fs = 50` does not count, because it may begin a table.
 fn begins_with_statement(bytes: &[u8]) -> bool {
     let lines = first_lines(bytes);
     let Some((name, value)) = lines.first().and_then(|line| line.split_once('=')) else {
@@ -102,8 +103,8 @@ fn begins_with_statement(bytes: &[u8]) -> bool {
     begins_name && is_name && (value.starts_with(['[', '{', '\'']) || value.ends_with(';'))
 }
 
-/// Whether a text begins with a number row, or with column names and such a row; statements
-/// never do.
+/// Returns whether a text begins with a row of numbers, or with column names and a row of numbers,
+/// unlike MATLAB statements.
 fn begins_with_numbers(bytes: &[u8]) -> bool {
     for line in first_lines(bytes).iter().take(2) {
         if line.contains('=') {

@@ -1,29 +1,30 @@
-//! Frequency responses among table columns, and their points.
+//! Columns of a table that hold a frequency response, and its points.
 
 use crate::formats::text::columns::TextTable;
 use crate::reading_budget::VariableFault;
 
-/// A frequency response among table columns.
+/// A frequency response in columns of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RecognisedResponse {
-    /// The output, if the names give it.
+    /// Output, if the column names give it.
     pub(crate) output: Option<String>,
-    /// The input, if the names give it.
+    /// Input, if the column names give it.
     pub(crate) input: Option<String>,
     pub(super) parts: ResponseParts,
     pub(crate) coherence: Option<CoherenceColumn>,
 }
 
-/// A coherence column; multiplication by the factor, then squaring for γ, gives γ² as a fraction.
+/// A coherence column. Its numbers, multiplied by `factor` and squared if they are γ, give γ² as a
+/// fraction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CoherenceColumn {
-    /// The column, from 0.
+    /// Column index, from 0.
     pub(super) column: usize,
     pub(super) factor: f64,
     pub(super) is_gamma: bool,
 }
 
-/// The two columns of a complex number, counted from 0.
+/// The two columns that give a complex number, with indices from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ResponseParts {
     Polar {
@@ -38,21 +39,19 @@ pub(super) enum ResponseParts {
     },
 }
 
-/// A frequency response, point by point.
+/// Points of a frequency response.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ResponsePoints {
     /// Frequencies \[rad/s\], strictly increasing.
     pub(crate) omega: Vec<f64>,
-    /// Real parts.
     pub(crate) re: Vec<f64>,
-    /// Imaginary parts.
     pub(crate) im: Vec<f64>,
-    /// Coherence γ² as a fraction, NaN where it is missing.
+    /// Coherence γ² as a fraction of 1; NaN at points where it is missing.
     pub(crate) coherence: Option<Vec<f64>>,
 }
 
 impl CoherenceColumn {
-    /// Returns γ² in a row as a fraction.
+    /// Returns γ² in a row, as a fraction of 1.
     fn gamma_squared(self, table: &TextTable, row: usize) -> f64 {
         let value = self.factor * table.columns[self.column][row];
         if self.is_gamma { value * value } else { value }
@@ -60,12 +59,12 @@ impl CoherenceColumn {
 }
 
 impl RecognisedResponse {
-    /// Returns the points of the response, without rows in which both parts of the complex number
-    /// are missing; `omega` is the frequency in each row \[rad/s\].
+    /// Returns the points of the response. Rows in which both parts of the complex number are
+    /// missing are omitted; `omega` is the frequency of each row \[rad/s\].
     ///
     /// # Errors
-    /// Only one part of a complex number is missing, a part is infinite, or the magnitude is too
-    /// large.
+    /// [`VariableFault`] with the line if only one part of a complex number is missing, a part is
+    /// infinite, or the magnitude is too large.
     pub(super) fn points(
         &self,
         table: &TextTable,
@@ -88,7 +87,8 @@ impl RecognisedResponse {
                 if !number(column).is_finite() {
                     let place = column_place(table, column);
                     let what = format!(
-                        "{place} has no finite number; complete it or empty its other half too"
+                        "{place} has no finite number; complete it, or also empty the other part \
+                        of the complex number"
                     );
                     return Err(VariableFault::line("", line, what));
                 }
@@ -96,7 +96,10 @@ impl RecognisedResponse {
             let (re, im) = self.parts.complex(table, row);
             if !(re.is_finite() && im.is_finite()) {
                 let place = column_place(table, columns[0]);
-                let what = format!("{place} is too large for a magnitude; is it in dB?");
+                let what = format!(
+                    "{place} is too large for a magnitude; if it is in dB, write \
+                    [dB] in the heading"
+                );
                 return Err(VariableFault::line("", line, what));
             }
             points.omega.push(omega);
@@ -113,7 +116,7 @@ impl RecognisedResponse {
 }
 
 impl ResponseParts {
-    /// Returns the two columns: magnitude and phase, or real and imaginary part.
+    /// Returns the indices of the two columns: magnitude and phase, or real and imaginary part.
     pub(super) fn columns(self) -> [usize; 2] {
         match self {
             ResponseParts::Polar {
@@ -123,7 +126,7 @@ impl ResponseParts {
         }
     }
 
-    /// Returns real and imaginary part in a row.
+    /// Returns the real and the imaginary part in a row.
     pub(super) fn complex(self, table: &TextTable, row: usize) -> (f64, f64) {
         match self {
             ResponseParts::Rectangular { re, im } => {
@@ -149,7 +152,7 @@ impl ResponseParts {
     }
 }
 
-/// Returns a column name, or "column 5" without a name.
+/// Returns the name of a column; for example "column 5" if it has no name.
 pub(super) fn column_name(table: &TextTable, column: usize) -> String {
     match table.name(column) {
         Some(name) => name.to_owned(),
@@ -157,7 +160,7 @@ pub(super) fn column_name(table: &TextTable, column: usize) -> String {
     }
 }
 
-/// Describes a column by its number, from 1, and its name.
+/// Describes a column for messages: its number, counted from 1, and its name.
 pub(super) fn column_place(table: &TextTable, column: usize) -> String {
     match table.name(column) {
         Some(name) => format!("column {} (\"{name}\")", column + 1),

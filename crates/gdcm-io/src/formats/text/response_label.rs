@@ -1,25 +1,26 @@
-//! Output and input named in a column heading.
+//! Output and input of a response, as named in a column heading.
 
 use gdcm_model::names::response_name::{KnownChannels, ResponseName};
 
-/// Output and input of a response, as far as its name gives them.
+/// Output and input of a response, where its name gives them.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct ResponseLabel {
     pub(super) output: Option<String>,
     pub(super) input: Option<String>,
 }
 
-/// Response names that identify no channel.
+/// Names that denote a response without naming its channels.
 const ANY_RESPONSE: [&str; 9] = [
     "h", "g", "frf", "tf", "fr", "resp", "response", "h(jw)", "g(jw)",
 ];
-/// Separators between an input and the following output.
+/// Separators between an input and the output that follows it.
 const FORWARD: [&str; 5] = ["->", "→", "=>", ">", " to "];
-/// Separators between an output and its input.
+/// Separators between an output and the input that follows it.
 const BACKWARD: [&str; 6] = ["<-", "←", "/", " due to ", " from ", " over "];
 
 impl ResponseLabel {
-    /// Parses "P/LAT", "LAT->P", "LAT to P", "P_LAT"; any other text names the output.
+    /// Parses a response name such as "P/LAT", "LAT->P", "LAT to P" or "P_LAT"; any other text is
+    /// the name of an output.
     pub(super) fn parse(text: &str) -> Self {
         let text = clean(text);
         if ANY_RESPONSE.contains(&text.to_lowercase().as_str()) {
@@ -51,7 +52,8 @@ impl ResponseLabel {
         }
     }
 
-    /// Parses a common name in the field: "q_delta_lon", "roll_rate".
+    /// Parses a name that is common in flight dynamics, such as "q_delta_lon" or "roll_rate";
+    /// `None` for any other name.
     fn from_field_name(text: &str) -> Option<Self> {
         let ResponseName { output, input } = ResponseName::find(text, KnownChannels::Field).ok()?;
         let names_both = output.is_some() && input.is_some();
@@ -74,7 +76,7 @@ fn channel(part: &str) -> Option<String> {
     }
 }
 
-/// Returns a text without surrounding brackets, punctuation and blanks.
+/// Removes brackets, punctuation and blanks at both ends of a text.
 fn clean(text: &str) -> &str {
     text.trim_matches(|c: char| c.is_whitespace() || "_-.,:;(){}[]|∠=\"'".contains(c))
 }

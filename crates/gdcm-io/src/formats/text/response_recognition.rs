@@ -1,4 +1,4 @@
-//! Assembly of frequency responses from table columns.
+//! Assembly of frequency responses from the columns of a table.
 
 use std::f64::consts::TAU;
 
@@ -11,33 +11,33 @@ use crate::formats::text::response_label::ResponseLabel;
 use crate::formats::text::unrecognised::{Unrecognised, UnsaidUnit, unrecognised};
 
 /// Maximum difference between the rectangular and the polar form of a response, relative to its
-/// magnitude: tables have few digits.
+/// magnitude; tables are printed with few digits.
 const FORM_TOLERANCE: f64 = 0.01;
-/// Coherence above this value is in percent; the margin above 1 is for rounding and noise.
+/// Maximum coherence that counts as a fraction; larger values are in percent. Values slightly above
+/// 1 result from rounding and noise.
 const LARGEST_COHERENCE: f64 = 1.5;
 
-/// The frequency column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct FrequencyColumn {
-    /// The column, from 0.
+    /// Column index, from 0.
     pub(super) column: usize,
-    /// Factor to rad/s.
+    /// Factor that converts to rad/s.
     pub(super) factor: f64,
 }
 
-/// A table while its responses are assembled.
+/// State of recognising the responses in a table.
 pub(super) struct Recognition<'t> {
     table: &'t TextTable,
     meanings: Vec<ColumnMeaning>,
-    /// Each decision with its reason.
+    /// Notes for the user: each choice with its reason.
     pub(super) notes: Vec<String>,
-    /// Columns without a unit whose numbers allow several units.
+    /// Columns with a missing unit that the user must state.
     pub(super) unsaid: Vec<UnsaidUnit>,
-    /// Unused column names.
+    /// Names of unused columns.
     pub(super) unused: Vec<String>,
 }
 
-/// Columns that belong to one response.
+/// Columns that belong to the same response.
 #[derive(Default)]
 struct Group {
     label: ResponseLabel,
@@ -49,17 +49,17 @@ struct GroupColumn {
     column: usize,
 }
 
-/// Columns in polar form.
+/// Indices of the columns with magnitude and phase.
 #[derive(Clone, Copy)]
 struct PolarColumns {
     magnitude: usize,
     phase: usize,
 }
 
-/// A magnitude and a phase, interpreted.
+/// Interpretation of a magnitude and a phase column.
 struct PolarReading {
     parts: ResponseParts,
-    /// Columns whose units are neither given nor evident.
+    /// Those columns of the two whose missing unit the user must state.
     unsaid: Vec<UnsaidUnit>,
 }
 
@@ -88,7 +88,10 @@ impl<'t> Recognition<'t> {
         }
     }
 
-    /// Finds the frequency column and its unit.
+    /// Finds the frequency column and its unit; a missing unit is added to `unsaid`.
+    ///
+    /// # Errors
+    /// [`Unrecognised`] if there is no frequency column.
     pub(super) fn frequency(&mut self) -> Result<FrequencyColumn, Unrecognised> {
         let named = self
             .meanings
@@ -113,13 +116,13 @@ impl<'t> Recognition<'t> {
         };
         let reason = match self.table.units.get(column).and_then(Option::as_ref) {
             Some(unit) => format!(", its unit is {unit}"),
-            None => ", and with it the unit".to_owned(),
+            None => ", which implies the unit".to_owned(),
         };
         self.note(column, &format!("the frequency in {unit}"), &reason);
         Ok(FrequencyColumn { column, factor })
     }
 
-    /// Notes the interpretation of a column and its reason; `more` is added to the reason.
+    /// Notes how a column is interpreted and for which reason; `more` is appended to the reason.
     fn note(&mut self, column: usize, interpretation: &str, more: &str) {
         let place = column_place(self.table, column);
         let reason = &self.meanings[column].reason;
@@ -128,7 +131,7 @@ impl<'t> Recognition<'t> {
         ));
     }
 
-    /// Returns the responses, ordered by their first columns.
+    /// Returns the responses in the order of their first columns.
     pub(super) fn responses(&mut self) -> Vec<RecognisedResponse> {
         let mut responses = Vec::new();
         for group in self.groups() {
@@ -154,8 +157,8 @@ impl<'t> Recognition<'t> {
         responses
     }
 
-    /// Finds the columns with the complex numbers; real and imaginary parts take precedence over
-    /// magnitude and phase.
+    /// Returns the columns that give the complex numbers of a group; real and imaginary parts are
+    /// preferred to magnitude and phase. Returns `None` if a part is missing.
     fn parts(&mut self, group: &Group) -> Option<ResponseParts> {
         let polar = group.polar();
         if let Some(re) = group.column(Quantity::Real)
@@ -166,7 +169,7 @@ impl<'t> Recognition<'t> {
             self.note(im, "imaginary part", "");
             if let Some(columns) = polar {
                 let polar = self.polar(columns);
-                // Missing units of the polar form are not asked for: it only serves as a check.
+                // Do not ask for missing units of the polar form, which serves only as a check.
                 if polar.unsaid.is_empty() {
                     self.compare(parts, polar.parts);
                 }
@@ -178,21 +181,25 @@ impl<'t> Recognition<'t> {
         Some(polar.parts)
     }
 
-    /// Notes that a group is unused because one part of the complex number is missing.
+    /// Notes that the columns of a group are not used because one part of the complex number is
+    /// missing.
     fn leave_out(&mut self, group: &Group) {
         for known in &group.columns {
             if known.quantity == Quantity::Error {
                 continue;
             }
             let place = column_place(self.table, known.column);
-            self.notes
-                .push(format!("{place} is left out: its other half is missing"));
+            self.notes.push(format!(
+                "{place} is ignored: the matching column is missing (real and \
+                    imaginary part, or magnitude and phase, are both needed)"
+            ));
             self.unused.push(column_name(self.table, known.column));
         }
     }
 
-    /// Interprets a coherence column: percent if its unit or its numbers above 1 require it. If its
-    /// unit is unknown (a column called gamma), the user is asked whether it holds γ or γ².
+    /// Interprets a coherence column. It is in percent if its unit is % or a number exceeds
+    /// `LARGEST_COHERENCE`. If its unit is missing (a column called gamma), the user is asked
+    /// whether it holds γ or γ².
     fn coherence(&mut self, column: usize) -> CoherenceColumn {
         let unit = self.meanings[column].unit;
         if unit.is_none() {
@@ -216,7 +223,7 @@ impl<'t> Recognition<'t> {
         }
         let is_gamma = unit == Some(KnownUnit::Gamma);
         if is_gamma {
-            reason = ", its unit is γ: squared";
+            reason = ", its unit is γ, so it is squared";
         }
         self.note(column, interpretation, reason);
         CoherenceColumn {
@@ -226,14 +233,14 @@ impl<'t> Recognition<'t> {
         }
     }
 
-    /// Collects the columns for each response, and notes columns with an unknown meaning.
+    /// Groups the columns by response, and notes columns whose meaning is unknown.
     fn groups(&mut self) -> Vec<Group> {
         let mut groups: Vec<Group> = Vec::new();
         for (column, meaning) in self.meanings.iter().enumerate() {
             let Some(quantity) = meaning.quantity else {
                 let place = column_place(self.table, column);
                 self.notes
-                    .push(format!("{place} is left out: its name is not known"));
+                    .push(format!("{place} is ignored: its name is not recognised"));
                 self.unused.push(column_name(self.table, column));
                 continue;
             };
@@ -252,7 +259,8 @@ impl<'t> Recognition<'t> {
         groups
     }
 
-    /// Interprets a magnitude and a phase.
+    /// Interprets a magnitude and a phase column; missing units are derived from the numbers if
+    /// possible.
     fn polar(&mut self, columns: PolarColumns) -> PolarReading {
         let PolarColumns { magnitude, phase } = columns;
         let mut unsaid = Vec::new();
@@ -307,8 +315,8 @@ impl<'t> Recognition<'t> {
         }
     }
 
-    /// Whether negative numbers show that a magnitude is in dB. They do not in a column called
-    /// gain, which may hold a level in dB or a signed ratio.
+    /// Returns whether negative numbers show that a magnitude is in dB. Returns false for a column
+    /// called gain, in which negative numbers may also be signed ratios.
     fn has_negative_levels(&self, magnitude: usize) -> bool {
         let name = self.table.name(magnitude).unwrap_or_default();
         let is_gain = name.to_lowercase().contains("gain");
@@ -318,7 +326,8 @@ impl<'t> Recognition<'t> {
                 .any(|&value| value < 0.0)
     }
 
-    /// Notes whether both forms of a response agree.
+    /// Notes whether the rectangular and the polar form of a response agree within
+    /// `FORM_TOLERANCE`.
     fn compare(&mut self, rectangular: ResponseParts, polar: ResponseParts) {
         let table = self.table;
         let differing = (0..table.lines.len()).find(|&row| {
@@ -333,7 +342,7 @@ impl<'t> Recognition<'t> {
             magnitude + 1,
             phase + 1
         );
-        let taken = "the real and imaginary parts, which are taken";
+        let taken = "the real and imaginary parts, which are used";
         self.notes.push(match differing {
             None => format!("{columns} agree with {taken}"),
             Some(row) => format!("{columns} differ from {taken} (line {})", table.lines[row]),
@@ -341,10 +350,12 @@ impl<'t> Recognition<'t> {
     }
 }
 
-/// Returns the group to which a column belongs: the last group for a column without a label, else
-/// the last group with the same label; only groups that lack the quantity are considered.
+/// Returns the index of the group to which a column belongs: the last group if the column has no
+/// label, otherwise the last group with the same label. A group that already has the quantity is
+/// not eligible; `None` if no group is.
 fn group_for(groups: &[Group], quantity: Quantity, label: &ResponseLabel) -> Option<usize> {
-    // In the name of an error column, the other words give the quantity to which the error belongs.
+    // The label of an error column names a quantity, not a channel, so the column joins the last
+    // group.
     let joins_last = *label == ResponseLabel::default() || quantity == Quantity::Error;
     if joins_last
         && let Some(last) = groups.last()

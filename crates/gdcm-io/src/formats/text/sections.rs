@@ -1,13 +1,13 @@
-//! Consecutive tables in one text, each with a heading.
+//! Consecutive tables in a text, each with a heading.
 
 use crate::formats::text::cell_number::has_number;
 use crate::formats::text::lines::{comment, is_rule, lines};
 
-/// Separators that may surround blanks within a cell.
+/// Separators between cells that may contain blanks.
 const STRONG_SEPARATORS: [char; 4] = ['|', ';', '\t', ','];
 
-/// Splits a text before every heading that follows rows; returns the number of the first line and
-/// the text of each part. A log that is restarted with other columns is split where they change.
+/// Splits a text before every heading that follows rows, as in a log that was restarted with other
+/// columns. Returns each part with the number of its first line, counted from 1.
 pub fn sections(text: &str) -> Vec<(usize, &str)> {
     let mut sections = Vec::new();
     let mut first_line = 1;
@@ -19,7 +19,7 @@ pub fn sections(text: &str) -> Vec<(usize, &str)> {
         }
         let is_heading = is_heading(line);
         if is_heading && has_rows {
-            // Each line is a slice from the text.
+            // Offset of the line, which is a slice of the text.
             let end = line.as_ptr() as usize - text.as_ptr() as usize;
             sections.extend(text.get(start..end).map(|part| (first_line, part)));
             first_line = number;
@@ -31,7 +31,7 @@ pub fn sections(text: &str) -> Vec<(usize, &str)> {
     sections
 }
 
-/// Whether a line contains letters, and no cell in it is a number.
+/// Returns whether a line contains letters and no cell is a number.
 fn is_heading(line: &str) -> bool {
     if !line.chars().any(char::is_alphabetic) {
         return false;

@@ -1,21 +1,21 @@
-//! Separators between the cells in a line.
+//! Separators between the cells of a line.
 
 use std::borrow::Cow;
 
-/// Separator between the cells in a line.
+/// Separator between the cells of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Separator {
     Tab,
     Semicolon,
-    /// A vertical bar; a leading bar is skipped.
+    /// A vertical bar; a bar at the beginning of a line is ignored.
     Pipe,
     Comma,
-    /// Any run of blanks and tabulators.
+    /// Any sequence of blanks and tabs.
     Blanks,
 }
 
 impl Separator {
-    /// All separators, the more specific first.
+    /// All separators, in the order in which they are tried.
     pub(super) const ALL: [Separator; 5] = [
         Separator::Tab,
         Separator::Semicolon,
@@ -24,18 +24,18 @@ impl Separator {
         Separator::Blanks,
     ];
 
-    /// Returns the name for messages.
+    /// Returns the name of the separator, for messages.
     pub fn words(self) -> &'static str {
         match self {
             Separator::Tab => "tabulators",
             Separator::Semicolon => "semicolons",
-            Separator::Pipe => "upright strokes",
+            Separator::Pipe => "vertical bars",
             Separator::Comma => "commas",
             Separator::Blanks => "blanks",
         }
     }
 
-    /// Returns the cells in a line, without surrounding quotes.
+    /// Returns the cells of a line, without quotation marks around them.
     pub(super) fn cells(self, line: &str) -> Cells<'_> {
         let line = match self {
             Separator::Pipe => line.trim_start().strip_prefix('|').unwrap_or(line),
@@ -48,7 +48,7 @@ impl Separator {
         }
     }
 
-    /// Returns the character to write between cells.
+    /// Returns the character that is written between cells.
     pub(super) fn sign(self) -> char {
         match self {
             Separator::Tab => '\t',
@@ -59,7 +59,7 @@ impl Separator {
         }
     }
 
-    /// Formats cells as a line; a cell that contains the separator is quoted.
+    /// Formats cells as a line; a cell that contains the separator is put in quotation marks.
     pub(super) fn line(self, cells: impl Iterator<Item = String>) -> String {
         let sign = self.sign();
         let mut line = String::new();
@@ -87,7 +87,8 @@ impl Separator {
     }
 }
 
-/// Iterator over the cells in a line, so that a line with a million cells needs no list of them.
+/// Iterator over the cells of a line. No list is allocated, because a line may have millions of
+/// cells.
 pub(super) struct Cells<'t> {
     rest: Option<&'t str>,
     separator: Separator,
@@ -115,34 +116,35 @@ impl<'t> Iterator for Cells<'t> {
         if between.trim().is_empty() && !cell.is_empty() {
             return Some(cell);
         }
-        // Quotes followed by other text are ordinary characters.
+        // If other text follows the closing quotation mark, the marks are ordinary characters.
         let whole = &rest[..rest.len() - behind.len() + between.len()];
         Some(Cow::Borrowed(unquoted(whole)))
     }
 }
 
-/// Returns a text without its first character.
+/// Removes the first character of a text, if there is one.
 fn without_first(text: &str) -> &str {
     let mut characters = text.chars();
     characters.next();
     characters.as_str()
 }
 
-/// Returns a cell without quotes; two quotes with nothing between them are an empty cell.
+/// Returns an empty cell for two quotation marks with nothing between them; returns any other cell
+/// unchanged.
 fn unquoted(cell: &str) -> &str {
     if cell.trim() == "\"\"" { "" } else { cell }
 }
 
-/// A quoted cell that begins a text.
+/// A cell in quotation marks at the beginning of a text.
 struct Quoted<'t> {
-    /// Content between the quotes; a doubled quote represents a single quote.
+    /// Content of the cell; each doubled quotation mark is replaced by a single one.
     cell: Cow<'t, str>,
-    /// Text after the closing quote.
+    /// Text after the closing quotation mark.
     behind: &'t str,
 }
 
 impl<'t> Quoted<'t> {
-    /// Parses a quoted cell; `None` without an opening and a closing quote.
+    /// Parses a cell in quotation marks; `None` if the opening or the closing mark is missing.
     fn parse(text: &'t str) -> Option<Self> {
         let inner = text.trim_start().strip_prefix('"')?;
         let mut from = 0;

@@ -4,27 +4,29 @@ use crate::formats::text::columns::TextTable;
 use crate::formats::text::response_columns::column_place;
 use crate::reading_budget::VariableFault;
 
-/// A column without a unit whose numbers allow two units.
+/// A column whose unit is not given and may be either of two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnsaidUnit {
-    /// The column, from 0.
+    /// Column index, from 0.
     pub column: usize,
-    /// The possible units, as written in a heading.
+    /// The two possible units, as written in a heading.
     pub units: [&'static str; 2],
 }
 
-/// Reason why a table is not a frequency response, and the missing units that would complete it.
+/// Reason why a table is not recognised as a frequency response, and the missing units that would
+/// suffice.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Unrecognised {
     pub(crate) fault: VariableFault,
     pub(crate) unsaid: Vec<UnsaidUnit>,
 }
 
-/// Returns the reason why there is no frequency response, with a remedy.
+/// Returns the error for a table that is not recognised as a frequency response, with a remedy.
 pub(super) fn unrecognised(found: &str) -> Unrecognised {
     let found = format!(
-        "a table with {found} among its columns; name the content of each column in the first line, by --headings, or under \
-         \"headings\" in the rules: \"omega [rad/s]\", \"mag Q/LON [dB]\", \"phase Q/LON [deg]\""
+        "a table with {found} among its columns; name each column in the first line, with \
+        --headings, or under \"headings\" in the rules: \"omega [rad/s]\", \"mag Q/LON [dB]\", \
+        \"phase Q/LON [deg]\""
     );
     Unrecognised {
         fault: VariableFault::format("a frequency response in columns", found),
@@ -32,7 +34,7 @@ pub(super) fn unrecognised(found: &str) -> Unrecognised {
     }
 }
 
-/// Asks for units that are neither given nor evident.
+/// Returns the error that asks for units that are neither given nor evident.
 pub(super) fn units_missing(table: &TextTable, unsaid: Vec<UnsaidUnit>) -> Unrecognised {
     let mut questions = Vec::with_capacity(unsaid.len());
     for UnsaidUnit { column, units } in &unsaid {

@@ -1,4 +1,4 @@
-//! Word columns and clock times among number columns.
+//! Columns of words and of times of day in tables of numbers.
 
 use std::collections::BTreeMap;
 
@@ -10,17 +10,18 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Number of lines examined to recognise the columns.
 const SAMPLE: usize = 200;
-/// Maximum number of distinct words in a column; a column with more is not a label.
+/// Maximum number of distinct words that are numbered in a column; a column with more is no set of
+/// labels.
 const MOST_WORDS: usize = 500;
 /// Maximum number of words listed in a note.
 const SHOWN: usize = 12;
 const DAY_S: f64 = 86_400.0;
 
-/// A text with numbers instead of words in its columns.
+/// A text in whose columns numbers have replaced words and times of day.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NumberedText {
     pub text: String,
-    /// The numbers that replace the words, and the columns with clock times.
+    /// Notes for the user: the number of each word, and the columns with times of day.
     pub notes: Vec<String>,
 }
 
@@ -32,9 +33,9 @@ enum Kind {
     Words,
 }
 
-/// Replaces the words in columns by numbers, in the order in which they first occur, and clock
-/// times by seconds; returns nothing if the text has no word columns beside number columns. The
-/// columns need a separator other than blanks.
+/// Replaces words in columns by numbers, counted in the order of their first occurrence, and times
+/// of day by seconds. Returns `None` if the text does not have such columns next to columns of
+/// numbers, with a separator other than blanks.
 pub fn numbered_words(
     text: &str,
     budget: &ReadingBudget,
@@ -67,33 +68,33 @@ fn trimmed_cells(line: &str, separator: Separator) -> Vec<String> {
         .collect()
 }
 
-/// A text during numbering.
+/// State of numbering the words in a text.
 struct Numbering {
     separator: Separator,
     columns: Vec<Column>,
-    /// Cells in the first line that is not a row.
+    /// Cells of the first line that is not a row.
     heading: Option<Vec<String>>,
 }
 
-/// A column during numbering.
+/// State of a column while its distinct words are numbered.
 struct Column {
     kind: Kind,
-    /// Number of each word.
+    /// Number assigned to each word, from 1.
     words: BTreeMap<String, usize>,
     clock: Option<ClockSpan>,
 }
 
-/// Clock times in a column so far.
+/// First and last time of day in a column so far.
 #[derive(Clone, Copy)]
 struct ClockSpan {
     first_s: f64,
-    /// The last time, with a day added at each midnight.
+    /// Last time \[s\], including a day for each midnight since the first time.
     last_s: f64,
 }
 
 impl Numbering {
-    /// Finds the separator and the kind of data in each column; at least two columns must hold
-    /// numbers, and at least one column words or clock times.
+    /// Finds the separator and the kind of data in each column. Returns `None` unless at least two
+    /// columns hold numbers, and at least one holds words or times of day.
     fn recognise(text: &str) -> Option<Self> {
         let sample: Vec<&str> = lines(text)
             .map(|(_, line)| line)
@@ -131,7 +132,7 @@ impl Numbering {
         })
     }
 
-    /// Formats a row with numbers instead of words; leaves the heading unchanged.
+    /// Returns a row with its words and times replaced; a heading is returned unchanged.
     fn line(&mut self, mut cells: Vec<String>) -> String {
         let is_row = cells
             .iter()
@@ -158,10 +159,12 @@ impl Numbering {
             match column.kind {
                 Kind::Numbers => {}
                 Kind::Clock => notes.push(format!(
-                    "{name} has clock times: read as seconds from the first"
+                    "{name} has times of day, which are read as seconds since the first"
                 )),
                 Kind::Words if column.words.len() > MOST_WORDS => {
-                    notes.push(format!("{name} has words: left out"));
+                    notes.push(format!(
+                        "{name} has too many different words and is ignored"
+                    ));
                 }
                 Kind::Words => notes.push(format!(
                     "{name} has words, which are numbered: {}",
@@ -182,8 +185,8 @@ impl Numbering {
 }
 
 impl Column {
-    /// Returns the number that replaces a word; an empty text for an empty cell, and once a column
-    /// has more than `MOST_WORDS` words.
+    /// Returns the number for a word. Returns an empty string for an empty cell, and for all cells
+    /// once the column has more than `MOST_WORDS` distinct words.
     fn number(&mut self, word: &str) -> String {
         if word.is_empty() || self.words.len() > MOST_WORDS {
             return String::new();
@@ -195,7 +198,8 @@ impl Column {
             .to_string()
     }
 
-    /// Returns the seconds since the first time in the column; midnight adds a day.
+    /// Returns the time since the first time in the column \[s\]; a time that goes back by more
+    /// than half a day is on the next day. Returns an empty string for any other cell.
     fn seconds(&mut self, cell: &str) -> String {
         let Some(mut now_s) = clock_s(cell) else {
             return String::new();
@@ -211,12 +215,12 @@ impl Column {
             first_s,
             last_s: now_s,
         });
-        // Integer nanoseconds, finer than any clock: they need no decimal mark, which may be either
-        // in this text.
+        // Integer nanoseconds are finer than any clock, and need no decimal mark, which may be a
+        // point or a comma in this text.
         format!("{:.0}e-9", (now_s - first_s) * 1e9)
     }
 
-    /// Lists the first words: "1 is SAS, 2 is ATT".
+    /// Lists the first words with their numbers: "1 is SAS, 2 is ATT".
     fn word_list(&self) -> String {
         let mut words: Vec<_> = self.words.iter().collect();
         words.sort_unstable_by_key(|(_, number)| **number);
@@ -232,15 +236,16 @@ impl Column {
     }
 }
 
-/// A separator and the most frequent line width with it.
+/// A separator, and the line width that is most frequent with it.
 struct Candidate {
     separator: Separator,
     width: usize,
-    /// Lines with this width.
+    /// Number of lines that have this width.
     lines: usize,
 }
 
-/// Finds the separator for which the largest number of lines have the same width, above two cells.
+/// Returns the separator with which the largest number of lines have equal width; `None` if no
+/// separator qualifies.
 fn best_candidate(sample: &[&str]) -> Option<Candidate> {
     Separator::ALL
         .into_iter()
@@ -249,7 +254,8 @@ fn best_candidate(sample: &[&str]) -> Option<Candidate> {
         .max_by_key(|candidate| (candidate.lines, candidate.width))
 }
 
-/// Returns the width that more than half the lines have with a separator, if it exceeds two.
+/// Returns the most frequent line width for a separator; `None` unless it has at least three cells
+/// and more than half of the lines have it.
 fn candidate(sample: &[&str], separator: Separator) -> Option<Candidate> {
     let mut lines_by_width: BTreeMap<usize, usize> = BTreeMap::new();
     for line in sample {
@@ -270,7 +276,8 @@ fn candidate(sample: &[&str], separator: Separator) -> Option<Candidate> {
     })
 }
 
-/// Returns the kind to which most filled cells in a column belong.
+/// Returns the kind of data in more than half of the filled cells of a column; words if neither
+/// numbers nor times of day prevail.
 fn kind_of_column(rows: &[Vec<String>], index: usize) -> Kind {
     let mut filled = 0;
     let mut numbers = 0;
@@ -323,7 +330,7 @@ mod tests {
         let text = "time;P;Q\n23:59:59,90;1,5;2\n23:59:59,95;1,5;2\n00:00:00,00;1,5;2\n00:00:00,05;1,5;2\n";
         let found = numbered(text).unwrap();
         let table = read_table(&found.text, &ReadingBudget::new(1 << 20)).unwrap();
-        // The times are written in nanoseconds.
+        // Times are written in nanoseconds.
         assert!(
             table.columns[0]
                 .iter()

@@ -6,17 +6,17 @@ use crate::formats::text::matlab_scanner::{MOST_NESTED, Position, ValueError, re
 use crate::formats::variables::{StructArray, Value, Variable};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// The variables and their fields.
+/// Variables and fields assigned so far.
 #[derive(Default)]
 pub(super) struct Workspace<'t> {
     /// Variables in the order of their first assignments, with their last values.
     pub(super) variables: Vec<Variable>,
-    /// Index by name.
+    /// Index in `variables`, by name.
     places: HashMap<&'t str, usize>,
 }
 
 impl<'t> Workspace<'t> {
-    /// Sets the variable or field to which `path` leads.
+    /// Sets the variable or field at `path`.
     pub(super) fn set(
         &mut self,
         path: &[&'t str],
@@ -39,7 +39,7 @@ impl<'t> Workspace<'t> {
         Ok(())
     }
 
-    /// Adds a variable without fields and returns its index.
+    /// Adds a variable with an empty struct as its value; returns its index.
     fn add(&mut self, name: &'t str) -> usize {
         let place = self.variables.len();
         self.places.insert(name, place);
@@ -50,7 +50,11 @@ impl<'t> Workspace<'t> {
         place
     }
 
-    /// Copies a variable or a field; `place` is the position of its name in the text.
+    /// Returns a copy of the variable or field at `path`; `place` is the position of its name in
+    /// the text.
+    ///
+    /// # Errors
+    /// [`ValueError`] if the variable or field does not exist or is opaque.
     pub(super) fn copy(
         &self,
         path: &[&str],
@@ -61,7 +65,10 @@ impl<'t> Workspace<'t> {
             return refused("a name is missing", place);
         };
         let Some(&index) = self.places.get(name) else {
-            return refused(format!("{name} is not known here; write its value"), place);
+            return refused(
+                format!("{name} has not been assigned; write its value"),
+                place,
+            );
         };
         let mut value = &self.variables[index].value;
         for field in fields {
@@ -72,7 +79,7 @@ impl<'t> Workspace<'t> {
         }
         if let Value::Opaque { .. } = value {
             return refused(
-                format!("{} could not be read itself", path.join(".")),
+                format!("{} itself could not be read", path.join(".")),
                 place,
             );
         }
@@ -85,8 +92,8 @@ fn empty_struct() -> Value {
     Value::Struct(StructArray::one(Vec::new()))
 }
 
-/// Sets a field in a value, or the value itself for an empty path; missing fields are added. A
-/// value that cannot have fields becomes opaque.
+/// Sets the field at `path` in a value, or the value itself for an empty path; adds missing fields.
+/// A value that cannot have fields becomes opaque.
 fn set_field(target: &mut Value, path: &[&str], value: Value) {
     let Some((name, rest)) = path.split_first() else {
         *target = value;
@@ -106,13 +113,16 @@ fn set_field(target: &mut Value, path: &[&str], value: Value) {
         }
         Value::Opaque { .. } => {}
         _ => {
-            let why = format!("a field {name} is set in {words}; use different names");
+            let why = format!(
+                "field {name} is set in {words}, which cannot have fields; use \
+                different names"
+            );
             *target = Value::opaque("a variable with a field", why);
         }
     }
 }
 
-/// Returns the memory of a copy of a value \[bytes\].
+/// Returns the memory that a copy of a value needs \[bytes\].
 fn memory_of(value: &Value, depth: usize) -> Result<u64, VariableFault> {
     if depth > MOST_NESTED {
         return Err(VariableFault::too_deep(""));

@@ -1,22 +1,20 @@
-//! Delay names: which signals a field delays, and in which unit.
+//! Names of delay fields: which signals a field delays, and in which unit.
 
 use gdcm_model::names::channel_alias::folded_name;
 
 use super::values::{Field, array_of};
 use crate::formats::variables::Value;
 
-/// Signals that a delay applies to.
+/// Signals to which a delay applies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Delayed {
-    /// Each input.
     Inputs,
-    /// Each output.
     Outputs,
-    /// Each response: a matrix, outputs x inputs.
+    /// Each response, with a matrix of delays, outputs x inputs.
     Responses,
-    /// Internal delays, as MATLAB keeps them in feedback loops.
+    /// Internal delays, which MATLAB stores for feedback loops.
     Inside,
-    /// Not determined by the name.
+    /// The name does not tell to which signals the delay applies.
     Unclear,
 }
 
@@ -26,20 +24,20 @@ pub(super) enum DelayUnit {
     Seconds,
     Milliseconds,
     Samples,
-    /// No unit in a name spelled as in MATLAB: seconds, or samples in discrete time.
+    /// Name without a unit, as in MATLAB: seconds, or samples in discrete time.
     Matlab,
-    /// No unit in any other name.
+    /// Any other name without a unit.
     Unknown,
 }
 
-/// Signals and unit that a delay name implies.
+/// Signals and unit of a delay, according to the name of its field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct DelayMeaning {
     pub(super) delayed: Delayed,
     pub(super) unit: DelayUnit,
 }
 
-/// A field that looks like a delay.
+/// A field whose name suggests a delay.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DelayField<'v> {
     pub(super) name: &'v str,
@@ -48,8 +46,8 @@ pub(super) struct DelayField<'v> {
 }
 
 impl DelayField<'_> {
-    /// Whether the field may hold a delay other than zero: structs, cells and objects may (delays
-    /// by name), texts are mere remarks.
+    /// Returns whether the field may hold a nonzero delay. This is true for structs, cells and
+    /// objects, which may hold delays by name, but not for strings, which are remarks.
     pub(super) fn is_nonzero(&self) -> bool {
         match array_of(self.value) {
             Some(array) => array.re.iter().any(|delay| *delay != 0.0),
@@ -61,12 +59,12 @@ impl DelayField<'_> {
     }
 }
 
-/// Returns the fields that look like delays.
+/// Returns the fields whose names suggest a delay.
 pub(super) fn delay_fields<'v>(fields: &[Field<'v>]) -> Vec<DelayField<'v>> {
     let mut found = Vec::new();
     for &Field { name, value } in fields {
         match (name, value) {
-            // MATLAB objects keep all their delays in this struct.
+            // MATLAB objects store all delays in this struct.
             ("Delay", Value::Struct(records)) => {
                 for (part, values) in &records.fields {
                     if let Some(value) = values.first() {
@@ -96,7 +94,7 @@ pub(super) fn delay_fields<'v>(fields: &[Field<'v>]) -> Vec<DelayField<'v>> {
     found
 }
 
-/// Returns the signals that a field delays in the struct `Delay` of a MATLAB object.
+/// Returns the signals to which a field of the struct `Delay` in a MATLAB object applies.
 fn delayed_in_matlab_object(part: &str) -> Delayed {
     match part {
         "Input" => Delayed::Inputs,
@@ -107,12 +105,12 @@ fn delayed_in_matlab_object(part: &str) -> Delayed {
     }
 }
 
-/// Whether a name is a delay name or resembles one.
+/// Returns whether a name is the name of a delay, or resembles one.
 pub(super) fn is_delay(name: &str) -> bool {
     delay_meaning(name).is_some()
 }
 
-/// Returns the meaning of a name; `None` if it does not resemble a delay name.
+/// Returns the meaning of a field name; `None` if it does not resemble the name of a delay.
 fn delay_meaning(name: &str) -> Option<DelayMeaning> {
     let (stem, unit) = split_unit(name);
     let folded = folded_name(stem);
@@ -137,7 +135,8 @@ fn delay_meaning(name: &str) -> Option<DelayMeaning> {
     Some(DelayMeaning { delayed, unit })
 }
 
-/// Splits a name and its trailing unit: `input_delay_ms`, `InputDelay (s)`, `inputDelayMs`.
+/// Splits a name into its front part and the unit at its end: `input_delay_ms`, `InputDelay (s)`,
+/// `inputDelayMs`.
 fn split_unit(name: &str) -> (&str, DelayUnit) {
     let trimmed = name.trim_end_matches(is_mark);
     if let Some((stem, last)) = trimmed.rsplit_once(is_mark) {
@@ -159,13 +158,13 @@ fn split_unit(name: &str) -> (&str, DelayUnit) {
     (trimmed, DelayUnit::Unknown)
 }
 
-/// Whether a character separates words in a name.
+/// Returns whether a character separates words in a name.
 fn is_mark(letter: char) -> bool {
     !letter.is_alphanumeric()
 }
 
-/// Whether a folded name that is no delay name resembles one. Phase and group delays are excluded:
-/// they are curves over frequency.
+/// Returns whether a folded name resembles the name of a delay. Returns false for phase and group
+/// delays, which are curves over frequency.
 fn resembles_delay(folded: &str) -> bool {
     const NAMES: [&str; 14] = [
         "tau",

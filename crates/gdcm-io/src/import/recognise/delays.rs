@@ -1,4 +1,4 @@
-//! Sample time and delays, in seconds.
+//! Sample time and delays of a model, in seconds.
 
 use nalgebra::DMatrix;
 
@@ -10,25 +10,25 @@ use super::delay_names::{DelayField, DelayUnit, Delayed};
 use super::record::Record;
 use super::values::{array_of, first_text_of, list_of, scalar_of};
 
-/// Maximum delay \[s\] that is taken to be in seconds if its name has no unit; a larger one may be
-/// in milliseconds.
+/// Maximum delay \[s\] that is assumed to be in seconds if its name contains no unit; a larger
+/// value may be in milliseconds.
 const LONGEST_PLAIN_S: f64 = 1.0;
-/// Tolerance \[s\] on the equality of delays.
+/// Maximum difference between delays that count as equal \[s\].
 const ROUNDING_S: f64 = 1e-9;
-/// Remedies suggested in questions about delays.
+/// Remedies in questions about delays.
 const WAYS: &str = "call it input_delays_s or output_delays_s (a number for each channel, in s), or rename it if it is not a delay";
 
-/// Sample time and delays of a model, with notes on the conventions applied.
+/// Sample time and delays of a model, with notes on the conventions that were applied.
 pub(super) struct NotedTiming {
     pub(super) timing: Timing,
     pub(super) notes: Vec<String>,
 }
 
-/// Reads sample time and delays of a model with `outputs` and `inputs` channels.
+/// Reads the sample time and the delays of a model with `outputs` outputs and `inputs` inputs.
 ///
 /// # Errors
-/// A possible delay whose signals or unit are ambiguous: it becomes a question and is never
-/// dropped.
+/// The question to the user if a field may be a delay, but its signals or its unit are ambiguous:
+/// no delay is silently ignored.
 pub(super) fn timing_of(
     record: &Record<'_>,
     outputs: usize,
@@ -63,13 +63,14 @@ pub(super) fn timing_of(
     Ok(reading.finish())
 }
 
-/// Refuses delays beside a measured response, which already contains them. Fields that only
-/// resemble delays are ignored.
+/// Rejects delays given beside a measured response, which already contains all delays. Fields whose
+/// names only resemble delays are ignored.
 pub(super) fn refuse_delays(record: &Record<'_>) -> Result<(), String> {
     for field in record.delay_fields() {
         if field.meaning.delayed != Delayed::Unclear && field.is_nonzero() {
             return Err(format!(
-                "{}: a measured response has its delays in it; multiply it by them (in MATLAB: sys = absorbDelay(sys)), or remove the field",
+                "{}: a measured response must contain its delays; include them in it (in MATLAB: \
+                sys = absorbDelay(sys)), or remove the field",
                 field.name
             ));
         }
@@ -77,10 +78,10 @@ pub(super) fn refuse_delays(record: &Record<'_>) -> Result<(), String> {
     Ok(())
 }
 
-/// State while the delay fields of a model are read.
+/// State of reading the delay fields of a model.
 struct DelayReading {
     sample_time_s: Option<f64>,
-    /// Whether the model is a MATLAB or GNU Octave object, in which the unit of delays is defined.
+    /// Whether the model is a MATLAB or GNU Octave object, for which the unit of delays is defined.
     is_object: bool,
     outputs: usize,
     inputs: usize,
@@ -90,7 +91,8 @@ struct DelayReading {
     notes: Vec<String>,
 }
 
-/// Response delays split into channel delays, `tau_oi = tau_o + tau_i` \[s\].
+/// Delays of single responses, split into delays of inputs and of outputs: `tau_oi = tau_o + tau_i`
+/// \[s\].
 struct SplitDelays {
     inputs: Vec<f64>,
     outputs: Vec<f64>,
@@ -124,7 +126,7 @@ impl DelayReading {
         }
     }
 
-    /// Returns a delay \[s\] for each of `count` inputs or outputs; a single value applies to all.
+    /// Returns the delays \[s\] of `count` inputs or outputs; a single number applies to all.
     fn channel_delays(
         &mut self,
         field: &DelayField<'_>,
@@ -145,8 +147,11 @@ impl DelayReading {
         self.in_seconds(field, &delays)
     }
 
-    /// Splits response delays (a matrix, outputs x inputs) into input delays and output delays; the
-    /// output with the smallest delay gets zero.
+    /// Splits the delays of single responses (a matrix, outputs x inputs) into delays of inputs and
+    /// of outputs. The output with the smallest delay gets zero.
+    ///
+    /// # Errors
+    /// The reason if the delays cannot be split within `ROUNDING_S`.
     fn split_response_delays(&mut self, field: &DelayField<'_>) -> Result<SplitDelays, String> {
         let name = field.name;
         if self.outputs == 0 || self.inputs == 0 {
@@ -183,8 +188,8 @@ impl DelayReading {
         Ok(SplitDelays { inputs, outputs })
     }
 
-    /// Returns the delays of all responses in the file's unit, output index fastest; a single value
-    /// applies to all responses.
+    /// Returns the delays of all responses in the unit of the file, output index fastest; a single
+    /// number applies to all responses.
     fn response_delay_values(&self, field: &DelayField<'_>) -> Result<Vec<f64>, String> {
         let p = self.outputs;
         let m = self.inputs;
@@ -204,7 +209,10 @@ impl DelayReading {
         ))
     }
 
-    /// Converts delays to seconds. An ambiguous unit is an error.
+    /// Converts delays to seconds.
+    ///
+    /// # Errors
+    /// The question to the user if the unit is ambiguous.
     fn in_seconds(&mut self, field: &DelayField<'_>, delays: &[f64]) -> Result<Vec<f64>, String> {
         let name = field.name;
         let factor = self.seconds_per_unit(field, delays)?;
@@ -220,8 +228,8 @@ impl DelayReading {
         Ok(delays)
     }
 
-    /// Returns the unit of a field's delays in seconds; notes the convention if one determines the
-    /// unit.
+    /// Returns the factor that converts the delays of a field to seconds. Notes the convention if
+    /// the name contains no unit.
     fn seconds_per_unit(&mut self, field: &DelayField<'_>, delays: &[f64]) -> Result<f64, String> {
         let name = field.name;
         match (field.meaning.unit, self.sample_time_s) {
@@ -239,7 +247,10 @@ impl DelayReading {
                         "MATLAB counts the delays of a discrete-time model in samples, but these are not whole numbers",
                     ));
                 }
-                self.note_convention(name, "counted in samples, as MATLAB does in discrete time");
+                self.note_convention(
+                    name,
+                    "is counted in samples, as in MATLAB for discrete time",
+                );
                 Ok(sample_time_s)
             }
             (DelayUnit::Unknown, Some(_)) => Err(question(
@@ -256,13 +267,18 @@ impl DelayReading {
                         &format!("{} can be seconds or milliseconds", number(greatest)),
                     ));
                 }
-                self.note_convention(name, "taken to be in s, as its name says no unit");
+                self.note_convention(
+                    name,
+                    "is assumed to be in s, because its name contains no \
+                    unit",
+                );
                 Ok(1.0)
             }
         }
     }
 
-    /// Notes an applied convention; not for objects, in which the unit is defined.
+    /// Notes the convention that was applied to a field, except in objects, for which the unit is
+    /// defined.
     fn note_convention(&mut self, name: &str, words: &str) {
         if !self.is_object {
             self.notes.push(format!("{name} {words}"));
@@ -285,7 +301,7 @@ impl DelayReading {
     }
 }
 
-/// Returns the question about an ambiguous field, with the name that resolves it.
+/// Returns a question about an ambiguous field, with the names that resolve it.
 fn question(name: &str, open: &str) -> String {
     format!(
         "{name}: {open}; call it {}_s and give it in s",
@@ -293,7 +309,7 @@ fn question(name: &str, open: &str) -> String {
     )
 }
 
-/// Stores the delays of the inputs or outputs; refuses a second list with other delays.
+/// Stores the delays of the inputs or outputs; rejects a second list with different delays.
 fn store(stored: &mut Option<Vec<f64>>, delays: Vec<f64>, name: &str) -> Result<(), String> {
     if let Some(known) = stored {
         let differs = known
@@ -302,7 +318,7 @@ fn store(stored: &mut Option<Vec<f64>>, delays: Vec<f64>, name: &str) -> Result<
             .any(|(known, delay)| (known - delay).abs() > ROUNDING_S);
         if differs {
             return Err(format!(
-                "{name}: these delays are given a second time, with other numbers; remove one"
+                "{name}: these delays are given twice, with different numbers; remove one"
             ));
         }
     }
@@ -310,7 +326,8 @@ fn store(stored: &mut Option<Vec<f64>>, delays: Vec<f64>, name: &str) -> Result<
     Ok(())
 }
 
-/// Returns the sum of channel delays and those split from response delays; `None` if all are zero.
+/// Adds the delays given for channels and the delays split off from responses; `None` if all are
+/// zero.
 fn sum(own: Option<Vec<f64>>, more: Option<Vec<f64>>) -> Option<Vec<f64>> {
     let delays: Vec<f64> = match (own, more) {
         (Some(own), Some(more)) => own
@@ -326,7 +343,7 @@ fn sum(own: Option<Vec<f64>>, more: Option<Vec<f64>>) -> Option<Vec<f64>> {
     Some(delays)
 }
 
-/// Reads the sample time \[s\]; zero and an empty array mean continuous time.
+/// Reads the sample time \[s\]; `None` (continuous time) if it is missing, zero, or an empty array.
 fn sample_time_of(record: &Record<'_>) -> Result<Option<f64>, String> {
     let Some(value) = record.get(&SAMPLE_TIME_NAMES) else {
         return Ok(None);
@@ -346,14 +363,14 @@ fn sample_time_of(record: &Record<'_>) -> Result<Option<f64>, String> {
     }
 }
 
-/// Refuses a model with a time unit other than seconds, as its frequencies and delays would be
+/// Rejects a model whose time unit is not seconds, because its frequencies and delays would be
 /// wrong.
 fn refuse_other_time_units(record: &Record<'_>) -> Result<(), String> {
     let unit = record.get(&["TimeUnit"]).and_then(first_text_of);
     match unit.as_deref() {
         None | Some("" | "s" | "sec" | "second" | "seconds") => Ok(()),
         Some(unit) => Err(format!(
-            "its time is in {unit}; in MATLAB: sys = chgTimeUnit(sys, 'seconds')"
+            "its time unit is {unit}; in MATLAB: sys = chgTimeUnit(sys, 'seconds')"
         )),
     }
 }

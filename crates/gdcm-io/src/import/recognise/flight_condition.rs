@@ -1,4 +1,4 @@
-//! Flight condition and model origin, from the fields beside a model.
+//! Flight condition and origin of a model, from the fields beside it.
 
 use std::collections::BTreeMap;
 
@@ -15,37 +15,37 @@ const CONDITIONS: &[&str] = &["condition", "condition_id", "fc"];
 const AIRSPEEDS: &[&str] = &["airspeed_kt", "V_kt", "airspeed_knots", "speed_kt", "KTAS"];
 const ALTITUDES: &[&str] = &["altitude_ft", "alt_ft", "h_ft"];
 const MASSES: &[&str] = &["mass_kg", "m_kg"];
-/// Paths of structs that hold a flight condition.
+/// Paths of the structs that may hold a flight condition.
 const CONDITION_STRUCTS: [&[&str]; 4] = [
     &["trim"],
     &["flight_condition"],
     &["flight_state"],
     &["condition"],
 ];
-/// Names of the struct with trim offsets by coordinate.
+/// Names of the struct that holds trim offsets by coordinate.
 const OFFSETS: &[&str] = &["perturbation", "trim_offset", "trim_offsets"];
-/// Prefix for a single offset: `by_roll_deg`.
+/// Prefix of a field with a single trim offset, such as `by_roll_deg`.
 const OFFSET_PREFIX: &str = "by_";
-/// Maximum value accepted as the number of a condition.
+/// Limit of the absolute value of a condition's number.
 const GREATEST_CONDITION: f64 = 1e9;
 
-/// Position in an array of models; lists beside the array have one entry per model.
+/// Index in an array of models; a list beside the array has an entry for each model.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Page {
-    /// Counted from 0.
+    /// Index, counted from 0.
     pub(super) index: usize,
     pub(super) count: usize,
 }
 
 impl Page {
-    /// Position of a single model.
+    /// Index of a single model.
     pub(super) const ONLY: Self = Self { index: 0, count: 1 };
 }
 
-/// Returns the flight condition given beside a model and in its enclosing records.
+/// Returns the flight condition that is given beside a model and in enclosing records.
 ///
 /// # Errors
-/// A list whose length differs from that of the array of models, and a value that contradicts an
+/// The reason if the length of a list differs from the number of models, or a value contradicts an
 /// enclosing record.
 pub(super) fn facts_of(record: &Record<'_>, page: Page) -> Result<Facts, String> {
     let condition = match fact(record, CONDITIONS, page)? {
@@ -62,7 +62,11 @@ pub(super) fn facts_of(record: &Record<'_>, page: Page) -> Result<Facts, String>
     })
 }
 
-/// Returns a quantity of the flight condition, given beside a model or in an enclosing record.
+/// Returns a quantity of the flight condition, given beside a model or in an enclosing record;
+/// `None` if it is not given.
+///
+/// # Errors
+/// The reason if different values are given.
 fn fact(record: &Record<'_>, names: &[&str], page: Page) -> Result<Option<f64>, String> {
     let mut known: Option<f64> = None;
     for (level, record) in record.with_outer().enumerate() {
@@ -86,7 +90,7 @@ fn fact(record: &Record<'_>, names: &[&str], page: Page) -> Result<Option<f64>, 
     Ok(known)
 }
 
-/// Returns the number in a field, or its entry for the page if the field is a list.
+/// Returns the number in a field; if the field is a list, its entry for the model.
 fn figure(record: &Record<'_>, names: &[&str], page: Page) -> Result<Option<f64>, String> {
     let Some(field) = record.find(names) else {
         return Ok(None);
@@ -115,7 +119,7 @@ fn figure(record: &Record<'_>, names: &[&str], page: Page) -> Result<Option<f64>
     Ok(Some(value))
 }
 
-/// Returns a quantity from a struct that describes the flight condition: `trim.airspeed_kt`,
+/// Returns a quantity from a struct that holds the flight condition: `trim.airspeed_kt`,
 /// `condition.id`.
 fn figure_inside(record: &Record<'_>, names: &[&str]) -> Result<Option<f64>, String> {
     for keys in CONDITION_STRUCTS {
@@ -146,7 +150,7 @@ fn figure_inside(record: &Record<'_>, names: &[&str]) -> Result<Option<f64>, Str
     Ok(None)
 }
 
-/// Whether [`facts_of`] reads a field with this name.
+/// Returns whether [`facts_of`] reads a field with this name.
 fn is_fact_name(name: &str) -> bool {
     name == "id"
         || [AIRSPEEDS, ALTITUDES, MASSES, CONDITIONS]
@@ -154,7 +158,8 @@ fn is_fact_name(name: &str) -> bool {
             .any(|names| names.contains(&name))
 }
 
-/// Returns the name beside a model. A single name beside several models is ignored.
+/// Returns the name given beside a model, or the entry of a list of names. A single name beside
+/// several models is ignored.
 fn name_beside(record: &Record<'_>, page: Page) -> Option<String> {
     if record.is_shared {
         return None;
@@ -173,9 +178,9 @@ fn name_beside(record: &Record<'_>, page: Page) -> Option<String> {
     Some(name.clone())
 }
 
-/// Returns the origin (role, trim offsets, identification method) given in a model's record and the
-/// enclosing records. Without a role, objects of a MATLAB class `id…` are identified models and all
-/// others are physics models.
+/// Returns the origin of a model (role, trim offsets, identification method) from its record and
+/// the enclosing records. Without a role, objects of MATLAB's `id…` classes are identified models
+/// and all others physics models.
 pub(super) fn origin_of(record: &Record<'_>) -> Origin {
     let role = match text_beside(record, "role") {
         Some(word) => RowRole::from_word(&word.to_lowercase()),
@@ -199,7 +204,7 @@ pub(super) fn origin_of(record: &Record<'_>) -> Origin {
     }
 }
 
-/// Returns the text under `key` from the innermost record that has one.
+/// Returns the string under `key` in the innermost record that has one.
 fn text_beside(record: &Record<'_>, key: &str) -> Option<String> {
     for record in record.with_outer() {
         let Some(field) = record.find(&[key]) else {
@@ -213,7 +218,7 @@ fn text_beside(record: &Record<'_>, key: &str) -> Option<String> {
     None
 }
 
-/// Returns the trim offsets by coordinate; inner records take precedence over enclosing ones.
+/// Returns the trim offsets by coordinate; an inner record takes precedence over an outer one.
 fn offsets_of(record: &Record<'_>) -> BTreeMap<String, f64> {
     let mut offsets = BTreeMap::new();
     for record in record.with_outer() {

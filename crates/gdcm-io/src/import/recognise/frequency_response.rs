@@ -1,4 +1,4 @@
-//! Models given by measured frequency responses.
+//! Recognition of models given by measured frequency responses.
 
 use std::f64::consts::TAU;
 
@@ -17,7 +17,7 @@ use super::values::{array_of, first_text_of, list_of};
 use crate::files::model_collection::bare_draft;
 use crate::formats::variables::Array;
 
-/// Names of complex responses; python-control uses `frdata` and, in earlier versions, `fresp`.
+/// Names of complex responses. python-control uses `frdata` and, in earlier versions, `fresp`.
 const RESPONSES: &[&str] = &[
     "ResponseData",
     "Response",
@@ -48,8 +48,8 @@ const COHERENCES: &[&str] = &[
 /// Names that are used for both γ and γ².
 const GAMMAS: &[&str] = &["gamma", "γ"];
 
-/// Whether fields form a frequency response: frequencies, with complex values or real and imaginary
-/// parts.
+/// Returns whether fields form a frequency response: more than one frequency, and either complex
+/// values or real and imaginary parts.
 pub(super) fn is_response(record: &Record<'_>) -> bool {
     let frequencies = record
         .find(RADIANS)
@@ -62,7 +62,7 @@ pub(super) fn is_response(record: &Record<'_>) -> bool {
     has_frequencies && (complex_array(record).is_some() || real_and_imaginary(record).is_some())
 }
 
-/// Returns the field with complex values and marks it as used.
+/// Returns the array of complex values and marks its field as used; `None` if there is none.
 fn complex_array<'v>(record: &Record<'v>) -> Option<&'v Array> {
     let field = record.find(RESPONSES)?;
     let array = array_of(field.value)?;
@@ -71,7 +71,8 @@ fn complex_array<'v>(record: &Record<'v>) -> Option<&'v Array> {
     Some(array)
 }
 
-/// Returns the real and the imaginary part and marks their fields as used.
+/// Returns the real and the imaginary parts and marks their fields as used; `None` if either is
+/// missing.
 fn real_and_imaginary<'v>(record: &Record<'v>) -> Option<(&'v Array, &'v Array)> {
     let re = record.find(REAL_PARTS)?;
     let im = record.find(IMAGINARY_PARTS)?;
@@ -81,7 +82,7 @@ fn real_and_imaginary<'v>(record: &Record<'v>) -> Option<(&'v Array, &'v Array)>
     Some(parts)
 }
 
-/// Response as the file stores it.
+/// Values of a response, in the order of the file.
 struct StoredResponse<'v> {
     re: &'v [f64],
     im: &'v [f64],
@@ -90,7 +91,7 @@ struct StoredResponse<'v> {
 
 impl<'v> StoredResponse<'v> {
     fn find(record: &Record<'v>) -> Result<Self, String> {
-        // Looked up even beside complex values, so that the parts count as used.
+        // Look up the parts even if there are complex values, so that their fields count as used.
         let parts = real_and_imaginary(record);
         if let Some(array) = complex_array(record) {
             return Ok(Self {
@@ -105,7 +106,7 @@ impl<'v> StoredResponse<'v> {
                 im: &im.re,
                 shape: &re.shape,
             }),
-            _ => Err("real and imaginary parts are of different sizes".to_owned()),
+            _ => Err("real and imaginary parts have different dimensions".to_owned()),
         }
     }
 }
@@ -149,10 +150,11 @@ pub(super) fn response(record: &Record<'_>, variable: &str) -> Result<FoundModel
     })
 }
 
-/// Returns the coherence γ², if the record has it.
+/// Returns the coherence γ²; `None` if the record has none.
 ///
 /// # Errors
-/// A coherence whose dimensions differ from those of the response; a field that may be γ or γ².
+/// The reason if the number of values differs from that of the response, or a field may hold γ or
+/// γ².
 fn coherence_of(
     record: &Record<'_>,
     stored: &StoredResponse<'_>,
@@ -183,7 +185,7 @@ fn coherence_of(
 struct Frequencies {
     /// Angular frequencies \[rad/s\].
     omega: Vec<f64>,
-    /// Whether the file states the frequencies in Hz or a multiple of it.
+    /// Whether the file gives the frequencies in Hz or in a multiple of Hz.
     is_hertz: bool,
 }
 
@@ -196,7 +198,7 @@ impl Frequencies {
         let unit = PhysicalUnit::of(&unit_text);
         let multiple_of_hertz = unit.filter(|unit| unit.dimension == Dimension::Frequency);
         let angular_rate = unit.filter(|unit| unit.name.starts_with("rad/"));
-        // MATLAB and python-control use rad/s by default.
+        // Without a unit, MATLAB and python-control use rad/s.
         let has_default = record.class.is_some() || record.get(&["frdata", "fresp"]).is_some();
         let (field, is_hertz) = if let Some(field) = record.find(RADIANS) {
             (field, multiple_of_hertz.is_some())
@@ -251,8 +253,8 @@ struct ResponseLayout {
 }
 
 impl ResponseLayout {
-    /// Finds the layout of a response with `count` frequencies: the frequency index is the last as
-    /// in MATLAB, or the first as in NumPy. A single response may be a row or a column.
+    /// Determines the layout of a response with `count` frequencies: the frequency is the last
+    /// index, as in MATLAB, or the first, as in NumPy. A single response may be a row or a column.
     fn new(shape: &[usize], count: usize) -> Result<Self, String> {
         match *shape {
             [outputs, inputs, last] if last == count => Ok(Self {
@@ -289,7 +291,7 @@ impl ResponseLayout {
         }
     }
 
-    /// Reorders values to outputs x inputs x frequencies with the frequency index fastest; refuses
+    /// Reorders values to outputs x inputs x frequencies, with the frequency index fastest; rejects
     /// values that are not finite.
     fn ordered(&self, name: &str, values: &[f64]) -> Result<ResponseArray, String> {
         let mut ordered = Vec::with_capacity(values.len());

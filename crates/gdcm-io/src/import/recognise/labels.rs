@@ -1,4 +1,4 @@
-//! Channel and state names, and channel units, that accompany a model.
+//! Names of channels and states, and units of channels, given beside a model.
 
 use gdcm_model::assembly::ChannelLabel;
 use gdcm_model::dataset::channel::ChannelSide;
@@ -41,21 +41,21 @@ const STATE_NAMES: &[&str] = &[
     "x_names",
     "xnames",
 ];
-/// Names of the fields that hold the name in a channel object.
+/// Fields of a channel object that may hold its name.
 const LABEL_NAMES: &[&str] = &["name", "label", "id", "channel"];
 const LABEL_UNITS: &[&str] = &["unit", "units"];
 
-/// Returns the labels for `count` inputs.
+/// Returns the labels of `count` inputs.
 pub(super) fn inputs_of(record: &Record<'_>, count: usize) -> Result<Vec<ChannelLabel>, String> {
     labels(record, ChannelSide::Input, count)
 }
 
-/// Returns the labels for `count` outputs.
+/// Returns the labels of `count` outputs.
 pub(super) fn outputs_of(record: &Record<'_>, count: usize) -> Result<Vec<ChannelLabel>, String> {
     labels(record, ChannelSide::Output, count)
 }
 
-/// Returns the state names; none unless each of the `order` states has a name.
+/// Returns the state names; empty unless each of the `order` states has a name.
 pub(super) fn states_of(record: &Record<'_>, order: usize) -> Vec<String> {
     let names = record
         .get(STATE_NAMES)
@@ -68,12 +68,12 @@ pub(super) fn states_of(record: &Record<'_>, order: usize) -> Vec<String> {
     }
 }
 
-/// Returns the labels of `count` inputs or outputs: those beside the model, or those of an
-/// enclosing record with `count` entries.
+/// Returns the labels of `count` inputs or outputs, from lists beside the model or, if they have
+/// `count` entries, in an enclosing record.
 ///
 /// # Errors
-/// A list beside the model whose length is not `count`, and a list without an order: channels are
-/// never assigned by guessing.
+/// The reason if a list beside the model does not have `count` entries, or has no defined order:
+/// labels are never assigned by guessing.
 fn labels(
     record: &Record<'_>,
     side: ChannelSide,
@@ -91,8 +91,9 @@ fn labels(
     Ok(labels)
 }
 
-/// Returns the names or units under the first key found in the record, otherwise in its enclosing
-/// records; missing entries are empty strings.
+/// Returns the names or units in the first field with one of these keys, from the record or
+/// otherwise from its enclosing records; missing entries are empty strings. Returns `None` if no
+/// field has them.
 fn list_of_labels(
     record: &Record<'_>,
     keys: &[&str],
@@ -107,7 +108,7 @@ fn list_of_labels(
         let Some(mut texts) = label_texts(name, field.value)? else {
             continue;
         };
-        // A single text may list the channels: "LON, LAT, PED".
+        // A single string may list all channels: "LON, LAT, PED".
         if count > 1 && texts.len() == 1 && texts[0].split(',').count() == count {
             texts = texts[0]
                 .split(',')
@@ -129,8 +130,8 @@ fn list_of_labels(
     Ok(None)
 }
 
-/// Returns the labels in a value as texts. The list holds texts, or objects with a name and a unit
-/// as in a dataset file; `None` for numbers.
+/// Returns the labels in a list of strings, or of objects with a name and a unit as in a dataset
+/// file; `None` for numbers.
 fn label_texts(field: &str, value: &Value) -> Result<Option<Vec<String>>, String> {
     if let Some(texts) = texts_of(value) {
         return Ok(Some(texts));
@@ -179,7 +180,7 @@ fn label_texts(field: &str, value: &Value) -> Result<Option<Vec<String>>, String
     }
 }
 
-/// Returns the label of a channel object as text, with its unit in brackets: "P [deg/s]".
+/// Returns the label of a channel object as a string, with its unit in brackets: "P [deg/s]".
 fn channel_object_text(records: &StructArray, index: usize) -> Option<String> {
     let record = Record::from_struct(records, index, None, 0);
     let name = record.get(LABEL_NAMES).and_then(first_text_of)?;
@@ -194,7 +195,7 @@ fn channel_object_text(records: &StructArray, index: usize) -> Option<String> {
     }
 }
 
-/// Parses a label: "P", "P [deg/s]", "P (deg/s)".
+/// Parses a label such as "P", "P [deg/s]" or "P (deg/s)".
 pub(in crate::import) fn label_of(text: &str) -> ChannelLabel {
     let text = text.trim();
     for (open, close) in [('[', ']'), ('(', ')')] {

@@ -1,4 +1,4 @@
-//! Recognition of models among variables, whatever the file format.
+//! Recognition of models among the variables of a file of any format.
 //!
 //! A group of fields is a model if the fields have the customary names: `A`, `B`, `C`, `D`; a
 //! response over frequencies; numerators and denominators; zeros, poles and gains. The group is a
@@ -34,13 +34,13 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 
 pub(crate) use self::search::{Found, search};
 
-/// Maximum nesting depth of the search.
+/// Maximum nesting depth of values that are searched.
 pub(crate) const DEEPEST: usize = 16;
-/// Maximum number of models or records in one file.
+/// Maximum number of models or records in a file.
 pub(crate) const MOST_FOUND: usize = 10_000;
-/// Work steps charged per field, which is compared with all recognised names.
+/// Work steps charged to the budget for each field, which is compared with all recognised names.
 const STEPS: u64 = 64;
-/// Variables that describe the file, not its models.
+/// Variables that describe the file, and are therefore not listed as unused.
 const SILENT: [&str; 5] = [
     "format",
     "version",
@@ -49,8 +49,8 @@ const SILENT: [&str; 5] = [
     "__globals__",
 ];
 
-/// Finds every model among the variables of a file. `pages_first` decides which index of an array
-/// selects the matrix if the shapes are ambiguous.
+/// Finds all models among the variables of a file. If the shape of an array is ambiguous,
+/// `pages_first` decides whether its first or its last index selects the model.
 pub(crate) fn recognise(
     variables: &[Variable],
     pages_first: bool,
@@ -79,7 +79,7 @@ pub(crate) fn recognise(
     Ok(found)
 }
 
-/// Reads the models in the fields of a record; `None` if the fields are not a model.
+/// Reads the models that the fields of a record form; `None` if they do not form a model.
 fn read_models(
     record: &Record<'_>,
     variable: &str,

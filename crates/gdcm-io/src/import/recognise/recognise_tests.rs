@@ -1,4 +1,4 @@
-//! Tests of recognised models, with values as produced by the format readers.
+//! Tests of the recognition of models, with values as the format readers return them.
 
 use gdcm_model::assembly::ChannelLabel;
 use gdcm_model::dataset::model::Origin;
@@ -213,7 +213,7 @@ fn json(text: &str) -> Found<FoundModel> {
     }
 }
 
-/// Recognises a model with two inputs and two outputs that has these further members.
+/// Recognises a model with two inputs and two outputs to which `members` are added.
 fn beside(members: &str) -> Found<FoundModel> {
     json(&format!(
         r#"{{"A": [[-1, 0], [0, -2]], "B": [[1, 0], [0, 2]], "C": [[1, 0], [0, 1]], "D": [[0, 0], [0, 0]], {members}}}"#
@@ -275,7 +275,7 @@ fn delays_are_read_under_every_name_with_known_signals_and_unit() {
     assert!(
         noted
             .iter()
-            .any(|note| note.contains("input_delays taken to be in s")),
+            .any(|note| note.contains("input_delays is assumed to be in s")),
         "{noted:?}"
     );
     assert_eq!(
@@ -321,7 +321,7 @@ fn an_ambiguous_delay_is_refused_with_a_question() {
         ),
         (
             r#""InputDelay": [0.03, 0.05], "input_delays_ms": [30, 40]"#,
-            "a second time",
+            "given twice",
         ),
         (r#""TimeUnit": "milliseconds""#, "chgTimeUnit"),
     ] {
@@ -561,13 +561,13 @@ fn gamma_a_bare_f_and_coherence_of_another_size_are_asked_about_beside_a_respons
     assert!(
         of(r#""w": [1, 2, 3], "InputDelay": 0.03"#)
             .1
-            .contains("has its delays in it")
+            .contains("must contain its delays")
     );
 }
 
 #[test]
 fn a_response_of_several_channels_is_put_in_order() {
-    // Two outputs, one input, three frequencies: the first index is fastest.
+    // Two outputs, one input and three frequencies, with the output index fastest.
     let response = Array {
         shape: vec![2, 1, 3],
         kind: ElementKind::Float,

@@ -1,4 +1,4 @@
-//! Named fields that belong together: a struct, an object, or the variables in a file.
+//! Named fields that belong together: a struct, an object, or the variables of a file.
 
 use std::cell::{OnceCell, RefCell};
 use std::collections::{BTreeSet, HashMap};
@@ -10,19 +10,19 @@ use super::delay_names::{DelayField, delay_fields};
 use super::values::Field;
 use crate::formats::variables::{StructArray, Value, Variable};
 
-/// Inner parts in which MATLAB and GNU Octave objects store fields that other files store directly.
+/// Parts of MATLAB and GNU Octave objects that hold the fields which other files store directly.
 const INNER_PARTS: [&str; 4] = ["data", "structure", "lti", RESPONSE_PART];
-/// Field with the measured response in this program's models.
+/// Field of this program's models that holds the measured response.
 const RESPONSE_PART: &str = "frequencyresponse";
-/// Maximum nesting depth of inner parts.
+/// Maximum nesting depth of parts.
 const DEEPEST_PART: usize = 3;
 
-/// First field of each name. Built at the first query: a record may have as many fields as its file
-/// has bytes.
+/// First field with each name. The index is built at the first query, because a file of n bytes may
+/// create a record with nearly n fields.
 #[derive(Clone, Debug, Default)]
 struct FieldIndex<'v> {
     exact: HashMap<&'v str, Field<'v>>,
-    /// By name without case and underscores.
+    /// Fields by name without case and underscores.
     folded: HashMap<String, Field<'v>>,
 }
 
@@ -37,27 +37,27 @@ impl<'v> FieldIndex<'v> {
     }
 }
 
-/// A group of fields, with those already used.
+/// A group of fields, which remembers the fields already used.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Record<'v> {
     fields: Vec<Field<'v>>,
     index: OnceCell<FieldIndex<'v>>,
     used: RefCell<BTreeSet<&'v str>>,
-    /// Unused fields inside structs that are themselves used.
+    /// Paths of unused fields inside structs that were used.
     unused_inside: RefCell<Vec<String>>,
     delays: OnceCell<Vec<DelayField<'v>>>,
-    /// The enclosing record; its labels and flight condition apply to every model inside.
+    /// The enclosing record, whose labels and flight condition apply to all models inside.
     outer: Option<Rc<Record<'v>>>,
-    /// Whether the fields apply to several models.
+    /// Whether the fields apply to several models at once.
     pub(super) is_shared: bool,
-    /// MATLAB or Octave class of an object.
+    /// Class, if the record is an object of MATLAB or Octave.
     pub(crate) class: Option<&'v str>,
     /// Whether the record is a struct or an object; false for the variables in a file.
     pub(crate) stands_alone: bool,
 }
 
 impl<'v> Record<'v> {
-    /// Creates a record from the variables in a file.
+    /// Creates a record from the variables of a file.
     pub(crate) fn from_variables(variables: &'v [Variable]) -> Self {
         Self::from_fields(variables.iter().map(|variable| Field {
             name: &variable.name,
@@ -65,7 +65,7 @@ impl<'v> Record<'v> {
         }))
     }
 
-    /// Creates a record from fields that are not a struct.
+    /// Creates a record from fields that do not form a struct.
     pub(crate) fn from_fields(fields: impl Iterator<Item = Field<'v>>) -> Self {
         Self {
             fields: fields.collect(),
@@ -73,9 +73,9 @@ impl<'v> Record<'v> {
         }
     }
 
-    /// Creates a record from element `index` of a struct array, with the inner parts of an object:
-    /// MATLAB objects store their matrices in `Data_`. If an inner part is an array, its element
-    /// `page` is read.
+    /// Creates a record from element `index` of a struct array, with the fields in the parts of an
+    /// object, because MATLAB objects store their matrices in `Data_`. If a part is an array, its
+    /// element `page` is used.
     pub(crate) fn from_struct(
         records: &'v StructArray,
         index: usize,
@@ -97,7 +97,7 @@ impl<'v> Record<'v> {
         }
     }
 
-    /// Places the record inside another record.
+    /// Sets the record that encloses this record.
     pub(super) fn inside(self, outer: &Rc<Record<'v>>) -> Self {
         Self {
             outer: Some(Rc::clone(outer)),
@@ -105,7 +105,7 @@ impl<'v> Record<'v> {
         }
     }
 
-    /// Marks the fields as shared by several models.
+    /// Marks the fields as applying to several models.
     pub(super) fn shared(self) -> Self {
         Self {
             is_shared: true,
@@ -113,7 +113,8 @@ impl<'v> Record<'v> {
         }
     }
 
-    /// Counts the models in element `index` of an object array: `Data_` has one element per model.
+    /// Returns the number of models in element `index` of an object array, whose part `Data_` has
+    /// an element for each model.
     pub(crate) fn page_count(records: &StructArray, index: usize) -> usize {
         let data = fields_of(records, index)
             .into_iter()
@@ -124,13 +125,13 @@ impl<'v> Record<'v> {
         }
     }
 
-    /// Returns the first field found under these names and marks it as used. Exact names are tried
-    /// first, then names without case and underscores.
+    /// Returns the value of the first field found under these names and marks it as used. Exact
+    /// names are tried before names without case and underscores.
     pub(crate) fn get(&self, names: &[&str]) -> Option<&'v Value> {
         Some(self.take(self.find(names)?))
     }
 
-    /// Finds the same field as [`Self::get`] without marking it as used.
+    /// Finds the same field as [`Self::get`], without marking it as used.
     pub(crate) fn find(&self, names: &[&str]) -> Option<Field<'v>> {
         for name in names {
             if let Some(field) = self.index().exact.get(name) {
@@ -145,18 +146,18 @@ impl<'v> Record<'v> {
         None
     }
 
-    /// Returns the field with exactly this name and marks it as used.
+    /// Returns the value of the field with exactly this name and marks it as used.
     pub(crate) fn exact(&self, name: &str) -> Option<&'v Value> {
         Some(self.take(*self.index().exact.get(name)?))
     }
 
-    /// Returns the field with exactly this name, without marking it as used.
+    /// Returns the value of the field with exactly this name, without marking it as used.
     pub(super) fn peek(&self, name: &str) -> Option<&'v Value> {
         let field = self.index().exact.get(name)?;
         Some(field.value)
     }
 
-    /// Marks a field as used and returns its value.
+    /// Returns the value of a field and marks it as used.
     pub(super) fn take(&self, field: Field<'v>) -> &'v Value {
         self.mark_used(field.name);
         field.value
@@ -170,7 +171,7 @@ impl<'v> Record<'v> {
         self.used.borrow().contains(name)
     }
 
-    /// Notes an unused field inside a struct in this record, by its path: "trim.theta_deg".
+    /// Adds the path of an unused field inside a struct of this record, such as "trim.theta_deg".
     pub(super) fn note_unused_inside(&self, path: String) {
         let mut unused = self.unused_inside.borrow_mut();
         if !unused.contains(&path) {
@@ -178,7 +179,7 @@ impl<'v> Record<'v> {
         }
     }
 
-    /// Returns the names of unused fields; none for objects, which store much internal data.
+    /// Returns the names of unused fields; empty for objects, which hold much internal data.
     pub(super) fn unused(&self) -> Vec<String> {
         if self.class.is_some() {
             return Vec::new();
@@ -193,12 +194,12 @@ impl<'v> Record<'v> {
         unused
     }
 
-    /// Returns the fields that look like delays.
+    /// Returns the fields whose names suggest a delay.
     pub(super) fn delay_fields(&self) -> &[DelayField<'v>] {
         self.delays.get_or_init(|| delay_fields(&self.fields))
     }
 
-    /// Returns this record and its enclosing records, from the inside out.
+    /// Iterates over this record and its enclosing records, from the inside out.
     pub(super) fn with_outer(&self) -> impl Iterator<Item = &Record<'v>> {
         std::iter::successors(Some(self), |record| record.outer.as_deref())
     }
@@ -224,7 +225,7 @@ fn fields_of(records: &StructArray, index: usize) -> Vec<Field<'_>> {
     fields
 }
 
-/// Appends the fields of an object's inner parts, recursively, after the outer fields.
+/// Appends the fields in the parts of an object, down to `levels` levels, after its other fields.
 fn add_inner(fields: &mut Vec<Field<'_>>, page: usize, levels: usize) {
     if levels == 0 {
         return;

@@ -10,19 +10,19 @@ use super::{DEEPEST, MOST_FOUND, STEPS};
 use crate::formats::variables::{StructArray, Value, Variable};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Maximum number of variables listed if nothing is found.
+/// Maximum number of variables listed as not recognised.
 const MOST_LISTED: usize = 20;
 
 /// Models or records found among variables.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Found<T> {
-    /// Models or records found; their provenance gives only the variable.
+    /// Models or records; their provenance names only the variable.
     pub(crate) items: Vec<T>,
-    /// Candidates that could not be read, with place and reason.
+    /// Errors in models or records, with their place and the reason.
     pub(crate) faults: Vec<String>,
-    /// Descriptions of contents that are not candidates.
+    /// Descriptions of variables in which nothing was recognised.
     pub(crate) ignored: Vec<String>,
-    /// Unused variables beside and inside the results.
+    /// Unused variables beside and inside the models or records.
     pub(crate) unused: Vec<String>,
 }
 
@@ -38,7 +38,7 @@ impl<T> Default for Found<T> {
 }
 
 impl<T> Found<T> {
-    /// Adds the results of a variable; `variable` is empty for the whole file.
+    /// Adds the results of reading a variable; `variable` is empty for the whole file.
     pub(super) fn add(&mut self, variable: &str, items: Vec<Result<T, String>>) {
         for item in items {
             match item {
@@ -54,11 +54,11 @@ impl<T> Found<T> {
     }
 }
 
-/// Function that reads the fields of a record, given the variable name; `None` if they are neither
-/// a model nor a record, whichever is sought.
+/// Function that reads the models (or the flight records) that the fields of a record form, given
+/// the variable name; `None` if they form none.
 pub(super) type Recognise<'r, T> = &'r dyn Fn(&Record<'_>, &str) -> Option<Vec<Result<T, String>>>;
 
-/// Finds everything that `recognise` accepts among variables: first all variables together, then
+/// Finds all models or flight records among variables: first from all variables together, then in
 /// each variable and its contents, from the outside in.
 pub(crate) fn search<T>(
     variables: &[Variable],
@@ -93,8 +93,8 @@ pub(crate) fn search<T>(
     Ok(found)
 }
 
-/// Returns the unused fields of a record. `empty` lists the fields without results: others contain
-/// results and are not unused, except paths into structs.
+/// Returns the unused fields of a record. A field in which something was found is not unused;
+/// `empty` lists the fields in which nothing was found. Paths into structs are always kept.
 fn unused_among(record: &Record<'_>, empty: &BTreeSet<&str>) -> Vec<String> {
     let mut unused = record.unused();
     unused.retain(|name| empty.contains(name.as_str()) || name.contains('.'));
@@ -108,14 +108,15 @@ struct Search<'r, T> {
 }
 
 impl<T> Search<'_, T> {
-    /// Adds the results found in a record's fields; returns whether the fields are recognised.
+    /// Adds the models or flight records formed by the fields of a record; returns whether there
+    /// are any.
     fn try_record(&mut self, record: &Record<'_>, variable: &str) -> Result<bool, VariableFault> {
         self.budget
             .work(STEPS * record.fields().count() as u64, variable)?;
         let Some(items) = (self.recognise)(record, variable) else {
             return Ok(false);
         };
-        // Charged per field, because each result copies its values.
+        // Take the memory of all fields, because the results contain copies of their values.
         for field in record.fields() {
             if let Value::Array(array) = field.value {
                 self.budget.take(array.len() as u64, 16, variable)?;
@@ -125,8 +126,8 @@ impl<T> Search<'_, T> {
         Ok(true)
     }
 
-    /// Searches a value and its contents, at most `levels` deep; `outer` is the record that holds
-    /// the value. Returns whether anything was found.
+    /// Searches a value and its contents, down to `levels` levels; `outer` is the record that
+    /// contains the value. Returns whether anything was found.
     fn descend<'v>(
         &mut self,
         name: &str,
@@ -203,8 +204,8 @@ impl<T> Search<'_, T> {
         Ok(is_any_found)
     }
 
-    /// Tries element `index` of a struct array, or each of its models if it is an array of models;
-    /// returns whether any is recognised.
+    /// Adds the models or flight records in element `index` of a struct array, which may itself be
+    /// an array of models. Returns whether there are any.
     fn try_pages<'v>(
         &mut self,
         name: &str,
@@ -230,7 +231,7 @@ impl<T> Search<'_, T> {
         Ok(is_any_known)
     }
 
-    /// Notes unused fields of a variable, as paths.
+    /// Adds the paths of unused fields of a variable.
     fn note_unused(&mut self, variable: &str, names: &[String]) -> Result<(), VariableFault> {
         for name in names {
             let path = if variable.is_empty() {

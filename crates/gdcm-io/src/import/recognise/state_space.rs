@@ -1,4 +1,5 @@
-//! Models given by matrices: `x' = A x + B u`, `y = C x + D u`, or with `E x'` on the left.
+//! Recognition of models given by matrices: `x' = A x + B u`, `y = C x + D u`, or with `E x'` on
+//! the left.
 
 use nalgebra::DMatrix;
 
@@ -17,7 +18,7 @@ use super::values::{PagedShape, array_of, matrix_of, page_of};
 use crate::files::model_collection::bare_draft;
 use crate::formats::variables::{Array, Value};
 
-/// Name of a matrix: a capital letter, or in structs and objects also a small letter.
+/// Name of a matrix: a capital letter; in structs and objects, a small letter is accepted too.
 #[derive(Clone, Copy)]
 struct MatrixName {
     large: &'static str,
@@ -35,7 +36,7 @@ impl MatrixName {
         Self { large, small }
     }
 
-    /// Returns the matrix in a record and marks it as used.
+    /// Returns the value of the matrix in a record and marks it as used; `None` if there is none.
     fn value<'v>(self, record: &Record<'v>) -> Option<&'v Value> {
         record
             .exact(self.large)
@@ -51,14 +52,14 @@ impl MatrixName {
     }
 }
 
-/// Whether fields form a state-space model: A, B and C are present.
+/// Returns whether fields form a state-space model, which requires A, B and C.
 pub(super) fn is_state_space(record: &Record<'_>) -> bool {
     MatrixName::A.is_in(record) && MatrixName::B.is_in(record) && MatrixName::C.is_in(record)
 }
 
-/// Reads the model formed by the matrices in `record`, or each model of an array: `A(:,:,k)` in
-/// MATLAB, `A[k,:,:]` in NumPy. `pages_first` decides which index selects the model if the shapes
-/// are ambiguous.
+/// Reads the model that the matrices in `record` form, or each model of an array: `A(:,:,k)` in
+/// MATLAB, `A[k,:,:]` in NumPy. If the shapes are ambiguous, `pages_first` decides whether the
+/// first or the last index selects the model.
 pub(super) fn state_spaces(
     record: &Record<'_>,
     variable: &str,
@@ -94,8 +95,8 @@ pub(super) fn state_spaces(
     models
 }
 
-/// Whether the dimensions of A, B and C and their numbers of models are consistent if the first
-/// index (`pages_first`) or the last selects the model.
+/// Returns whether A, B and C have consistent dimensions and numbers of models if the first index
+/// (`pages_first`) or the last index selects the model.
 fn shapes_fit(a: &Array, b: &Array, c: &Array, pages_first: bool) -> bool {
     let a = PagedShape::new(a, pages_first);
     let b = PagedShape::new(b, pages_first);
@@ -106,7 +107,7 @@ fn shapes_fit(a: &Array, b: &Array, c: &Array, pages_first: bool) -> bool {
     a.rows == a.columns && b.rows == a.rows && c.columns == a.rows && counts_fit
 }
 
-/// Returns a matrix of one model of an array; a single matrix is shared by all models.
+/// Returns the matrix of a model from an array; a single matrix applies to all models.
 fn matrix_in_page(
     name: &str,
     value: &Value,
@@ -126,10 +127,10 @@ fn matrix_in_page(
     }
 }
 
-/// Function that reads a matrix from a value; the name is for error messages.
+/// Function that reads a matrix from a value; the string is its name in errors.
 type ReadMatrix<'f> = &'f dyn Fn(&str, &Value) -> Result<DMatrix<f64>, String>;
 
-/// Reads a matrix in `record`, if it exists.
+/// Reads a matrix from `record`; `None` if there is none.
 fn optional_matrix(
     record: &Record<'_>,
     name: MatrixName,
@@ -152,7 +153,7 @@ fn required_matrix(
     }
 }
 
-/// Reads a model. D may be missing, or a single zero for a zero matrix; E is eliminated.
+/// Reads a model. D is zero if it is missing or a single zero; E is eliminated.
 fn state_space(
     record: &Record<'_>,
     variable: &str,
@@ -170,7 +171,7 @@ fn state_space(
     match optional_matrix(record, MatrixName::D, read)? {
         Some(given) if given.len() == 1 && given[0] == 0.0 => {}
         Some(given) => d = given,
-        None => notes.push("the file has no D: taken as zero".to_owned()),
+        None => notes.push("the file has no D: it is assumed to be zero".to_owned()),
     }
     let (a, b) = match optional_matrix(record, MatrixName::E, read)? {
         Some(e) if !e.is_empty() => solve_descriptor(e, a, b)?,
@@ -184,7 +185,7 @@ fn state_space(
     Ok(model)
 }
 
-/// Builds the model from its matrices A, B, C, D and the fields beside them.
+/// Builds a model from the matrices A, B, C, D and the fields beside them.
 pub(super) fn build_model(
     record: &Record<'_>,
     variable: &str,
@@ -211,7 +212,7 @@ pub(super) fn build_model(
     })
 }
 
-/// Returns the provenance of a variable; the name is empty if the model is the whole file.
+/// Returns the provenance for a variable; `variable` is empty if the model is the whole file.
 pub(super) fn source_of(variable: &str) -> Provenance {
     let variable = if variable.is_empty() {
         None
@@ -224,7 +225,7 @@ pub(super) fn source_of(variable: &str) -> Provenance {
     }
 }
 
-/// Refuses more than the maximum number of states, before such large matrices are allocated.
+/// Rejects a count above the maximum number of states, before matrices of this size are allocated.
 pub(super) fn at_most(count: usize, counted: &str, place: &str) -> Result<(), String> {
     if count > MOST_STATES {
         return Err(format!(
@@ -268,7 +269,7 @@ fn check_shape(
     ))
 }
 
-/// Condition number above which solving with E loses most digits.
+/// Maximum condition number of E; beyond it, solving with E loses most digits.
 const WORST_CONDITION: f64 = 1e12;
 
 /// Computes `E^-1 A` and `E^-1 B` of the descriptor model `E x' = A x + B u` (M2a).
@@ -280,7 +281,7 @@ fn solve_descriptor(
     let n = a.nrows();
     if e.shape() != (n, n) {
         return Err(format!(
-            "E: expected {n} x {n} as A, found {} x {}",
+            "E: expected {n} x {n}, like A, found {} x {}",
             e.nrows(),
             e.ncols()
         ));

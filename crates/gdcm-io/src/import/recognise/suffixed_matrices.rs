@@ -1,4 +1,4 @@
-//! Models in matrices with common suffixes: `A_nom, B_nom, ...`, `A1, B1, ...`.
+//! Models whose matrices have a common suffix: `A_nom, B_nom, ...`, `A1, B1, ...`.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -15,15 +15,15 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 
 const MATRICES: [&str; 5] = ["A", "B", "C", "D", "E"];
 
-/// Models in matrices with suffixes.
+/// Models whose matrices have a common suffix.
 pub(super) struct SuffixedModels {
     pub(super) found: Found<FoundModel>,
-    /// Variables that these models use.
+    /// Names of the variables that these models use.
     pub(super) used: BTreeSet<String>,
 }
 
-/// Finds the models whose matrices share a suffix. Other variables, such as labels, apply to all
-/// models; delays may carry the suffix of a model.
+/// Finds the models whose matrices have a common suffix. Other variables, such as labels, apply to
+/// all models; delays may have the suffix of a model.
 pub(super) fn suffixed_models(
     variables: &[Variable],
     read: Recognise<'_, FoundModel>,
@@ -55,7 +55,7 @@ pub(super) fn suffixed_models(
             if delays.contains(name) {
                 match name.strip_suffix(suffix) {
                     Some(stem) if is_delay(stem) => name = stem,
-                    // Belongs to another model.
+                    // Skip a delay that has the suffix of another model.
                     _ => continue,
                 }
             }
@@ -79,7 +79,7 @@ pub(super) fn suffixed_models(
     Ok(models)
 }
 
-/// Returns the values by name; of several with one name, the first is taken.
+/// Returns the values by name; the first of several with the same name.
 fn values_by_name(variables: &[Variable]) -> HashMap<&str, &Value> {
     let mut by_name = HashMap::with_capacity(variables.len());
     for variable in variables {
@@ -90,7 +90,7 @@ fn values_by_name(variables: &[Variable]) -> HashMap<&str, &Value> {
     by_name
 }
 
-/// Returns the matrices with a suffix, under their names without it.
+/// Returns the matrices whose names end in `suffix`, with the suffix removed.
 fn matrices_with_suffix<'v>(by_name: &HashMap<&str, &'v Value>, suffix: &str) -> Vec<Field<'v>> {
     let mut fields = Vec::new();
     for name in MATRICES {
@@ -103,7 +103,7 @@ fn matrices_with_suffix<'v>(by_name: &HashMap<&str, &'v Value>, suffix: &str) ->
     fields
 }
 
-/// Returns the delays with a model's suffix: `InputDelay_nom` beside `A_nom`.
+/// Returns the names of delays with the suffix of a model, such as `InputDelay_nom` beside `A_nom`.
 fn delays_with_suffix<'v>(
     variables: &'v [Variable],
     suffixes: &BTreeSet<&str>,
@@ -115,7 +115,7 @@ fn delays_with_suffix<'v>(
         .collect()
 }
 
-/// Whether a name is a delay name followed by a suffix.
+/// Returns whether a name consists of the name of a delay and one of the suffixes.
 fn has_delay_stem(name: &str, suffixes: &BTreeSet<&str>) -> bool {
     name.char_indices().any(|(at, _)| {
         let (stem, end) = name.split_at(at);

@@ -1,4 +1,5 @@
-//! Models given by transfer functions: numerators and denominators, or zeros, poles and gains.
+//! Recognition of models given by transfer functions: numerators and denominators, or zeros, poles
+//! and gains.
 
 use nalgebra::{Complex, DMatrix};
 
@@ -11,7 +12,7 @@ use super::state_space::{at_most, build_model};
 use super::values::{array_of, complex_list_of, list_of};
 use crate::formats::variables::Value;
 
-/// Whether fields form transfer functions; marks these fields as used.
+/// Returns whether fields form transfer functions; marks these fields as used.
 pub(super) fn is_transfer_function(record: &Record<'_>) -> bool {
     Polynomials::find(record).is_some() || Factors::find(record).is_some()
 }
@@ -32,8 +33,8 @@ impl<'v> Polynomials<'v> {
         })
     }
 
-    /// Returns the fractions; if a response has no denominator of its own, the first denominator
-    /// applies.
+    /// Returns the transfer functions; the first denominator applies to responses without a
+    /// denominator.
     fn fractions(&self) -> Result<FractionTable, String> {
         let numerators = CellTable::new(self.numerators);
         let denominators = CellTable::new(self.denominators).cells;
@@ -106,7 +107,7 @@ impl<'v> Factors<'v> {
     }
 }
 
-/// A rational transfer function, highest power first; the denominator is monic.
+/// A rational transfer function with a monic denominator; coefficients are in descending powers.
 #[derive(Clone, Debug, PartialEq)]
 struct Fraction {
     numerator: Vec<f64>,
@@ -114,11 +115,11 @@ struct Fraction {
 }
 
 impl Fraction {
-    /// Creates the fraction with leading zeros removed and the denominator made monic.
+    /// Creates a transfer function; removes leading zeros and makes the denominator monic.
     ///
     /// # Errors
-    /// A zero denominator, a numerator with a higher degree than the denominator, and too many
-    /// poles.
+    /// The reason if the denominator is zero, the degree of the numerator exceeds that of the
+    /// denominator, or there are too many poles.
     fn new(numerator: &[f64], denominator: &[f64], place: &str) -> Result<Self, String> {
         at_most(denominator.len().saturating_sub(1), "states", place)?;
         let numerator = without_leading_zeros(numerator);
@@ -141,7 +142,7 @@ impl Fraction {
         self.denominator.len() - 1
     }
 
-    /// Returns the numerator, padded with leading zeros to the length of the denominator.
+    /// Returns the numerator with leading zeros, so that it is as long as the denominator.
     fn padded_numerator(&self) -> Vec<f64> {
         let mut padded = vec![0.0; self.denominator.len() - self.numerator.len()];
         padded.extend(&self.numerator);
@@ -156,14 +157,14 @@ fn without_leading_zeros(polynomial: &[f64]) -> &[f64] {
     }
 }
 
-/// Transfer functions of all responses; the output index runs fastest.
+/// Transfer functions of all responses, with the output index fastest.
 struct FractionTable {
     fractions: Vec<Fraction>,
     outputs: usize,
     inputs: usize,
 }
 
-/// Cells of a cell array; the row index runs fastest. Any other value counts as a 1 x 1 cell array.
+/// Cells of a cell array in column-major order. Any other value counts as a 1 x 1 cell array.
 struct CellTable<'v> {
     cells: Vec<&'v Value>,
     rows: usize,
@@ -187,7 +188,7 @@ impl<'v> CellTable<'v> {
     }
 }
 
-/// Returns the state-space model of the transfer functions in `record`: each response in
+/// Returns the state-space model of the transfer functions in `record`: the responses, each in
 /// controllable canonical form, in parallel.
 ///
 /// ```text
@@ -195,7 +196,7 @@ impl<'v> CellTable<'v> {
 /// A = [-a_1 ... -a_n; I 0],   B = [1; 0; ...; 0],   C = [c_1 ... c_n],   D = d
 /// ```
 ///
-/// With a numerator `b_0 s^n + ... + b_n`, `d = b_0` and `c_k = b_k - b_0 a_k`.
+/// For a numerator `b_0 s^n + ... + b_n`, `d = b_0` and `c_k = b_k - b_0 a_k`.
 pub(super) fn transfer_function(record: &Record<'_>, variable: &str) -> Result<FoundModel, String> {
     let FractionTable {
         fractions,
@@ -209,7 +210,7 @@ pub(super) fn transfer_function(record: &Record<'_>, variable: &str) -> Result<F
     let mut b = DMatrix::zeros(order, inputs);
     let mut c = DMatrix::zeros(outputs, order);
     let mut d = DMatrix::zeros(outputs, inputs);
-    // Index of the first state of the current response.
+    // Index of the first state of the current response, from 0.
     let mut start = 0;
     for (index, fraction) in fractions.iter().enumerate() {
         let output = index % outputs;
@@ -235,7 +236,7 @@ pub(super) fn transfer_function(record: &Record<'_>, variable: &str) -> Result<F
     model.notes.extend(timing.notes);
     model
         .notes
-        .push("transfer functions, each realised by itself".to_owned());
+        .push("transfer functions, each realised separately".to_owned());
     Ok(model)
 }
 
@@ -249,8 +250,8 @@ fn fractions_of(record: &Record<'_>) -> Result<FractionTable, String> {
     }
 }
 
-/// Returns the real polynomial with these roots, highest power first; complex roots come in
-/// conjugate pairs.
+/// Returns the coefficients of the real polynomial with these roots, in descending powers; complex
+/// roots must come in conjugate pairs.
 fn polynomial(roots: &[Complex<f64>]) -> Vec<f64> {
     let mut coefficients = vec![Complex::new(1.0, 0.0)];
     for root in roots {
@@ -296,7 +297,7 @@ mod tests {
         let model = transfer_function(&Record::from_variables(&variables), "g").unwrap();
         let s = Complex::new(0.3, 1.7);
         let expected = (s * s * 2.0 + s * 3.0 + 4.0) / (s * s * 2.0 + s * 5.0 + 7.0);
-        // A few rounding errors of values of order 1.
+        // The tolerance allows a few rounding errors in numbers of magnitude 1.
         assert!((response(&model, s) - expected).norm() < 1e-14);
     }
 

@@ -1,4 +1,4 @@
-//! Conversion of file values to numbers, matrices and texts.
+//! Conversion of values in files to numbers, matrices and strings.
 
 use nalgebra::{Complex, DMatrix};
 
@@ -13,8 +13,8 @@ pub(crate) struct Field<'v> {
     pub(crate) value: &'v Value,
 }
 
-/// Returns the numbers in a value. Objects and structs count if they hold a single array: the
-/// parameters in MATLAB's identified models (`Value`), GNU Octave's polynomials (`poly`).
+/// Returns the array in a value; `None` if there is none. Objects and structs may hold a single
+/// array: `Value` in MATLAB's identified models, `poly` in GNU Octave's polynomials.
 pub(super) fn array_of(value: &Value) -> Option<&Array> {
     match value {
         Value::Array(array) => Some(array),
@@ -31,7 +31,7 @@ pub(super) fn array_of(value: &Value) -> Option<&Array> {
     }
 }
 
-/// Converts a value to a real, finite matrix.
+/// Converts a value to a matrix; rejects complex and non-finite numbers.
 pub(super) fn matrix_of(name: &str, value: &Value) -> Result<DMatrix<f64>, String> {
     let Some(array) = array_of(value) else {
         return Err(format!(
@@ -48,7 +48,7 @@ pub(super) fn matrix_of(name: &str, value: &Value) -> Result<DMatrix<f64>, Strin
     page_of(name, array, 0, false)
 }
 
-/// Shape of an array that holds matrices of equal dimensions, called pages.
+/// Shape of an array that holds several matrices with equal dimensions, called pages.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PagedShape {
     pub(super) pages: usize,
@@ -57,8 +57,8 @@ pub(super) struct PagedShape {
 }
 
 impl PagedShape {
-    /// Reads an array's shape; with `pages_first` the first of three indices selects the matrix,
-    /// otherwise the indices after the second do.
+    /// Determines the shape of an array. In an array with three dimensions, the first index selects
+    /// the matrix if `pages_first`; otherwise all indices after the second do.
     pub(super) fn new(array: &Array, pages_first: bool) -> Self {
         let shape = &array.shape;
         if shape.len() == 3 && pages_first {
@@ -76,7 +76,7 @@ impl PagedShape {
     }
 }
 
-/// Extracts the matrix with index `page` (from 0) of an array that holds several.
+/// Returns the matrix with index `page`, counted from 0, of an array that holds several matrices.
 pub(super) fn page_of(
     name: &str,
     array: &Array,
@@ -89,7 +89,9 @@ pub(super) fn page_of(
         columns,
     } = PagedShape::new(array, pages_first);
     if has_imaginary_part(array) {
-        return Err(format!("{name}: expected real numbers, found complex ones"));
+        return Err(format!(
+            "{name}: expected real numbers, found complex numbers"
+        ));
     }
     let is_interleaved = array.shape.len() == 3 && pages_first;
     let start = if is_interleaved {
@@ -100,7 +102,8 @@ pub(super) fn page_of(
     let step = if is_interleaved { pages.max(1) } else { 1 };
     let numbers = array.re.iter().skip(start).step_by(step);
     let values: Vec<f64> = numbers.take(rows * columns).copied().collect();
-    // With a zero among the later dimensions the array has fewer values than the first two imply.
+    // If a later dimension is zero, the array has fewer numbers than the first two dimensions
+    // imply.
     if values.len() != rows * columns {
         return Err(format!(
             "{name}: expected a matrix, found an array without numbers"
@@ -117,7 +120,7 @@ pub(super) fn page_of(
     Ok(DMatrix::from_column_slice(rows, columns, &values))
 }
 
-/// Whether an array has a nonzero imaginary part.
+/// Returns whether any number of an array has a nonzero imaginary part.
 pub(in crate::import) fn has_imaginary_part(array: &Array) -> bool {
     match &array.im {
         Some(im) => im.iter().any(|part| *part != 0.0),
@@ -125,7 +128,7 @@ pub(in crate::import) fn has_imaginary_part(array: &Array) -> bool {
     }
 }
 
-/// Converts a value to a single finite number; its imaginary part is ignored.
+/// Converts a value to a single number and ignores its imaginary part; `None` unless it is finite.
 pub(super) fn scalar_of(value: &Value) -> Option<f64> {
     let array = array_of(value)?;
     match array.re.as_slice() {
@@ -134,7 +137,8 @@ pub(super) fn scalar_of(value: &Value) -> Option<f64> {
     }
 }
 
-/// Converts a row or a column to finite numbers; the imaginary part is ignored.
+/// Converts a row or a column to a list of numbers and ignores their imaginary parts; rejects
+/// non-finite numbers.
 pub(super) fn list_of(name: &str, value: &Value) -> Result<Vec<f64>, String> {
     let Some(array) = array_of(value) else {
         return Err(format!("{name}: expected numbers, found {}", value.words()));
@@ -149,7 +153,7 @@ pub(super) fn list_of(name: &str, value: &Value) -> Result<Vec<f64>, String> {
     }
 }
 
-/// Converts a row or a column to finite complex numbers.
+/// Converts a row or a column to a list of complex numbers; rejects non-finite numbers.
 pub(super) fn complex_list_of(name: &str, value: &Value) -> Result<Vec<Complex<f64>>, String> {
     let re = list_of(name, value)?;
     let im = match array_of(value) {
@@ -163,8 +167,9 @@ pub(super) fn complex_list_of(name: &str, value: &Value) -> Result<Vec<Complex<f
     Ok(parts.map(|(re, im)| Complex::new(re, im)).collect())
 }
 
-/// Returns the texts in a value, trimmed: a text array, a cell array with a text in each cell, or
-/// an empty array, in which MATLAB stores an empty list.
+/// Returns the strings in a value, without surrounding blanks: a string array, a cell array with a
+/// string in each cell, or an empty array, which MATLAB writes for an empty list. Returns `None`
+/// for any other value.
 pub(in crate::import) fn texts_of(value: &Value) -> Option<Vec<String>> {
     match value {
         Value::Text(text) => Some(
@@ -185,7 +190,7 @@ pub(in crate::import) fn texts_of(value: &Value) -> Option<Vec<String>> {
     }
 }
 
-/// Returns the first text in a value.
+/// Returns the first string in a value; `None` if there is none.
 pub(in crate::import) fn first_text_of(value: &Value) -> Option<String> {
     texts_of(value)?.into_iter().next()
 }

@@ -1,4 +1,5 @@
-//! Column names, units and role (input or output) of a field, from the fields beside it.
+//! Labels of the columns in a field: names, units, and whether they are inputs or outputs, from the
+//! fields beside it.
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::names::channel_alias::folded_name;
@@ -9,7 +10,7 @@ use crate::import::recognise::labels::label_of;
 use crate::import::recognise::record::Record;
 use crate::import::recognise::values::texts_of;
 
-/// Names of matrices with the inputs, without case and underscores.
+/// Names of fields that hold the inputs, without case and underscores.
 const INPUTS: [&str; 9] = [
     "u",
     "in",
@@ -21,7 +22,7 @@ const INPUTS: [&str; 9] = [
     "controls",
     "uin",
 ];
-/// Names of matrices with the outputs, without case and underscores.
+/// Names of fields that hold the outputs, without case and underscores.
 const OUTPUTS: [&str; 9] = [
     "y",
     "out",
@@ -51,7 +52,7 @@ const OUTPUT_NAMES: [&str; 6] = [
 ];
 const INPUT_UNITS: [&str; 4] = ["inputunit", "inputunits", "inunit", "uunits"];
 const OUTPUT_UNITS: [&str; 4] = ["outputunit", "outputunits", "outunit", "yunits"];
-/// Names of fields that list the column names of the only matrix in a record.
+/// Names of fields that list the column names if a record has a single matrix.
 const NAMES: [&str; 10] = [
     "names",
     "channels",
@@ -64,10 +65,10 @@ const NAMES: [&str; 10] = [
     "colheaders",
     "varlab",
 ];
-/// Names of fields that list the column units of the only matrix in a record.
+/// Names of fields that list the column units if a record has a single matrix.
 const UNITS: [&str; 3] = ["units", "columnunits", "channelunits"];
 
-/// Labels of the columns of a field.
+/// Labels of the columns in a field.
 pub(super) struct ColumnLabels {
     names: Option<Vec<String>>,
     units: Option<Vec<String>>,
@@ -75,12 +76,12 @@ pub(super) struct ColumnLabels {
 }
 
 impl ColumnLabels {
-    /// Finds the labels of a field with `count` columns: those named after the field (`u_names`),
-    /// then those of all inputs or all outputs, then those of the whole record. Lists whose length
-    /// is not `count` are ignored.
+    /// Finds the labels of a field with `count` columns, first in lists named after the field
+    /// (`u_names`), then in lists of all inputs or all outputs, then in lists of the whole record.
+    /// Lists with another length are ignored.
     pub(super) fn find(record: &Record<'_>, field: &str, count: usize) -> Self {
         let name = folded_name(field);
-        // A single column called u may be a velocity component.
+        // A single column called u may be a velocity component instead of an input.
         let may_be_side = count > 1 || name.len() > 1;
         let (side, names, units) = if may_be_side && INPUTS.contains(&name.as_str()) {
             (
@@ -117,12 +118,12 @@ impl ColumnLabels {
         }
     }
 
-    /// Whether the file names the columns.
+    /// Returns whether the file gives names of the columns.
     pub(super) fn has_names(&self) -> bool {
         self.names.is_some()
     }
 
-    /// Returns the labelled columns.
+    /// Creates the columns of a field and applies the labels to them.
     pub(super) fn label(self, field: &str, values: Vec<Vec<f64>>) -> Vec<RecordColumn> {
         let mut columns = named_columns(field, values);
         for (index, column) in columns.iter_mut().enumerate() {
@@ -144,7 +145,8 @@ impl ColumnLabels {
     }
 }
 
-/// Returns the texts in the first field with one of these folded names, if there are `count`.
+/// Returns the strings in the first field with one of these names (without case and underscores);
+/// `None` unless there are `count`.
 fn list_beside<K: AsRef<str>>(
     record: &Record<'_>,
     keys: &[K],

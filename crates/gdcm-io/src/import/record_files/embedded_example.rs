@@ -1,4 +1,4 @@
-//! Records in the embedded example.
+//! Flight records of the embedded example.
 
 use gdcm_model::names::name_pattern::standard_patterns;
 use gdcm_sysid::records::RecordTable;
@@ -8,15 +8,15 @@ use super::records_of_bytes;
 use crate::file_error::FileError;
 use crate::reading_budget::ReadingBudget;
 
-/// Simulated sweeps and a validation record at each of conditions 3 and 10, as CSV files.
+/// CSV files with simulated sweeps and a validation record for each of the conditions 3 and 10.
 const ARCHIVE: &[u8] = include_bytes!("../../../../../assets/example-records-3-and-10.zip");
-/// Name of the archive in error messages.
+/// File name in error messages.
 const NAME: &str = "(embedded example records).zip";
 
-/// Example conditions with embedded records.
+/// Conditions of the example for which records are embedded.
 pub const EXAMPLE_RECORD_CONDITIONS: [i64; 2] = [3, 10];
 
-/// Returns the records of an example condition; none unless the condition is among
+/// Returns the records of a condition in the example; empty unless the condition is one of
 /// [`EXAMPLE_RECORD_CONDITIONS`].
 pub fn example_records(condition: i64) -> Result<Vec<RecordTable>, FileError> {
     if !EXAMPLE_RECORD_CONDITIONS.contains(&condition) {

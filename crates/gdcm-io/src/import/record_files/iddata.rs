@@ -1,8 +1,8 @@
-//! Data from the identification tools in MATLAB and GNU Octave.
+//! Data of the identification tools in MATLAB and GNU Octave.
 //!
-//! An `iddata` object has, under these names or with a trailing underscore, `OutputData` and
-//! `InputData` (a matrix, or a cell for each experiment), `Ts` or `SamplingInstants`, and names and
-//! units. Octave's control package calls them `y`, `u`, `tsam`, `outname`, `inname`. A struct with
+//! An `iddata` object holds `OutputData` and `InputData` (a matrix, or a cell for each experiment),
+//! `Ts` or `SamplingInstants`, and names and units; the field names may end in an underscore.
+//! Octave's control package uses the names `y`, `u`, `tsam`, `outname` and `inname`. A struct with
 //! the same fields is also accepted.
 
 use gdcm_model::dataset::channel::ChannelSide;
@@ -14,13 +14,13 @@ use crate::formats::variables::Value;
 use crate::import::recognise::record::Record;
 use crate::import::recognise::values::{first_text_of, texts_of};
 
-/// Field names of the inputs or of the outputs, in MATLAB and in GNU Octave.
+/// Field names for the inputs, or for the outputs, in MATLAB and in GNU Octave.
 struct SideFields {
     side: ChannelSide,
     data: [&'static str; 2],
     names: [&'static str; 2],
     units: [&'static str; 2],
-    /// Letter in the default names of unnamed columns.
+    /// Letter with which the names of unnamed columns begin.
     letter: char,
 }
 
@@ -39,13 +39,16 @@ const OUTPUT_FIELDS: SideFields = SideFields {
     letter: 'y',
 };
 
-/// Whether fields are identification data.
+/// Returns whether fields are identification data.
 pub(super) fn is_iddata(record: &Record<'_>) -> bool {
     let has_both = record.get(&["OutputData"]).is_some() && record.get(&["InputData"]).is_some();
     record.class == Some("iddata") || has_both
 }
 
 /// Returns a record for each experiment.
+///
+/// # Errors
+/// The reason if the data are in the frequency domain, or the outputs cannot be read.
 pub(super) fn experiments(record: &Record<'_>, variable: &str) -> Result<Vec<Columns>, String> {
     if let Some(domain) = record.get(&["Domain"]).and_then(first_text_of)
         && domain.to_lowercase().starts_with('f')
@@ -73,7 +76,7 @@ pub(super) fn experiments(record: &Record<'_>, variable: &str) -> Result<Vec<Col
     Ok(records)
 }
 
-/// Reads experiment `index`, whose outputs are `output`.
+/// Reads the experiment at `index`; `output` holds its outputs.
 fn experiment(
     record: &Record<'_>,
     output: &Value,
@@ -108,7 +111,7 @@ fn experiment(
     })
 }
 
-/// Returns the columns of the inputs or of the outputs in experiment `index`.
+/// Returns the columns of the inputs, or of the outputs, in the experiment at `index`.
 fn side_columns(
     record: &Record<'_>,
     fields: &SideFields,
@@ -150,7 +153,7 @@ fn nonempty_text(texts: &[String], at: usize) -> Option<String> {
     }
 }
 
-/// Returns the parts of a value, one per experiment: its cells, or the value itself.
+/// Returns the value of each experiment: the cells of a cell array, or the value itself.
 fn parts_of(value: &Value) -> Vec<&Value> {
     match value {
         Value::Cell(cell) => cell.values.iter().collect(),
@@ -158,7 +161,7 @@ fn parts_of(value: &Value) -> Vec<&Value> {
     }
 }
 
-/// Returns the value for experiment `index`; a single value applies to all experiments.
+/// Returns the value for the experiment at `index`; a single value applies to all experiments.
 fn part_of<'v>(record: &Record<'v>, names: &[&str], index: usize) -> Option<&'v Value> {
     match record.get(names)? {
         Value::Cell(cell) => cell.values.get(index),

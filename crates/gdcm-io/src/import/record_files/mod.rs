@@ -1,4 +1,5 @@
-//! Flight records in files: text tables, MATLAB, NumPy, JSON, and archives of these.
+//! Reading of flight records from files: text tables, MATLAB, NumPy, JSON, logs, and archives of
+//! these.
 //!
 //! ```text
 //! bytes -> format, from the first bytes
@@ -48,20 +49,22 @@ pub use self::embedded_example::{EXAMPLE_RECORD_CONDITIONS, example_records};
 /// Results of reading record files.
 #[derive(Clone, Debug, Default)]
 pub struct FoundRecords {
-    /// The records, in file order.
+    /// Records in the order of the files.
     pub tables: Vec<RecordTable>,
-    /// Unreadable parts, each with place and reason.
+    /// Parts that could not be read, each with its place and the reason.
     pub faults: Vec<String>,
     /// Descriptions of contents that are not records.
     pub ignored: Vec<String>,
-    /// Number of files read.
     pub files: usize,
-    /// Explicitly requested files that could not be read completely.
+    /// Files requested by name that could not be read completely.
     pub unread: Vec<PathBuf>,
 }
 
-/// Reads the records of files and folders, recursively. An unreadable file is recorded as a fault
-/// and the others are read; if only one file is requested, it is an error.
+/// Reads the records in files, folders and subfolders. A file that cannot be read is recorded in
+/// `faults`, and the others are read.
+///
+/// # Errors
+/// [`FileError`] if a folder cannot be read, or the only file.
 pub fn read_records(
     paths: &[PathBuf],
     progress: &dyn FolderProgress,
@@ -88,7 +91,7 @@ pub fn read_records(
     Ok(found)
 }
 
-/// Reads the records in the bytes of a file with this name, within a budget.
+/// Reads the records in a file whose bytes are in memory.
 pub fn records_of_bytes(
     bytes: &[u8],
     name: &str,
@@ -102,12 +105,12 @@ pub fn records_of_bytes(
     Ok(found)
 }
 
-/// Reloads the records that a dataset identifies by these variables of a file; `None` selects the
-/// only record. The file is read a single time, within a budget.
+/// Reads again the records that a dataset refers to by these variables of a file; `None` refers to
+/// the only record. The file is read once.
 ///
 /// # Errors
-/// Errors from reading; a record that is not in the file gives [`FileError::NoRecord`] in its
-/// position.
+/// [`FileError`] if the file cannot be read; in the returned list, [`FileError::NoRecord`] for each
+/// record that is not in the file.
 pub fn load_records(
     path: &Path,
     variables: &[Option<&str>],
@@ -140,7 +143,7 @@ pub fn load_records(
     Ok(records)
 }
 
-/// Forwards cancellation only.
+/// Progress receiver that only passes on a cancellation.
 struct Stopped<'s>(&'s Arc<AtomicBool>);
 
 impl FolderProgress for Stopped<'_> {
@@ -152,8 +155,8 @@ impl FolderProgress for Stopped<'_> {
 }
 
 impl FoundRecords {
-    /// Returns the record of this variable, joined from the topics of several files if the variable
-    /// names them.
+    /// Returns the record of a variable. If `variable` names topics of several files, the record is
+    /// joined from them.
     fn record(&self, variable: Option<&str>) -> Option<RecordTable> {
         for table in &self.tables {
             if table.source.variable.as_deref() == variable {
@@ -224,11 +227,11 @@ impl FoundRecords {
         Ok(())
     }
 
-    /// Adds the records in the file `inner` of an archive; its path becomes part of the variable.
-    /// An unreadable file is recorded as a fault.
+    /// Adds the records in the file `inner` of an archive; this path becomes part of the variable.
+    /// A file that cannot be read is recorded in `faults`.
     ///
     /// # Errors
-    /// Only cancellation.
+    /// Only a cancellation.
     fn add_archived_file(
         &mut self,
         archive: &str,
@@ -272,7 +275,7 @@ impl FoundRecords {
         Ok(())
     }
 
-    /// Adds the results of a search among the variables of a file.
+    /// Adds the records found among the variables of a file.
     fn add_found(&mut self, found: Found<Columns>, name: &str, sha256: &str) {
         for columns in found.items {
             self.add_table(columns.in_file(name, sha256));
@@ -281,7 +284,7 @@ impl FoundRecords {
         self.ignored.extend(of_file(name, found.ignored));
     }
 
-    /// Adds a table, split into its records.
+    /// Splits a table into records and adds them.
     fn add_table(&mut self, table: RecordTable) {
         let table = table.side_by_side();
         let separation = Separation::proposed(&table);
@@ -289,7 +292,7 @@ impl FoundRecords {
     }
 }
 
-/// Finds every record among the variables of a file.
+/// Finds all flight records among the variables of a file.
 pub(crate) fn search_records(
     variables: &[Variable],
     budget: &ReadingBudget<'_>,
@@ -297,7 +300,7 @@ pub(crate) fn search_records(
     search(variables, budget, &read_columns)
 }
 
-/// Reads the records in the fields of a record; `None` if the fields hold none.
+/// Reads the flight records that the fields of a record form; `None` if they form none.
 fn read_columns(record: &Record<'_>, variable: &str) -> Option<Vec<Result<Columns, String>>> {
     if is_iddata(record) {
         return Some(match experiments(record, variable) {

@@ -1,4 +1,4 @@
-//! Columns from vectors and matrices with equal lengths.
+//! Flight records from vectors and matrices of equal length.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use crate::import::recognise::record::Record;
 
 /// Minimum number of samples in a record with time stamps or a sample time.
 pub(super) const FEWEST_TIMED: usize = 20;
-/// Minimum number of samples in a record without any time.
+/// Minimum number of samples in a record with neither time stamps nor a sample time.
 const FEWEST: usize = 50;
 const SAMPLE_RATE_NAMES: [&str; 5] = [
     "fs",
@@ -26,12 +26,13 @@ const SAMPLE_RATE_NAMES: [&str; 5] = [
 /// Number of samples in a record.
 struct RecordLength {
     rows: usize,
-    /// Whether a time vector has this length.
+    /// Whether a time vector determines the length.
     is_timed: bool,
 }
 
-/// Returns the record formed by the arrays of equal length among the fields; `None` if there is
-/// none. The length is that of the time vector, otherwise the one with the most columns.
+/// Returns the record that the arrays of equal length form: the length of the time vector,
+/// otherwise the length with the most columns. Returns `None` if there are too few samples or
+/// columns, and for a model.
 pub(super) fn array_columns(record: &Record<'_>, variable: &str) -> Option<Columns> {
     let is_model = ["A", "B", "C"]
         .iter()
@@ -81,11 +82,11 @@ pub(super) fn array_columns(record: &Record<'_>, variable: &str) -> Option<Colum
     let mut notes = Vec::new();
     if !left_out.is_empty() {
         notes.push(format!(
-            "of another length, left out: {}",
+            "omitted because of another length: {}",
             left_out.join(", ")
         ));
     }
-    // A single matrix without labels has a name, but its columns do not.
+    // The columns of a single matrix without labels have no names.
     let named = has_labels || vectors > 0 || matrices > 1;
     if !named {
         for (index, column) in columns.iter_mut().enumerate() {
@@ -100,8 +101,8 @@ pub(super) fn array_columns(record: &Record<'_>, variable: &str) -> Option<Colum
     })
 }
 
-/// Returns the length of the longest time vector; without a long enough time vector, the length
-/// with the most columns (the greater length if tied).
+/// Returns the length of the longest time vector. Without a sufficiently long one, returns the
+/// length with the most columns; in a tie, the greater length.
 fn record_length(record: &Record<'_>) -> Option<RecordLength> {
     let mut timed = None;
     for field in record.fields() {
@@ -137,7 +138,8 @@ fn record_length(record: &Record<'_>) -> Option<RecordLength> {
     })
 }
 
-/// Returns the sample time \[s\], stated directly or as a sample rate \[Hz\].
+/// Returns the sample time \[s\], given directly or as a sample rate \[Hz\]; `None` if neither is
+/// given.
 fn sample_time(record: &Record<'_>) -> Option<f64> {
     let step = match positive_number(record, &SAMPLE_TIME_NAMES) {
         Some(step) => step,
@@ -146,7 +148,7 @@ fn sample_time(record: &Record<'_>) -> Option<f64> {
     if step.is_finite() { Some(step) } else { None }
 }
 
-/// Returns the number in the first field with one of these names, if it is positive.
+/// Returns the positive number in the first field found under these names; `None` if there is none.
 fn positive_number(record: &Record<'_>, names: &[&str]) -> Option<f64> {
     let Value::Array(array) = record.get(names)? else {
         return None;

@@ -33,8 +33,8 @@ fn channels() -> RecordChannels {
     }
 }
 
-/// Returns the flight record of a table in the proposed layout; unnamed columns are assigned
-/// explicitly, and "az" is positive up.
+/// Returns the flight record for the proposed assignment of columns to channels. Unnamed columns
+/// are assigned explicitly; "az" is positive up.
 fn flight(table: &RecordTable) -> gdcm_model::simulation::FlightRecord {
     let mut channels = channels();
     let rules = channels.inputs.iter_mut().chain(&mut channels.outputs);
@@ -49,12 +49,12 @@ fn flight(table: &RecordTable) -> gdcm_model::simulation::FlightRecord {
     proposal.layout.flight_record(table, &channels).unwrap()
 }
 
-/// Asserts that a record matches the data of `make_files.py` to this number of decimals.
+/// Asserts that a record has the data written by `make_files.py`, within `digits` decimals.
 fn assert_record(table: &RecordTable, digits: i32) {
     let record = flight(table);
     let samples = record.time_s.len();
     let near = |value: f64, expected: f64| {
-        // Half a unit of the last decimal, and the rounding of a division.
+        // Half a unit of the last decimal, and the rounding error of a division.
         assert!(
             (value - expected).abs() < 0.5 * 10_f64.powi(-digits) + 1e-12,
             "{}: {value} {expected}",
@@ -189,7 +189,10 @@ fn files_in_an_archive_are_records_of_it() {
             ("two.zip", Some("records/sides.mat"))
         ]
     );
-    assert_eq!(found.ignored, ["readme.md: no file of a known kind"]);
+    assert_eq!(
+        found.ignored,
+        ["readme.md: an unsupported format, or an archive in the archive"]
+    );
     found
         .tables
         .iter()
@@ -214,7 +217,9 @@ fn records_are_found_again_by_their_names_in_the_dataset() {
     );
     let words = of_runs[1].as_ref().unwrap_err().to_string();
     assert!(
-        words.ends_with("runs.csv: the record \"run 6\" is not in it; it holds 2 records"),
+        words.ends_with(
+            "runs.csv: the record \"run 6\" is not in this file, which contains 2 records"
+        ),
         "{words}"
     );
 }
@@ -339,7 +344,7 @@ fn searched(name: &str, value: Value) -> Found<Columns> {
     .unwrap()
 }
 
-/// A timetable of two variables with these row times, as saved by MATLAB.
+/// Returns a timetable with two variables and these row times, as MATLAB saves it.
 fn timetable(row_times: Value) -> Value {
     let data = CellArray {
         shape: vec![1, 2],
@@ -534,7 +539,7 @@ fn damaged_files_are_faults_and_never_a_panic() {
     }
 }
 
-// Aircraft logs, and topics in separate files.
+// Tests of aircraft logs, and of topics in separate files.
 
 fn sides(inputs: &[&str], outputs: &[&str]) -> RecordChannels {
     let rules = |names: &[&str]| names.iter().map(|name| ChannelRule::named(*name)).collect();
@@ -615,7 +620,7 @@ fn each_flight_in_a_blackbox_is_a_record() {
         .windows(2)
         .map(|pair| pair[1] - pair[0])
         .collect();
-    // Every sixteenth controller cycle, one of which takes two samples of 125 µs.
+    // The log holds every sixteenth controller cycle; a cycle takes two gyro samples of 125 µs.
     assert!(
         steps
             .iter()
@@ -659,8 +664,7 @@ fn topic_tables_in_an_archive_are_a_single_record() {
     );
     let first = record.flight.unwrap();
     assert!(record.problems.is_empty() && first.time_s.len() > 900);
-    // A dataset names the folder and the combination of its tables; both identify the records
-    // again.
+    // A dataset refers to the records by their folder and the name of the joined topics.
     let again = load_records(
         folder.path(),
         &[Some(RecordTable::TOPICS)],
@@ -691,14 +695,14 @@ fn a_first_line_that_numbers_the_columns_is_no_sample() {
         found.tables[0]
             .notes
             .iter()
-            .any(|note| note.contains("numbers the columns"))
+            .any(|note| note.contains("column numbers"))
     );
 }
 
 #[test]
 fn fdata_of_sidpac_is_read_with_the_names_of_its_columns() {
-    // SIDPAC stores flight data in the columns of fdata, and their names with units in the rows of
-    // varlab.
+    // SIDPAC stores flight data in the columns of `fdata`, and their names with units in the rows
+    // of `varlab`.
     let rows = 80;
     let column = |of: fn(f64) -> f64| (0..rows).map(move |row| of(f64::from(row)));
     let values: Vec<f64> = column(|k| 0.02 * k)

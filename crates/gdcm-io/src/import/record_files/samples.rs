@@ -13,7 +13,8 @@ pub(super) struct Samples {
 }
 
 /// Returns the real numbers in a value as samples; a vector is a single column. Time runs along the
-/// dimension with length `rows` if given, otherwise along the longer dimension.
+/// dimension with length `rows` if given, otherwise along the longer dimension. `None` if the value
+/// has another form.
 pub(super) fn samples_of(value: &Value, rows: Option<usize>) -> Option<Samples> {
     let array = match value {
         Value::Array(array) => array,
@@ -71,12 +72,12 @@ fn samples_of_cells(cells: &[Value]) -> Option<Samples> {
     })
 }
 
-/// Returns the first column of a value; time runs along its longer dimension.
+/// Returns the first column of samples in a value; time runs along the longer dimension.
 pub(super) fn first_column_of(value: &Value) -> Option<Vec<f64>> {
     samples_of(value, None)?.columns.into_iter().next()
 }
 
-/// Returns the first number in a value.
+/// Returns the first number in a value; `None` if it contains none.
 pub(super) fn first_number_of(value: &Value) -> Option<f64> {
     first_column_of(value)?.first().copied()
 }

@@ -10,7 +10,7 @@ use crate::import::recognise::labels::label_of;
 use crate::import::recognise::record::Record;
 use crate::import::recognise::values::first_text_of;
 
-/// Reads the columns if the record is a structure with time.
+/// Reads the columns of a structure with time; `None` if the record is none.
 pub(super) fn simulink_columns(record: &Record<'_>, variable: &str) -> Option<Columns> {
     let time = samples_of(record.get(&["time"])?, None)?;
     let Some(Value::Struct(signals)) = record.get(&["signals"]) else {
@@ -28,7 +28,7 @@ pub(super) fn simulink_columns(record: &Record<'_>, variable: &str) -> Option<Co
     Some(Columns::new(variable.to_owned(), columns))
 }
 
-/// Returns a signal's columns; `None` if its sample count differs from that of the time.
+/// Returns a signal's columns; `None` if its sample count differs from the number of times.
 fn signal_columns(signal: &Record<'_>, index: usize, rows: usize) -> Option<Vec<RecordColumn>> {
     let samples = samples_of(signal.get(&["values"])?, Some(rows))?;
     if samples.rows != rows {

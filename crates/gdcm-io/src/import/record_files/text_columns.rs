@@ -52,7 +52,7 @@ pub(super) fn text_columns(
     }
 }
 
-/// Whether a fault is in the text itself rather than an exceeded limit.
+/// Whether a fault is in the text itself, rather than an exceeded limit of the budget.
 fn is_of_the_text(fault: &VariableFault) -> bool {
     matches!(
         fault,
@@ -119,5 +119,5 @@ fn remove_numbering(columns: &mut [Vec<f64>], notes: &mut Vec<String>) {
     for values in columns {
         values.remove(0);
     }
-    notes.push("the first line numbers the columns: it is no sample".to_owned());
+    notes.push("the first line contains column numbers and was skipped".to_owned());
 }

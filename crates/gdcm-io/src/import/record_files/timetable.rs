@@ -14,10 +14,9 @@ use crate::formats::variables::Value;
 use crate::import::recognise::record::Record;
 use crate::import::recognise::values::texts_of;
 
-/// A millisecond \[s\].
 const MILLISECOND: f64 = 1e-3;
 
-/// Reads the columns if the object is a timetable or a table.
+/// Reads the columns of a timetable or a table; `None` for objects of other classes.
 pub(super) fn timetable_columns(record: &Record<'_>, variable: &str) -> Option<Columns> {
     match record.class? {
         "timetable" => read_timetable(record, variable),
@@ -41,7 +40,7 @@ fn read_timetable(record: &Record<'_>, variable: &str) -> Option<Columns> {
         RowTimes::Step(step_s) => sample_time_s = Some(step_s),
         RowTimes::Stamps { time_s, is_clock } => {
             if is_clock {
-                notes.push("times are of the clock, counted from the first".to_owned());
+                notes.push("clock times: converted to seconds since the first sample".to_owned());
             }
             if time_s.len() == rows {
                 let time = RecordColumn {
@@ -75,7 +74,7 @@ fn read_table(record: &Record<'_>, variable: &str) -> Option<Columns> {
     Some(Columns::new(variable.to_owned(), columns))
 }
 
-/// Returns the fields of a struct or an object.
+/// Returns the fields of a struct or an object (of the first element, if it is an array).
 fn inner_record(value: &Value) -> Option<Record<'_>> {
     let records = match value {
         Value::Struct(records) => records,
@@ -159,7 +158,7 @@ fn regular_step(record: &Record<'_>) -> Option<f64> {
     if rate > 0.0 { Some(1.0 / rate) } else { None }
 }
 
-/// Returns the milliseconds of a `duration`.
+/// Returns the values \[ms\] of a `duration`.
 fn millis_of(value: &Value) -> Option<Vec<f64>> {
     first_column_of(inner_record(value)?.get(&["millis"])?)
 }

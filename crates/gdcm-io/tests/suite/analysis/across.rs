@@ -1,4 +1,4 @@
-//! Responses of one model at every condition.
+//! Responses of the same model in every condition.
 
 use gdcm_io::embedded_example;
 use gdcm_model::dataset::{Band, BundleKind, ModelId};

@@ -1,4 +1,4 @@
-//! Identified models that are adopted in place of the dataset's.
+//! Adopted models, which replace the identified models of the dataset.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ fn study() -> Study {
     Study::new(embedded_example().unwrap().dataset)
 }
 
-/// The identified models of condition 1 under other names.
+/// Returns the identified models of condition 1 under other names.
 fn others(study: &Study) -> Arc<AdoptedModels> {
     let models = study.dataset.conditions()[0].bundle(BundleKind::Identified);
     let renamed = |model: &Model| Model {

@@ -1,4 +1,5 @@
-//! Assessments on wish, evidence for the schedule, and delays scheduled on wish.
+//! Assessment of the schedule, evidence for the kinds of schedule, and optional scheduling of
+//! delays.
 
 use std::sync::Arc;
 
@@ -93,7 +94,7 @@ fn the_mean_weighs_single_frequencies_that_the_median_leaves_out() {
         .iter()
         .map(|error| error * error)
         .sum();
-    // M4 written out; the same sum.
+    // The magnitude part of J by its formula (M4).
     assert!((found.magnitude - 20.0 * squares / mismatch.magnitude_db.len() as f64).abs() < 1e-9);
 }
 
@@ -177,7 +178,8 @@ fn evidence_is_of_the_scheduled_conditions_and_agrees_with_the_schedule() {
         .iter()
         .map(|kind| kind.left_out_rms_ln(on_axis()).unwrap())
         .collect::<Vec<f64>>();
-    // The example's deficits change by tens of percent over airspeed: a constant foresees them worst.
+    // The gain deficits of the example change by tens of percent over airspeed, so the constant
+    // schedule predicts left-out conditions worst.
     assert!(
         errors[1..].iter().all(|error| *error < errors[0]),
         "{errors:?}"
@@ -201,7 +203,7 @@ fn delays_are_scheduled_within_the_bounds_of_their_conditions_where_that_is_aske
         let result = on.condition(id).unwrap();
         let airspeed_kt = result.condition.flight_state().airspeed_kt;
         let at = schedule.at(airspeed_kt);
-        // Of two conditions of one airspeed the mean.
+        // If two conditions have the same airspeed, the bound is their mean.
         let upper_s = schedule
             .delays
             .as_ref()

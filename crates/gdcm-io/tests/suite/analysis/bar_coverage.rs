@@ -1,11 +1,16 @@
-//! Coverage of error bars in synthetic studies whose net gains are known (M13), and the measured tables of `docs/uncertainty.md`.
+//! Coverage of error bars in synthetic studies with known net gains (M13), and the tables in
+//! `docs/uncertainty.md`.
 //!
-//! Each study has many conditions with diagonal models, so that every net gain is the G of its own response. `ln G` of a physics
-//! model and of an identified model is drawn from normal distributions of known size. The program then chooses representatives,
-//! substitutes models and makes bars as it does for any other dataset.
+//! Each study has many conditions with diagonal models, so that every net gain is the G of a single
+//! response. `ln G` of a physics model and of an identified model is drawn from a normal
+//! distribution with a given standard deviation. The program then chooses representatives,
+//! substitutes models and computes bars as for any other dataset.
 //!
-//! The tables are printed, and compared with those of the page, by
-//! `cargo test -p gdcm-io --test suite bar_coverage::tables -- --ignored --nocapture`.
+//! This command prints the tables and compares them with the page:
+//!
+//! ```text
+//! cargo test -p gdcm-io --test suite bar_coverage::tables -- --ignored --nocapture
+//! ```
 
 use std::ops::RangeInclusive;
 
@@ -19,42 +24,43 @@ use gdcm_study::results::uncertainty::Uncertainty;
 
 use super::uncertainty::{normal, set, study_of, uncertainty_of};
 
-/// Level of all bars here.
+/// Confidence level of all bars in these tests.
 const LEVEL: f64 = 0.9;
 /// `ln` of every true net gain.
 const TRUTH: f64 = 0.2;
-/// Standard deviation of the error of one identified model, in `ln G`.
+/// Standard deviation of the error of a single identified model, in `ln G`.
 const MODEL_ERROR: f64 = 0.02;
-/// Seed of every population.
+/// Random seed of every population.
 const SEED: u64 = 88_172_645_463_325_252;
-/// Net gains of one population in the tests that always run.
+/// Number of net gains per population in the tests that always run.
 const FEW: usize = 800;
-/// Net gains of one population in the tables.
+/// Number of net gains per population in the tables.
 const MANY: usize = 8000;
 
 /// Trim at which the synthetic aircraft was flown.
 #[derive(Clone, Copy)]
 enum FlownTrim {
-    /// A further draw from the distribution of the physics models.
+    /// Drawn from the distribution of the physics models, as one model more.
     LikeTheBundle,
-    /// Exactly the nominal trim, although the bundle varies.
+    /// The nominal trim, although the trims of the physics models vary.
     Nominal,
 }
 
 /// Distribution of the models of a synthetic study.
 #[derive(Clone, Copy)]
 struct Population {
-    /// Identified models of each condition.
+    /// Number of identified models of each condition.
     identified_models: usize,
-    /// Share of the variance of an identified model's error that is common to all models of its condition.
+    /// Share of the variance of an identified model's error that all models of its condition have
+    /// in common.
     shared: f64,
-    /// On-axis responses of each condition, with independent errors.
+    /// Number of on-axis responses of each condition; their errors are independent.
     responses: usize,
-    /// Standard deviation of `ln G` over trims, in units of [`MODEL_ERROR`]; zero for a bundle with one physics model.
+    /// Standard deviation of `ln G` over trims, in units of [`MODEL_ERROR`]; at 0, the bundle has a
+    /// single physics model.
     trim: f64,
-    /// Trim of the flight.
     flown: FlownTrim,
-    /// Degrees of freedom that a condition borrows at most.
+    /// Maximum degrees of freedom that a condition borrows from the other conditions.
     prior_degrees: f64,
 }
 
@@ -68,28 +74,30 @@ const THREE_INDEPENDENT: Population = Population {
     prior_degrees: 4.0,
 };
 
-/// Logarithmic factors of the models of one condition: a row for each model, a column for each response.
+/// `ln` of the gain factors of the models of one condition, relative to the nominal physics model:
+/// a row for each model, a column for each response.
 struct ConditionDraw {
     physics: Vec<Vec<f64>>,
     identified: Vec<Vec<f64>>,
-    /// `ln G` of the flight against the nominal physics model.
+    /// `ln` of the factor of the flown trim, for each response.
     flown: Vec<f64>,
 }
 
-/// How the bars of a population compare with the errors of its net gains.
+/// Counts and sums over the bars of a population, for comparison with the errors of its net gains.
 #[derive(Default)]
 struct Coverage {
     net_gains: usize,
-    /// Whole bars that hold the true net gain.
+    /// Number of bars that contain the true net gain.
     covered: usize,
-    /// Bars that would hold the true net gain if the variance of the identification part, their only part, were halved.
+    /// Number of bars that would contain the true net gain if the variance of the identification
+    /// part, the only part, were halved.
     covered_if_halved: usize,
     error_squares: f64,
-    /// Of the identified representative alone.
+    /// Sum of the squared errors due to the identified representative alone.
     identification_error_squares: f64,
     identification_squares: f64,
     half_widths: f64,
-    /// Student's quantiles of the identification parts.
+    /// Sum of Student's quantiles of the identification parts.
     quantiles: f64,
 }
 
@@ -126,11 +134,11 @@ impl Population {
         }
     }
 
-    /// Coverage over at least so many net gains, the same for the same seed.
+    /// Returns the coverage over at least `net_gains` net gains; reproducible for a given seed.
     fn coverage(&self, net_gains: usize, seed: u64) -> Coverage {
         let mut state = seed;
         let mut coverage = Coverage::default();
-        // A hundred conditions share their identification parts in each study.
+        // Studies of at most a hundred conditions, which pool their identification parts.
         while coverage.net_gains < net_gains {
             let conditions = (net_gains / self.responses).min(100);
             let draws: Vec<ConditionDraw> =
@@ -145,7 +153,7 @@ impl Population {
     }
 }
 
-/// Normal deviates with this standard deviation.
+/// Returns normal deviates with the standard deviation `deviation`.
 fn draws(count: usize, deviation: f64, state: &mut u64) -> Vec<f64> {
     (0..count).map(|_| deviation * normal(state)).collect()
 }
@@ -160,7 +168,8 @@ fn diagonal(values: &[f64]) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// One first-order lag for each response, times the factor of its logarithm.
+/// Returns a diagonal model of first-order lags, one for each response, with the gain factors
+/// `exp(logarithms)`.
 fn model(name: &str, logarithms: &[f64]) -> Value {
     let size = logarithms.len();
     let gains: Vec<f64> = logarithms.iter().map(|logarithm| logarithm.exp()).collect();
@@ -218,7 +227,8 @@ impl Coverage {
         }
     }
 
-    /// Counts a bar about [`TRUTH`], whose identified model would give this value if it had no error.
+    /// Counts a bar with respect to [`TRUTH`]; `without_identification_error` is the value that an
+    /// error-free identified model would give.
     fn count_bar(&mut self, bar: &Bar, without_identification_error: f64) {
         let identification = bar.identification.unwrap();
         let half_width = bar.half_width(LEVEL).unwrap();
@@ -241,30 +251,32 @@ impl Coverage {
         self.mean(self.covered as f64)
     }
 
-    /// Mean half-width over the rms error of the net gains.
+    /// Returns the ratio of the mean half-width to the rms error of the net gains.
     fn width_ratio(&self) -> f64 {
         self.mean(self.half_widths) / self.mean(self.error_squares).sqrt()
     }
 
-    /// Rms error of the identified representative, over that of one model.
+    /// Returns the rms error of the identified representative in units of [`MODEL_ERROR`].
     fn representative_error(&self) -> f64 {
         self.mean(self.identification_error_squares).sqrt() / MODEL_ERROR
     }
 
-    /// Rms of `s_id`, over the error of one model. Pooling leaves the mean square as it is where all conditions have equally many models.
+    /// Returns the rms of `s_id` in units of [`MODEL_ERROR`]. Pooling does not change this rms if
+    /// all conditions have the same number of models.
     fn spread(&self) -> f64 {
         self.mean(self.identification_squares).sqrt() / MODEL_ERROR
     }
 }
 
-/// Bounds of a measured fraction of [`FEW`] net gains: four standard deviations of a binomial distribution about the fraction that
-/// a longer run has measured. One of 16 000 other seeds would fail.
+/// Returns the range in which a fraction of [`FEW`] net gains must lie: `expected`, from a longer
+/// run, with four standard deviations of the binomial distribution to either side. About one seed
+/// in 16 000 would violate it.
 fn binomial_range(expected: f64) -> RangeInclusive<f64> {
     let deviation = (expected * (1.0 - expected) / FEW as f64).sqrt();
     expected - 4.0 * deviation..=expected + 4.0 * deviation
 }
 
-/// Asserts the coverage and the width ratio that `docs/uncertainty.md` states for a population.
+/// Asserts the coverage and the width ratio of a population as stated in `docs/uncertainty.md`.
 #[track_caller]
 fn assert_coverage(population: Population, fraction: f64, width_ratio: f64) {
     let found = population.coverage(FEW, SEED);
@@ -274,7 +286,8 @@ fn assert_coverage(population: Population, fraction: f64, width_ratio: f64) {
         "{} of {FEW}: not within {range:?}",
         found.covered
     );
-    // The rms of 800 errors has a relative standard deviation of 2.5 %; four of them.
+    // 0.1 is four standard deviations: the rms of 800 errors has a relative standard deviation of
+    // 2.5 %.
     assert!(
         (found.width_ratio() / width_ratio - 1.0).abs() < 0.1,
         "{} instead of {width_ratio}",
@@ -331,7 +344,7 @@ fn shared_error_line(population: Population) -> String {
     format!("| {models} | {shared:.0} % | {width:.2} | {covered:.1} % | {halved:.1} % |")
 }
 
-/// Tables of `docs/uncertainty.md`, one line of Markdown for each population.
+/// Returns the rows of the tables in `docs/uncertainty.md`, a line of Markdown for each population.
 fn measured_lines() -> Vec<String> {
     let mut lines = Vec::new();
     for identified_models in [2, 3, 5, 10] {

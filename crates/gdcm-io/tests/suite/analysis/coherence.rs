@@ -1,4 +1,4 @@
-//! What the coherence of measured responses does to J, G, D and the bounds (M4a).
+//! Effect of the coherence of measured responses on J, G, D and the bounds (M4a).
 
 use std::sync::Arc;
 
@@ -23,11 +23,13 @@ const ONLY: ConditionId = ConditionId(1);
 const GAIN: f64 = 1.2;
 const DELAY_S: f64 = 0.03;
 
-/// Frequencies \[rad/s\] at which nothing but noise was measured of the first response.
+/// Frequencies \[rad/s\] at which the measurement of the first response contains only noise.
 const NOISE: std::ops::Range<f64> = 0.0..8.0;
 
-/// A published helicopter, and as flight the same with a gain and a delay on every response; the first is noise in [`NOISE`].
-/// `coherence` is that of a response (0: the first) at a frequency.
+/// Returns a dataset with a published helicopter as the physics model and a measured response as
+/// the identified one: every response has an additional gain and delay, and the first is noise
+/// within [`NOISE`]. `coherence` gives the coherence of a response (by index; 0 is the first) at a
+/// frequency.
 fn dataset(coherence: Option<&dyn Fn(usize, f64) -> f64>, bands: Option<[f64; 2]>) -> Arc<Dataset> {
     let dynamics = model_of("compleib_HE2_AH64_130kt.json");
     let (outputs, inputs) = dynamics.shape();
@@ -159,7 +161,8 @@ fn frequencies_that_were_not_measured_leave_g_d_j_and_the_bounds() {
     let analysis = with(&noisy(), &[setting::COST_AVERAGE.to(CostAverage::Mean)]);
     let result = only(&analysis);
     for (pair, gain) in result.comparison.delta.gain.iter() {
-        // The response at the measured frequencies themselves, once to dB and back.
+        // Rounding only: the response is measured at the frequencies of the analysis and converted
+        // to dB and back.
         assert!((gain.unwrap() / GAIN - 1.0).abs() < 1e-12, "{pair:?}");
         assert!(
             (result.comparison.delta.delay_s[pair].unwrap() - DELAY_S).abs() < 1e-12,
@@ -214,7 +217,7 @@ fn equal_coherence_gives_the_medians_of_no_coherence_to_the_last_digit() {
             (&of_off.gain, &of_off.delay_s)
         );
         for (pair, delay_s) in of_on.band_delay_s.iter() {
-            // A weighted sum over a sum of weights, of 200 terms.
+            // Rounding of a weighted mean of 200 terms.
             assert!((delay_s.unwrap() - of_off.band_delay_s[pair].unwrap()).abs() < 1e-14);
         }
         assert_eq!(
@@ -314,14 +317,14 @@ fn a_result_says_what_coherence_did() {
     let weighed = said.iter().find(|remark| {
         remark
             .text
-            .contains("Coherence weighs J, G and D of 4 responses")
+            .contains("J, G and D of 4 responses are weighted by coherence")
     });
     assert_eq!(weighed.unwrap().kind, RemarkKind::Good);
 
     let off = words(&with(&noisy(), &[setting::COHERENCE.to(None::<f64>)]));
     assert!(
         off.iter()
-            .any(|words| words.contains("which is switched off")),
+            .any(|words| words.contains("coherence is switched off")),
         "{off:?}"
     );
 }

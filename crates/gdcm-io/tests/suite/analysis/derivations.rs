@@ -1,4 +1,4 @@
-//! How each figure was computed: the numbers told are those computed.
+//! Derivations of results: the numbers in their text equal the computed values.
 
 use gdcm_method::correction::Channel;
 use gdcm_method::fidelity::CostAverage;
@@ -31,7 +31,7 @@ fn told(asked: ExplainTarget) -> Derivation {
     found
 }
 
-/// The last number of a step, units and words after it apart.
+/// Returns the last number in a step, without the unit and the words after it.
 fn last_number(step: &str) -> f64 {
     let text = step.rsplit(" = ").next().unwrap().replace('−', "-");
     text.split_whitespace()
@@ -41,7 +41,8 @@ fn last_number(step: &str) -> f64 {
         .unwrap_or_else(|_| panic!("{step}"))
 }
 
-/// Asserts that a figure is `value`, and that its last step ends in it, to five digits.
+/// Asserts that the derivation of a result has `value`, and that its last step ends with that value
+/// to five digits.
 #[track_caller]
 fn assert_told(asked: ExplainTarget, value: f64) -> Derivation {
     let found = told(asked);
@@ -62,7 +63,7 @@ fn g_and_d_are_told_with_their_models_and_medians() {
         result.comparison.delta.gain[pair()].unwrap(),
     );
     assert!(
-        gain.with_numbers[0].contains("the mean of the middle two of 200 values from"),
+        gain.with_numbers[0].contains("the mean of the two middle values of 200 values from"),
         "{gain:?}"
     );
     assert_eq!(
@@ -218,7 +219,7 @@ fn the_distances_behind_a_discontinuity_ratio_are_explained_by_the_weights_told(
         };
         let mut ratios: Vec<f64> = (0..models.len()).filter_map(ratio).collect();
         let median = gdcm_model::statistics::median(&mut ratios);
-        // Squares and roots in another order.
+        // Rounding: the test takes squares and square roots in another order.
         assert!((median / fit.ratios[place].unwrap() - 1.0).abs() < 1e-12);
     }
 }

@@ -1,4 +1,5 @@
-//! Data that leave little to go by: what is compared all the same, what is not, and that it is said.
+//! Incomplete and extreme data: which responses are compared, which are not, and that the reasons
+//! are stated.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -19,7 +20,7 @@ use gdcm_words::caution::{caution_text, failure_text};
 use super::*;
 use crate::made_up::two_lags;
 
-/// The condition of a file that has only one.
+/// Id of the condition in files with a single condition.
 const ONLY: ConditionId = ConditionId(1);
 
 const SHORT: &str = include_str!("../../../../../tests/data/edges/short-measurement.json");
@@ -35,7 +36,7 @@ fn dataset(value: &Value) -> Arc<Dataset> {
     .dataset
 }
 
-/// The analysis of the only condition of a file.
+/// Returns the analysis of a file with a single condition after some edits.
 fn only(value: &Value, edits: &[Edit]) -> Analysis {
     let mut study = Study::new(dataset(value));
     edits.iter().for_each(|edit| study.apply(edit).unwrap());
@@ -51,7 +52,8 @@ fn words(analysis: &Analysis, result: &ConditionAnalysis) -> Vec<String> {
         .collect()
 }
 
-/// The file with the measurement that ends at 11.9 rad/s at this place among the identified models; `None`: without it.
+/// Returns the file with the measurement that ends at 11.9 rad/s moved to index `place` among the
+/// identified models; `None` removes it.
 fn with_short_measurement(place: Option<usize>) -> Value {
     let mut value = json(SHORT);
     let models = value["conditions"][0]["identified_models"]
@@ -203,7 +205,7 @@ fn residues_of_differencing_count_as_zero_and_are_named() {
         assert_eq!(found.correction, zeros.condition(ONLY).unwrap().correction);
         let named = words(&analysis, found).concat();
         assert!(
-            named.contains("I1 → O0, I0 → O1 are numerically nothing"),
+            named.contains("I1 → O0, I0 → O1 are numerically zero"),
             "{named}"
         );
         let written = corrections(&analysis, "", &BTreeSet::from([ONLY]));
@@ -288,7 +290,7 @@ fn a_ratio_that_the_objective_cannot_square_leaves_its_response_out_and_the_othe
     assert!(found.delta.gain[Pair::new(1, 1)].is_some());
 }
 
-/// The cautions that `check` has of the only condition of a file.
+/// Returns the cautions that `check` reports for a file with a single condition.
 fn checked(value: &Value) -> Vec<Caution> {
     let cautions =
         cautions_of_models(&Study::new(dataset(value)), &Execution::sequential()).unwrap();
@@ -331,7 +333,8 @@ fn a_gain_beyond_what_is_computed_with_is_called_that() {
                 .contains(&format!("1e{power}"))
         );
     }
-    // Of an analysis that has nothing else, and of gains that can be computed with.
+    // If no gain of the analysis is within range, the condition fails and the message states all
+    // gains. Gains of 1e-24 and 1e24 are still within range.
     let alone = only(
         &two_lags([[1e74, 0.0], [0.0, 1e74]], [[1.0, 0.0], [0.0, 1.0]]),
         &[],
@@ -353,7 +356,8 @@ fn a_gain_beyond_what_is_computed_with_is_called_that() {
     );
 }
 
-/// Two lags, identified as a response measured from 0.3 to 20 rad/s, of which the values of some responses are zero.
+/// Returns two lags whose identified model is a response measured from 0.3 to 20 rad/s; the
+/// responses in `zeros` (\[output, input\]) have only zeros as values.
 fn with_zeros_measured(zeros: &[[usize; 2]], band: [f64; 2]) -> Value {
     let mut value = two_lags([[1.0, 0.1], [0.1, 1.0]], [[1.2, 0.1], [0.1, 0.9]]);
     let omega: Vec<f64> = (0..50)
@@ -384,7 +388,7 @@ fn a_response_of_zeros_is_missing_and_the_measured_frequencies_are_not_blamed() 
         name: "measured".to_owned(),
     };
     let responses = vec![Pair::new(0, 1), Pair::new(1, 1)];
-    // Inside the measured frequencies, and beyond them.
+    // A band within the measured frequencies, and a band beyond them.
     for (band, not_finite) in [
         ([0.5, 12.0], vec![]),
         ([0.5, 30.0], vec![Pair::new(0, 0), Pair::new(1, 0)]),
@@ -411,7 +415,7 @@ fn a_response_of_zeros_is_missing_and_the_measured_frequencies_are_not_blamed() 
     let value = with_zeros_measured(&[[0, 1], [1, 1]], [0.5, 12.0]);
     let analysis = only(&value, &[]);
     let found = analysis.condition(ONLY).unwrap();
-    // A measured response without any number but zero is one that no file gives.
+    // A response that is measured as zero throughout counts as not measured.
     for pair in responses {
         assert_eq!(
             found.comparison.undefined[pair],
@@ -460,7 +464,8 @@ fn airspeeds_a_hair_apart_are_one_point_of_the_schedule() {
         asked: 2,
         clusters: 2,
     };
-    // Of the conditions that are one point the second alone has delays, and the point has the mean: the first pays for them.
+    // Conditions 0 and 1 form one point of the schedule, but only the second has delays. The point
+    // has their mean, which increases the cost of the first.
     let [first, ScheduleCaution::CostsMore(cost)] = &schedule.cautions[..] else {
         panic!("{:?}", schedule.cautions)
     };
@@ -522,7 +527,7 @@ fn airspeeds_a_hair_apart_are_one_point_of_the_schedule() {
     assert_eq!(written["airspeed_tolerance_kt"], 2.0);
     let cautions = texts(&written["cautions"]);
     assert!(
-        cautions[0].contains("degree 2 takes 3 distinct airspeeds, the conditions have 2"),
+        cautions[0].contains("degree 2 needs 3 distinct airspeeds, but the conditions have only 2"),
         "{cautions:?}"
     );
 }
@@ -550,7 +555,7 @@ fn a_schedule_that_overshoots_says_where_and_the_assessment_claims_nothing_betwe
 #[test]
 fn a_pole_on_the_grid_is_named() {
     let mut value = two_lags([[1.0, 0.2], [0.3, 1.0]], [[1.2, 0.2], [0.3, 0.9]]);
-    // An undamped pair at the first frequency of the band.
+    // An undamped pole pair at the lowest frequency of the band.
     value["conditions"][0]["physics_models"][0]["A"] = json!([[0.0, 0.5], [-0.5, 0.0]]);
     let analysis = only(&value, &[]);
     let failure = failure_text(
@@ -570,12 +575,14 @@ fn a_vanishing_alpha_gives_the_products_of_none_and_scattered_gains_are_no_unit(
         let analysis = only(&value, &[setting::ALPHA_GAIN.to(alpha)]);
         let result = analysis.condition(ONLY).unwrap();
         let net = result.cost.map(|pair, _| result.correction.net_gain(pair));
-        // Those of O5 are 15.1 and 5.6, near enough to be one unit; those of other channels are tenfold apart.
+        // The gains of O5, 15.1 and 5.6, are near enough to each other for a unit factor; the gains
+        // of the other channels differ by a factor of ten.
         let doubted: Vec<Channel> = analysis.doubts.iter().map(|doubt| doubt.channel).collect();
         assert_eq!(doubted, [Channel::Output(5)], "{:?}", analysis.doubts);
         net.iter().map(|(_, gain)| *gain).collect::<Vec<f64>>()
     };
-    // What is left of the term that alpha weighs is of the order of alpha; the solver's own tolerance is 1e-8.
+    // The effect of the term with weight alpha is of the order of alpha; the tolerance of the
+    // solver is 1e-8.
     for (tiny, none) in products(1e-12).into_iter().zip(products(0.0)) {
         assert!((tiny / none).ln().abs() < 1e-6, "{tiny} {none}");
     }

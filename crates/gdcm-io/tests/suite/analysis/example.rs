@@ -1,4 +1,4 @@
-//! The reference dataset against the independent analysis of it.
+//! Results for the example dataset, compared with an independent implementation of the method.
 
 use std::collections::BTreeSet;
 
@@ -8,22 +8,24 @@ use super::*;
 
 const REFERENCE: &str = include_str!("../../../../../tests/data/reference/example-analysis.json");
 
-/// What one part in a million is taken of, where a figure is near zero: the least figure of its kind that matters.
+/// Smallest magnitudes that matter, by kind of result: tolerances are relative to these for results
+/// near zero.
 mod scale {
-    /// Gains, ratios and their logarithms are of the order of one.
+    /// Gains, ratios and their logarithms have the order of magnitude 1.
     pub const GAIN: f64 = 1.0;
-    /// A millisecond: a tenth of the delays that an engineer can see.
+    /// One millisecond: a tenth of the smallest delay that matters to an engineer.
     pub const DELAY_S: f64 = 1e-3;
-    /// J of 1 is a fiftieth of "next to indistinguishable".
+    /// A J of 1 is a fiftieth of the value at which responses are almost indistinguishable.
     pub const COST: f64 = 1.0;
-    /// The objective of eq. (11) counts squared delays.
+    /// The objective of eq. (11) is a sum of squared delays \[s^2\].
     pub const DELAY_OBJECTIVE: f64 = 1e-4;
     /// Airspeeds \[kt\].
     pub const AIRSPEED_KT: f64 = 1.0;
 }
 
-/// Asserts agreement to 1e-6 of the reference, or of `scale` where the reference is smaller than that. The reference figures
-/// themselves are good to about 1e-9: both sides take medians and quantiles of the same 200 values.
+/// Asserts agreement within 1e-6 of the reference value, or of `scale` if the reference is smaller.
+/// The reference values themselves are accurate to about 1e-9: both programs take medians and
+/// quantiles of the same 200 values.
 #[track_caller]
 fn assert_close(what: &str, found: f64, reference: f64, scale: f64) {
     let allowed = 1e-6 * reference.abs().max(scale);
@@ -106,7 +108,7 @@ fn representatives_and_suggestions_of_the_example_are_exactly_those_of_the_indep
 #[test]
 fn scores_and_discontinuity_ratios_of_the_example_agree() {
     each_condition(|at, found, expected| {
-        // Rejected models have no score, here and there.
+        // Rejected models have no score, neither in the program nor in the reference.
         let scores: Vec<f64> = found
             .comparison
             .physics
@@ -360,7 +362,7 @@ fn the_assessment_of_the_example_agrees_and_leaves_condition_10_out() {
     assert_eq!(left_out, [ConditionId(10)]);
 }
 
-/// The keys of an object, sorted.
+/// Returns the keys of an object in alphabetical order.
 fn keys(value: &Value) -> Vec<&str> {
     let mut keys: Vec<&str> = value
         .as_object()

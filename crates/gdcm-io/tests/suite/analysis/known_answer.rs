@@ -1,4 +1,5 @@
-//! Published helicopters of other channel counts, with a "flight" model whose gains and delays are known.
+//! Published helicopters with various channel counts, and flight models that differ from them by
+//! known gains and delays.
 
 use std::sync::Arc;
 
@@ -12,13 +13,14 @@ use gdcm_model::dataset::{Band, Channel, Condition, Dataset, Model, ModelId};
 use super::responses::model_of;
 use super::*;
 
-/// `1, 1.1, 0.93, 1.23, ...`: different gains, none far from 1.
+/// Returns the known gain of a channel: different values between 0.7 and 1.3.
 fn gain(channel: usize) -> f64 {
     1.0 + 0.3 * (0.7 * channel as f64).sin()
 }
 
-/// The helicopter of `file` as the physics model, and as flight the same helicopter with `gain` on every channel and a delay on
-/// every response, as measured frequency data.
+/// Returns a dataset with the helicopter of `file` as the physics model. The identified model is
+/// its response as measured frequency data, with `gain` on every channel and a delay on every
+/// response.
 fn dataset_of(file: &str, delay_s: f64) -> Dataset {
     let dynamics = model_of(file);
     let (outputs, inputs) = dynamics.shape();
@@ -120,7 +122,8 @@ fn gains_and_delays_put_into_published_helicopters_are_found_again() {
         {
             defined += 1;
             let known = gain(pair.output) * gain(shape.0 + pair.input);
-            // Interpolated between 3000 measured frequencies: a few 1e-6 at lightly damped peaks, in the median far less.
+            // Interpolation between 3000 measured frequencies: the error is a few 1e-6 at lightly
+            // damped peaks, and far less for the median.
             assert!(
                 (wanted.unwrap() / known - 1.0).abs() < 1e-6,
                 "{file} {pair:?}"

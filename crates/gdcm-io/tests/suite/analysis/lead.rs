@@ -1,4 +1,5 @@
-//! Leads against the independent analysis of the example, and known signed delays found again (M15).
+//! Leads: comparison with the independent analysis of the example, and recovery of known signed
+//! delays (M15).
 
 use std::sync::Arc;
 
@@ -22,7 +23,7 @@ use super::*;
 
 const REFERENCE: &str = include_str!("../../../../../tests/data/reference/lead.json");
 
-/// The example with leads, nothing rejected.
+/// Analysis of the example with leads, without rejected models.
 static EXAMPLE_WITH_LEADS: LazyLock<Analysis> =
     LazyLock::new(|| analyze(&mut Engine::default(), &with_leads()));
 
@@ -34,7 +35,7 @@ fn with_leads() -> Study {
     study
 }
 
-/// Agreement to 1e-6 of the reference, or of `scale` where the reference is less.
+/// Asserts agreement within 1e-6 of the reference value, or of `scale` if the reference is smaller.
 #[track_caller]
 fn assert_close(what: &str, found: f64, reference: f64, scale: f64) {
     let allowed = 1e-6 * reference.abs().max(scale);
@@ -172,7 +173,7 @@ fn the_schedule_of_the_example_holds_the_mean_signed_delay_of_each_channel() {
         at.input_delays_s.iter().all(|delay_s| *delay_s == 0.0),
         "all inputs want lead"
     );
-    // M15.6: NX wants 69 ms of delay in condition 4.
+    // M15.6: in condition 4, NX requires a delay of 69 ms.
     let hidden =
         |caution: &&ScheduleCaution| matches!(caution, ScheduleCaution::SignedDelayApart { .. });
     let (inputs, outputs) = schedule_names();
@@ -189,7 +190,10 @@ fn the_schedule_of_the_example_holds_the_mean_signed_delay_of_each_channel() {
         "{hidden:?}"
     );
     let words = hidden.concat();
-    assert!(words.contains("not schedulable over airspeed"), "{words}");
+    assert!(
+        words.contains("cannot be scheduled over airspeed"),
+        "{words}"
+    );
 }
 
 fn schedule_names() -> (Vec<String>, Vec<String>) {
@@ -269,21 +273,22 @@ fn what_leads_do_and_cost_is_told_and_what_to_check_first() {
         .collect();
     let first = said
         .iter()
-        .find(|text| text.contains("check first the time alignment of the records"))
+        .find(|text| text.contains("First check the time alignment of the records"))
         .unwrap();
     assert!(
-        first.starts_with("All held responses want about"),
+        first.starts_with("All held responses need about"),
         "{first}"
     );
     assert!(
-        said.contains(&"All 5 held responses get the delay or lead that they want.".to_owned()),
+        said.contains(&"All 5 held responses get the delay or lead that they need.".to_owned()),
         "{said:?}"
     );
     let words = lead_words(study, result, None);
-    // From the reference: P from LAT wants 65.4 ms, 24.1 on P, 41.2 on LAT.
+    // Reference values: P from LAT requires a lead of 65.4 ms, of which 24.1 ms on P and 41.2 ms on
+    // LAT.
     assert!(
         words.iter().any(|of| of
-            .starts_with("P from LAT wants 65 ms of lead over the band: 24 on P, 41 on LAT; +")),
+            .starts_with("P from LAT needs 65 ms of lead over the band: 24 on P, 41 on LAT; +")),
         "{words:?}"
     );
     assert!(
@@ -313,7 +318,7 @@ fn where_all_held_responses_want_lead_the_result_offers_it_with_what_it_buys() {
     };
     assert!((offer.without - mean(result)).abs() < 1e-9, "J as it is");
     let taken = mean(EXAMPLE_WITH_LEADS.condition(ConditionId(1)).unwrap());
-    // The gains change a little once leads are taken.
+    // 10 %: introducing leads changes the gains slightly.
     assert!(
         (offer.with - taken).abs() < 0.1 * offer.without,
         "{offer:?}, {taken}"
@@ -333,7 +338,8 @@ fn where_all_held_responses_want_lead_the_result_offers_it_with_what_it_buys() {
     );
 }
 
-/// The reference's plant, `H_oi = g (s + q) / (s^2 + p s + p^2)`, and as flight the same with known gains and signed delays.
+/// Returns a dataset with the plant of the reference, `H_oi = g (s + q) / (s^2 + p s + p^2)`, as
+/// the physics model. The identified model has known gains and signed delays in addition.
 fn known(entry: &Value, plant: &Value) -> Dataset {
     let number_at = |name: &str, pair: Pair| number(&plant[name][pair.output][pair.input]);
     let pairs: Vec<Pair> = PairTable::filled(3, 2, ()).pairs().collect();
@@ -467,7 +473,8 @@ fn known_signed_delays_and_gains_are_found_again() {
                 "{name}: {pair:?} {found_s} {sum_s}"
             );
         }
-        // One constant may move from all outputs to all inputs: the sum of squares decides.
+        // A constant may be moved from all outputs to all inputs without any change of the net
+        // delays; the minimum sum of squares determines it.
         let constant_s = leads.taus_s.inputs[0] - taus("in")[0];
         for (at, tau_s) in taus("out").iter().enumerate() {
             assert!(
@@ -503,11 +510,12 @@ fn what_a_response_wants_has_the_bar_of_whole_analyses_with_each_model_pinned() 
     let result = analysis.condition(id).unwrap();
     let words = lead_words(study, result, Some(&sure));
     let with_bar = |of: &String| {
-        of.starts_with("P from LAT wants 65 ± ")
+        of.starts_with("P from LAT needs 65 ± ")
             && of.contains(" ms of lead over the band: 24 on P, 41 on LAT")
     };
     assert!(words.iter().any(with_bar), "{words:?}");
-    // One physics model in place of the representative: tau of a channel is that of the whole analysis with it pinned.
+    // The tau of a channel with another physics model as the representative equals its tau in a
+    // whole analysis in which that model is pinned.
     let channel = CorrectedChannel::Input(study.dataset.find_pair("P", "LAT").unwrap().input);
     let representative = result.representative_name(BundleKind::Physics);
     let condition = study.dataset.condition(id).unwrap();
@@ -517,7 +525,7 @@ fn what_a_response_wants_has_the_bar_of_whole_analyses_with_each_model_pinned() 
         .map(|model| model.name.as_str())
         .filter(|name| *name != representative)
         .collect();
-    // The condition by itself: no other has a part in it.
+    // A dataset with this condition alone: no other condition influences it.
     let alone = Dataset::new(study.dataset.header(), vec![condition.as_ref().clone()]).unwrap();
     let mut alone = Study::new(Arc::new(alone));
     alone.settings = study.settings.clone();
@@ -559,7 +567,7 @@ fn what_a_response_wants_has_the_bar_of_whole_analyses_with_each_model_pinned() 
         "a lead: {}",
         bar.value
     );
-    // The same analyses: what differs is the rounding of the convex program.
+    // Both values are from the same analyses; they differ by the rounding of the convex solver.
     assert!(
         (trim - variance).abs() <= 1e-6 * variance,
         "{trim} {variance}"

@@ -1,4 +1,4 @@
-//! G from the mean of its logarithm over all pairs of kept models.
+//! G as the mean of its logarithm over all pairs of kept models.
 
 use std::collections::BTreeSet;
 
@@ -14,7 +14,7 @@ fn set(study: &mut Study, edit: Edit) {
     study.apply(&edit).unwrap();
 }
 
-/// `|H|` of every kept model of a bundle at each frequency.
+/// Returns `|H|` of every kept model of a bundle at each frequency.
 fn magnitudes(
     dataset: &Dataset,
     kind: BundleKind,
@@ -38,7 +38,7 @@ fn magnitudes(
 
 type Magnitudes = PairTable<Vec<f64>>;
 
-/// The mean of the middle two of an even count.
+/// Returns the median; for an even count, the mean of the middle two values.
 fn plain_median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     0.5 * (values[values.len() / 2 - 1] + values[values.len() / 2])
@@ -82,7 +82,7 @@ fn g_from_the_mean_is_the_mean_of_ln_g_of_every_pair_of_kept_models() {
             .flat_map(|of| identified.iter().map(move |flight| ln_gain(of, flight)))
             .collect();
         let mean = (all.iter().sum::<f64>() / all.len() as f64).exp();
-        // The program's ratios have been through decibels and back: some roundings each.
+        // The ratios in the program have been converted to decibels and back: some rounding errors.
         assert!(
             (gain / mean - 1.0).abs() < 1e-12,
             "{}: {gain} {mean}",

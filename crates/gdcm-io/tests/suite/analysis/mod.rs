@@ -1,4 +1,5 @@
-//! The whole method against reference figures, and properties of whole studies (figures: see `tests/data/README.md`).
+//! The whole method compared with reference values (source: `tests/data/README.md`), and properties
+//! of whole studies.
 
 use std::sync::LazyLock;
 
@@ -60,12 +61,12 @@ fn analyze(engine: &mut Engine, study: &Study) -> Analysis {
     engine.analyze(study, &Unobserved).unwrap()
 }
 
-/// The example as the reference figures were computed from it.
+/// Returns a study of the example dataset from which the reference values were computed.
 fn study_of_example() -> Study {
     Study::new(crate::REFERENCE_DATASET.dataset.clone())
 }
 
-/// The example analysed, its suggested outliers rejected, and analysed again.
+/// Second analysis of the example, after its suggested outliers were rejected.
 static EXAMPLE_WITH_SUGGESTIONS_REJECTED: LazyLock<Analysis> = LazyLock::new(|| {
     let mut study = study_of_example();
     let mut engine = Engine::default();

@@ -1,4 +1,5 @@
-//! Poles and zeros of published and made-up models, modes of the example, and what a pilot does not notice.
+//! Poles and zeros of published and synthetic models, modes of the example, and envelopes of
+//! maximum unnoticeable added dynamics (MUAD).
 
 use gdcm_method::fidelity::Muad;
 use gdcm_model::response::zeros::{finite_zeros, transmission_zeros};
@@ -23,7 +24,7 @@ fn state_space(file: &str) -> StateSpace {
     }
 }
 
-/// `C (sI - A)^-1 B + D` of one pair by dense elimination.
+/// Computes `C (sI - A)^-1 B + D` for one pair by dense elimination.
 fn value_at(model: &StateSpace, pair: Pair, s: Complex<f64>) -> Complex<f64> {
     let n = model.order();
     let resolvent = DMatrix::from_fn(n, n, |row, column| {
@@ -57,7 +58,8 @@ fn the_poles_of_published_models_have_the_sums_of_powers_of_their_matrices() {
         let mut size = model.a().norm();
         for exponent in 1..=4 {
             let sum: Complex<f64> = poles.iter().map(|pole| pole.powi(exponent)).sum();
-            // Similar matrices have equal traces; rounding is that of the entries of the power.
+            // Similar matrices have equal traces. `size` bounds the entries of the power, and thus
+            // its rounding errors.
             assert!(
                 (sum - power.trace()).norm() <= 1e-12 * size,
                 "{file}, power {exponent}: {sum} {}",
@@ -72,7 +74,8 @@ fn the_poles_of_published_models_have_the_sums_of_powers_of_their_matrices() {
 fn the_four_poles_of_a_near_defective_chain_are_near_their_place_and_without_participation() {
     let found = modes(&state_space("../near-defective-model.json")).unwrap();
     for mode in &found[..4] {
-        // A chain of four: the fourth root of 1e-15 of |A|, some 1e3, at most.
+        // A perturbation of about 1e-15 |A| with |A| up to 1e3 moves the poles of a chain of four
+        // by its fourth root, 1e-3.
         assert!((mode.pole + 0.001).norm() < 0.01, "{}", mode.pole);
         assert!(mode.participation.is_err(), "{mode:?}");
     }
@@ -104,7 +107,8 @@ fn the_responses_of_published_models_are_zero_at_their_zeros() {
                 .fold(0.0, f64::max);
             for zero in &zeros.finite {
                 let value = value_at(&model, pair, *zero).norm();
-                // Zeros within 1e-4 of a pole are rounded the more, the nearer they are.
+                // The closer a zero is to a pole, the larger is its rounding error; zeros within
+                // 1e-4 of a pole determine this bound.
                 assert!(
                     value < 1e-6 * peak,
                     "{file} {pair:?} {zero}: {value:e} of {peak:e}"
@@ -128,7 +132,7 @@ fn the_envelopes_are_those_of_independent_code() {
         let muad = Muad::at(of("w"));
         let found = [muad.magnitude_db, muad.phase_deg].concat();
         let expected = ["gain_lo_dB", "gain_up_dB", "phase_lo_deg", "phase_up_deg"].map(of);
-        // The same formula in another order of rounding.
+        // The reference evaluates the same formula in another order.
         assert!(
             found
                 .iter()
@@ -139,7 +143,8 @@ fn the_envelopes_are_those_of_independent_code() {
     }
 }
 
-/// The models of a condition of the example at which some mode jumps, by name.
+/// Returns the names of the models of an example condition at which the track of some mode is
+/// discontinuous.
 fn jumping(id: i64) -> Vec<String> {
     let dataset = &crate::REFERENCE_DATASET.dataset;
     let modes =
@@ -196,7 +201,7 @@ fn states_take_part_in_the_modes_by_their_names() {
     for mode in of_nominal {
         let shares = match &mode.participation {
             Ok(shares) => shares,
-            // Sensors of the same make have equal poles.
+            // Participation is undefined for equal poles, which identical sensors have.
             Err(_) => {
                 let near = of_nominal
                     .iter()
@@ -208,7 +213,8 @@ fn states_take_part_in_the_modes_by_their_names() {
         assert!((shares.iter().map(|(_, share)| share).sum::<f64>() - 1.0).abs() < 1e-12);
         if mode.frequency_rad_s < 5.0 {
             slow += 1;
-            // Nothing acts back upon actuators, and sensors act upon nothing.
+            // Actuators and sensors do not participate in slow modes: nothing acts on actuators,
+            // and sensors act on nothing.
             for (state, share) in shares
                 .iter()
                 .map(|&(state, share)| (nominal.state_name(state), share))

@@ -1,4 +1,4 @@
-//! What the result of a condition says.
+//! Remarks on the results of a condition.
 
 use gdcm_words::condition_remarks::remarks;
 use gdcm_words::remark::{Remark, RemarkKind};
@@ -32,7 +32,7 @@ fn a_held_response_that_goes_farther_from_flight_is_named_with_both_costs() {
         let said = said(analysis, condition.id().0);
         let remark = said
             .iter()
-            .find(|remark| remark.text.starts_with("Held, yet farther from flight"));
+            .find(|remark| remark.text.starts_with("Held, but farther from flight"));
         for pair in result.held().marked() {
             let cost = result.cost[pair].unwrap();
             let name = format!("{} (J ", analysis.study.dataset.pair_name(pair));
@@ -70,7 +70,7 @@ fn a_tolerance_decides_whether_a_loop_of_held_gains_agrees() {
     let mut study = study_of_example();
     let mut engine = Engine::default();
     study.apply(&setting::POINTS.to(40)).unwrap();
-    // LON and COL to Q and NZ: a loop.
+    // LON and COL to Q and NZ form a loop of four held responses.
     for (output, input) in [("Q", "LON"), ("Q", "COL"), ("NZ", "LON"), ("NZ", "COL")] {
         let pair = study.dataset.find_pair(output, input).unwrap();
         study.apply(&Edit::Hold(pair, true)).unwrap();
@@ -115,6 +115,6 @@ fn a_tolerance_decides_whether_a_loop_of_held_gains_agrees() {
     assert!(
         said.iter()
             .any(|remark| remark.kind == RemarkKind::Good
-                && remark.text.contains("count as agreeing"))
+                && remark.text.contains("which is accepted"))
     );
 }

@@ -1,5 +1,5 @@
-//! Frequency responses on the instruction set of this machine: against 50-digit arithmetic, against dense LU, and bit
-//! by bit.
+//! Frequency responses on the instruction sets of this machine, compared with 50-digit arithmetic,
+//! with dense LU decomposition, and bit by bit with each other.
 
 use proptest::prelude::*;
 use pulp::Arch;
@@ -21,7 +21,7 @@ fn response(model: &StateSpace, grid: &FrequencyGrid) -> Values {
     response.curves().clone()
 }
 
-/// Entries from a sine: without pattern, and the same everywhere.
+/// Returns a matrix with entries from a sine: irregular, and the same on every machine.
 fn matrix(rows: usize, columns: usize, seed: f64) -> DMatrix<f64> {
     DMatrix::from_fn(rows, columns, |row, column| {
         (seed + 7.3 * row as f64 + 2.9 * (column * column) as f64).sin()
@@ -36,7 +36,7 @@ fn model(order: usize, outputs: usize, inputs: usize) -> StateSpace {
     StateSpace::new(a, b, c, d).unwrap()
 }
 
-/// `C (j omega I - A)^-1 B + D` by LU decomposition of the whole matrix.
+/// Computes `C (j omega I - A)^-1 B + D` by LU decomposition of the whole matrix.
 fn dense(model: &StateSpace, omega: f64) -> DMatrix<Complex<f64>> {
     let complex = |matrix: &DMatrix<f64>| matrix.map(|entry| Complex::new(entry, 0.0));
     let n = model.order();
@@ -45,7 +45,7 @@ fn dense(model: &StateSpace, omega: f64) -> DMatrix<Complex<f64>> {
     complex(model.c()) * states + complex(model.d())
 }
 
-/// The largest difference from dense LU, relative to the largest value.
+/// Returns the largest difference from dense LU decomposition, relative to the largest value.
 fn difference_from_dense(model: &StateSpace, grid: &FrequencyGrid) -> f64 {
     let found = response(model, grid);
     let mut difference = 0.0_f64;
@@ -62,7 +62,7 @@ fn difference_from_dense(model: &StateSpace, grid: &FrequencyGrid) -> f64 {
     difference / largest
 }
 
-/// The instruction sets of this machine.
+/// Returns the instruction sets that this machine supports.
 fn instruction_sets() -> Vec<Arch> {
     let mut sets = vec![Arch::Scalar];
     #[cfg(target_arch = "x86_64")]
@@ -75,7 +75,7 @@ fn instruction_sets() -> Vec<Arch> {
     sets
 }
 
-/// The frequencies and values of a case in 50-digit arithmetic.
+/// Frequencies of a reference case, and its values in 50-digit arithmetic.
 struct Golden {
     omega: Vec<f64>,
     values: Vec<DMatrix<Complex<f64>>>,
@@ -99,8 +99,8 @@ impl Golden {
         }
     }
 
-    /// The largest error at the first `count` of the frequencies, repeated as often as need be, relative to the largest
-    /// value.
+    /// Returns the largest error at `count` frequencies, relative to the largest value; the
+    /// frequencies of the case are repeated if `count` is larger.
     fn error(&self, arch: Arch, model: &StateSpace, count: usize) -> f64 {
         let omega: Vec<f64> = self.omega.iter().copied().cycle().take(count).collect();
         let largest = self
@@ -133,12 +133,13 @@ fn every_instruction_set_agrees_with_50_digit_arithmetic_at_every_remainder_leng
         let name = &case["model"];
         let golden = Golden::of(case);
         for arch in instruction_sets() {
-            // Every remainder of a division by the eight of a group, and all frequencies of the case.
+            // Every remainder modulo 8, the number of frequencies in a group, and all frequencies
+            // of the case.
             for count in (0..=17).chain([golden.omega.len()]) {
                 let error = golden.error(arch, &model, count);
-                // The limit of the specification. A fourfold pole at -0.001 rad/s magnifies rounding of the system
-                // matrix some 1e7 times: the near-defective model comes near the limit; the others have errors about
-                // 1e-13.
+                // Limit from the specification. The near-defective model comes close to it: its
+                // fourfold pole at -0.001 rad/s magnifies the rounding of the system matrix about
+                // 1e7 times. The errors of the other models are about 1e-13.
                 assert!(
                     error <= 1e-9,
                     "{name}, {count} frequencies, {arch:?}: {error:.1e}"
@@ -156,10 +157,10 @@ fn every_instruction_set_agrees_with_50_digit_arithmetic_at_every_remainder_leng
 fn every_shape_agrees_with_dense_lu() {
     for order in [1, 2, 3, 4, 12, 30, 60] {
         for (outputs, inputs) in [(1, 1), (6, 4), (4, 6), (2, 5), (9, 7)] {
-            // Far below the poles, among them, and far above.
+            // From far below the poles to far above them.
             let difference =
                 difference_from_dense(&model(order, outputs, inputs), &grid(1e-2, 1e3, 43));
-            // Rounding of at most 3e-11 (`n tau` times 1e-16); poles nearby amplify it.
+            // The rounding error is at most 3e-11 (`n tau` times 1e-16); nearby poles amplify it.
             assert!(
                 difference < 1e-10,
                 "{order} states, {outputs} x {inputs}: {difference:.1e}"
@@ -168,16 +169,16 @@ fn every_shape_agrees_with_dense_lu() {
     }
 }
 
-/// What is special about the system matrix of a random model.
+/// Special structure of the system matrix of a random model.
 #[derive(Clone, Copy, Debug)]
 enum Structure {
     Full,
     Sparse,
-    /// States in units from 1e-12 to 1e12 of one another.
+    /// State units that differ by factors of up to 1e24.
     Units,
     /// Hessenberg, with subdiagonal entries down to 1e-20.
     WeakChain,
-    /// Two parts that do not act upon each other.
+    /// Two uncoupled subsystems.
     TwoParts,
 }
 
@@ -219,7 +220,7 @@ proptest! {
         model in random_model(), points in 2..40usize, low in -3.0..1.0f64, decades in 0.1..5.0f64
     ) {
         let difference = difference_from_dense(&model, &grid(10_f64.powf(low), 10_f64.powf(low + decades), points));
-        // The limit of the specification; 20000 such models stayed below 1e-10.
+        // Limit from the specification; the difference was below 1e-10 for 20 000 such models.
         prop_assert!(difference < 1e-9, "{difference:.1e}");
     }
 }
@@ -229,7 +230,7 @@ fn every_number_of_frequencies_agrees_with_dense_lu() {
     let model = model(10, 6, 4);
     for points in 2..=35 {
         let difference = difference_from_dense(&model, &grid(0.1, 100.0, points));
-        // As above.
+        // Rounding error, as in `every_shape_agrees_with_dense_lu`.
         assert!(difference < 1e-10, "{points} frequencies: {difference:.1e}");
     }
 }
@@ -247,7 +248,8 @@ fn the_rest_of_the_grid_changes_a_value_by_rounding_only() {
     for (k, omega) in whole.omega().iter().enumerate() {
         for (pair, alone) in response(&model, &grid(*omega, 2.0 * omega, 2)).iter() {
             let difference = (alone[0] - values[pair][k]).norm() / largest;
-            // Frequencies of a group choose their pivots together; the bound of either choice is 3e-11.
+            // The pivots are chosen for a whole group of frequencies, so the two results may use
+            // different pivots; the rounding error of either is at most 3e-11.
             assert!(
                 difference < 6e-11,
                 "{omega} rad/s, {pair:?}: {difference:.1e}"
@@ -289,7 +291,7 @@ fn a_static_gain_has_the_same_value_at_every_frequency() {
     }
 }
 
-/// A number of any size that a machine can hold, or zero.
+/// Zeros and finite numbers of any magnitude.
 fn any_size() -> impl Strategy<Value = f64> {
     prop_oneof![
         1 => Just(0.0),
@@ -299,7 +301,7 @@ fn any_size() -> impl Strategy<Value = f64> {
     ]
 }
 
-/// The greatest entry that is computed with.
+/// Largest magnitude of an entry that the program accepts in computations.
 const LARGEST_ENTRY: f64 = 1e75;
 
 proptest! {
@@ -322,7 +324,7 @@ proptest! {
         let response = FrequencyResponse::of(&Dynamics::StateSpace(StateSpace::new(a, b, c, d).unwrap()), &grid(0.5, 12.0, 20));
         let none = response.not_finite();
         prop_assert!(computable || none.len() == p * m, "what is too large is refused whole");
-        // A thousandth of that, on any machine.
+        // A generous limit: the computation takes about a thousandth of this time.
         prop_assert!(begun.elapsed().as_secs_f64() < 5.0);
     }
 
@@ -334,7 +336,8 @@ proptest! {
         for (omega, value) in grid.omega().iter().zip(&response(&lag, &grid)[Pair::new(0, 0)]) {
             let through = lag.c()[0] * lag.b()[0] / Complex::new(-lag.a()[0], *omega);
             let largest = through.norm().max(lag.d()[0].abs());
-            // Rounding of a handful of operations; below the normal numbers of the machine an absolute error.
+            // Rounding of a few operations; below the smallest normal number, the error is
+            // absolute.
             let error = (value - (through + lag.d()[0])).norm();
             prop_assert!(!value.is_finite() || error <= 1e-14 * largest + 1e-300, "{value} for {through} + {}", lag.d()[0]);
         }
@@ -348,7 +351,7 @@ proptest! {
         let two = |power: i32| 2_f64.powi(power);
         let n = model.order();
         let a = DMatrix::from_fn(n, n, |row, column| {
-            // In two steps: a power of two below 2^-1022 is none.
+            // Scale in two steps: a single power of two could underflow (below 2^-1022).
             model.a()[(row, column)] * two(time) * two(units[row] - units[column])
         });
         let b = DMatrix::from_fn(n, model.inputs(), |row, column| model.b()[(row, column)] * two(input) * two(units[row]));
@@ -362,12 +365,13 @@ proptest! {
             let largest = expected.iter().map(|value| value.norm()).fold(0.0, f64::max);
             let found = response(&scaled, &grid(omega * two(time), 2.0 * omega * two(time), 2));
             for (pair, values) in found.iter() {
-                // Back in two steps, for the same reason.
+                // Scale back in two steps, to avoid underflow as above.
                 let half = (input + output - time) / 2;
                 let value = values[0] * two(-half) * two(half - (input + output - time));
                 let error = (value - expected[(pair.output, pair.input)]).norm();
-                // Rounding of at most 3e-11 of the balanced A, which poles nearby amplify: 1.4e-9 was the worst of 4000. One
-                // value lost by underflow or overflow is an error of 1.
+                // The rounding error is at most 3e-11 of the balanced A, but nearby poles amplify
+                // it: the maximum in 4000 cases was 1.4e-9. A value lost by underflow or overflow
+                // would be an error of 1.
                 prop_assert!(error <= 1e-6 * largest, "{pair:?}: {error:.1e} of {largest:.1e}");
             }
         }

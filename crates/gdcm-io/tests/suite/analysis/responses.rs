@@ -10,7 +10,7 @@ fn matrix(value: &Value) -> DMatrix<f64> {
     DMatrix::from_fn(rows.len(), rows[0].len(), |row, column| rows[row][column])
 }
 
-/// A model from the literature, by file name.
+/// Returns a model from the literature, by file name.
 pub fn model_of(file: &str) -> Dynamics {
     let value = json(match file {
         "compleib_HE2_AH64_130kt.json" => {
@@ -42,7 +42,7 @@ pub fn model_of(file: &str) -> Dynamics {
     Dynamics::StateSpace(StateSpace::new(a, b, c, d).unwrap())
 }
 
-/// A model of the example, by condition, bundle and name; or of a file.
+/// Returns a model of the example by condition, bundle and name, or a model from a file.
 pub fn dynamics_of(case: &Value) -> Dynamics {
     let name = case["model"].as_str().unwrap();
     let Some(id) = case["condition"].as_i64() else {
@@ -68,7 +68,8 @@ pub fn dynamics_of(case: &Value) -> Dynamics {
         .clone()
 }
 
-/// The response at any frequencies: a grid has both ends of a band, so each one is the lower end of a band of its own.
+/// Returns the response at a single frequency: the lower end of a grid of two points, since a grid
+/// contains both ends of its band.
 fn response_at(dynamics: &Dynamics, omega: f64) -> PairTable<Complex<f64>> {
     let band = gdcm_model::dataset::Band::new(omega, 2.0 * omega).unwrap();
     let response = FrequencyResponse::of(dynamics, &FrequencyGrid::logarithmic(band, 2));

@@ -1,4 +1,4 @@
-//! Signs and units that one side has otherwise are found, named and turned.
+//! Differing signs and units of a channel in the two bundles: detection, remark and correction.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -20,7 +20,7 @@ use super::*;
 const NZ: Channel = Channel::Output(5);
 const COL: Channel = Channel::Input(3);
 
-/// The example with the models of one bundle changed.
+/// Returns a study of the example in which `change` was applied to the models of one bundle.
 fn changed(bundle: BundleKind, change: impl Fn(&Model) -> Model) -> Study {
     let before = study_of_example().dataset;
     let conditions = before.conditions().iter().map(|condition| {
@@ -45,7 +45,8 @@ fn changed(bundle: BundleKind, change: impl Fn(&Model) -> Model) -> Study {
     ))
 }
 
-/// The example with a channel of the models of one bundle scaled: an output's rows of C and D, an input's columns of B and D.
+/// Returns a study of the example in which a channel of the models of one bundle is scaled: rows of
+/// C and D for an output, columns of B and D for an input.
 fn scaled(bundle: BundleKind, channel: Channel, factor: f64) -> Study {
     changed(bundle, |model| {
         let old = model.state_space().unwrap();
@@ -102,10 +103,10 @@ fn an_output_of_the_other_sign_is_found_and_turned_to_the_last_digit() {
         "{words}"
     );
     assert!(
-        words.ends_with("NZ of the identified models has the other sign. Turn it?"),
+        words.ends_with("NZ of the identified models has the opposite sign. Reverse it?"),
         "{words}"
     );
-    // Before any delay, zero or mode is blamed.
+    // The remark on the sign comes first, before remarks on delays, zeros or modes.
     let said = remarks(&study, flipped.condition(ConditionId(1)).unwrap(), None);
     assert_eq!(
         (said[0].text.as_str(), said[0].turn),
@@ -128,7 +129,7 @@ fn an_output_of_the_other_sign_is_found_and_turned_to_the_last_digit() {
     assert!(
         said[0]
             .text
-            .starts_with("NZ of the identified models is turned")
+            .starts_with("The sign of NZ is reversed in the identified models")
             && said[0].turn == Some((NZ, None))
     );
 
@@ -257,6 +258,6 @@ fn signs_go_with_the_decisions_by_the_names_of_channels() {
     let (_, not_applied) = unknown.applied_to(study_of_example().dataset);
     assert_eq!(
         dataset_difference_text(&not_applied[0]),
-        "a decision no longer applies: turn AZ: the dataset has no such channel"
+        "a decision no longer applies: reverse the sign of AZ: the dataset has no such channel"
     );
 }

@@ -15,7 +15,8 @@ use gdcm_study::stages::engine::WantedFirst;
 use super::*;
 use crate::EveryCore;
 
-/// A study of the example on few frequencies: what these tests ask does not depend on how many.
+/// Returns a study of the example with few frequencies; the tested properties do not depend on
+/// their number.
 fn short_study() -> Study {
     let mut study = study_of_example();
     study.apply(&setting::POINTS.to(40)).unwrap();
@@ -35,7 +36,7 @@ fn held_responses_have_their_delta_gain_as_net_gain_in_every_condition() {
         for pair in result.held().marked() {
             let net = result.correction.net_gain(pair);
             let wanted = result.comparison.delta.gain[pair].unwrap();
-            // Matched means within 1e-8 of the logarithm.
+            // A response is matched if the logarithm agrees within 1e-8.
             assert!(
                 (net / wanted - 1.0).abs() < 1e-8,
                 "{pair:?}: {net} for {wanted}"
@@ -125,7 +126,7 @@ fn every_condition_out_of_the_schedule_leaves_corrections_without_one() {
     assert!(written["schedule"].is_null());
     assert_eq!(
         written["assessment"]["left_out"][0]["why"],
-        "no schedule: no condition that could be solved is chosen for it"
+        "no schedule: none of the conditions chosen for it has a correction"
     );
 }
 
@@ -152,7 +153,7 @@ fn corrections_of_chosen_conditions_hold_those_and_the_schedule_of_all() {
     );
 }
 
-/// Keeps the first result, and ends the analysis after so many steps.
+/// Keeps the results passed on during an analysis, which it cancels after `steps` steps.
 struct Onlooker {
     first: ConditionId,
     steps: usize,
@@ -185,7 +186,7 @@ impl Progress for Onlooker {
 impl Onlooker {
     fn analyze(&self, engine: &mut Engine, study: &Study) -> Result<Analysis, Cancelled> {
         let tell = |result: &Result<ConditionAnalysis, ConditionFailure>| {
-            // Nothing but the condition wanted first is done by then.
+            // At this point only the condition requested first has been analysed.
             assert!(self.heard.load(Ordering::Relaxed) <= 100);
             self.seen.lock().unwrap().push(result.clone());
         };
@@ -211,7 +212,8 @@ fn results_have_the_same_bits_whatever_the_number_of_threads() {
             .unwrap();
         let together =
             pool.install(|| analyze(&mut Engine::with_executor(Box::new(EveryCore)), &study));
-        // Debug prints the shortest text that reads back as the same bits, and tells -0 from 0.
+        // The debug output contains the shortest digits that identify the bits, and distinguishes
+        // -0 from 0.
         assert!(
             format!("{together:?}") == format!("{alone:?}"),
             "{threads} threads"
@@ -253,7 +255,7 @@ fn an_analysis_that_is_stopped_halfway_goes_on_from_there_with_the_same_result()
     );
 }
 
-/// The example with its conditions, and their models, in reverse order.
+/// Returns the example with its conditions, and the models of each, in reverse order.
 fn reversed(dataset: &Dataset) -> Dataset {
     let conditions = dataset.conditions().iter().rev().map(|condition| {
         let bundle = |kind| condition.bundle(kind).iter().rev().cloned().collect();

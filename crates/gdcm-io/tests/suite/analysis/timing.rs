@@ -1,4 +1,4 @@
-//! Models of discrete time and models with delayed channels, from the file to the result (M2a).
+//! Discrete-time models and models with delayed channels, from the file to the result (M2a).
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -18,8 +18,8 @@ use super::*;
 const SMALL: &str = include_str!("../../../../../tests/data/small-dataset.json");
 const FIRST: ConditionId = ConditionId(7);
 
-/// The small dataset, of whose first condition the identified bundle is the nominal model with these keys, and the rest of
-/// `more`.
+/// Returns the small dataset with other identified models in its first condition: the nominal model
+/// with `keys` added, followed by the models in `more`.
 fn dataset(keys: &Value, more: &[Value]) -> Arc<Dataset> {
     let mut file = json(SMALL);
     let mut flight = file["conditions"][0]["physics_models"][0].clone();
@@ -65,7 +65,7 @@ fn delays_of_the_channels_are_the_delta_delays() {
     let delta = &first(&analysis).comparison.delta;
     for (pair, gain) in delta.gain.iter().filter(|(_, gain)| gain.is_some()) {
         let expected = [0.03, 0.0][pair.input] + [0.01, 0.02][pair.output];
-        // A phase of a few rad, unwrapped and divided by at least 0.5 rad/s.
+        // Rounding: a phase of a few radians is unwrapped and divided by at least 0.5 rad/s.
         assert!((gain.unwrap() - 1.0).abs() < 1e-12, "{pair:?}");
         assert!(
             (delta.delay_s[pair].unwrap() - expected).abs() < 1e-12,
@@ -89,7 +89,7 @@ fn a_model_sampled_too_slowly_for_the_band_is_set_aside_and_the_reason_said() {
         .iter()
         .map(|caution| caution_text(caution, name))
         .collect();
-    let words = "it is of discrete time, T = 0.5 s, and has no response from π/T = 6.2832 rad/s on";
+    let words = "it is a discrete-time model with T = 0.5 s, and has no response from π/T = 6.2832 rad/s upwards";
     assert!(
         said.iter()
             .any(|said| said.contains("\"slow\" is set aside") && said.contains(words)),

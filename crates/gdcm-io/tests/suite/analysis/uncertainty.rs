@@ -1,4 +1,5 @@
-//! How sure each figure is, against independent figures, and what may never happen to a bar (M13).
+//! Confidence intervals of the results: comparison with independent reference values, and general
+//! properties (M13).
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -21,12 +22,13 @@ use gdcm_words::derivation::derivation;
 
 use super::*;
 
-/// Cases of independent numpy code; what it says of pooling and of quantiles stands beside the functions.
+/// Cases computed by independent numpy code. Its values for pooling and quantiles are tested beside
+/// those functions.
 const REFERENCE: &str = include_str!("../../../../../tests/data/reference/uncertainty.json");
 
-/// The reference's own tolerance.
+/// Accuracy of the reference values.
 const TOLERANCE: f64 = 1e-6;
-/// Where the gain solver is involved: its optimum is flat.
+/// Tolerance for results of the gain solver, whose optimum is flat.
 const OF_SOLVER: f64 = 1e-5;
 
 fn case(name: &str) -> Value {
@@ -62,7 +64,8 @@ pub(super) fn uncertainty_of(study: &Study) -> (Analysis, Uncertainty) {
     (analysis, uncertainty)
 }
 
-/// A bar against the reference's: parts and half-width, and the degrees of freedom where there are any.
+/// Asserts that a bar agrees with the reference: value, parts, half-width, and degrees of freedom
+/// if it has any.
 #[track_caller]
 fn assert_bar(what: &str, bar: &Bar, reference: &Value, tolerance: f64) {
     let root = |part: Option<VarianceComponent>| part.map_or(0.0, |part| part.variance.sqrt());
@@ -93,7 +96,8 @@ fn assert_bar(what: &str, bar: &Bar, reference: &Value, tolerance: f64) {
         );
     }
     match reference["nu"].as_f64() {
-        // A hundredth of a degree moves the quantile by less than the tolerance.
+        // A relative change of 1e-3 in the degrees of freedom changes the quantile by less than the
+        // tolerance.
         Some(degrees) => assert!(
             (bar.degrees_of_freedom().unwrap() / degrees - 1.0).abs() < 1e-3,
             "{what}: {:?}",
@@ -127,7 +131,8 @@ fn assert_split(what: &str, split: &VarianceDecomposition, reference: &Value, to
     });
     let relative = |name: &str, found: f64| {
         let expected = number(&reference[name]);
-        // Ratios of small figures: a part in a thousand of what the solver leaves open.
+        // These are ratios of small values, in which the tolerance of the solver appears magnified:
+        // 1e-3.
         assert!(
             (found / expected - 1.0).abs() < 1e-3,
             "{what} {name}: found {found}, reference {expected}"
@@ -181,7 +186,7 @@ fn assert_difference(found: &AirspeedDifference, reference: &Value, tolerance: f
         &reference["u"],
         tolerance,
     );
-    // The probabilities are steep in the ratio.
+    // The ratio magnifies errors of the deviation in its denominator.
     assert_near(
         &what,
         found.difference.ratio().unwrap(),
@@ -196,7 +201,7 @@ fn assert_difference(found: &AirspeedDifference, reference: &Value, tolerance: f
     );
 }
 
-/// Everything that the reference says of the pairs of a case.
+/// Asserts that everything in the reference about the pairs of a case agrees.
 fn assert_pairs(analysis: &Analysis, found: &Uncertainty, reference: &Value, tolerance: f64) {
     let study = &analysis.study;
     for reference in list(reference) {
@@ -532,7 +537,8 @@ fn the_example_has_the_bars_of_the_reference() {
     assert_pairs(analysis, &found, &case["pairs"], OF_SOLVER);
 }
 
-/// Bars of every figure of every condition, by condition and in the order of the figures.
+/// Returns the bars of all results of all conditions, ordered by condition, then as the results are
+/// listed.
 fn all_bars(found: &Uncertainty) -> Vec<(ConditionId, Scalar, Option<Bar>)> {
     let of_condition = |(id, of): (
         &ConditionId,
@@ -562,7 +568,7 @@ fn the_order_of_models_and_conditions_does_not_matter() {
     for ((id, scalar, bar), (_, _, other)) in all_bars(&found).into_iter().zip(all_bars(&other)) {
         let [bar, other] =
             [bar, other].map(|bar| bar.map_or(0.0, |bar| bar.half_width(0.9).unwrap_or(0.0)));
-        // Sums in another order, and the solver's own rounding.
+        // Sums in another order, and rounding in the solver.
         assert!((bar - other).abs() < 1e-8, "{id} {scalar:?}: {bar} {other}");
     }
 }
@@ -590,14 +596,15 @@ fn one_model_left_says_what_is_not_included() {
     };
     assert_eq!(
         (bar(1).trim, bar(1).remarks()),
-        (None, vec!["trim not included"])
+        (None, vec!["uncertainty of the trim not included"])
     );
     assert!(
         bar(1).half_width(0.9).unwrap() > 0.0,
         "the identification is left"
     );
     let borrowed = bar(2).identification.unwrap();
-    // Two of the first condition, none of the third, which has one model, and one of the fourth.
+    // Degrees of freedom borrowed: two from the first condition, none from the third, which has a
+    // single model, and one from the fourth.
     assert_eq!(
         (borrowed.degrees_of_freedom, bar(2).remarks().len()),
         (3.0, 0),
@@ -621,7 +628,7 @@ fn without_a_second_identified_model_anywhere_the_bar_is_of_the_trim_only() {
         .unwrap();
     assert_eq!(
         (bar.identification, bar.remarks()),
-        (None, vec!["identification not included"])
+        (None, vec!["uncertainty of the identification not included"])
     );
     assert_eq!(bar.degrees_of_freedom(), Some(4.0));
 }
@@ -657,12 +664,12 @@ fn a_model_that_stands_twice_does_not_narrow_a_bar() {
     for ((id, scalar, bar), (_, _, other)) in all_bars(&found).into_iter().zip(all_bars(&other)) {
         let [bar, other] =
             [bar, other].map(|bar| bar.and_then(|bar| bar.half_width(0.9)).unwrap_or(0.0));
-        // The solver's own rounding.
+        // 1e-8 for rounding in the solver.
         assert!(other >= bar - 1e-8, "{id} {scalar:?}: {bar} {other}");
     }
 }
 
-/// Normal deviates from a seed (xorshift, Box and Muller).
+/// Returns a normal deviate from a random state (xorshift, Box-Muller transform).
 pub(super) fn normal(state: &mut u64) -> f64 {
     let mut uniform = || {
         *state ^= *state << 13;
@@ -694,7 +701,8 @@ fn bars_of_a_population_cover_the_truth_as_often_as_they_say() {
             for (place, model) in physics.iter_mut().enumerate() {
                 model["role"] = if place == 0 { "nominal" } else { "perturbed" }.into();
             }
-            // The flight is at a trim that nobody knows: as far from the nominal one as the bundle says.
+            // The trim of the flight is unknown: its deviation from the nominal trim has the
+            // standard deviation of the bundle.
             let flown = TRUTH + trim * normal(&mut state);
             let identified: Vec<Value> = (0..3)
                 .map(|place| {
@@ -725,8 +733,9 @@ fn bars_of_a_population_cover_the_truth_as_often_as_they_say() {
     assert!((0.86..=0.99).contains(&covered), "{covered}");
 }
 
-/// The known spread, the first condition with one model of the flight that has a band of this deviation \[dB\]: it takes the place of
-/// the spread that one model has not.
+/// Returns the dataset with known spread, in which the first condition has a single identified
+/// model with an error band of standard deviation `sd_db` \[dB\]. A single model has no spread; the
+/// band is used instead.
 fn dataset_with_band(sd_db: f64) -> Value {
     let (_, case) = study_of_known_spread();
     let mut dataset = case["dataset"].clone();
@@ -777,7 +786,7 @@ fn the_bars_of_a_dataset_with_other_bands_are_made_anew() {
         uncertainty_of(&narrow).1,
         "as of an engine that knows no other"
     );
-    // The band's deviations are taken as known: half of them is half the bar.
+    // The standard deviations of the band count as exact, so halving them halves the bar.
     assert!(
         (half(&of_wide) / half(&of_narrow) - 2.0).abs() < 1e-9,
         "{} {}",
@@ -869,7 +878,7 @@ fn a_model_with_another_band_is_another_model() {
     );
 }
 
-/// Stops when so many steps are told, and keeps what it hears.
+/// Cancels after `steps` progress steps, and keeps the reported progress.
 #[derive(Default)]
 struct StopsAt {
     steps: usize,
@@ -893,7 +902,8 @@ fn swaps_are_counted_one_by_one_and_stop_between_two_of_them() {
     let study = study_of_example();
     let mut engine = Engine::default();
     let analysis = analyze(&mut engine, &study);
-    // The responses of all 242 models are there: the steps from 242 on are swaps.
+    // Cancel at step 100 of 484, two for each of the 242 models, whose responses were computed by
+    // the analysis.
     let progress = StopsAt {
         steps: 100,
         ..StopsAt::default()
@@ -905,7 +915,8 @@ fn swaps_are_counted_one_by_one_and_stop_between_two_of_them() {
     let told = progress.told.into_inner();
     let total = progress.total.into_inner();
     assert_eq!(total, 2 * 242);
-    // Steps are told by hundredths of the whole; 22 responses of a condition come at once.
+    // Progress is reported in steps of a hundredth of the total, and the 22 responses of a
+    // condition are computed together.
     assert!((100..=100 + 22 + 5).contains(&told), "{told}");
     let whole = engine.uncertainty(&analysis, &Unobserved).unwrap();
     assert_eq!(

@@ -1,4 +1,5 @@
-//! Reasons of rejections, decisions kept under names, and what differs between them.
+//! Reasons for rejections, decisions kept under names (variants), and the differences between
+//! variants.
 
 use std::sync::Arc;
 
@@ -26,7 +27,7 @@ fn keep(name: &str) -> Edit {
     }
 }
 
-/// The example without its last condition, as if the file had been changed.
+/// Returns the example without its last condition, as if its file had been changed.
 fn shorter_example() -> Arc<Dataset> {
     let dataset = &crate::REFERENCE_DATASET.dataset;
     let conditions = dataset

@@ -1,4 +1,4 @@
-//! Dataset files: what is read, what is refused and in what words, and that nothing else can happen.
+//! Dataset files: which content is accepted, and with which messages other content is rejected.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -20,7 +20,7 @@ mod wrong_text;
 
 const SMALL: &str = include_str!("../../../../../tests/data/small-dataset.json");
 
-/// The small dataset, changed.
+/// Returns the small dataset as a file after `change`.
 fn small(change: impl FnOnce(&mut Value)) -> Vec<u8> {
     let mut value: Value = serde_json::from_str(SMALL).unwrap();
     change(&mut value);
@@ -31,7 +31,8 @@ fn load(bytes: &[u8]) -> Result<gdcm_io::LoadedDataset, FileError> {
     load_dataset_bytes(bytes, DatasetOrigin::File(PathBuf::from("test.json")))
 }
 
-/// The message that refuses these bytes; asserts that it is one line, and names the file.
+/// Returns the message with which these bytes are rejected; asserts that it is a single line and
+/// names the file.
 fn refusal(bytes: &[u8]) -> String {
     let message = load(bytes)
         .expect_err("the file is wrong and has to be refused")
@@ -43,7 +44,8 @@ fn refusal(bytes: &[u8]) -> String {
     message
 }
 
-/// Asserts that the small dataset, changed, is refused with every one of these words.
+/// Asserts that the small dataset after `change` is rejected with a message that contains all of
+/// `words`.
 fn assert_refused(change: impl FnOnce(&mut Value), words: &[&str]) {
     let message = refusal(&small(change));
     for word in words {
@@ -51,7 +53,8 @@ fn assert_refused(change: impl FnOnce(&mut Value), words: &[&str]) {
     }
 }
 
-/// The same of the small dataset's text, with the first `from` replaced.
+/// Asserts the same for the text of the small dataset in which the first `from` is replaced by
+/// `to`.
 fn assert_text_refused(from: &str, to: &str, words: &[&str]) {
     assert!(SMALL.contains(from), "{from}");
     let message = refusal(SMALL.replacen(from, to, 1).as_bytes());
@@ -189,7 +192,7 @@ fn an_order_that_the_matrices_do_not_have_is_a_caution() {
     assert_eq!(
         cautions,
         [
-            "condition 10 (number 2 in the file), identified model \"sweeps\" (number 1): order says 12, the matrices have 2 states"
+            "condition 10 (number 2 in the file), identified model \"sweeps\" (number 1): the stated order is 12, but the matrices have 2 states"
         ]
     );
 }
@@ -229,7 +232,7 @@ fn names_of_states_are_kept_where_there_is_one_for_each() {
         panic!("{:?}", wrong.cautions)
     };
     assert!(
-        caution.contains("1 names for 2 states: they are left out"),
+        caution.contains("1 state names for 2 states; the names are ignored"),
         "{caution}"
     );
 }

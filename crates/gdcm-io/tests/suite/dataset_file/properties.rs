@@ -1,4 +1,4 @@
-//! Whatever the bytes, the reader answers; whatever the dataset, it comes back.
+//! Reading arbitrary bytes never panics, and a dataset that is written and read again is unchanged.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +19,8 @@ use gdcm_model::dataset::{
 
 use super::{SMALL, gzip, load};
 
-/// Reads bytes; an error has to be one line.
+/// Reads bytes and returns whether they are a dataset; asserts that an error message is a single
+/// line.
 fn read(bytes: &[u8]) -> bool {
     match load(bytes) {
         Ok(_) => true,
@@ -34,7 +35,8 @@ fn read(bytes: &[u8]) -> bool {
     }
 }
 
-/// Replaces the `nth` value of a JSON tree, counted in depth first order; says how many there are in all.
+/// Replaces the `nth` value of a JSON tree, counted depth-first from 0; returns the number of
+/// values in the tree.
 fn replace_nth(value: &mut Value, nth: usize, replacement: &Value) -> usize {
     fn visit(value: &mut Value, left: &mut Option<usize>, seen: &mut usize, replacement: &Value) {
         *seen += 1;
@@ -76,7 +78,7 @@ fn odd_values() -> impl Strategy<Value = Value> {
     ])
 }
 
-/// Any finite number, the subnormal and the extreme ones included.
+/// Generates any finite number, including subnormal and extreme ones.
 fn numbers() -> impl Strategy<Value = f64> {
     use prop::num::f64::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL, ZERO};
     POSITIVE | NEGATIVE | NORMAL | SUBNORMAL | ZERO
@@ -256,7 +258,9 @@ proptest! {
         let mut bytes = gzip(SMALL.as_bytes());
         let at = (place * bytes.len() as f64) as usize;
         bytes[at] ^= 1 << bit;
-        // Some bits mean nothing (the time of packing), others pick one of two equal texts to copy from.
+        // If the file can still be read, the dataset must be unchanged: some bits have no meaning
+        // (such as the time of compression), and others select one of two equal strings to copy
+        // from.
         if read(&bytes) {
             prop_assert_eq!(load(&bytes).unwrap().dataset, load(SMALL.as_bytes()).unwrap().dataset);
         }

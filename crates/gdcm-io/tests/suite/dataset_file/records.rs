@@ -1,4 +1,4 @@
-//! Flight records of conditions, and the bands of models that were identified from them.
+//! Flight records of conditions, and the error bands of the models identified from these records.
 
 use nalgebra::DMatrix;
 
@@ -37,7 +37,7 @@ fn with_all(file: &mut Value) {
     model["source"] = json!({"made": "2026-03-01", "records": ["LON 1", "steps"]});
 }
 
-/// The text of a file that a dataset is saved to.
+/// Returns the text of the file to which the dataset in `bytes` is saved.
 fn saved(bytes: &[u8]) -> String {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("saved.json");

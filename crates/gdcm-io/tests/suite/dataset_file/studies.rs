@@ -1,4 +1,4 @@
-//! Study files.
+//! Writing and reading of study files.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -22,7 +22,7 @@ use gdcm_words::decisions::dataset_difference_text;
 
 use super::SMALL;
 
-/// A directory with the small dataset in `data/`, and the way to a study beside that.
+/// A directory with the small dataset in `data/`, and an empty `studies/` beside it.
 struct Desk {
     directory: tempfile::TempDir,
 }
@@ -48,7 +48,7 @@ impl Desk {
         load_dataset(&self.dataset()).unwrap()
     }
 
-    /// Saves a study without decisions and changes its text.
+    /// Saves a study without decisions, then changes the JSON in its file.
     fn saved(&self, change: impl FnOnce(&mut Json)) {
         let loaded = self.loaded();
         save_study(&Study::new(loaded.dataset.clone()), &loaded, &self.study()).unwrap();
@@ -69,7 +69,7 @@ fn decided(study: &mut Study, edits: &[Edit]) {
     }
 }
 
-/// Any value that a setting may have, of two numbers from 0 to 1.
+/// Returns a permitted value of a setting, chosen by two numbers between 0 and 1.
 fn value_of(setting: &Setting, [first, second]: [f64; 2]) -> Value {
     let within = |[least, most]: [f64; 2], at: f64| least + at * (most - least);
     match setting.kind {
@@ -124,7 +124,7 @@ fn every_setting_is_a_key_of_the_file() {
     }
 }
 
-/// How delays are scheduled in the study that a changed text is.
+/// Returns the delay scheduling of a study opened from a file after `change`.
 fn delay_scheduling(change: impl FnOnce(&mut Json)) -> DelayScheduling {
     let desk = Desk::new();
     desk.saved(change);
@@ -318,7 +318,7 @@ fn a_study_whose_dataset_is_gone_says_which() {
     );
 }
 
-/// What opening the study says is different, a line each.
+/// Returns the differences of the dataset that are reported when the study is opened, one per line.
 fn differences(desk: &Desk) -> Vec<String> {
     open_study(&desk.study())
         .unwrap()
@@ -353,7 +353,7 @@ fn a_study_whose_dataset_has_changed_opens_and_lists_what_is_different() {
 
     let found = differences(&desk);
     for words in [
-        "condition 7 is flown at 61 kt",
+        "condition 7 is at 61 kt",
         "condition 7, physics model \"nominal\" has changed",
         "condition 7, physics model \"V+5kt\" was removed",
         "condition 7, physics model \"V+6kt\" was added",

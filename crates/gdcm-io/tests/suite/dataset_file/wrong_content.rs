@@ -1,4 +1,4 @@
-//! Datasets that are refused for what they say.
+//! Dataset files rejected because of their content.
 
 use super::*;
 
@@ -74,7 +74,7 @@ fn text_where_a_number_belongs_is_named_by_matrix_row_and_column() {
     );
     assert_refused(
         |file| file["name"] = json!(5),
-        &["name: expected a text in quotation marks, found 5"],
+        &["name: expected text in quotation marks, found 5"],
     );
     assert_refused(
         |file| file["inputs"] = json!({"name": "LON"}),
@@ -222,7 +222,7 @@ fn a_condition_without_identified_models_is_no_fault() {
 fn ids_and_names_that_stand_twice_are_refused() {
     assert_refused(
         |file| file["conditions"][1]["id"] = json!(7),
-        &["duplicate id 7 (conditions number 1 and 2)"],
+        &["duplicate id 7 (positions 1 and 2 in the list)"],
     );
     let two_of_a_name = |file: &mut Value| {
         file["inputs"][1]["name"] = json!("LON");
@@ -416,7 +416,7 @@ fn a_sample_time_and_delays_that_cannot_be_are_named() {
         (
             "sample_time_s",
             json!(0),
-            "sample_time_s: expected a positive number of seconds (none at all for continuous time)",
+            "sample_time_s: expected a positive number of seconds (omit it for continuous time)",
         ),
         ("sample_time_s", json!(-1), "found -1"),
         (
@@ -471,7 +471,7 @@ fn a_valid_band_that_cannot_be_is_named() {
     for (value, words) in [
         (
             bands(json!([9, 0.5])),
-            "valid_band_rad_s, output 2, input 2: expected two rising frequencies from 0, found 9 and 0.5",
+            "valid_band_rad_s, output 2, input 2: expected a first and a last frequency, not negative and in ascending order, found 9 and 0.5",
         ),
         (bands(json!([-1, 9])), "found -1 and 9"),
         (

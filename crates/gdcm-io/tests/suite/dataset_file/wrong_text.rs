@@ -1,4 +1,4 @@
-//! Files that are refused before their contents are looked at.
+//! Files rejected before their content is examined.
 
 use super::*;
 
@@ -23,7 +23,7 @@ fn a_directory_is_refused_as_one() {
 #[cfg(unix)]
 #[test]
 fn a_file_that_may_not_be_read_is_refused() {
-    // A link to itself cannot be read by anyone, the superuser included.
+    // A link to itself cannot be read by any user, not even by the superuser.
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("loop.json");
     std::os::unix::fs::symlink(&path, &path).unwrap();
@@ -87,7 +87,7 @@ fn a_small_file_that_unpacks_to_more_than_the_limit_is_refused() {
         encoder.write_all(&blank).unwrap();
     }
     let message = refusal(&encoder.finish().unwrap());
-    assert!(message.contains("holds more than 128 MiB"), "{message}");
+    assert!(message.contains("exceeds 128 MiB"), "{message}");
 }
 
 #[test]
@@ -104,7 +104,8 @@ fn deep_nesting_is_refused_where_it_starts() {
         &["physics model \"nominal\"", "matrix A, row 1"],
     );
     assert!(refusal(deep.as_bytes()).contains("expected an object, found a list"));
-    // In a key that is not known it is passed over without recursion, and only the end is missing.
+    // The value of an unknown key is skipped without recursion, so the only error is the missing
+    // end.
     assert_text_refused("\"version\": 1", &format!("\"x\": {deep}"), &["line"]);
 }
 

@@ -1,4 +1,4 @@
-//! Figures on paper: what stands in the files, read back.
+//! Figures for print: the content of the exported files, read back.
 
 use std::sync::{Arc, LazyLock};
 
@@ -24,7 +24,8 @@ mod numbers;
 mod pages;
 mod views;
 
-/// What the figures of condition 10 of the example are made of, its suggested outliers rejected, with error bars.
+/// Data for figures of condition 10 of the example, with its suggested outliers rejected and with
+/// error bars.
 struct Example {
     analysis: Analysis,
     curves: Arc<ConditionCurves>,
@@ -116,7 +117,8 @@ impl Example {
     }
 }
 
-/// One curve of two points, across the whole of a frame whose ends are known.
+/// Returns a figure with one curve of two points, from corner to corner of a frame with known axis
+/// ranges.
 fn diagonal() -> Figure {
     let curve = Curve::new(
         "rising",

@@ -1,11 +1,11 @@
-//! The numbers of figures, compared with the analysis to the last digit.
+//! The numbers in figures agree with the analysis to the last digit.
 
 use gdcm_model::dataset::BundleKind;
 use gdcm_plot::figure::Role;
 
 use super::*;
 
-/// A row of the CSV file of a figure.
+/// A row of a figure's CSV file.
 #[derive(serde::Deserialize)]
 struct CsvRow {
     figure: String,
@@ -18,7 +18,7 @@ struct CsvRow {
     y: Option<f64>,
 }
 
-/// The rows, all of one length, under the columns of the row's fields.
+/// Returns the rows of a figure's CSV file; panics if a row lacks one of the expected columns.
 fn csv_rows(figure: &Figure) -> Vec<CsvRow> {
     let bytes = bytes(figure, ColumnWidth::Double, FigureFormat::Csv);
     let mut reader = csv::Reader::from_reader(&bytes[..]);
@@ -33,7 +33,7 @@ fn net_gains_are_those_of_the_analysis() {
     let quantities = [rows[0].x_quantity.as_str(), rows[0].y_quantity.as_str()];
     assert_eq!(quantities, ["Airspeed [kt]", "Net gain [-]"]);
     let mut compared = 0;
-    // Other labels are those of brackets.
+    // Labels that are no condition ids belong to brackets.
     for (row, id) in rows
         .iter()
         .filter_map(|row| Some((row, ConditionId(row.label.parse().ok()?))))
@@ -106,7 +106,8 @@ fn responses_are_those_of_the_models() {
             );
         }
     }
-    // Every model of both bundles, corrected and scheduled, beside the frequency.
+    // Columns: the frequency, every model of both bundles, the corrected model and the scheduled
+    // one.
     let both = models.len() + example.curves.identified.len();
     assert_eq!(tables[0].columns.len(), 1 + both + 2);
     assert!(
@@ -130,6 +131,6 @@ fn several_panels_are_one_table_with_their_names_in_each_row() {
         rows.iter()
             .all(|row| row.figure == figure.title && row.y_quantity == "ΔJ [-]")
     );
-    // For people the panels stand in tables of their own.
+    // In tables for people, each panel has a table of its own.
     assert_eq!(figure.tables().len(), 5);
 }

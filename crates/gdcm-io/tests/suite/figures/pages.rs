@@ -1,4 +1,4 @@
-//! The files of a figure whose geometry is known.
+//! Exported files of a figure with known geometry.
 
 use std::io::{Cursor, Read};
 
@@ -11,7 +11,7 @@ fn number(node: Node<'_, '_>, name: &str) -> f64 {
     node.attribute(name).unwrap().parse().unwrap()
 }
 
-/// Left, top, width and height of the only frame.
+/// Returns left, top, width and height of the only frame.
 fn frame(document: &Document<'_>) -> [f64; 4] {
     let clip = document
         .descendants()
@@ -40,7 +40,7 @@ fn a_curve_of_an_svg_leads_from_corner_to_corner() {
         .unwrap();
     let ends = points(curve.attribute("d").unwrap());
     assert_eq!(ends.len(), 2);
-    // Written to a hundredth of a point.
+    // Coordinates are written with a resolution of 0.01 pt.
     for (at, expected) in ends.iter().zip([[left, top + height], [left + width, top]]) {
         assert!(
             (at[0] - expected[0]).abs() < 0.011 && (at[1] - expected[1]).abs() < 0.011,
@@ -110,11 +110,11 @@ fn nothing_of_an_svg_lies_outside_the_paper() {
     }
 }
 
-/// Width, height and the colours of a PNG, row by row.
+/// Returns width, height and the colours of a PNG's pixels, row by row.
 fn decoded(bytes: &[u8]) -> (usize, usize, Vec<[u8; 3]>) {
     let mut reader = png::Decoder::new(Cursor::new(bytes)).read_info().unwrap();
     let dots = reader.info().pixel_dims.unwrap();
-    // 300 dots to the inch.
+    // 300 dpi are 11 811 pixels per metre.
     assert_eq!((dots.xppu, dots.yppu), (11811, 11811));
     let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
     let info = reader.next_frame(&mut pixels).unwrap();
@@ -147,7 +147,8 @@ fn a_png_has_300_dots_to_the_inch_and_the_curve_in_its_colour_where_it_runs() {
     let [left, top, frame_width, frame_height] = frame(&document);
     let at =
         |x: f64, y: f64| colors[(y * 300.0 / 72.0) as usize * width + (x * 300.0 / 72.0) as usize];
-    // A tenth of the way along, the middle of a line of 3 pt; away from it, the ground.
+    // A point at a tenth of the diagonal, at the centre of the line of 3 pt; then a point of the
+    // background away from it.
     assert_eq!(
         at(left + 0.1 * frame_width, top + 0.9 * frame_height),
         [0xc6, 0x2f, 0x2f]
@@ -157,12 +158,12 @@ fn a_png_has_300_dots_to_the_inch_and_the_curve_in_its_colour_where_it_runs() {
         [255, 255, 255]
     );
     assert_eq!(colors[0], [255, 255, 255]);
-    // The words have been drawn: something dark stands in the title's line.
+    // The title has been drawn: there are dark pixels above the frame.
     let title = &colors[..width * (top * 300.0 / 72.0) as usize];
     assert!(title.iter().filter(|color| color[0] < 0x60).count() > 200);
 }
 
-/// The unpacked streams of a PDF.
+/// Returns the decompressed streams of a PDF.
 fn streams(pdf: &[u8]) -> Vec<Vec<u8>> {
     let find = |from: usize, word: &[u8]| {
         pdf[from..]

@@ -1,4 +1,4 @@
-//! The figures of the views, of the example.
+//! Figures of the views for the example.
 
 use std::collections::BTreeSet;
 
@@ -35,7 +35,7 @@ fn the_legend_of_a_bode_figure_names_the_roles_that_are_present() {
         "scheduled",
         "rejected",
         "band of comparison",
-        "band of 95 %",
+        "95 % band",
     ];
     assert_eq!(legend(&figure), expected);
     let hidden = BTreeSet::from([Role::Perturbed, Role::Rejected]);
@@ -199,7 +199,8 @@ fn the_error_of_the_reference_is_nothing_and_a_correction_moves_the_median_of_a_
         .unwrap()
         .representative_name(gdcm_model::dataset::BundleKind::Physics);
     let mut errors = column(&format!("{physics}, corrected"));
-    // The curves have their own frequencies: a fifth as far apart as those that the median was taken of, and as many at the ends.
+    // Not exactly zero: the curves have other frequencies than the 200 from which the median was
+    // computed.
     assert!(gdcm_model::statistics::median(&mut errors).abs() < 0.02);
 }
 
@@ -223,7 +224,7 @@ fn evidence_stacks_the_shares_of_each_split_and_shows_the_rest_with_its_interval
         "trim",
         "identification",
         "unexplained",
-        "unexplained, interval of 90 %",
+        "unexplained, 90 % interval",
         "scatter",
     ];
     assert_eq!(legend(&figure)[..5], names);
@@ -255,7 +256,7 @@ fn evidence_stacks_the_shares_of_each_split_and_shows_the_rest_with_its_interval
                 );
                 foot += 100.0 * share;
             }
-            // Sums of three quotients by the same number.
+            // Rounding of a sum of three quotients with the same denominator.
             assert!((foot - 100.0).abs() < 1e-9, "{foot}");
         }
     }
@@ -280,7 +281,7 @@ fn the_numbers_of_evidence_name_what_the_scatter_is_about() {
         format!("{:?}", 100.0 * split.scatter.sqrt())
     );
     assert_eq!(
-        row("unexplained, interval of 90 %, upper")[3],
+        row("unexplained, 90 % interval, upper")[3],
         format!("{:?}", 100.0 * high)
     );
 }
@@ -305,12 +306,13 @@ fn without_error_bars_there_is_no_evidence() {
     );
 }
 
-/// Where the numbers of dots and the factors of brackets stand on paper.
+/// Returns the text and the area on paper of the condition numbers at dots and of the factors at
+/// brackets.
 fn labels_on_paper(figure: &Figure, width: ColumnWidth) -> Vec<(String, Area)> {
     let label = |shape: &Shape| match shape {
         Shape::Text(text) if text.color != Color::INK && text.words.len() <= 6 => {
             let length = gdcm_plot::figure::layout::width(&text.words) * text.size_pt;
-            // Figures have no descenders.
+            // Digits have no descenders.
             let height = 0.74 * text.size_pt;
             Some((
                 text.words.clone(),
@@ -374,7 +376,12 @@ fn net_gains_on_paper_have_their_bars_and_brackets() {
         "significant difference, × expected",
         "difference, not significant",
     ];
-    let names = ["bar of 90 %", "identification in it", beyond, within];
+    let names = [
+        "90 % error bar",
+        "identification part of the error bar",
+        beyond,
+        within,
+    ];
     assert!(
         names
             .iter()

@@ -1,10 +1,10 @@
-//! A grammar of HDF5, with the attributes by which MATLAB says what it keeps there.
+//! Random generator of HDF5 files, with the attributes by which MATLAB marks its classes.
 
 use hdf5_pure::{AttrValue, DatasetBuilder, FileBuilder, GroupBuilder};
 
 use super::{CLASSES, Dice, NAMES, NamedBytes};
 
-/// A file of groups and datasets.
+/// Generates a file of groups and datasets.
 pub(super) fn file(dice: &mut Dice) -> NamedBytes {
     let mut file = FileBuilder::new();
     if dice.once_in(2) {
@@ -20,7 +20,8 @@ pub(super) fn file(dice: &mut Dice) -> NamedBytes {
             dataset(dice, file.create_dataset(&name));
         }
     }
-    // What cannot be written is no file, which a reader has to bear too.
+    // Combinations that the library cannot write become an empty file, which a reader must
+    // withstand too.
     ("f.h5".to_owned(), file.finish().unwrap_or_default())
 }
 

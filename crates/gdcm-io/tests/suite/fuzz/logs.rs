@@ -1,8 +1,8 @@
-//! Grammars of the logs of aircraft: ULog, DataFlash as bytes and as text, blackboxes.
+//! Random generators of flight logs: ULog, DataFlash in binary and text form, Blackbox.
 
 use super::{Dice, HARD, NamedBytes};
 
-/// A log of any of the systems.
+/// Generates a log of one of these systems.
 pub(super) fn file(dice: &mut Dice) -> NamedBytes {
     let (name, bytes) = match dice.below(4) {
         0 => ("f.ulg", ulog(dice)),

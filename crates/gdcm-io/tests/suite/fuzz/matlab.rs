@@ -1,4 +1,4 @@
-//! A grammar of MATLAB's files up to version 7, with objects of its classes.
+//! Random generator of MATLAB files up to version 7, with objects of its classes.
 
 use std::io::Write;
 
@@ -11,7 +11,7 @@ use super::matlab_files::{
 };
 use super::{CLASSES, Dice, HARD, NAMES, NamedBytes};
 
-/// A file of a few variables of any kind.
+/// Generates a file of a few variables of any kind.
 pub(super) fn file(dice: &mut Dice) -> NamedBytes {
     let variables = (0..1 + dice.below(4)).flat_map(|at| {
         let name = if dice.once_in(4) {
@@ -34,7 +34,7 @@ pub(super) fn file(dice: &mut Dice) -> NamedBytes {
     ("f.mat".to_owned(), file_with_objects(&variables, None))
 }
 
-/// A file of objects, with the part in which they lie.
+/// Generates a file of objects, with the subsystem data in which their contents are stored.
 pub(super) fn file_of_objects(dice: &mut Dice) -> NamedBytes {
     let names: Vec<&str> = (0..4 + dice.below(8))
         .map(|at| {
@@ -45,7 +45,7 @@ pub(super) fn file_of_objects(dice: &mut Dice) -> NamedBytes {
             }
         })
         .collect();
-    // Numbers that lead somewhere, and now and then too far.
+    // Indices are valid or one too large; about one in 40 is an extreme value.
     let within = |dice: &mut Dice, count: usize| match dice.below(40) {
         0 => *dice.of_list(&HARD),
         _ => dice.below(count + 1) as u32,
@@ -141,7 +141,8 @@ fn packed(variable: &[u8]) -> Vec<u8> {
     .concat()
 }
 
-/// Most are what their elements need; some are hard.
+/// Generates the dimensions of an array and its number of elements. One in 30 has an extreme
+/// dimension that contradicts the number.
 fn shape(dice: &mut Dice) -> (Vec<i32>, usize) {
     let sides: Vec<usize> = (0..2 + usize::from(dice.once_in(5)))
         .map(|_| dice.below(4))
@@ -174,13 +175,13 @@ fn numbers(dice: &mut Dice, count: usize) -> Vec<u8> {
     }
 }
 
-/// A value of any kind, with values in it.
+/// Generates a value of any kind; `deeper` limits the nesting.
 fn value(dice: &mut Dice, name: &str, deeper: usize) -> Vec<u8> {
     let (sides, count) = shape(dice);
     match dice.below(if deeper == 0 { 5 } else { 10 }) {
         0 => chars(name, dice.of_list::<&str>(&NAMES)),
         1 => {
-            // Columns of a sparse matrix, with its numbers.
+            // A sparse matrix: row indices, column starts, values.
             let places = |dice: &mut Dice, count: usize, bound: usize| {
                 let data: Vec<u8> = (0..count)
                     .flat_map(|_| (dice.below(bound) as i32).to_le_bytes())
@@ -224,7 +225,7 @@ fn value(dice: &mut Dice, name: &str, deeper: usize) -> Vec<u8> {
             record(name, &fields)
         }
         7 => {
-            // Records in an array, of any number of fields.
+            // A struct array with any number of fields.
             let width = dice.below(3);
             let names: Vec<u8> = (0..width)
                 .flat_map(|at| [b'a' + at as u8, 0, 0, 0])
@@ -255,7 +256,8 @@ fn value(dice: &mut Dice, name: &str, deeper: usize) -> Vec<u8> {
     }
 }
 
-/// A state-space model or a response whose sizes fit, unless something else stands in it.
+/// Generates a state-space model or a response with consistent dimensions, in which some matrices
+/// are replaced by other values.
 fn model(dice: &mut Dice, name: &str) -> Vec<u8> {
     let states = dice.below(4);
     let inputs = 1 + dice.below(2);

@@ -1,14 +1,16 @@
-//! Files that are damaged, put together at random or made to harm, for every reader: each ends with an answer, in time, within its
-//! budget, and lets no number through that is not finite.
+//! Random tests of every reader with files that are damaged, randomly generated or malicious: each
+//! reading must end without a panic, within the time limit and its budget, and must not return
+//! non-finite numbers.
 //!
-//! A short run is a test. For a long one (docs/testing.md):
+//! A short run is part of the tests. For a long run (docs/testing.md):
 //!
 //! ```text
 //! GDCM_FUZZ_EXECUTIONS=1000000 GDCM_FUZZ_SEED=7 cargo test -p gdcm-io --test suite fuzz::long -- --ignored --nocapture
 //! ```
 //!
-//! An execution is known by its seed and its number: the same file is made of them on every machine. A file that fails is kept in the
-//! folder of temporary files; `GDCM_FUZZ_FILE=path` tries that one alone.
+//! An execution is determined by the seed and its number, from which the same file is generated on
+//! every machine. A file that fails is kept in the folder for temporary files;
+//! `GDCM_FUZZ_FILE=path` runs that file alone.
 
 mod hdf5;
 mod logs;
@@ -43,18 +45,19 @@ use gdcm_study::{Edit, Study};
 
 use crate::made_up::tries;
 
-/// Memory that what a file holds may take here \[bytes\].
+/// Memory limit \[bytes\] of the reading budget in these tests.
 const MOST_MEMORY: u64 = 16 << 20;
-/// Steps of work that a file may take here.
+/// Work limit \[steps\] of the reading budget in these tests.
 const MOST_WORK: u64 = 20_000_000;
-/// What reading may take at most beside its budget and a copy of what is found: tables of the libraries that unpack \[bytes\].
+/// Maximum additional memory \[bytes\], beyond the budget and a copy of the content: tables of the
+/// decompression libraries.
 const BESIDE: u64 = 4 << 20;
-/// What one execution may take: the longest takes 2 s, on a machine with much else to do thirteen times as long.
+/// Time limit of an execution. The longest takes 2 s, or about 26 s on a heavily loaded machine.
 const LONGEST: Duration = Duration::from_secs(60);
-/// Most failures that are told.
+/// Number of failures after which a run ends.
 const MOST_FAILURES: usize = 20;
 
-/// Numbers that are hard on readers of sizes.
+/// Extreme values of lengths and indices.
 const HARD: [u32; 8] = [
     0,
     1,
@@ -65,7 +68,7 @@ const HARD: [u32; 8] = [
     0x0010_0000,
     0xdd00_0000,
 ];
-/// Numbers that are hard on mathematics.
+/// Extreme values of numbers.
 const EXTREME: [f64; 12] = [
     0.0,
     -0.0,
@@ -81,12 +84,12 @@ const EXTREME: [f64; 12] = [
     f64::NEG_INFINITY,
 ];
 
-/// A generator of random numbers that is the same on every machine (SplitMix64, Steele et al. 2014).
+/// Random number generator with the same results on every machine (SplitMix64, Steele et al. 2014).
 #[derive(Clone)]
 struct Dice(u64);
 
 impl Dice {
-    /// That of one execution.
+    /// Creates the generator of an execution.
     fn of(seed: u64, execution: u64) -> Self {
         Self(
             seed.wrapping_mul(0x9e37_79b9_7f4a_7c15)
@@ -105,7 +108,7 @@ impl Dice {
         (self.next() >> 33) as usize % bound.max(1)
     }
 
-    /// True once in so many times.
+    /// Returns true with a probability of 1 / `times`.
     fn once_in(&mut self, times: usize) -> bool {
         self.below(times) == 0
     }
@@ -114,7 +117,7 @@ impl Dice {
         &list[self.below(list.len())]
     }
 
-    /// A number: most are small, some are hard.
+    /// Generates a number, mostly a small one, occasionally an extreme one.
     fn number(&mut self) -> f64 {
         match self.below(8) {
             0 => *self.of_list(&EXTREME),
@@ -123,7 +126,7 @@ impl Dice {
         }
     }
 
-    /// The length of a side: most are small, some are hard.
+    /// Generates the length of a dimension, mostly small, occasionally extreme.
     fn side(&mut self) -> usize {
         match self.below(24) {
             0 => *self.of_list(&HARD) as usize,
@@ -133,7 +136,7 @@ impl Dice {
     }
 }
 
-/// Names that readers know, and some that they do not.
+/// Names that the readers recognise, and some others.
 const NAMES: [&str; 48] = [
     "A",
     "B",
@@ -204,17 +207,17 @@ const CLASSES: [&str; 16] = [
     "any",
 ];
 
-/// What a study and rules are called.
+/// File names of a study and of rules.
 const STUDY: &str = "small.gdcm-study.json";
 const RULES: &str = "small.gdcm-rules.json";
-/// What a table of tolerances and boundaries of levels are called.
+/// File names of a table of tolerances and of boundaries of levels.
 const TOLERANCES: &str = "small-tolerances.json";
 const LEVELS: &str = "small-levels.json";
 
-/// A file: its name, and its bytes.
+/// Name and bytes of a file.
 type NamedBytes = (String, Vec<u8>);
 
-/// Files of the tests' data in these folders.
+/// Files of the test data, which are damaged at random.
 static CORPUS: LazyLock<Vec<NamedBytes>> = LazyLock::new(|| {
     let root = crate::program_folder().join("tests/data");
     let folders = [
@@ -249,12 +252,13 @@ static CORPUS: LazyLock<Vec<NamedBytes>> = LazyLock::new(|| {
     files.chain(own_files()).collect()
 });
 
-/// The dataset of the study among the files.
+/// Path of the dataset to which the study in the corpus belongs.
 fn small_dataset() -> PathBuf {
     crate::program_folder().join("tests/data/small-dataset.json")
 }
 
-/// A study with a representative, a sign and a variant, rules that say something of a model, a table of tolerances, and levels.
+/// Returns files in the formats of this program: a study with a pinned model, a sign and a variant;
+/// rules with a declaration for one model; a table of tolerances; level boundaries.
 fn own_files() -> [NamedBytes; 4] {
     let folder = tempfile::tempdir().unwrap();
     let [study_path, rules_path, tolerances_path] =
@@ -308,7 +312,8 @@ fn own_files() -> [NamedBytes; 4] {
     ]
 }
 
-/// Opens what is read from files alone from a file of its own; gives whether that went well. A study is what a window lost too.
+/// Writes a file in a format that is read only from a path, and opens it; returns whether it was
+/// read. A study is also read as the autosaved study of a crashed window.
 fn opened(name: &str, bytes: &[u8]) -> Result<bool, String> {
     let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
     let path = folder.path().join(name);
@@ -337,7 +342,8 @@ fn opened(name: &str, bytes: &[u8]) -> Result<bool, String> {
     Ok(read)
 }
 
-/// One damage: a flipped bit, a hard number, a cut, a piece twice, a piece of another place.
+/// Damages a file once: flips a bit, inserts an extreme value, truncates it, or repeats or replaces
+/// a part.
 fn damage(bytes: &mut Vec<u8>, dice: &mut Dice) {
     let at = dice.below(bytes.len());
     match dice.below(6) {
@@ -368,7 +374,8 @@ fn damage(bytes: &mut Vec<u8>, dice: &mut Dice) {
     }
 }
 
-/// The file of an execution: one of the corpus, damaged, or one of a grammar, damaged or not.
+/// Returns the file of an execution: a damaged file of the corpus, or a generated one, damaged or
+/// not.
 fn file_of(dice: &mut Dice) -> NamedBytes {
     let grammars: [fn(&mut Dice) -> NamedBytes; 10] = [
         matlab::file,
@@ -397,7 +404,7 @@ fn file_of(dice: &mut Dice) -> NamedBytes {
     (name, bytes)
 }
 
-/// What became of the files of a run.
+/// Results of a run.
 #[derive(Default)]
 struct Tally {
     read: AtomicU64,
@@ -406,7 +413,11 @@ struct Tally {
     failures: Mutex<Vec<String>>,
 }
 
-/// Reads a file as models, as records, and as a dataset where it is JSON, or as what it is called; whether anything was found.
+/// Reads a file as models, as records and, if it is JSON, as a dataset, or in the format that its
+/// name indicates; returns whether it had any content.
+///
+/// # Errors
+/// A violation of the requirements on a reader.
 fn read(name: &str, bytes: &[u8]) -> Result<bool, String> {
     if [STUDY, RULES, TOLERANCES, LEVELS].contains(&name) {
         return opened(name, bytes);
@@ -473,7 +484,10 @@ fn check_finite(model: &FoundModel) -> Result<(), String> {
     })
 }
 
-/// Tries one file; why it failed.
+/// Reads a file once.
+///
+/// # Errors
+/// The reason for the failure: a panic, too much memory, too much time, or a wrong result.
 fn tried((name, bytes): &NamedBytes, tally: &Tally) -> Result<(), String> {
     let begun = Instant::now();
     let mut outcome = Ok(Ok(false));
@@ -498,7 +512,7 @@ fn tried((name, bytes): &NamedBytes, tally: &Tally) -> Result<(), String> {
     }
 }
 
-/// Tries as many files, or for so long, on all cores.
+/// Runs `executions` executions on all cores, ending earlier at the time `until`.
 fn run(seed: u64, executions: u64, until: Option<Instant>) {
     let tally = Tally::default();
     let next = AtomicU64::new(0);

@@ -1,8 +1,9 @@
-//! Grammars of GNU Octave's files, `save -text` and `save -binary`, with sides and counts that are hard.
+//! Random generators of GNU Octave's files, `save -text` and `save -binary`, with extreme
+//! dimensions and counts.
 
 use super::{CLASSES, Dice, HARD, NAMES, NamedBytes};
 
-/// Types as Octave writes them, and some that it does not.
+/// Types that Octave writes, and some that it does not.
 const TYPES: [&str; 14] = [
     "scalar",
     "complex scalar",
@@ -20,7 +21,7 @@ const TYPES: [&str; 14] = [
     "range",
 ];
 
-/// A file of either kind.
+/// Generates a file in one of the two formats.
 pub(super) fn file(dice: &mut Dice) -> NamedBytes {
     if dice.once_in(2) {
         let mut text = "# Created by Octave 7.3.0, Mon Nov 23 00:28:20 2026 UTC <a@b>\n".to_owned();

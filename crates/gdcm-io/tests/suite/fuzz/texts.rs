@@ -1,5 +1,5 @@
-//! Grammars of texts: JSON of any shape and of this program, tables, matrices as MATLAB and Python write them; NumPy's arrays, whose
-//! headers are texts, and archives.
+//! Random generators of text files: JSON of any structure and of this program, tables, matrices in
+//! MATLAB and Python syntax; also NumPy arrays, whose headers are text, and archives.
 
 use std::io::Write;
 
@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use super::{CORPUS, Dice, NAMES, NamedBytes};
 
-/// JSON of any shape, packed or not; some of it many times.
+/// Generates JSON of any structure, compressed or not, sometimes repeated many times.
 pub(super) fn json(dice: &mut Dice) -> NamedBytes {
     let value = tree(dice, 5);
     let mut text = value.to_string();
@@ -35,7 +35,7 @@ fn tree(dice: &mut Dice, deeper: usize) -> Value {
         3 => json!(dice.number()),
         4 | 5 => (0..count).map(|_| tree(dice, deeper - 1)).collect(),
         6 => {
-            // A rectangle of numbers.
+            // A rectangular array of numbers.
             let width = dice.below(4);
             (0..count)
                 .map(|_| (0..width).map(|_| json!(dice.number())).collect::<Value>())
@@ -55,7 +55,7 @@ fn gzip(text: &[u8]) -> Vec<u8> {
     encoder.finish().unwrap()
 }
 
-/// A dataset of this program of which some values are others.
+/// Returns a JSON file of the corpus in which one to three values are changed.
 pub(super) fn program_json(dice: &mut Dice) -> NamedBytes {
     let files: Vec<&NamedBytes> = CORPUS
         .iter()
@@ -71,7 +71,7 @@ pub(super) fn program_json(dice: &mut Dice) -> NamedBytes {
     (name.clone(), value.to_string().into_bytes())
 }
 
-/// Puts something else in a place of a tree.
+/// Changes a value at a random place of a JSON tree.
 fn change(value: &mut Value, dice: &mut Dice) {
     let stay = dice.once_in(6);
     match value {
@@ -103,7 +103,7 @@ fn change(value: &mut Value, dice: &mut Dice) {
     }
 }
 
-/// A table of numbers between separators, with headings or not.
+/// Generates a table of numbers with separators, with or without headings.
 pub(super) fn table(dice: &mut Dice) -> NamedBytes {
     let separator = *dice.of_list(&[",", ";", "\t", " ", "  ", "|", ", "]);
     let headings = [
@@ -181,7 +181,7 @@ pub(super) fn table(dice: &mut Dice) -> NamedBytes {
     (name.to_owned(), text.into_bytes())
 }
 
-/// Assignments as MATLAB, GNU Octave and Python write them.
+/// Generates assignments in the syntax of MATLAB, GNU Octave and Python.
 pub(super) fn literals(dice: &mut Dice) -> NamedBytes {
     let mut text = String::new();
     for _ in 0..1 + dice.below(6) {
@@ -246,7 +246,7 @@ fn literal(dice: &mut Dice, deeper: usize) -> String {
     }
 }
 
-/// An array of NumPy with a header of any kind, alone or among other files in an archive.
+/// Generates a NumPy array with a header of any kind, alone or in an archive with other files.
 pub(super) fn numpy_or_archive(dice: &mut Dice) -> NamedBytes {
     if dice.once_in(3) {
         ("f.zip".to_owned(), archive(dice))
@@ -279,7 +279,7 @@ fn array(dice: &mut Dice) -> Vec<u8> {
     .concat()
 }
 
-/// The type of an element, and its size.
+/// Generates an element type; returns its description and size \[bytes\].
 fn element(dice: &mut Dice, deeper: usize) -> (String, usize) {
     let plain = [
         ("'<f8'", 8),
@@ -306,7 +306,7 @@ fn element(dice: &mut Dice, deeper: usize) -> (String, usize) {
     (format!("[{fields}]"), whole)
 }
 
-/// Files in an archive, some of them several times at the same bytes.
+/// Generates an archive in which some entries point to the same bytes.
 fn archive(dice: &mut Dice) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut directory = Vec::new();

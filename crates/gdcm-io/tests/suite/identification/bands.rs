@@ -1,4 +1,4 @@
-//! Bands that the records do not show: what is said, and the band that is offered.
+//! Frequency bands that the records do not excite: the messages, and the proposed band.
 
 use gdcm_model::executor::Sequential;
 use gdcm_model::progress::Unobserved;
@@ -11,7 +11,7 @@ use crate::made_up::{Flight, Gusts, stable_aircraft};
 
 #[test]
 fn a_band_beyond_the_sweeps_is_offered_up_to_their_end() {
-    // The sweeps end at 8.06 rad/s; the window of a point there is 1.6 rad/s wide to either side.
+    // The sweeps end at 8.06 rad/s, where the window of a point extends 1.6 rad/s to either side.
     let records = Flight::of(
         stable_aircraft(),
         Gusts {
@@ -75,7 +75,7 @@ fn the_ends_of_a_band_count_only_where_a_fifth_of_it_shows_nothing() {
         hidden_points.for_each(|point| point.partial_coherence.fill(0.3));
         measured
     };
-    // A fifth of the band in logarithm is a factor of 12^0.2 = 1.64.
+    // A fifth of the band on the logarithmic axis: a factor of 12^0.2 = 1.64.
     let [low, high] = without(&|omega| omega > 3.0).shown_band(band).unwrap();
     assert!(low == 0.5 && (2.5..=3.0).contains(&high), "{high}");
     let [low, high] = without(&|omega| omega < 1.0).shown_band(band).unwrap();

@@ -1,4 +1,4 @@
-//! The known answers of M14 (source: independent numpy code), and small made-up systems.
+//! Reference values for M14 (source: independent numpy code), and small synthetic systems.
 
 use std::sync::Mutex;
 
@@ -15,7 +15,7 @@ use gdcm_sysid::spectra::local_polynomial::local_polynomial;
 use gdcm_sysid::spectra::scales::Scales;
 use gdcm_sysid::spectra::spectrum::{Spectrum, spectra};
 
-/// So many threads, which take the last segment of work first.
+/// Executor with a fixed number of threads, which starts with the last task.
 pub struct Threads(pub usize);
 
 impl Executor for Threads {
@@ -35,7 +35,7 @@ impl Executor for Threads {
     }
 }
 
-/// The known answers.
+/// Returns the reference values.
 pub fn known() -> Value {
     serde_json::from_str(include_str!(
         "../../../../../tests/data/identification-known-answers.json"
@@ -43,7 +43,7 @@ pub fn known() -> Value {
     .expect("the known answers are JSON")
 }
 
-/// A list of numbers; null is not a number.
+/// Returns a list of numbers; null becomes NaN.
 pub fn list(value: &Value) -> Vec<f64> {
     value
         .as_array()
@@ -53,7 +53,7 @@ pub fn list(value: &Value) -> Vec<f64> {
         .collect()
 }
 
-/// A list of rows of numbers.
+/// Returns a matrix from a list of rows.
 pub fn matrix(value: &Value) -> DMatrix<f64> {
     let rows: Vec<Vec<f64>> = value
         .as_array()
@@ -64,12 +64,12 @@ pub fn matrix(value: &Value) -> DMatrix<f64> {
     DMatrix::from_fn(rows.len(), rows[0].len(), |i, j| rows[i][j])
 }
 
-/// Matrices of real and imaginary parts.
+/// Returns a complex matrix from its real and imaginary parts.
 pub fn complex(value: &Value) -> DMatrix<Complex<f64>> {
     matrix(&value["re"]).zip_map(&matrix(&value["im"]), Complex::new)
 }
 
-/// The first `count` records of the case `noisy` as segments.
+/// Returns the first `count` records of the case `noisy` as segments.
 pub fn noisy(known: &Value, count: usize) -> Vec<Segment> {
     let records = known["noisy"]["records"].as_array().expect("records");
     let segment = |(record, value): (usize, &Value)| Segment {
@@ -87,7 +87,8 @@ pub fn noisy(known: &Value, count: usize) -> Vec<Segment> {
         .collect()
 }
 
-/// The spectra of the case `noisy` in scaled units, to 1.3 whi.
+/// Returns the spectra of the case `noisy` in scaled units, up to 1.3 times the upper end `w_hi` of
+/// its band.
 pub fn noisy_spectra() -> Vec<Spectrum> {
     let segments = noisy(&known(), 4);
     let scales = Scales::from_segments(&segments).expect("its channels move");
@@ -98,13 +99,13 @@ pub fn noisy_spectra() -> Vec<Spectrum> {
     spectra(&scaled, 1.3 * 4.0 / 3.0 * 6.0, &Sequential)
 }
 
-/// The measured response of the case `noisy`, in scaled units.
+/// Returns the measured response of the case `noisy` in scaled units.
 pub fn noisy_measured() -> ResponseEstimate {
     local_polynomial(&noisy_spectra(), &log_spaced(0.3, 8.0, 40), &Sequential)
         .expect("its records are long enough")
 }
 
-/// The response of a model at a frequency \[rad/s\].
+/// Returns the response of a model at a frequency \[rad/s\].
 pub fn response(model: &StateSpace, omega: f64) -> DMatrix<Complex<f64>> {
     let response = evaluate(model, &[omega]);
     DMatrix::from_fn(model.outputs(), model.inputs(), |output, input| {
@@ -112,12 +113,12 @@ pub fn response(model: &StateSpace, omega: f64) -> DMatrix<Complex<f64>> {
     })
 }
 
-/// The matrices of a model.
+/// Returns the matrices of a model.
 pub fn space(model: &Model) -> &StateSpace {
     model.state_space().expect("it has matrices")
 }
 
-/// The made-up system of the case `drop_fast` without its fast mode.
+/// Returns the synthetic system of the case `drop_fast` without its fast mode.
 pub fn slow_system() -> StateSpace {
     let known = known();
     let [a, b, c, d] = ["A", "B", "C", "D"].map(|key| matrix(&known["drop_fast"][key]));
@@ -130,7 +131,7 @@ pub fn slow_system() -> StateSpace {
     .expect("it is whole")
 }
 
-/// Numbers between -1 and 1 that look random, the same ones for the same seed.
+/// Returns pseudo-random numbers between -1 and 1; reproducible for a given seed.
 pub fn noise(seed: u64, count: usize) -> Vec<f64> {
     let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(1);
     let mut next = || {

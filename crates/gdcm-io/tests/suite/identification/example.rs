@@ -1,4 +1,4 @@
-//! The models of the embedded example, identified again from its records.
+//! The models of the embedded example, identified again from its flight records.
 
 use std::sync::LazyLock;
 
@@ -25,7 +25,8 @@ static RECORDS: LazyLock<Vec<RecordTable>> = LazyLock::new(|| {
     .tables
 });
 
-/// What the records of a condition give, held out what its name says.
+/// Identifies the models of a condition from its records; records whose names mark them as
+/// validation are held out.
 fn identified(id: ConditionId) -> Identification {
     let dataset = &EXAMPLE.dataset;
     let channels = RecordChannels::of_dataset(dataset).of_named_records();
@@ -58,8 +59,9 @@ fn borrowed(names: &[String]) -> Vec<&str> {
     names.iter().map(String::as_str).collect()
 }
 
-/// How far a model is from the recommended one of the dataset: root mean square over the band and all responses, in standard deviations
-/// of magnitude and phase as the recommended model's bands have them.
+/// Returns the rms deviation of a model from the recommended model of the dataset, over the band
+/// and all responses, in standard deviations of magnitude and phase from the bands of the
+/// recommended model.
 fn deviation(found: &Model, recommended: &Model) -> f64 {
     let bands = recommended.bands.as_ref().expect("it has bands");
     let band = EXAMPLE.dataset.band();
@@ -91,7 +93,7 @@ fn assert_models_come_again(id: i64) {
     let held_out = found
         .held_out_cost
         .expect("the validation record is held out");
-    // The sharp test of a model (M14, section 4).
+    // The held-out record is the decisive test of a model (M14, section 4).
     assert!(
         held_out <= 1.15 * found.cost,
         "held out {held_out}, fitted {}",
@@ -99,10 +101,12 @@ fn assert_models_come_again(id: i64) {
     );
     let condition = EXAMPLE.dataset.condition(id).expect("the example has it");
     let bundle = condition.bundle(BundleKind::Identified);
-    // Where two orders are as good as one another, the rounding of another processor's instructions may choose the other one. The
-    // variance of the bands is twice that of the fit plus twice the square of what neighbouring orders differ by, so that a neighbour
-    // is within 1 / sqrt 2 of a standard deviation. So is the same order again: the dataset's models were polished for five steps, and
-    // the polish now goes on while it gains (measured: 0.65 in condition 5).
+    // If two orders fit equally well, rounding on another processor may select the other order. The
+    // variance of the bands is twice that of the fit plus twice the square of the difference
+    // between neighbouring orders, so a neighbouring order deviates by at most 1 / sqrt 2 standard
+    // deviations. The same limit holds for the same order: the dataset's models were refined for
+    // five steps, whereas the refinement now continues as long as it improves the fit (measured:
+    // 0.65 in condition 5).
     let recommended = &bundle[0];
     let is_same = found.refined.name == recommended.name;
     let limit = std::f64::consts::FRAC_1_SQRT_2;
@@ -138,7 +142,7 @@ fn assert_models_come_again(id: i64) {
     );
 }
 
-/// A test for each condition, so that they run beside one another.
+/// Defines a test for each condition, so that the tests can run in parallel.
 macro_rules! the_records_give_the_models_again {
     ($($(#[$ignored:meta])? $name:ident: $id:literal),*) => {$(
         #[test]

@@ -1,4 +1,4 @@
-//! Channels that are logged late in all records alike, told against a physics model.
+//! Detection of a channel that is logged late in all records, by comparison with a physics model.
 
 use nalgebra::{DMatrix, DVectorViewMut};
 
@@ -18,7 +18,7 @@ use crate::made_up::{Flight, Gusts, stable_aircraft};
 
 const BAND: [f64; 2] = [0.6, 6.0];
 
-/// Four flights of which every record was changed alike.
+/// Returns the measured response from four flights after the same `change` in every record.
 fn measured(change: impl Fn(&mut FlightRecord)) -> ResponseEstimate {
     let mut records = Flight::of(stable_aircraft(), Gusts::light()).records(31, 4);
     records.iter_mut().for_each(change);
@@ -36,7 +36,7 @@ fn measured(change: impl Fn(&mut FlightRecord)) -> ResponseEstimate {
     .unwrap()
 }
 
-/// Three samples of 40 ms later.
+/// Delays a channel by three samples of 40 ms.
 fn late(mut channel: DVectorViewMut<'_, f64>) {
     let logged = channel.clone_owned();
     (3..logged.len()).for_each(|sample| channel[sample] = logged[sample - 3]);
@@ -54,7 +54,7 @@ fn a_channel_that_is_late_in_every_record_is_told_against_the_physics_model() {
         let (role, of, delay_s) =
             found(&measured(|record| late(record.outputs.column_mut(index)))).unwrap();
         assert_eq!((role, of), (ChannelSide::Output, index));
-        // The method's bias over its windows, and gusts, are some milliseconds.
+        // The bias of the method over its windows, and gusts, amount to a few milliseconds.
         assert!((delay_s - 0.12).abs() < 0.01, "{delay_s}");
         let (role, of, delay_s) =
             found(&measured(|record| late(record.inputs.column_mut(index)))).unwrap();
@@ -78,7 +78,7 @@ fn a_physics_model_that_is_wrong_otherwise_is_no_delay() {
     };
     let of = stable_aircraft();
     let mut turned = of.c().clone();
-    // The sign of an output.
+    // An output with the opposite sign.
     turned.row_mut(1).neg_mut();
     assert_eq!(
         ChannelTimeSkew::find(&clean, BAND, &with(of.a().clone(), turned)),
@@ -100,12 +100,12 @@ fn words_say_what_is_seen_and_what_else_it_may_be() {
     let words = time_skew_text(&late, "Q", "nominal");
     assert!(
         words.starts_with(
-            "Q seems to be logged 40 ms early in all records: against the physics model \"nominal\""
+            "Q seems to be logged 40 ms early in all records: compared with the physics model \"nominal\""
         ),
         "{words}"
     );
     assert!(
-        words.contains("Leave it where the sensor or servo is as slow as that"),
+        words.contains("Keep it if the sensor or servo really has this lag"),
         "{words}"
     );
 }

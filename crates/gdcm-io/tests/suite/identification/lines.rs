@@ -1,4 +1,4 @@
-//! Scales, low-pass, lines and the measured response.
+//! Scaling, low-pass filter, spectral lines and the measured response.
 
 use nalgebra::{Complex, DMatrix, DVector};
 use proptest::prelude::*;
@@ -80,7 +80,8 @@ fn the_measured_response_is_that_of_the_known_answer() {
     }
 }
 
-/// Records of a made-up system `dx/dt = A x + B u`, `y = C x + D u` with 2 inputs and 2 outputs, with neither noise nor feedback.
+/// Returns a synthetic system `dx/dt = A x + B u`, `y = C x + D u` with 2 inputs and 2 outputs, and
+/// its records without noise and feedback.
 fn exact(records: usize, samples: usize) -> (StateSpace, Vec<Segment>) {
     let model = slow_system();
     let held = FirstOrderHold::new(&model, 0.04).unwrap();
@@ -119,13 +120,14 @@ fn the_response_of_an_exact_record_is_that_of_the_system() {
     .unwrap();
     for point in &measured.points {
         let error = (&point.response - response(&model, point.omega)).camax();
-        // The polynomial of second degree over a window of +-0.45 rad/s beside modes of damping 0.4 rad/s and more.
+        // 5 %: error of a second-degree polynomial over a window of +-0.45 rad/s, near modes whose
+        // real parts are -0.4 rad/s or less.
         assert!(
             error < 0.05 * point.response.camax(),
             "{} {error}",
             point.omega
         );
-        // What the polynomial cannot follow counts as noise.
+        // Deviations of the response from the polynomial count as noise.
         assert!(
             point.coherence.iter().all(|c| *c > 0.99),
             "{} {}",
@@ -165,7 +167,9 @@ fn the_variance_of_the_response_is_the_spread_of_many_trials() {
     }
     assert_eq!(model.order(), 4);
     for (predicted, spread) in predicted.iter().zip(spread.iter()) {
-        // Noise far above what the polynomial cannot follow. A variance from 200 trials of two parts is known to 1 / sqrt 200 = 7 %; three times that.
+        // The noise is far larger than the deviations from the polynomial, which count as noise
+        // too. 0.21 is three times 1 / sqrt 200, the relative standard deviation of a variance from
+        // 200 complex trials.
         assert!(
             (predicted / spread - 1.0).abs() < 0.21,
             "{predicted} {spread}"
@@ -179,7 +183,8 @@ fn the_noise_covariance_is_that_of_the_noise_put_in() {
     for (k, segment) in segments.iter_mut().enumerate() {
         let noise = noise(50 + k as u64, 4000);
         for n in 0..2000 {
-            // Far above what the polynomial cannot follow, which counts as noise too.
+            // The noise is far larger than the deviations from the polynomial, which count as noise
+            // too.
             segment.outputs[(n, 0)] += 10.0 * noise[n];
             segment.outputs[(n, 1)] += 10.0 * noise[n] + 5.0 * noise[2000 + n];
         }
@@ -191,7 +196,7 @@ fn the_noise_covariance_is_that_of_the_noise_put_in() {
     )
     .unwrap();
     let covariance = NoiseCovariance::from_measured(&measured).unwrap();
-    // White noise of variance 100/3 has lines of power 100 dt / 3.
+    // White noise of variance 100/3 has spectral lines of power 100 dt / 3.
     let line = 4.0 / 3.0;
     let expected = DMatrix::from_row_slice(2, 2, &[1.0, 1.0, 1.0, 1.25]) * line;
     let mean = (0..40).fold(DMatrix::zeros(2, 2), |sum, k| {
@@ -199,7 +204,7 @@ fn the_noise_covariance_is_that_of_the_noise_put_in() {
     });
     assert!((&mean - &expected).amax() < 0.1 * expected.amax(), "{mean}");
     let weight = covariance.weight(2.0).unwrap();
-    // W Cv W^T = 2 I: real and imaginary part of a whitened line have variance one each.
+    // W Cv W^T = 2 I: real and imaginary part of a whitened line have unit variance each.
     assert!(
         (&weight * covariance.at(2.0) * weight.transpose() - DMatrix::identity(2, 2) * 2.0).amax()
             < 1e-9
@@ -216,7 +221,7 @@ fn the_covariance_is_smoothed_over_neighbours_and_straight_in_log_frequency_betw
         point.power.fill(0.0);
     }
     let covariance = NoiseCovariance::from_measured(&measured).unwrap();
-    // Weights 1, 2, 3, 2, 1 over their sum 9, and a ten-thousandth added.
+    // Weights 1, 2, 3, 2, 1, divided by their sum 9; 1e-4 is added.
     for (k, expected) in [
         (1, 0.0),
         (2, 1.0),
@@ -377,7 +382,7 @@ fn the_low_pass_passes_straight_lines_and_is_none_near_half_the_sampling_frequen
         assert_eq!(LowPass::new(omega, dt), None);
     }
     for length in 0..4 {
-        // Shorter than its reach of 63 samples, the signal is reflected again and again.
+        // A signal shorter than the reach of the filter, 63 samples, is reflected repeatedly.
         assert!(
             filter
                 .filter(&vec![2.5; length])
@@ -390,7 +395,7 @@ fn the_low_pass_passes_straight_lines_and_is_none_near_half_the_sampling_frequen
 #[test]
 fn a_short_record_has_a_response_and_one_of_a_few_lines_says_so() {
     let (_, segments) = exact(1, 250);
-    // 10 s: 16 lines to 10.4 rad/s, all of which a polynomial of the first degree takes.
+    // 10 s give 16 lines up to 10.4 rad/s, all of which the polynomial of first degree uses.
     let all = spectra(&segments, 10.4, &Sequential);
     let point = &local_polynomial(&all, &[0.3], &Sequential).unwrap().points[0];
     assert!(
@@ -411,7 +416,7 @@ fn a_short_record_has_a_response_and_one_of_a_few_lines_says_so() {
     assert!(
         refused
             .to_string()
-            .contains("9 spectral lines in the band where 12 are needed"),
+            .contains("9 spectral lines in the band, but 12 are needed"),
         "{refused}"
     );
 }
@@ -456,7 +461,7 @@ fn hostile_lines_are_refused() {
             Err(LocalPolynomialError::NotFinite)
         );
     }
-    // A window that lies beside its centre is no reason to refuse.
+    // A frequency outside its window (extrapolation) is accepted.
     let far = local_polynomial(&good, &[1e9], &Sequential).unwrap();
     assert!(
         far.points[0]
@@ -570,13 +575,15 @@ proptest! {
         let mut moved = segments.clone();
         let segment = &mut moved[record];
         let samples = if channel < 2 { &mut segment.inputs } else { &mut segment.outputs };
-        // A constant for every channel; a ramp for outputs, where it is a transient: G of an input's ramp is an output's ramp.
+        // A constant is added to any channel, a ramp only to outputs, where it acts as a transient:
+        // the response to a ramp of an input is a ramp of the output.
         let drift = if channel < 2 { 0.0 } else { drift };
         samples.column_mut(channel % 2).iter_mut().enumerate().for_each(|(n, x)| *x += trim + 0.04 * drift * n as f64);
         let after = local_polynomial(&spectra(&moved, 10.4, &Sequential), &omegas, &Sequential).unwrap();
         for (before, after) in before.points.iter().zip(&after.points) {
-            // A ramp's lines are 1/(j omega), which a polynomial of second degree holds but in part where the window reaches
-            // down to the first line: well above it 2 % of a drift of 40 in a record are left, beside noise of 0.1.
+            // The spectrum of a ramp is proportional to 1/(j omega). A second-degree polynomial
+            // follows it only partly in windows that reach the first line; well above, 2 % of a
+            // drift of 40 per record remain, compared with noise of 0.1.
             if before.omega > 1.5 || drift == 0.0 {
                 let allowed = if drift == 0.0 { 1e-9 } else { 0.02 };
                 prop_assert!((&before.response - &after.response).camax() < allowed * before.response.camax().max(1.0));

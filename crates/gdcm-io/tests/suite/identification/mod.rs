@@ -1,4 +1,5 @@
-//! Identification from flight records: known answers of independent numpy code, properties, and simulated flights.
+//! Identification from flight records: comparison with independent numpy code, general properties,
+//! and simulated flights.
 
 mod bands;
 mod common;

@@ -1,4 +1,4 @@
-//! From records as logged to segments.
+//! Preparation of logged records: from raw samples to segments.
 
 use nalgebra::DMatrix;
 use proptest::prelude::*;
@@ -14,7 +14,8 @@ use gdcm_sysid::spectra::record_cautions::RecordCaution;
 use super::common::{known, list, matrix, noise};
 use crate::made_up::tries;
 
-/// A record of `samples` rows at 50 Hz: two inputs and two outputs that wander, each sample another value.
+/// Returns a record of `samples` rows at 50 Hz: two inputs and two outputs that vary slowly,
+/// without equal consecutive samples.
 fn wandering(samples: usize) -> FlightRecord {
     let column = |seed: u64| {
         let mut value = 0.0;
@@ -104,7 +105,8 @@ fn a_record_without_gaps_stays_as_it_is() {
         ),
         (1, 0, 0)
     );
-    // Stamps of 0.02 n and a grid of n 0.02 differ by rounding, so values are interpolated by as much.
+    // Rounding: the time stamps 0.02 n and the grid times n 0.02 differ slightly, and values are
+    // interpolated accordingly.
     assert!((&prepared.segments[0].inputs - &record.inputs).amax() < 1e-9);
     assert!((&prepared.segments[0].outputs - &record.outputs).amax() < 1e-9);
     assert!((prepared.records[0].used_s - 20.0).abs() < 1e-9);
@@ -202,7 +204,7 @@ fn an_output_that_stands_still_while_the_others_move_is_a_gap() {
 fn a_held_input_and_a_coarse_output_are_not_frozen() {
     let mut record = wandering(3000);
     (0..2000).for_each(|n| record.inputs[(n, 1)] = 50.0);
-    // A resolution of 3 in a signal of about 7 repeats values for a second and more.
+    // Rounding a signal of magnitude 7 to multiples of 3 repeats values for a second or longer.
     record
         .outputs
         .column_mut(1)
@@ -240,7 +242,7 @@ fn channels_with_the_same_gap_are_named_together() {
 
 #[test]
 fn delays_and_holds_shift_a_channel_the_right_way() {
-    // Every channel is a ramp of 1 per second, so that a channel's value less the time is its shift.
+    // Every channel is a ramp of slope 1/s, so its shift is the value minus the time.
     let time_s: Vec<f64> = (0..1000).map(|n| 0.02 * n as f64).collect();
     let ramp = DMatrix::from_fn(1000, 2, |n, _| 0.02 * n as f64);
     let record = FlightRecord {
@@ -274,7 +276,7 @@ fn fresh_samples_of_a_slow_sensor_are_joined_by_straight_lines() {
     let mut record = wandering(1000);
     let slow = |n: usize| (0.3 * 0.02 * (n / 5 * 5) as f64).sin();
     (0..1000).for_each(|n| record.outputs[(n, 0)] = slow(n));
-    // The sensor reads the same value for two seconds and more: readings, not a gap.
+    // A constant value for ten seconds counts as samples of the sensor, not as a gap.
     (0..1000).for_each(|n| record.inputs[(n, 1)] = if n < 500 { 20.0 } else { slow(n) });
     let mut settings = settings();
     settings.outputs[0].hold = Hold::FreshSamples;
@@ -282,7 +284,8 @@ fn fresh_samples_of_a_slow_sensor_are_joined_by_straight_lines() {
     let prepared = prepared(&record, &settings);
     assert_eq!(prepared.segments.len(), 1);
     for n in 0..990 {
-        // Straight lines over 0.1 s of a sine of 0.3 rad/s are off by (0.03)^2 / 8, about 1e-4.
+        // Linear interpolation over 0.1 s of a sine of 0.3 rad/s has an error of (0.03)^2 / 8,
+        // about 1e-4.
         assert!(
             (prepared.segments[0].outputs[(n, 0)] - (0.3 * 0.02 * n as f64).sin()).abs() < 1.2e-4,
             "{n}"
@@ -298,14 +301,14 @@ fn stairs_in_an_input_raise_a_caution_with_three_choices() {
     let mut settings = settings();
     let text = words(&prepared(&record, &settings).cautions);
     assert!(
-        text.contains("LON: 80 % of consecutive samples are equal, it changes every 100 ms"),
+        text.contains("LON: 80 % of consecutive samples are equal; it changes every 100 ms"),
         "{text}"
     );
     for choice in [
         "50 ms later",
         "fresh samples",
         "50 ms earlier",
-        "nothing done",
+        "used as logged",
     ] {
         assert!(text.contains(choice), "{choice}: {text}");
     }
@@ -340,7 +343,8 @@ fn uneven_stamps_are_refused_unless_resampling_is_allowed() {
     assert!(words(&prepared.cautions).contains("interpolated to even steps"));
     let segment = &prepared.segments[0];
     for n in 0..segment.outputs.nrows() {
-        // Straight lines over at most 0.036 s of a sine of 1 rad/s: 0.036^2 / 8 = 1.6e-4.
+        // Linear interpolation over at most 0.036 s of a sine of 1 rad/s has an error of 0.036^2 /
+        // 8 = 1.6e-4.
         assert!(
             (segment.outputs[(n, 0)] - (segment.start_s + n as f64 * segment.sample_time_s).sin())
                 .abs()
@@ -496,7 +500,7 @@ fn hostile_records_are_refused_or_cut_and_never_panic() {
             Err(PreparationError::NothingLeft { .. })
         ));
     }
-    // Stamps of absurd size: the grid is laid only where there are samples.
+    // Absurd time stamps: the grid covers only times with samples.
     let mut far = good.clone();
     far.time_s[999] = 1e300;
     assert_eq!(of(far).unwrap().segments.len(), 1);
@@ -565,7 +569,7 @@ proptest! {
             prop_assert!(segment.outputs.iter().all(|y| y.is_finite()));
             prop_assert!(segment.inputs.amax() <= greatest);
             prop_assert_eq!(segment.inputs.nrows(), segment.outputs.nrows());
-            // Samples without a delay are those of the record wherever the record has them.
+            // Without a delay, the samples equal those of the record at the times of the record.
             for n in 0..segment.inputs.nrows() {
                 let row = (segment.start_s / 0.02).round() as usize + n;
                 let logged = record.inputs[(row, 0)];

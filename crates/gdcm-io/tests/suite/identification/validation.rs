@@ -1,4 +1,4 @@
-//! Models against records in time.
+//! Comparison of models with records in the time domain.
 
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -12,7 +12,7 @@ use gdcm_model::simulation::{
 use super::common::{known, list, noise, noisy, slow_system};
 use crate::made_up::tries;
 
-/// A system with an eigenvalue at `+growth` rad/s put in the place of one of its slow ones.
+/// Returns a system with an unstable eigenvalue at `+growth` rad/s and a stable one at -1 rad/s.
 fn unstable(growth: f64) -> StateSpace {
     let a = DMatrix::from_row_slice(2, 2, &[growth, 0.3, 0.0, -1.0]);
     let b = DMatrix::from_row_slice(2, 1, &[0.5, 1.0]);
@@ -20,7 +20,8 @@ fn unstable(growth: f64) -> StateSpace {
     StateSpace::new(a, b, c, DMatrix::zeros(2, 1)).unwrap()
 }
 
-/// What `model` gives from `initial` for inputs that wander about a trim of 40, with the outputs' trims added.
+/// Simulates `model` from the state `initial` with slowly varying inputs; then adds a trim of 40 to
+/// the inputs, and trims to the outputs.
 fn record(model: &StateSpace, initial: &[f64], samples: usize, dt: f64) -> Segment {
     let mut inputs = DMatrix::zeros(samples, model.inputs());
     for (i, mut column) in inputs.column_iter_mut().enumerate() {
@@ -46,7 +47,8 @@ fn record(model: &StateSpace, initial: &[f64], samples: usize, dt: f64) -> Segme
 
 #[test]
 fn a_ramp_and_a_step_are_answered_as_in_the_textbook() {
-    // dx/dt = -2 x + 3 u, y = x. For u = t: x = 3/4 (2 t - 1 + e^-2t); inputs linear between samples are exact.
+    // dx/dt = -2 x + 3 u, y = x. For u = t: x = 3/4 (2 t - 1 + e^-2t), exact because the inputs are
+    // linear between samples.
     let [a, b, c, d] = [-2.0, 3.0, 1.0, 0.0].map(|entry| DMatrix::from_element(1, 1, entry));
     let model = StateSpace::new(a, b, c, d).unwrap();
     let held = FirstOrderHold::new(&model, 0.5).unwrap();
@@ -57,7 +59,7 @@ fn a_ramp_and_a_step_are_answered_as_in_the_textbook() {
     let step = held.simulate(&DVector::zeros(1), &DMatrix::from_element(20, 1, 1.0));
     for n in 0..20 {
         let t = 0.5 * n as f64;
-        // 1e-12: a few hundred roundings of numbers up to 15.
+        // 1e-12: a few hundred rounding errors of values up to 15.
         assert!((ramp[n] - 0.75 * (2.0 * t - 1.0 + (-2.0 * t).exp())).abs() < 1e-12);
         assert!((step[n] - 1.5 * (1.0 - (-2.0 * t).exp())).abs() < 1e-12);
     }
@@ -75,7 +77,7 @@ fn the_exact_model_fits_a_record_whole_from_any_state_and_trim() {
     )
     .unwrap();
     for (fit, theil) in validation.fit_percent.iter().zip(&validation.theil) {
-        // Rounding of a least-squares problem with columns of condition about 1e3.
+        // Rounding in a least-squares problem with a condition number of about 1e3.
         assert!(fit.unwrap() > 100.0 - 1e-7 && theil.unwrap() < 1e-9);
     }
 }
@@ -161,7 +163,8 @@ fn noise_lowers_the_fit_by_its_share() {
         .map(|o| clean.column(o).variance().sqrt())
         .collect::<Vec<_>>();
     for (o, std) in std.iter().enumerate() {
-        // Uniform noise of +-1 has a standard deviation of 1 / sqrt 3; here a tenth of the output's.
+        // Uniform noise between -1 and 1 has a standard deviation of 1 / sqrt 3; it is scaled to a
+        // tenth of the standard deviation of the output.
         let noise = noise(99 + o as u64, 2500);
         segment
             .outputs
@@ -178,7 +181,8 @@ fn noise_lowers_the_fit_by_its_share() {
     )
     .unwrap();
     for (fit, theil) in validation.fit_percent.iter().zip(&validation.theil) {
-        // 90 % less what the state and offset of each of ten windows take of the noise; Theil is half of the error's share.
+        // The fit is 90 %, slightly changed because state and offset of each of ten windows absorb
+        // some noise. Theil's coefficient is half of the error's share, 10 %.
         assert!((fit.unwrap() - 90.0).abs() < 0.6, "{fit:?}");
         assert!((theil.unwrap() - 0.05).abs() < 0.003, "{theil:?}");
     }
@@ -206,7 +210,8 @@ fn vibration_above_the_low_pass_does_not_count() {
     )
     .unwrap();
     assert!(raw.fit_percent[0].unwrap() < 50.0);
-    // The ends of the record, reflected in the middle of a vibration, keep a little of it.
+    // At the ends of the record, which are reflected during a vibration, some of the vibration
+    // remains.
     assert!(
         filtered.fit_percent[0].unwrap() > 95.0,
         "{:?}",
@@ -227,8 +232,9 @@ fn the_system_that_made_the_known_record_fits_it_about_as_well_as_the_identified
     .unwrap();
     let expected = &known["noisy"]["expected"];
     for o in 0..2 {
-        // The reference's figures are of an identified model, this is the system behind the record but for the hold of its
-        // inputs: 3 % between them is what the noise of one record does.
+        // The reference values are those of an identified model, here the true system is validated
+        // (except for the hold of its inputs). The noise of a single record explains a difference
+        // of 3 %.
         assert!(
             (validation.fit_percent[o].unwrap() - list(&expected["held_out_fit_percent"])[o]).abs()
                 < 3.0,
@@ -353,7 +359,8 @@ proptest! {
         segment.inputs.add_scalar_mut(trim);
         let after = validate(&other, &[segment], &settings, &Sequential).unwrap();
         for (before, after) in before.fit_percent.iter().zip(&after.fit_percent) {
-            // Trims of 1e3 beside outputs of 1 cost three digits of the sixteen, the least squares as many.
+            // Trims of 1e3 with outputs of 1 cost three of the sixteen digits, and the
+            // least-squares solution about as many.
             prop_assert!((before.unwrap() - after.unwrap()).abs() < 1e-5, "{:?} {:?}", before, after);
         }
     }

@@ -1,4 +1,4 @@
-//! Identification from flight records, from outside.
+//! Complete identifications from flight records.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -80,7 +80,7 @@ fn a_noisy_closed_loop_gives_what_independent_code_gives() {
     )
     .unwrap();
     let expected = &known["expected"];
-    // Independent numpy code; the tolerances stand in its file.
+    // Reference values of independent numpy code; its file states the tolerances.
     assert_eq!(
         space(&found.refined).order() as f64,
         expected["order"].as_f64().unwrap()
@@ -92,13 +92,15 @@ fn a_noisy_closed_loop_gives_what_independent_code_gives() {
     assert!(known_orders.clone().count() >= 3, "{:?}", found.criteria);
     for (order, value) in known_orders {
         let expected = expected["bic"][order.to_string()].as_f64().unwrap();
-        // The first line of a record does not count any more (M14.12), which those figures still have.
+        // The reference values still include the first line of each record, which no longer counts
+        // (M14.12).
         assert!(
             (value / expected - 1.0).abs() < 0.03,
             "BIC of order {order}: {value}, not {expected}"
         );
     }
-    // Per degree of freedom that 20 parameters leave of those of 4 records of 48 lines of 2 outputs (M14.13).
+    // The cost is per degree of freedom; 20 parameters reduce the degrees of freedom of 4 records
+    // of 48 lines of 2 outputs (M14.13).
     let spare = found
         .record_fits
         .iter()
@@ -160,7 +162,8 @@ fn a_noisy_closed_loop_gives_what_independent_code_gives() {
     }
 }
 
-/// Options for the made-up flights: one Laguerre pole and past window, so that many fit into a test.
+/// Returns options for the synthetic flights: a single Laguerre pole and past window, so that a
+/// test can afford many identifications.
 pub fn quick(channels: (usize, usize)) -> Options {
     const INPUTS: [&str; 3] = ["LON", "LAT", "PED"];
     const OUTPUTS: [&str; 3] = ["P", "Q", "R"];
@@ -187,7 +190,8 @@ fn omegas(found: &Identification) -> &[f64] {
     bands(found).omega()
 }
 
-/// Standard deviation of a response, output and input, at the frequency `k`.
+/// Returns the standard deviation \[dB\] of a response (output, input) at the frequency with index
+/// `k`.
 fn sd_db(found: &Identification, k: usize, (output, input): (usize, usize)) -> f64 {
     bands(found).sd_db()[Pair { output, input }][k]
 }
@@ -203,7 +207,8 @@ fn responses(found: &Identification) -> Vec<DMatrix<Complex<f64>>> {
         .collect()
 }
 
-/// Greatest relative difference of the responses of two identifications.
+/// Returns the maximum relative difference between the responses of an identification and `other`,
+/// indexed by frequency, output and input.
 fn difference(one: &Identification, other: impl Fn(usize, usize, usize) -> Complex<f64>) -> f64 {
     let all = responses(one);
     let mut greatest = 0.0_f64;
@@ -236,7 +241,8 @@ fn exact_records_give_the_exact_model() {
         let truth = response(&aircraft, *omega);
         worst = worst.max((own - &truth).camax() / truth.camax());
     }
-    // A sum over samples is an integral but for (omega dt)^2 / 12 of the ends of the record: 1.2e-3 at 6 rad/s.
+    // A sum over samples approximates an integral with a relative error of (omega dt)^2 / 12 from
+    // the ends of the record: 1.2e-3 at 6 rad/s.
     assert!(worst < 1.5e-3, "{worst}");
 }
 
@@ -251,7 +257,7 @@ fn units_of_a_channel_only_scale_its_row_or_column() {
     }
     let scaled = identify(&other, &quick((2, 2)), &Sequential, &Unobserved).unwrap();
     let all = responses(&scaled);
-    // Powers of two change no digit of the scaled channels.
+    // Scaling by powers of two is exact.
     let factor = |o: usize, i: usize| [1.0, 0.125][o] / [1024.0, 1.0][i];
     assert!(difference(&found, |k, o, i| all[k][(o, i)] / factor(o, i)) < 1e-12);
     assert!((found.cost - scaled.cost).abs() < 1e-12);
@@ -268,8 +274,8 @@ fn the_order_of_records_and_channels_does_not_matter() {
     }
     let turned = identify(&other, &quick((2, 2)), &Sequential, &Unobserved).unwrap();
     let all = responses(&turned);
-    // The same minimum from another side: the refinement stops at a gain of 1e-3 of the cost, so a small part of a standard
-    // deviation is left.
+    // The same minimum is approached along another path. The refinement stops when a step reduces
+    // the cost by less than 1e-3, so a small fraction of a standard deviation remains.
     let sd = |k: usize, o: usize, i: usize| sd_db(&found, k, (o, i)) / 8.686;
     let greatest = difference(&found, |k, o, i| {
         let own = response(space(&found.refined), omegas(&found)[k])[(o, i)];
@@ -290,7 +296,8 @@ fn trims_change_nothing_and_drifts_next_to_nothing() {
     }
     let trimmed = identify(&other, &quick((2, 2)), &Sequential, &Unobserved).unwrap();
     let all = responses(&trimmed);
-    // Rounding of samples of 64 to 1e-14 may end the refinement a step earlier or later: a small part of a standard deviation.
+    // Rounding of samples of 64 to 1e-14 may end the refinement one step earlier or later: a small
+    // fraction of a standard deviation.
     for (k, (trimmed, own)) in all.iter().zip(responses(&found)).enumerate() {
         for (at, (trimmed, own)) in trimmed.iter().zip(own.iter()).enumerate() {
             let error_db = 8.686 * (trimmed / own).ln().re.abs();
@@ -316,7 +323,8 @@ fn trims_change_nothing_and_drifts_next_to_nothing() {
     for (k, (drifting, straight)) in all.iter().zip(responses(&found)).enumerate() {
         for (at, (drifting, straight)) in drifting.iter().zip(straight.iter()).enumerate() {
             let error = (drifting / straight).ln();
-            // A drift is in the cost exactly, but the measured noise sees its 1/omega as a parabola: half a deviation.
+            // The cost models a drift exactly, but the measured noise approximates its 1/omega by a
+            // parabola: half a standard deviation.
             assert!(
                 8.686 * error.re.abs() < 0.5 * sd_db(&found, k, (at % 2, at / 2)) + 0.01,
                 "{k} {at}"
@@ -358,8 +366,9 @@ fn an_unstable_aircraft_flown_in_closed_loop_comes_back_unstable() {
 
 #[test]
 fn bands_hold_what_they_say() {
-    // The factor of M14, section 5, was measured on an aircraft of 39 states, where bands without it hold too little. Here four states
-    // are the whole truth: bands of nominally 95 % hold that without it, and more, nearly all, with it.
+    // The factor of M14, section 5, was determined for an aircraft of 39 states, for which bands
+    // without the factor are too narrow. Here a model of four states is exact: nominal 95 % bands
+    // contain the truth even without the factor, and almost always with it.
     let factor = std::f64::consts::SQRT_2;
     let aircraft = stable_aircraft();
     let flight = Flight::of(
@@ -392,13 +401,15 @@ fn bands_hold_what_they_say() {
     let share = |width: f64| {
         ratios.iter().filter(|ratio| **ratio < width).count() as f64 / ratios.len() as f64
     };
-    // 40 flights of a few independent errors each leave the share uncertain by about 1 %.
+    // Statistical uncertainty: 40 flights with a few independent errors each determine the share to
+    // about 1 %.
     assert!(
         (0.90..=0.999).contains(&share(1.96 / factor)),
         "{}",
         share(1.96 / factor)
     );
-    // What is offered has the factor, and errs on the safe side (docs/identification.md says so).
+    // The bands of the program include the factor and are conservative here, as
+    // docs/identification.md states.
     assert!((0.98..=1.0).contains(&share(1.96)), "{}", share(1.96));
 }
 
@@ -416,7 +427,7 @@ fn any_number_of_threads_gives_the_same_bits() {
 #[test]
 fn a_late_channel_of_one_record_is_named_with_its_delay() {
     let mut records = Flight::of(stable_aircraft(), Gusts::light()).records(6, 4);
-    // Three samples of 40 ms.
+    // A delay of three samples of 40 ms.
     let late = records[2].outputs.column(1).into_owned();
     for sample in 3..late.len() {
         records[2].outputs[(sample, 1)] = late[sample - 3];
@@ -439,13 +450,13 @@ fn a_late_channel_of_one_record_is_named_with_its_delay() {
     };
     assert_eq!(name, "flight 3");
     assert_eq!((signal.role, signal.index), (ChannelSide::Output, 1));
-    // Large delays come out 10 to 25 % short (M14.16).
+    // Large delays are underestimated by 10 to 25 % (M14.16).
     assert!((0.075..=0.13).contains(delay_s), "{delay_s}");
 }
 
 #[test]
 fn clean_records_raise_no_caution() {
-    // 60 s are five periods of the lower end of the band.
+    // 60 s are five periods of the lowest frequency of the band.
     let found = identify(
         &Flight {
             length_s: 60.0,
@@ -483,7 +494,7 @@ fn the_bundle_has_its_neighbours_and_a_model_without_each_record() {
     );
 }
 
-/// Hears everything, and stops after a number of steps.
+/// Keeps all reported progress, and cancels after a number of steps.
 struct Listener {
     heard: Mutex<Vec<(usize, String)>>,
     models: AtomicUsize,
@@ -540,7 +551,9 @@ fn progress_goes_forward_to_its_end_and_shows_a_first_model() {
         "{heard:?}"
     );
     assert!(
-        heard.iter().any(|(_, what)| what == "pole 1 of 1, past 6"),
+        heard
+            .iter()
+            .any(|(_, what)| what == "Laguerre pole 1 of 1, past 6"),
         "{heard:?}"
     );
     assert_eq!(heard.last().unwrap().0, 1000);
@@ -563,11 +576,12 @@ fn an_identification_stops_between_any_two_steps() {
     }
 }
 
-/// An identification that ends well has finite models, one that does not has words.
+/// Identifies models: asserts that a success has finite results, and that a failure has a message,
+/// which is returned.
 fn ends_in_words(records: &[FlightRecord], options: &Options) -> String {
     match identify(records, options, &Sequential, &Unobserved) {
         Ok(found) => {
-            // Models and bands that are not finite cannot be made.
+            // The constructors of models and bands reject non-finite values.
             let models = found
                 .bundle
                 .iter()
@@ -616,7 +630,7 @@ fn channels_that_say_nothing_are_named() {
     });
     assert!(copy.contains("copy"), "{copy}");
     let silent = with(&|record| {
-        // An input that only trembles by the resolution of its sensor.
+        // An input that varies only by the resolution of its sensor.
         for sample in 0..record.inputs.nrows() {
             record.inputs[(sample, 1)] = if (sample * sample) % 7 < 3 { 0.0 } else { 0.01 };
         }

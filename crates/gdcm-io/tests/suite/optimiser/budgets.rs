@@ -1,4 +1,4 @@
-//! What a proof may cost, and how it is stopped.
+//! Limits on the cost of an optimality proof, and its cancellation.
 
 use std::cell::Cell;
 use std::sync::Arc;
@@ -23,12 +23,12 @@ use gdcm_study::{Engine, Study};
 use super::instances::gain_instances;
 use super::{solved, solved_within};
 
-/// A number within 1 of 0 that differs from entry to entry.
+/// Returns a pseudo-random number between -1 and 1 for an entry.
 fn noise(output: usize, input: usize, seed: usize) -> f64 {
     (12.9898 * output as f64 + 78.233 * input as f64 + 37.719 * seed as f64).sin()
 }
 
-/// Twelve outputs by eight inputs of which nothing is held.
+/// Returns a problem with twelve outputs and eight inputs, without constraints.
 fn twelve_by_eight(seed: usize) -> Problem {
     let delta = PairTable::from_fn(12, 8, |pair| {
         Some((0.7 * noise(pair.output, pair.input, seed)).exp())
@@ -74,14 +74,14 @@ fn a_budget_of_work_too_small_for_the_proof_is_admitted() {
     let words = solution.proof.outcome.words();
     let percent = 100.0 * gap;
     let told = format!(
-        "gains that are up to {percent:.2} % better may exist; the search ended at its budget of work."
+        "gains that are up to {percent:.2} % better may exist; the search ended because its work budget was exhausted."
     );
     assert_eq!(words, format!("Not proven: {told}"));
 }
 
 #[test]
 fn a_budget_of_memory_too_small_for_the_proof_is_admitted() {
-    // 21 scales: 3.9 kB a node.
+    // A node with 21 scales takes 3.9 kB.
     let solution = solved_within(
         &twelve_by_eight(0),
         ProofBudget {
@@ -103,7 +103,7 @@ fn a_budget_of_memory_too_small_for_the_proof_is_admitted() {
             .proof
             .outcome
             .words()
-            .ends_with("the search ended at its budget of memory.")
+            .ends_with("the search ended because its memory budget was exhausted.")
     );
 }
 
@@ -146,7 +146,8 @@ fn the_search_asks_whether_to_stop_at_every_half_millisecond_of_work() {
         "{:?}",
         solution.proof
     );
-    // 20 000 units, or one line search more where that is in one piece.
+    // Queried at least every 25 000 work units: 20 000, plus a line search, which is not
+    // interrupted.
     assert!(asked.get() >= 2_000_000 / 25_000, "{}", asked.get());
 }
 
@@ -177,7 +178,8 @@ fn toggles_that_are_stopped_within_a_proof_keep_what_is_there() {
     assert!(!found.is_empty() && found.len() < 24, "{}", found.len());
 }
 
-/// Conditions of a static gain with twelve outputs and eight inputs, each with another as flight.
+/// Returns a dataset of static gains with twelve outputs and eight inputs; each condition has
+/// different physics and identified models.
 fn static_gains(conditions: usize) -> Dataset {
     let model = |name: &str, origin, seed: usize| {
         let gain = DMatrix::from_fn(12, 8, |output, input| {
@@ -229,7 +231,7 @@ fn static_gains(conditions: usize) -> Dataset {
     Dataset::new(header, (0..conditions).map(condition).collect()).unwrap()
 }
 
-/// Says stop after so many questions, and counts those after it.
+/// Cancels after a number of queries, and counts the queries.
 struct Impatient {
     patience: usize,
     asked: AtomicUsize,
@@ -250,12 +252,13 @@ fn an_analysis_is_stopped_in_the_middle_of_a_proof() {
         study.settings.constrained.marked().collect::<Vec<Pair>>(),
         []
     );
-    // Each condition asks a few times besides its proof, so that the question falls into the first proofs.
+    // Each condition queries only a few times outside its proof, so that query 120 occurs during
+    // the first proofs.
     let watch = Impatient {
         patience: 120,
         asked: AtomicUsize::new(0),
     };
     assert_eq!(Engine::default().analyze(&study, &watch), Err(Cancelled));
-    // The work in hand and the conditions that have not begun ask once more each.
+    // Tasks in progress and conditions not yet begun query once more each.
     assert!(watch.asked.into_inner() <= 120 + 30);
 }

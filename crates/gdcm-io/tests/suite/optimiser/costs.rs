@@ -1,4 +1,4 @@
-//! Sensitivities and toggles against solving the changed problem.
+//! Sensitivities and toggles, compared with solutions of the modified problem.
 
 use gdcm_method::correction::sensitivity::{ActiveConstraint, Sensitivity, sensitivities, toggles};
 use gdcm_method::correction::{Bounds, Channel, Problem, ProofBudget, Quantity};
@@ -6,7 +6,8 @@ use gdcm_method::correction::{Bounds, Channel, Problem, ProofBudget, Quantity};
 use super::instances::{delay_instances, gain_instances};
 use super::solved;
 
-/// 1e-4 dB: small enough for the second order to vanish, large enough for the objective's rounding to.
+/// Step \[dB\]: small enough to neglect second-order terms, large enough compared with the rounding
+/// of the objective.
 const STEP_DB: f64 = 1e-4;
 
 fn gain_objective(problem: &Problem) -> f64 {
@@ -26,7 +27,8 @@ fn gain_sensitivities_are_slopes_of_the_least_objective() {
             let with = |factor: f64| {
                 let mut changed = problem.clone();
                 match sensitivity.restraint {
-                    // The delta gain itself is in the objective too: take the held entry out of it.
+                    // Exclude the held entry from the objective, in which its delta gain would
+                    // count too.
                     ActiveConstraint::Held(pair) => {
                         changed.fitted[pair] = false;
                         changed.delta[pair] = changed.delta[pair].map(|gain| gain * factor);
@@ -47,11 +49,13 @@ fn gain_sensitivities_are_slopes_of_the_least_objective() {
                 .count()
                 > 1;
             if !matches!(sensitivity.restraint, ActiveConstraint::Held(_)) && several_on_bound {
-                // One bound moves for all channels on it: their sum is checked by the other instances.
+                // Skip bounds that several channels have reached: changing the bound gives only the
+                // sum of their sensitivities.
                 continue;
             }
             let slope = (with(factor) - with(1.0 / factor)) / (2.0 * STEP_DB);
-            // Second differences of 1e-4 dB, and the rounding of an objective of about 1 over that step.
+            // Tolerance for second-order terms of a step of 1e-4 dB, and for the rounding of an
+            // objective of about 1 divided by the step.
             assert!(
                 (slope - sensitivity.per_unit).abs() <= 1e-6 + 1e-4 * slope.abs(),
                 "{}: {sensitivity:?} {slope}",
@@ -63,7 +67,6 @@ fn gain_sensitivities_are_slopes_of_the_least_objective() {
 
 #[test]
 fn delay_sensitivities_are_slopes_of_the_least_objective() {
-    // A microsecond.
     let step_s = 1e-6;
     for instance in delay_instances().iter().filter(|instance| instance.matched) {
         let problem = &instance.problem;
@@ -80,10 +83,11 @@ fn delay_sensitivities_are_slopes_of_the_least_objective() {
             };
             let up = (with(step_s) - with(0.0)) / (1e3 * step_s);
             let down = (with(0.0) - with(-step_s)) / (1e3 * step_s);
-            // Where a bound begins to act the slope differs to both sides; the multiplier is one of them or between.
+            // Where a bound becomes active, the slopes to either side differ, and the multiplier
+            // lies between them.
             let low = up.min(down);
             let high = up.max(down);
-            // A microsecond's second order, against objectives of a hundredth of a square second.
+            // 1e-7: second-order terms of a microsecond, relative to objectives of about 0.01 s^2.
             assert!(
                 (low - 1e-7..=high + 1e-7).contains(&sensitivity.per_unit),
                 "{}: {sensitivity:?} {up} {down}",
@@ -101,7 +105,7 @@ fn sensitivities_are_put_into_words() {
     let inputs = names(&["LON", "LAT", "PED", "COL"]);
     let outputs = names(&["P", "Q", "R", "NX", "NY", "NZ"]);
     let all = sensitivities(&instance.problem, &solution);
-    // The five entries of Table 2; the wide bounds of this instance do not act.
+    // The five held entries of Table 2; the wide bounds of this instance are not active.
     assert_eq!(all.len(), 5);
     for sensitivity in all {
         let words = sensitivity.words(&inputs, &outputs);

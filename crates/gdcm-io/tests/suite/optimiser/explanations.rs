@@ -1,4 +1,4 @@
-//! Every explanation is put to the test: what it says would help helps, and less does not.
+//! Tests of every explanation: the proposed remedy suffices, and a smaller one does not.
 
 use proptest::prelude::*;
 
@@ -11,7 +11,7 @@ use super::random::{Pattern, delay_problems, gain_problems};
 use super::{solved, solved_within};
 use crate::made_up::tries;
 
-/// Reachability needs no proof.
+/// Budget without a proof, which is not needed to decide whether constraints can be satisfied.
 const BUDGET: ProofBudget = ProofBudget {
     work: 0,
     listing: 0,
@@ -50,7 +50,8 @@ fn is_matched(problem: &Problem) -> bool {
     solved_within(problem, BUDGET).matched
 }
 
-/// Six by four gains of 1 with Table 2 held, the given entries changed.
+/// Returns a problem of six outputs and four inputs with all delta gains 1 except `changes`; the
+/// entries of Table 2 are held.
 fn table_two(changes: &[(usize, usize, f64)], bounds: Bounds) -> Problem {
     let mut delta = PairTable::filled(6, 4, Some(1.0));
     for &(output, input, gain) in changes {
@@ -72,20 +73,20 @@ fn a_product_above_the_bounds_is_explained() {
     let [conflict] = solution.conflicts.as_slice() else {
         panic!("{:?}", solution.conflicts)
     };
-    // 1.58^2 = 2.496 is not enough, 1.59^2 = 2.528 is.
+    // The required product is 2.5: 1.58^2 = 2.496 is too small, 1.59^2 = 2.528 suffices.
     assert!(
         matches!(conflict.kind, ConflictKind::AboveUpper { upper, .. } if upper == 1.59),
         "{conflict:?}"
     );
     assert_eq!(
         conflict.words(&names(&INPUTS), &names(&OUTPUTS)),
-        "LAT → P cannot be held: with gains <= 1.400 the product k_LAT k_P is at most 1.960, not 2.500; set the upper bound to 1.59 \
-         or release it."
+        "LAT → P cannot be held: with gains <= 1.400 the product k_LAT k_P is at most 1.960, but 2.500 is required; set \
+         the upper bound to 1.59 or release it."
     );
     assert!(is_matched(&bounded(&problem, 0.7, 1.59)));
     assert!(!is_matched(&bounded(&problem, 0.7, 1.58)));
     let miss = &solution.unmatched[0];
-    // 20 log10 (1.96 / 2.5), by hand.
+    // Computed by hand: 20 log10 (1.96 / 2.5).
     assert!((miss.excess + 2.114).abs() <= 1e-3, "{}", miss.excess);
 }
 
@@ -110,7 +111,7 @@ fn a_product_below_the_bounds_is_explained() {
     else {
         panic!("{:?}", solution.conflicts)
     };
-    // 0.547^2 = 0.2992 and 0.548^2 = 0.3003.
+    // The required product is 0.3: 0.547^2 = 0.2992 is below, 0.548^2 = 0.3003 above.
     assert_eq!(*lower, Some(0.547));
     assert_eq!(*channels, (Channel::Input(3), Channel::Output(5)));
     assert!(is_matched(&bounded(&problem, 0.547, 1.4)));
@@ -132,8 +133,8 @@ fn two_entries_that_share_an_input_are_explained_by_their_ratio() {
     };
     assert_eq!(
         conflict.words(&names(&INPUTS), &names(&OUTPUTS)),
-        "PED → R and PED → NY cannot both be held: with k_NY <= 1.400 and k_R >= 0.700 their ratio is at most 2.000, not 2.500; \
-         set the upper bound to 1.75, or the lower bound to 0.56, or release one of them."
+        "PED → R and PED → NY cannot both be held: with k_NY <= 1.400 and k_R >= 0.700 their ratio is at most 2.000, but 2.500 is \
+         required; set the upper bound to 1.75, or the lower bound to 0.56, or release one of them."
     );
     assert!(
         is_matched(&bounded(&problem, 0.7, 1.75)) && !is_matched(&bounded(&problem, 0.7, 1.74))
@@ -167,7 +168,7 @@ fn a_cycle_of_constraints_is_explained() {
         else {
             panic!("{}: {:?}", instance.id, solution.conflicts)
         };
-        // The least squares spread the mismatch evenly over the four entries.
+        // Least squares distributes the mismatch evenly over the four entries.
         let mismatch = 4.0 * instance.residual * 20.0 / std::f64::consts::LN_10;
         assert!(
             (mismatch_db.abs() - mismatch).abs() <= 1e-6,
@@ -196,7 +197,8 @@ fn a_cycle_of_constraints_is_explained() {
     }
 }
 
-/// Six by four gains of 1, of which four round a loop are held that disagree by `mismatch_db`.
+/// Returns a problem like [`table_two`] in which a loop of four entries is held; their delta gains
+/// disagree by `mismatch_db`.
 fn near_loop(mismatch_db: f64, agreement: f64) -> Problem {
     let loop_of = [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(output, input)| Pair::new(output, input));
     let problem = table_two(
@@ -230,7 +232,7 @@ fn a_loop_that_disagrees_by_less_than_the_tolerance_counts_as_agreeing_and_is_sa
         words.contains("form a loop: their ratios agree to 0.040 dB"),
         "{words}"
     );
-    // The least squares spread the mismatch evenly over the four entries.
+    // Least squares distributes the mismatch evenly over the four entries.
     for (pair, target) in agreeing
         .targets
         .iter()
@@ -279,7 +281,10 @@ fn what_disagrees_by_little_is_told_to_the_digits_that_show_it() {
         },
     );
     let words = solved_within(&problem, BUDGET).conflicts[0].words(&inputs, &outputs);
-    assert!(words.contains("is at most 1.9600, not 1.9601;"), "{words}");
+    assert!(
+        words.contains("is at most 1.9600, but 1.9601 is required;"),
+        "{words}"
+    );
 }
 
 #[test]
@@ -340,9 +345,10 @@ fn an_answer_is_put_into_words_from_its_proof_to_its_remedies() {
     let outputs = names(&OUTPUTS);
     assert_eq!(
         solution.proof.outcome.words(),
-        "Proven: no gains within the bounds that hold the held responses are better."
+        "Proven: no gains within the bounds that satisfy the held responses are better."
     );
-    // The ratio of 2.5 is cut to 2 by the factor 1.25, half of it (0.97 dB) to each side.
+    // The ratio of 2.5 is reduced to 2 by the factor 1.25, of which each entry takes half (0.97
+    // dB).
     let misses: Vec<String> = solution
         .unmatched
         .iter()
@@ -357,7 +363,8 @@ fn an_answer_is_put_into_words_from_its_proof_to_its_remedies() {
     );
     assert_eq!(
         solution.remedy.unwrap().words(&inputs, &outputs),
-        "Any one of these lets all be held: an upper bound of 1.75; a lower bound of 0.56; freeing PED → R; freeing PED → NY."
+        "Any one of these changes allows all responses to be held: an upper bound of 1.75; a lower bound of 0.56; releasing PED → R; \
+         releasing PED → NY."
     );
 }
 
@@ -374,11 +381,11 @@ fn a_delay_that_would_have_to_be_negative_is_explained_as_lead() {
     assert!(
         matches!(miss.why.kind, ConflictKind::BelowLower { asked, .. } if (asked + 0.034).abs() <= 1e-15)
     );
-    // 0.034 s at 12 rad/s: 0.408 rad.
+    // 0.034 s at 12 rad/s are 0.408 rad.
     assert!((miss.phase_left_deg(12.0) - 0.408_f64.to_degrees()).abs() <= 1e-12);
     assert_eq!(
         miss.words(12.0, &names(&INPUTS), &names(&OUTPUTS)),
-        "LAT → P needs 34.0 ms of lead: a delay cannot give it; 23° of phase error remain at 12 rad/s."
+        "LAT → P needs 34.0 ms of lead, which a delay cannot provide; a phase error of 23° remains at 12 rad/s."
     );
     assert_eq!(solution.remedy.unwrap().upper, None);
 }
@@ -393,7 +400,7 @@ fn a_lead_that_rounding_makes_is_none() {
         solution.matched && solution.unmatched.is_empty() && solution.conflicts.is_empty(),
         "{solution:?}"
     );
-    // A microsecond is one.
+    // A required lead of one microsecond counts as unmatched.
     delta_s[Pair::new(0, 1)] = Some(-1e-6);
     assert_eq!(
         solved(&Problem::delays(delta_s, on_axis(), 0.1))
@@ -442,7 +449,7 @@ fn unreachable_reference_delays_are_all_explained() {
     }
 }
 
-/// Whether a bound of three digits is far enough from `exact` for a change of one in the last to tell.
+/// Returns the next lower value with three significant digits.
 fn next_below(value: f64) -> f64 {
     value - 10f64.powi(value.log10().floor() as i32 - 2)
 }
@@ -476,7 +483,8 @@ proptest! {
                     prop_assert!(!is_matched(&bounded(&alone, next_above(enough).min(lower), upper)));
                 }
                 ConflictKind::TooFarApart { upper: high, lower: Some(low), .. } => {
-                    // A product of the same path may need more: the ratio's own claim is about the ratio.
+                    // The explanation concerns the ratio alone: a product along the same path may
+                    // need even wider bounds.
                     let stretched = |lower: f64, upper: f64| bounded(&alone, lower, upper);
                     prop_assert!(!is_matched(&stretched(lower, next_below(high).max(upper))));
                     prop_assert!(!is_matched(&stretched(next_above(low).min(lower), upper)));

@@ -1,22 +1,23 @@
-//! The reference instances under `tests/data`.
+//! Loads the reference instances in `tests/data`.
 
 use serde_json::Value;
 
 use gdcm_method::correction::{Bounds, Problem};
 use gdcm_model::dataset::{Pair, PairTable};
 
-/// One instance of equation (7) with its certified minimum.
+/// An instance of equation (7) with its certified minimum.
 pub struct GainInstance {
     pub id: u64,
     pub kind: String,
     pub problem: Problem,
     pub objective: f64,
     pub matched: bool,
-    /// Greatest miss of a held entry, in natural logarithms; 0 where matched.
+    /// Maximum deviation of a held entry, in natural logarithms; 0 if all are matched.
     pub residual: f64,
     pub inputs: Vec<f64>,
     pub outputs: Vec<f64>,
-    /// Whether several gains have the same objective, so that only products can be compared.
+    /// Whether several combinations of gains have the same objective, so that only their products
+    /// can be compared.
     pub loose: bool,
 }
 
@@ -29,7 +30,7 @@ pub fn numbers(value: &Value) -> Vec<f64> {
         .collect()
 }
 
-/// The table of the numbers of `rows`.
+/// Converts rows of numbers (outputs x inputs) to a table.
 pub fn table<T>(rows: &Value, entry: impl Fn(f64) -> T) -> PairTable<T> {
     let rows: Vec<Vec<f64>> = rows.as_array().into_iter().flatten().map(numbers).collect();
     PairTable::from_fn(rows.len(), rows[0].len(), |pair: Pair| {
@@ -80,7 +81,7 @@ fn gain_instance(instance: &Value) -> GainInstance {
     }
 }
 
-/// One instance of equation (11) with its minimum.
+/// An instance of equation (11) with its minimum.
 pub struct DelayInstance {
     pub id: u64,
     pub problem: Problem,
@@ -93,7 +94,7 @@ pub struct DelayInstance {
 /// The five on-axis entries of Table 2, [output, input].
 pub const ON_AXIS: [(usize, usize); 5] = [(0, 1), (1, 0), (2, 2), (4, 2), (5, 3)];
 
-/// The entries of Table 2 among 6 outputs and 4 inputs.
+/// Marks the entries of Table 2 among 6 outputs and 4 inputs.
 pub fn on_axis() -> PairTable<bool> {
     PairTable::from_fn(6, 4, |pair| ON_AXIS.contains(&(pair.output, pair.input)))
 }
@@ -131,7 +132,7 @@ fn delay_instance(instance: &Value) -> DelayInstance {
     }
 }
 
-/// The gains and delays of one condition of the example, with their least objectives.
+/// Gain and delay problems of an example condition, with their minimum objectives.
 pub struct ExampleCondition {
     pub id: u64,
     pub gains: Problem,

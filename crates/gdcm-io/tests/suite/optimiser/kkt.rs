@@ -1,20 +1,21 @@
-//! How far an answer is from the conditions of a minimum, computed from the channels alone.
+//! Karush-Kuhn-Tucker residuals of a solution, computed independently of the solver.
 
 use gdcm_method::correction::{GainObjective, Problem, Quantity, Solution};
 use gdcm_model::dataset::Pair;
 
-/// A minimisation over channel values (inputs, then outputs), seen at one point.
+/// Optimality data of a minimisation at one point. Channels: inputs, then outputs.
 struct Point {
     inputs: usize,
     gradient: Vec<f64>,
-    /// Whether each channel is on its lower and on its upper bound.
+    /// Whether each channel is at its lower bound and at its upper bound.
     bounds: Vec<(bool, bool)>,
     held: Vec<Pair>,
-    /// Size of the terms whose slopes each channel's gradient sums.
+    /// Sum of the magnitudes of the terms in each channel's gradient.
     sizes: Vec<f64>,
 }
 
-/// Residual of the gains in logarithms, relative to the size of the terms of each channel.
+/// Returns the residual of the gains in logarithms, relative to the magnitude of the gradient's
+/// terms.
 pub fn gain_residual(problem: &Problem, solution: &Solution) -> f64 {
     let inputs = problem.delta.inputs();
     let outputs = problem.delta.outputs();
@@ -65,7 +66,7 @@ pub fn gain_residual(problem: &Problem, solution: &Solution) -> f64 {
     })
 }
 
-/// Residual of the delays, relative to the size of the terms of each channel.
+/// Returns the residual of the delays, relative to the magnitude of the gradient's terms.
 pub fn delay_residual(problem: &Problem, solution: &Solution) -> f64 {
     let inputs = problem.delta.inputs();
     let outputs = problem.delta.outputs();
@@ -82,7 +83,7 @@ pub fn delay_residual(problem: &Problem, solution: &Solution) -> f64 {
     }
     for (output, delay) in solution.outputs.iter().enumerate() {
         gradient[inputs + output] += 2.0 * problem.alpha * delay;
-        // Delays of a tenth of a second.
+        // Typical delays of 0.1 s.
         sizes[inputs + output] += 0.2 * problem.alpha;
     }
     let on = |delay: &f64| (*delay == 0.0, *delay == problem.bounds.upper);
@@ -101,8 +102,9 @@ pub fn delay_residual(problem: &Problem, solution: &Solution) -> f64 {
     })
 }
 
-/// The steepest descent that is left, piece by piece: held entries tie the channels of a piece together, so that it can only move
-/// as a whole (inputs up and outputs down by the same amount), and not at all past a bound of any of its channels.
+/// Returns the largest remaining slope in a feasible direction, relative to the magnitude of its
+/// terms. Held entries tie channels together: such a group can only move as a whole (inputs up and
+/// outputs down by the same amount), and not beyond a bound of any of its channels.
 fn residual(point: &Point) -> f64 {
     let channels = point.gradient.len();
     let mut piece: Vec<usize> = (0..channels).collect();

@@ -1,4 +1,4 @@
-//! As many channels as a dataset may have.
+//! Problems with the maximum number of channels of a dataset.
 
 use gdcm_method::correction::conflict::ConflictKind;
 use gdcm_method::correction::sensitivity::{ActiveConstraint, sensitivities};
@@ -14,19 +14,19 @@ const BOUNDS: Bounds = Bounds {
     upper: 5.0,
 };
 
-/// A hundredth of the program's.
+/// A hundredth of the program's default budget.
 const BUDGET: ProofBudget = ProofBudget {
     work: 500_000,
     listing: 10_000,
     bytes: 8_000_000,
 };
 
-/// Gains of all channels between 0.7 and 1.4, each another.
+/// Returns the known gain of a channel: different values between 0.7 and 1.4.
 fn gain(channel: usize) -> f64 {
     (0.35 * (1.7 * channel as f64).sin()).exp()
 }
 
-/// Products of known gains, each up to a tenth off.
+/// Returns the products of the known gains, each with an error of up to 10 %.
 fn delta_gains() -> PairTable<Option<f64>> {
     PairTable::from_fn(MOST_CHANNELS, MOST_CHANNELS, |Pair { output, input }| {
         let off = 0.1 * (12.9898 * output as f64 + 78.233 * input as f64).sin();
@@ -34,7 +34,8 @@ fn delta_gains() -> PairTable<Option<f64>> {
     })
 }
 
-/// A path of held entries through all channels: the longest way that a restraint can act.
+/// Marks held entries that form a path through all channels, the longest possible chain of
+/// constraints.
 fn path() -> PairTable<bool> {
     PairTable::from_fn(MOST_CHANNELS, MOST_CHANNELS, |pair| {
         pair.output == pair.input || pair.output == pair.input + 1
@@ -55,7 +56,7 @@ fn consistent_products_are_all_held() {
     );
     for (pair, target) in solution.targets.iter() {
         let product = solution.inputs[pair.input] * solution.outputs[pair.output];
-        // The logarithms are held to 1e-9 (M8).
+        // The logarithms are matched within 1e-9 (M8).
         assert!((product / target.unwrap() - 1.0).abs() <= 1e-9, "{pair:?}");
     }
 }
@@ -83,7 +84,7 @@ fn what_is_held_along_a_path_balances_every_slope() {
     assert!(solution.matched);
     let mut balance = vec![0.0; 2 * MOST_CHANNELS];
     for sensitivity in sensitivities(&problem, &solution) {
-        // dB in a natural logarithm.
+        // Convert from per dB to per natural logarithm.
         let slope = sensitivity.per_unit * 20.0 / std::f64::consts::LN_10;
         match sensitivity.restraint {
             ActiveConstraint::Held(pair) => {
@@ -107,7 +108,8 @@ fn what_is_held_along_a_path_balances_every_slope() {
     for (output, gain) in solution.outputs.iter().enumerate() {
         balance[MOST_CHANNELS + output] -= 2.0 * problem.alpha * gain * (gain - 1.0);
     }
-    // The minimum is stationary to a billionth of slopes of order 1, of which a path of 64 channels sums up as many.
+    // The solution is stationary within 1e-9 of slopes of order 1, which a path of 64 channels
+    // sums.
     assert!(balance.iter().all(|left| left.abs() <= 1e-6), "{balance:?}");
 }
 

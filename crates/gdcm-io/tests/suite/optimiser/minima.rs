@@ -1,4 +1,4 @@
-//! Local minima, limits and budgets.
+//! Local minima, limiting values of alpha, and extreme problems.
 
 use gdcm_method::correction::problem::ProblemError;
 use gdcm_method::correction::solve::solve;
@@ -8,7 +8,8 @@ use gdcm_model::dataset::{Pair, PairTable};
 use super::instances::{delay_instances, example_conditions, gain_instances};
 use super::solved;
 
-/// Four outputs by two inputs whose first two entries on the diagonal are held; found by a search for two minima within 1 %.
+/// Returns a problem with four outputs and two inputs, of which the entries (0, 0) and (1, 1) are
+/// held. It was found by a random search for two minima within 1 %.
 fn two_minima() -> Problem {
     #[rustfmt::skip]
     let gains = [
@@ -36,7 +37,7 @@ fn every_condition_of_the_example_is_solved_and_proven() {
     for condition in example_conditions() {
         let gains = solved(&condition.gains);
         let delays = solved(&condition.delays);
-        // The reference is printed to double precision and certified to 1e-8.
+        // The reference objective is certified to 1e-8.
         assert!(
             (gains.objective / condition.gain_objective - 1.0).abs() <= 1e-8,
             "{}",
@@ -72,7 +73,8 @@ fn two_local_minima_within_a_percent_are_both_kept() {
         objectives[0] < objectives[1] && objectives[1] <= 1.01 * objectives[0],
         "{objectives:?}"
     );
-    // Walking from one to the other leads over higher ground: two minima, not one found twice.
+    // On the straight path (in logarithms) from one to the other, the objective rises above both:
+    // they are two distinct minima.
     let along = |share: f64| {
         let mix = |a: &[f64], b: &[f64]| -> Vec<f64> {
             a.iter()
@@ -103,7 +105,7 @@ fn a_sampled_grid_finds_nothing_below_the_better_of_two_minima() {
         if held.iter().any(|gain| !(0.1..=10.0).contains(gain)) {
             continue;
         }
-        // A free output's own best gain.
+        // Returns the optimal gain of an unconstrained output.
         let free = |output| {
             let g = [delta(output, 0), delta(output, 1)];
             let k = [first, second];
@@ -136,7 +138,7 @@ fn alpha_zero_is_the_limit_of_small_alphas() {
             .chain(&limit.outputs)
             .zip(small.inputs.iter().chain(&small.outputs))
         {
-            // The gains depend on alpha to first order.
+            // The gains depend on alpha to first order, so alpha = 1e-6 changes them slightly.
             assert!(
                 (limit / small - 1.0).abs() <= 1e-4,
                 "{}: {limit} {small}",
@@ -163,7 +165,7 @@ fn alpha_zero_is_the_limit_of_small_alphas_for_delays() {
             .chain(&limit.outputs)
             .zip(small.inputs.iter().chain(&small.outputs))
         {
-            // The delays, of a tenth of a second, depend on alpha to first order.
+            // The delays, about 0.1 s, depend on alpha to first order.
             assert!(
                 (limit - small).abs() <= 1e-6,
                 "{}: {limit} {small}",
@@ -184,7 +186,7 @@ fn a_large_alpha_leaves_the_output_gains_at_one() {
         "{:?}",
         solution.proof.outcome
     );
-    // The fit pulls with a force of order 1 against 1e6.
+    // The slope of the fit, of order 1, is small compared with alpha = 1e6.
     assert!(
         solution
             .outputs
@@ -247,7 +249,7 @@ fn the_decibel_objective_is_proven_at_once_and_says_so() {
         };
         let solution = solved(&problem);
         assert_eq!(solution.quantity, Quantity::Gain(GainObjective::Decibel));
-        // Convex: one node.
+        // A convex problem needs a single node.
         assert_eq!(solution.proof.nodes, 1, "{}", instance.id);
         assert!(
             matches!(solution.proof.outcome, Outcome::Proven { .. }),
@@ -274,7 +276,7 @@ fn an_error_of_3_db_counts_alike_up_and_down_in_decibels() {
         solved(&problem).objective
     };
     let factor = 10f64.powf(3.0 / 20.0);
-    // 3 dB squared; a few roundings of the logarithms.
+    // The objective is the square of 3 dB; the logarithms have a few rounding errors.
     assert!(
         (objective(factor) - 9.0).abs() <= 1e-13 && (objective(1.0 / factor) - 9.0).abs() <= 1e-13
     );
@@ -291,7 +293,7 @@ fn one_absurd_off_axis_gain_neither_breaks_the_answer_nor_the_proof() {
         "{:?}",
         solution.proof.outcome
     );
-    // The output of the absurd gain goes to its bound.
+    // The output with the absurd gain reaches its bound.
     assert_eq!(solution.outputs[3], problem.bounds.upper);
 }
 
@@ -453,7 +455,7 @@ fn delays_scale_with_the_unit_of_time() {
         };
         let micro = solved(&micro);
         for (long, short) in seconds.outputs.iter().zip(&micro.outputs) {
-            // A few roundings of a tenth of a second, times what a flat minimum magnifies.
+            // A few rounding errors of 0.1 s, magnified by a flat minimum.
             assert!(
                 (long * factor - short).abs() <= 1e-12 * factor,
                 "{}: {long} {short}",

@@ -1,4 +1,4 @@
-//! The optimiser against independent reference figures, and the properties that any answer must have.
+//! The optimiser: comparison with independent reference values, and properties of every solution.
 
 mod budgets;
 mod costs;
@@ -16,7 +16,7 @@ mod reference_leads;
 use gdcm_method::correction::solve::solve;
 use gdcm_method::correction::{Problem, ProofBudget, Solution};
 
-/// The answer within the budget that the program gives.
+/// Solves a problem within the default budget.
 fn solved(problem: &Problem) -> Solution {
     solved_within(problem, ProofBudget::default())
 }

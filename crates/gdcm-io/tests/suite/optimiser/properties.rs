@@ -1,4 +1,4 @@
-//! What must hold of every answer.
+//! General properties of every solution, tested with random problems.
 
 use proptest::prelude::*;
 
@@ -13,7 +13,7 @@ use super::random::{Pattern, delay_problems, gain_problems};
 use super::{solved, solved_within};
 use crate::made_up::tries;
 
-/// Bounds the time of one case; what is not proven by then must say so.
+/// Limits the time of a case; solutions without a complete proof must be marked as not proven.
 const BUDGET: ProofBudget = ProofBudget {
     work: 2_000_000,
     listing: 50_000,
@@ -24,7 +24,7 @@ fn held_and_inside(problem: &Problem, solution: &Solution) -> Result<(), TestCas
     for pair in problem.constrained.marked() {
         let product = solution.inputs[pair.input] * solution.outputs[pair.output];
         let target = solution.targets[pair].unwrap();
-        // The logarithms are held to 1e-9 (M8).
+        // The logarithms are matched within 1e-9 (M8).
         prop_assert!(
             (product / target - 1.0).abs() <= 1e-9,
             "{:?}: {} is not {}",
@@ -57,7 +57,7 @@ proptest! {
     #[test]
     fn gains_are_stationary(problem in gain_problems((6, 4), 1.5, Pattern::Any)) {
         let solution = solved_within(&problem, BUDGET);
-        // Newton's method ends at the rounding of the slopes; a billionth is far above.
+        // 1e-9 is far above the rounding of the slopes, at which Newton's method ends.
         let residual = gain_residual(&problem, &solution);
         prop_assert!(residual <= 1e-9, "{}", residual);
     }
@@ -74,7 +74,8 @@ proptest! {
         let solution = solved(&problem);
         let is_told = match solution.proof.outcome {
             Outcome::Proven { gap } => gap <= 1e-9,
-            // One in some tens of thousands fits all but exactly: of an objective near zero, rounding is a larger part.
+            // In one of some tens of thousands of cases the fit is almost exact: rounding is a
+            // larger share of an objective near zero.
             Outcome::NotProven { gap, limit } => limit == Limit::Rounding && gap <= 1e-3,
         };
         prop_assert!(is_told, "{:?}", solution.proof.outcome);
@@ -92,12 +93,12 @@ proptest! {
             let gain = |index: usize| (low + (high - low) * sample[index]).exp();
             let inputs: Vec<f64> = (0..problem.delta.inputs()).map(gain).collect();
             let mut outputs: Vec<f64> = (0..problem.delta.outputs()).map(|output| gain(3 + output)).collect();
-            // A forest with one held entry for each output: the outputs follow from the inputs.
+            // At most one entry is held for each output, so a held output follows from its input.
             for pair in problem.constrained.marked() {
                 outputs[pair.output] = solution.targets[pair].unwrap() / inputs[pair.input];
             }
             if outputs.iter().all(|gain| (problem.bounds.lower..=problem.bounds.upper).contains(gain)) {
-                // The sample's own rounding.
+                // Rounding of the sample.
                 let objective = problem.objective_at(&inputs, &outputs) * (1.0 + 1e-14);
                 prop_assert!(solution.proof.lower_bound <= objective, "{} is below {}", objective, solution.proof.lower_bound);
             }
@@ -121,7 +122,8 @@ proptest! {
         let first = solved_within(&problem, BUDGET);
         let second = solved_within(&permuted, BUDGET);
         prop_assert_eq!(first.matched, second.matched);
-        // An unproven answer is a local one and may differ; with a second minimum within 1 % so may the gains.
+        // An unproven solution may be another local minimum. If there is a second minimum within 1
+        // %, even proven gains may differ.
         let proven = [&first, &second].iter().all(|solution| matches!(solution.proof.outcome, Outcome::Proven { .. }));
         if proven {
             let scale = first.objective.max(1e-6);
@@ -131,7 +133,7 @@ proptest! {
             for pair in problem.fitted.marked().filter(|&pair| problem.delta[moved(pair)].is_some()) {
                 let there = second.inputs[pair.input] * second.outputs[pair.output];
                 let here = first.inputs[inputs[pair.input]] * first.outputs[outputs[pair.output]];
-                // Both are stationary to 1e-9; a flat minimum magnifies that.
+                // Both solutions are stationary within 1e-9, which a flat minimum magnifies.
                 prop_assert!((there / here - 1.0).abs() <= 1e-5, "{:?} {} {}", pair, here, there);
             }
         }
@@ -143,7 +145,8 @@ proptest! {
         which in any::<prop::sample::Index>(),
     ) {
         let base = solved_within(&problem, BUDGET);
-        // What is missed by compromise has no order: freeing one entry may let another be held better.
+        // Skip unmatched problems: in a compromise, releasing one entry may allow another to be
+        // matched better, which may increase the objective.
         if !base.matched {
             return Ok(());
         }
@@ -197,7 +200,7 @@ proptest! {
     }
 }
 
-/// A permutation of `0..count` that `seed` decides.
+/// Returns a permutation of `0..count` determined by `seed`.
 fn shuffled(count: usize, seed: u64) -> Vec<usize> {
     let mut order: Vec<usize> = (0..count).collect();
     let mut state = seed;
@@ -222,7 +225,7 @@ fn an_exact_product_of_gains_is_found_with_an_objective_of_zero() {
     let mut problem = Problem::gains(delta, PairTable::filled(4, 3, false), bounds);
     problem.alpha = 0.0;
     let solution = solved(&problem);
-    // Twelve squares of a few roundings each.
+    // Twelve squares of a few rounding errors each.
     assert!(solution.objective <= 1e-28, "{}", solution.objective);
     assert!(
         matches!(solution.proof.outcome, Outcome::Proven { .. }),
@@ -233,7 +236,7 @@ fn an_exact_product_of_gains_is_found_with_an_objective_of_zero() {
 
 #[test]
 fn a_strong_regularisation_that_meets_its_bound_is_proven() {
-    // Found by the random problems: the optimum lies 1e-8 inside the upper bound of 1.
+    // Found by the random problems: the optimum is 1e-8 below the upper bound of 1.
     let gains = [Some(0.9897481972920906), None, Some(0.989970222018355)];
     let problem = Problem {
         quantity: Quantity::Gain(GainObjective::Ratio),

@@ -1,16 +1,17 @@
-//! Random problems of every shape that the optimiser must take.
+//! Random problems of all shapes that the optimiser accepts.
 
 use proptest::prelude::*;
 
 use gdcm_method::correction::{Bounds, GainObjective, Problem, Quantity};
 use gdcm_model::dataset::{Pair, PairTable};
 
-/// How the entries of a random problem are held.
+/// Pattern of the held entries in a random problem.
 #[derive(Clone, Copy, Debug)]
 pub enum Pattern {
-    /// At most one held entry for each output and none that closes a loop: always consistent among themselves.
+    /// At most one held entry for each output, without loops; such constraints are always
+    /// consistent.
     Forest,
-    /// Any entry, any loops.
+    /// Any entries, with any loops.
     Any,
 }
 
@@ -27,7 +28,7 @@ fn fill<T: Clone>((outputs, inputs): (usize, usize), values: &[T]) -> PairTable<
     })
 }
 
-/// Marks at most one entry of each output.
+/// Marks the first of the marked entries of each output.
 fn one_each(shape: (usize, usize), marks: &[bool]) -> PairTable<bool> {
     let all = fill(shape, marks);
     let first =
@@ -54,7 +55,8 @@ pub fn alphas() -> impl Strategy<Value = f64> {
     ]
 }
 
-/// The delta, held and fitted entries of a problem of up to `most` outputs and inputs.
+/// Generates the deltas, held entries and fitted entries of a problem with at most `most` outputs
+/// and inputs.
 fn tables(
     most: (usize, usize),
     pattern: Pattern,
@@ -76,7 +78,8 @@ fn tables(
     })
 }
 
-/// Gain problems of up to `most` outputs and inputs; delta gains within `spread` (natural logarithm) of 1.
+/// Generates gain problems with at most `most` outputs and inputs; the natural logarithms of the
+/// delta gains are within `spread` of 0.
 pub fn gain_problems(
     most: (usize, usize),
     spread: f64,
@@ -111,7 +114,8 @@ pub fn gain_problems(
         )
 }
 
-/// Delay problems of up to `most` outputs and inputs; delta delays of up to a tenth of a second either way.
+/// Generates delay problems with at most `most` outputs and inputs; the delta delays are between
+/// -0.1 and 0.1 s.
 pub fn delay_problems(most: (usize, usize), pattern: Pattern) -> impl Strategy<Value = Problem> {
     let upper = prop_oneof![1 => Just(0.0), 9 => 0.0..0.2_f64];
     (tables(most, pattern, -0.1..0.1_f64), upper, alphas()).prop_map(

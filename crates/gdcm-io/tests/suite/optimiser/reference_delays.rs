@@ -1,4 +1,4 @@
-//! The minima of equation (11).
+//! Delays compared with the reference minima of equation (11).
 
 use super::instances::delay_instances;
 use super::solved;
@@ -8,7 +8,8 @@ fn every_minimum_is_reached() {
     for instance in delay_instances() {
         let solution = solved(&instance.problem);
         assert_eq!(solution.matched, instance.matched, "{}", instance.id);
-        // The reference is an interior point's; the program is convex.
+        // The reference is from an interior-point method, whose minimum is global because the
+        // problem is convex.
         assert!(
             (solution.objective / instance.objective - 1.0).abs() <= 1e-8,
             "{}: {} is not {}",
@@ -25,7 +26,7 @@ fn held_sums_are_held_and_delays_stay_inside_their_bounds() {
         let solution = solved(&instance.problem);
         for pair in instance.problem.constrained.marked() {
             let sum = solution.inputs[pair.input] + solution.outputs[pair.output];
-            // A few roundings of delays of a tenth of a second.
+            // A few rounding errors of delays of 0.1 s.
             assert!(
                 (sum - solution.targets[pair].unwrap()).abs() <= 1e-15,
                 "{}: {pair:?}",
@@ -47,7 +48,7 @@ fn delays_on_a_bound_are_exactly_on_it() {
     for instance in delay_instances() {
         let solution = solved(&instance.problem);
         for delay in solution.inputs.iter().chain(&solution.outputs) {
-            // A nanosecond: anything this near to a bound is meant to be on it.
+            // A delay within a nanosecond of a bound should be exactly at the bound.
             assert!(*delay == 0.0 || *delay > 1e-9, "{}: {delay:e}", instance.id);
             assert!(
                 *delay == instance.problem.bounds.upper
@@ -66,7 +67,8 @@ fn sums_equal_the_reference() {
         for pair in instance.problem.delta.pairs() {
             let sum = solution.inputs[pair.input] + solution.outputs[pair.output];
             let reference = instance.inputs[pair.input] + instance.outputs[pair.output];
-            // An objective known to 1e-8 fixes its minimum to about the root of that, of delays of a tenth of a second.
+            // An objective with a relative accuracy of 1e-8 determines its minimiser to about the
+            // square root, 1e-4, of delays of 0.1 s.
             assert!(
                 (sum - reference).abs() <= 2e-5,
                 "{}: {pair:?} {sum} {reference}",

@@ -1,4 +1,4 @@
-//! The certified minima of equation (7).
+//! Gains compared with the certified minima of equation (7).
 
 use gdcm_method::correction::Outcome;
 use gdcm_model::dataset::Pair;
@@ -64,7 +64,7 @@ fn entries_out_of_reach_are_missed_as_little_as_possible() {
             .iter()
             .map(|miss| (miss.target / miss.delta).ln().abs())
             .fold(0.0, f64::max);
-        // The reference's stage 1 stops at about 1e-9.
+        // Stage 1 of the reference ends at a tolerance of about 1e-9.
         assert!(
             (most - instance.residual).abs() <= 1e-7,
             "{}: {most} is not {}",
@@ -82,7 +82,8 @@ fn products_equal_the_reference_where_the_minimum_is_unique() {
             let Pair { output, input } = pair;
             let product = solution.inputs[input] * solution.outputs[output];
             let reference = instance.inputs[input] * instance.outputs[output];
-            // An objective known to 1e-8 fixes its minimum to about the root, 1e-4.
+            // An objective with a relative accuracy of 1e-8 determines its minimiser to about the
+            // square root, 1e-4.
             assert!(
                 (product / reference - 1.0).abs() <= 2e-4,
                 "{}: {pair:?} {product} {reference}",

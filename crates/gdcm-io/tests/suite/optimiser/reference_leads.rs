@@ -1,4 +1,5 @@
-//! The minima of the program of signed delays (M15.4), and the filters of the negative ones (M15.3).
+//! Minima of the optimisation of signed delays (M15.4), and lead filters for the negative delays
+//! (M15.3).
 
 use proptest::prelude::*;
 use serde_json::Value;
@@ -13,7 +14,7 @@ use gdcm_model::response::{FrequencyGrid, LeadOrder};
 use super::instances::{numbers, table};
 use super::solved;
 
-/// A figure of seconds agrees to 1e-6 of it, or to a nanosecond.
+/// Asserts that a time \[s\] agrees within 1e-6 of the reference or within 1 ns.
 #[track_caller]
 fn assert_seconds(what: &str, found: f64, reference: f64) {
     assert_within(what, found, reference, 1e-9);
@@ -85,7 +86,7 @@ fn filters_have_the_reference_response_band_delay_and_gain_at_infinity() {
         let [omega, re, im] = ["omega", "re", "im"].map(|name| numbers(&entry[name]));
         for (at, omega) in omega.iter().enumerate() {
             let value = filter.at(*omega);
-            // The reference is written to twelve digits.
+            // The reference is written with twelve digits.
             assert!(
                 (value.re - re[at]).abs() + (value.im - im[at]).abs() < 1e-10 * value.norm(),
                 "{entry}"
@@ -145,7 +146,8 @@ fn every_program_of_signed_delays_has_the_reference_answer() {
             (&solution.outputs, &entry["tau_out_s"]),
         ] {
             for (found, reference) in found.iter().zip(numbers(reference)) {
-                // The reference's limit of alpha is a small alpha, with the rounding that this brings.
+                // The reference approximates alpha = 0 by a small alpha, with a larger rounding
+                // error.
                 assert_within(
                     name,
                     *found,
@@ -166,7 +168,7 @@ fn the_residual_of_karush_kuhn_and_tucker_proves_each_optimum() {
     for entry in list(&reference(), "programs") {
         let problem = program(entry);
         let mut solution = solved(&problem);
-        // Roundings of slopes that are sums of thirty delays of a tenth of a second.
+        // Rounding of slopes, each a sum of thirty delays of 0.1 s.
         assert!(
             kkt_residual(&problem, &solution) < 1e-14,
             "{}",
@@ -206,10 +208,10 @@ fn a_bound_on_the_gain_of_the_filters_is_met_and_explained() {
     let told = solution.unmatched[0].words(12.0, &inputs, &outputs)
         + &solution.conflicts[0].words(&inputs, &outputs);
     for part in [
-        "of lead it wants",
-        "R_max lets",
+        "of lead that it needs",
+        "R_max limits",
         "191.2 ms of lead together",
-        "a larger R_max or a smaller n",
+        "increase R_max or reduce n",
     ] {
         assert!(told.contains(part), "{told}");
     }
@@ -255,7 +257,7 @@ proptest! {
         };
         let plain = solve(&problem, ProofBudget::default(), &|| false).unwrap();
         let permuted = solve(&permuted, ProofBudget::default(), &|| false).unwrap();
-        // Strictly convex: the same point, up to what Newton's last step rounds.
+        // Strictly convex: both solutions agree up to the rounding of Newton's last step.
         for (place, &output) in outputs.iter().enumerate() {
             prop_assert!((permuted.outputs[place] - plain.outputs[output]).abs() < 1e-12);
         }
@@ -272,7 +274,8 @@ proptest! {
         let omega = design.omega();
         let moment: f64 = omega.iter().map(|&omega| omega * (first.at(omega) * second.at(omega)).arg()).sum();
         let series_s = -moment / omega.iter().map(|omega| omega * omega).sum::<f64>();
-        // While the two together turn the phase by less than half a turn, the principal value is the phase.
+        // If the two filters together turn the phase by less than 180 deg, its principal value is
+        // the phase.
         let turn = first.phase(12.0) + second.phase(12.0);
         prop_assume!(turn < 3.1);
         prop_assert!((series_s - design.band_delay_s(first_s) - design.band_delay_s(second_s)).abs() < 1e-15);

@@ -1,22 +1,22 @@
-//! Parts of the scale box, bounded by the differences between every two scales.
+//! Parts of the box of scales, given by bounds on the difference between every two scales.
 
 use crate::correction::interval::Interval;
 
-/// Bounds on the scale differences: `s_j - s_i <= bound(i, j)` for every two scales, the ground
+/// Bounds on the differences of scales: `s_j - s_i <= bound(i, j)` for every two scales, the ground
 /// included.
 ///
-/// The bounds are closed under addition (shortest paths; "difference bound matrices"), so that each
-/// is the tightest implied bound.
+/// The bounds are closed under addition (shortest paths; "difference bound matrices"): each is the
+/// tightest bound implied by the others.
 #[derive(Clone, Debug)]
 pub(crate) struct DifferenceBounds {
     /// Number of scales, including the ground.
     count: usize,
-    /// Row-major, count x count.
+    /// The bounds, count x count, row by row.
     bounds: Vec<f64>,
 }
 
 impl DifferenceBounds {
-    /// Creates the box `lower <= s <= upper`, the ground last.
+    /// Creates the bounds of the box `lower <= s <= upper`; the ground is the last entry.
     pub(crate) fn from_box(lower: &[f64], upper: &[f64]) -> Self {
         let count = lower.len();
         let mut bounds = vec![0.0; count * count];
@@ -38,8 +38,8 @@ impl DifferenceBounds {
         }
     }
 
-    /// Returns the part with `s_to - s_from <= most`, with the implied bounds on every other
-    /// difference; `None` where it is empty.
+    /// Returns the part with `s_to - s_from <= most`, with every other bound tightened accordingly;
+    /// `None` if it is empty.
     pub(crate) fn below(&self, from: usize, to: usize, most: f64) -> Option<Self> {
         let count = self.count;
         if most + self.bounds[to * count + from] < 0.0 {
@@ -53,7 +53,7 @@ impl DifferenceBounds {
                 }
                 let before = self.bounds[i * count + from];
                 let after = self.bounds[to * count + j];
-                // Rounded outward, so that no point is lost.
+                // Round outward, so that no point is lost.
                 let implied = before
                     + most
                     + after
@@ -66,12 +66,12 @@ impl DifferenceBounds {
         Some(part)
     }
 
-    /// Returns the part with `s_to - s_from >= least`; `None` where it is empty.
+    /// Returns the part with `s_to - s_from >= least`; `None` if it is empty.
     pub(crate) fn above(&self, from: usize, to: usize, least: f64) -> Option<Self> {
         self.below(to, from, -least)
     }
 
-    /// Returns the tightest bounds that contain these and `scales`.
+    /// Returns the tightest bounds that contain this part and the point `scales`.
     pub(crate) fn hull(&self, scales: &[f64]) -> Self {
         let count = self.count;
         let mut bounds = self.bounds.clone();
@@ -84,23 +84,24 @@ impl DifferenceBounds {
         Self { count, bounds }
     }
 
-    /// Returns the memory that the bounds on `count` scales need, in bytes.
+    /// Returns the memory needed for the bounds on `count` scales \[bytes\].
     pub(crate) fn bytes(count: usize) -> usize {
         count * count * size_of::<f64>()
     }
 
-    /// Writes the minimum and maximum of each scale.
+    /// Writes the minimum and maximum of each scale, without the ground.
     pub(crate) fn write_box(&self, lower: &mut [f64], upper: &mut [f64]) {
         let ground = self.count - 1;
         for scale in 0..ground {
-            // Only rounding can make an interval empty: `below` returns `None` for an empty part.
+            // `not_empty`: an interval can be empty only by rounding, since `below` returns `None`
+            // for an empty part.
             let range = self.range(ground, scale).not_empty();
             lower[scale] = range.low;
             upper[scale] = range.high;
         }
     }
 
-    /// Whether `scales` satisfies the bounds.
+    /// Returns whether `scales` satisfies the bounds, up to rounding.
     pub(crate) fn contains(&self, scales: &[f64]) -> bool {
         let slack = 1e-13;
         (0..self.count).all(|i| {

@@ -1,12 +1,13 @@
-//! Work of a search, counted instead of timed, so that results repeat.
+//! Work of a search, counted instead of timed, so that the results are reproducible.
 
 use std::cell::Cell;
 
-/// The search was stopped from outside.
+/// Error of a search that was stopped by its caller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct SearchStopped;
 
-/// Counts the work of a search, in evaluations of a term, and polls at intervals whether to stop.
+/// Counter for the work of a search, in evaluations of a term. At intervals it polls whether to
+/// stop.
 pub(crate) struct Effort<'a> {
     stop: &'a dyn Fn() -> bool,
     work: Cell<u64>,
@@ -15,10 +16,10 @@ pub(crate) struct Effort<'a> {
 }
 
 impl<'a> Effort<'a> {
-    /// Work between two polls: half a millisecond.
+    /// Work between two polls, about half a millisecond.
     const POLL_INTERVAL: u64 = 20_000;
 
-    /// Starts with no work spent.
+    /// Creates a counter at zero; `stop` returns whether to stop.
     pub(crate) fn new(stop: &'a dyn Fn() -> bool) -> Self {
         Self {
             stop,
@@ -28,7 +29,7 @@ impl<'a> Effort<'a> {
         }
     }
 
-    /// Counts `work`.
+    /// Adds `work`, and polls `stop` if an interval has passed.
     pub(crate) fn spend(&self, work: u64) {
         let spent = self.work.get() + work;
         self.work.set(spent);
@@ -43,12 +44,12 @@ impl<'a> Effort<'a> {
         self.work.get()
     }
 
-    /// Whether a stop was requested.
+    /// Returns whether a stop was requested.
     pub(crate) fn is_stopped(&self) -> bool {
         self.stopped.get()
     }
 
-    /// Returns an error where a stop was requested.
+    /// Returns an error if a stop was requested.
     pub(crate) fn check(&self) -> Result<(), SearchStopped> {
         if self.is_stopped() {
             Err(SearchStopped)

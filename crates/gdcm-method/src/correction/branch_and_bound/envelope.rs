@@ -6,20 +6,19 @@ use super::exponential::Exponential;
 use super::rounded::Rounded;
 use crate::correction::interval::Interval;
 
-/// Line of a convex envelope: it replaces the exponential below `until`.
+/// Line that replaces the exponential below `until` in its convex envelope.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Line {
     until: f64,
-    /// Argument at which the line has `value`.
+    /// Argument for which `value` is given.
     at: f64,
     value: Rounded,
     slope: f64,
 }
 
 impl Line {
-    /// Finds the line in an exponential's envelope over an interval: `None` where the exponential
-    /// is convex there, the chord where no line from the left end is a tangent, otherwise the
-    /// tangent.
+    /// Finds the line in the envelope of an exponential over an interval: the tangent through the
+    /// left end, or the chord if there is no such tangent; `None` if the exponential is convex.
     pub(super) fn of_envelope(function: &Exponential, over: Interval) -> Option<Self> {
         if function.is_zero() || over.low >= function.inflection() {
             return None;
@@ -33,8 +32,9 @@ impl Line {
         Some(Self::tangent(function, over, &start, end))
     }
 
-    /// Finds the tangent through the left end, by Newton's method from a bracket's right side: any
-    /// point there is valid, so a near-tangent is enough.
+    /// Finds the tangent through the left end by Newton's method. The iterate approaches from the
+    /// right, where every tangent lies below the function, so that an approximate tangent is
+    /// sufficient.
     fn tangent(
         function: &Exponential,
         over: Interval,
@@ -42,7 +42,7 @@ impl Line {
         end: Derivatives,
     ) -> Self {
         let low = over.low;
-        // Overshoots at `left`, but not at `right`.
+        // Bracket: the tangent at `left` overshoots the left end, the tangent at `right` does not.
         let mut left = function.inflection().max(low);
         let mut right = over.high;
         let mut tangent = end;
@@ -79,7 +79,7 @@ impl Line {
         }
     }
 
-    /// Returns the line through the values at both ends, lowered by their rounding.
+    /// Returns the line through the values at both ends; its error includes their rounding.
     fn chord(over: Interval, start: Rounded, end: Rounded) -> Self {
         let slope = if over.high > over.low {
             (end.value - start.value) / over.width()
@@ -97,7 +97,7 @@ impl Line {
         }
     }
 
-    /// Evaluates the line at `v`.
+    /// Evaluates the line at the argument `v`.
     fn evaluate(&self, v: f64) -> Derivatives {
         let rise = self.slope * (v - self.at);
         let mut value = self.value;
@@ -116,13 +116,14 @@ impl Line {
     }
 }
 
-/// Returns the amount by which the tangent at `v`, extended to `low`, exceeds the value `start`;
-/// the amount falls as `v` rises beyond the inflection.
+/// Returns the amount by which the tangent at `v`, extended to `low`, exceeds the value `start`; it
+/// decreases as `v` increases beyond the inflection.
 fn overshoot(low: f64, start: &Derivatives, v: f64, at: &Derivatives) -> f64 {
     at.value.value + at.slope.value * (low - v) - start.value.value
 }
 
-/// Evaluates the envelope at `v`: the line, if any, up to its end, otherwise the exponential.
+/// Evaluates the envelope at `v`: on the line, if there is one and `v` is below its end, otherwise
+/// on the exponential.
 pub(super) fn enveloped(function: &Exponential, line: Option<&Line>, v: f64) -> Derivatives {
     match line {
         Some(line) if v < line.until => line.evaluate(v),

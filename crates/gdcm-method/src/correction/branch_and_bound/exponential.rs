@@ -1,12 +1,12 @@
-//! Exponential terms: all entries whose product depends on the same scale difference, as a single
-//! square.
+//! Exponential terms: all entries whose products depend on the same difference of scales, combined
+//! into a single square.
 
 use super::derivatives::{Derivatives, Range};
 use super::rounded::Rounded;
 use crate::correction::interval::Interval;
 
-/// `weight (e^v - centre)^2`: the sum of `w (G - A e^v)^2` over the entries that share the
-/// logarithm `v`, less its minimum.
+/// The function `weight (e^v - centre)^2`: the sum of `w (G - A e^v)^2` over the entries that share
+/// the logarithm `v`, less its minimum.
 ///
 /// Concave where `e^v < centre / 2`, convex elsewhere (`(G - K)^2` is convex in the logarithm where
 /// `K >= G / 2`).
@@ -14,11 +14,11 @@ use crate::correction::interval::Interval;
 pub(crate) struct Exponential {
     pub(super) weight: f64,
     pub(super) centre: f64,
-    /// Bound on the relative rounding in `weight` and `centre`.
+    /// Bound on the relative rounding error of `weight` and `centre`.
     rounding: f64,
 }
 
-/// An entry `weight (gain - product e^v)^2`; `error` is the product's relative error.
+/// An entry `weight (gain - product e^v)^2`; `error` is the relative error of `product`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ProductEntry {
     weight: f64,
@@ -30,8 +30,8 @@ pub(crate) struct ProductEntry {
 impl ProductEntry {
     /// Creates the entry `weight (gain - e^logarithm e^v)^2`.
     pub(crate) fn new(weight: f64, gain: f64, logarithm: Rounded) -> Self {
-        // The logarithm's error is the product's relative error, and the exponential is accurate to
-        // an epsilon.
+        // The absolute error of the logarithm is the relative error of the product; the exponential
+        // adds an epsilon.
         Self {
             weight,
             gain,
@@ -40,7 +40,7 @@ impl ProductEntry {
         }
     }
 
-    /// Returns the square at `v = 0`.
+    /// Returns the weighted square at `v = 0`.
     pub(crate) fn square(&self) -> Rounded {
         let difference = self.gain - self.product;
         let error = self.error * self.product + f64::EPSILON * difference.abs();
@@ -48,7 +48,7 @@ impl ProductEntry {
     }
 }
 
-/// A sum of [`ProductEntry`] as an exponential and a constant.
+/// A sum of [`ProductEntry`] values, as an exponential term plus a constant.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct CombinedEntries {
     pub(crate) exponential: Exponential,
@@ -59,7 +59,7 @@ pub(crate) struct CombinedEntries {
 impl CombinedEntries {
     /// Combines the entries that share a logarithm.
     ///
-    /// The minimum is summed from the residuals, not from `P - Q^2 / R`, which would cancel.
+    /// The minimum is summed from the residuals: `P - Q^2 / R` would cancel.
     pub(crate) fn new(entries: &[ProductEntry]) -> Self {
         let weight = entries
             .iter()
@@ -84,8 +84,8 @@ impl CombinedEntries {
             least.add(at_minimum.square());
             worst = worst.max(entry.error);
         }
-        // A sum of n positive terms has a relative error of at most n times half an epsilon. The
-        // centre is a quotient of two such sums, in which the product appears three times.
+        // A sum of n positive terms has a relative error of at most n epsilon / 2. The centre is a
+        // quotient of two such sums, in which the product appears three times.
         let rounding = 3.0 * worst + (entries.len() as f64 + 4.0) * f64::EPSILON;
         let exponential = Exponential {
             weight,
@@ -97,18 +97,18 @@ impl CombinedEntries {
 }
 
 impl Exponential {
-    /// Whether the function is zero.
+    /// Returns whether the function is zero everywhere.
     pub(crate) fn is_zero(&self) -> bool {
         self.weight == 0.0
     }
 
-    /// Returns the logarithm below which the function is concave.
+    /// Returns the logarithm `v` below which the function is concave.
     pub(crate) fn inflection(&self) -> f64 {
         (0.5 * self.centre).ln()
     }
 
-    /// Bounds the relative rounding in `weight`, `centre` and `z = e^v` at `v`: the first two, `v`
-    /// as a difference, the exponential and its reciprocal.
+    /// Returns a bound on the relative rounding error of `weight`, `centre` and `z = e^v`; the
+    /// terms are `rounding`, the difference `v`, the exponential and its reciprocal.
     pub(super) fn relative(&self, v: f64) -> f64 {
         self.rounding + (v.abs() + 4.0) * f64::EPSILON
     }
@@ -129,8 +129,8 @@ impl Exponential {
         }
     }
 
-    /// Bounds the curvature over `v` in an interval: a parabola in `e^v`, lowest at `centre / 4`.
-    /// Only the lower bound is sharp.
+    /// Bounds the curvature over an interval of `v`: it is a parabola in `e^v`, minimal at
+    /// `centre / 4`. Only the lower bound is sharp.
     pub(crate) fn curvatures(&self, v: Interval) -> Range {
         let least = v.low.exp();
         let most = v.high.exp();
@@ -145,7 +145,8 @@ impl Exponential {
         }
     }
 
-    /// Bounds the slope over `v` in an interval: a parabola in `e^v`, lowest at `centre / 2`.
+    /// Bounds the slope over an interval of `v`: it is a parabola in `e^v`, minimal at
+    /// `centre / 2`.
     pub(crate) fn slopes(&self, v: Interval) -> Range {
         let least = v.low.exp();
         let most = v.high.exp();
@@ -160,7 +161,7 @@ impl Exponential {
         }
     }
 
-    /// Returns the slope in `v` at `z = e^v`.
+    /// Returns the slope with respect to `v` at `z = e^v`.
     fn slope_at(&self, z: f64) -> f64 {
         2.0 * self.weight * z * (z - self.centre)
     }

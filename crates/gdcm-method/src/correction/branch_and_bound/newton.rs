@@ -1,4 +1,4 @@
-//! Newton's method for a local minimum over the scale box.
+//! Newton's method for a local minimum over the box of scales.
 
 use super::effort::Effort;
 use super::objective::{Curvature, Differentiable, Expansion, ScaleBox};
@@ -6,16 +6,16 @@ use super::objective::{Curvature, Differentiable, Expansion, ScaleBox};
 /// A projected Newton method.
 ///
 /// ```text
-/// 1  quadratic model at the current point; its minimum over the box is the step
-/// 2  the longest halving of the step that decreases the function
-/// 3  end where the step is at rounding, or `enough` holds
+/// 1  quadratic model at the current point; the step leads to its minimum over the box
+/// 2  halve the step until the function decreases
+/// 3  stop when the step is at rounding level, or when `enough` holds
 /// ```
 ///
-/// Each step minimises the model over the box exactly, so that the active bounds are right as soon
-/// as the model is. Clipping an unconstrained step instead stalls at corners.
+/// Each step minimises the model over the box exactly, so that the active bounds are correct as
+/// soon as the model is. Clipping an unconstrained step instead would stall at corners.
 pub(crate) struct Newton<'a> {
     effort: &'a Effort<'a>,
-    /// Expansion at the last point.
+    /// Expansion of the function at the final point.
     pub(crate) reached: Expansion,
     trial: Expansion,
     model: QuadraticModel,
@@ -23,7 +23,7 @@ pub(crate) struct Newton<'a> {
 }
 
 impl<'a> Newton<'a> {
-    /// Allocates the method for `scales` scales; `effort` counts the work.
+    /// Allocates the memory for `scales` scales; `effort` counts the work.
     pub(crate) fn new(scales: usize, effort: &'a Effort<'a>) -> Self {
         Self {
             effort,
@@ -34,8 +34,9 @@ impl<'a> Newton<'a> {
         }
     }
 
-    /// Moves `scales` (inside the box) downhill until `enough(scales, expansion)` holds, rounding
-    /// ends the descent or the effort is stopped; `reached` is then the expansion there.
+    /// Moves `scales`, a point inside the box, downhill until `enough(scales, expansion)` holds,
+    /// the descent reaches rounding level, or the effort is stopped. Stores the expansion at the
+    /// final point in `reached`.
     pub(crate) fn minimise(
         &mut self,
         function: &impl Differentiable,
@@ -43,8 +44,7 @@ impl<'a> Newton<'a> {
         scales: &mut [f64],
         mut enough: impl FnMut(&[f64], &Expansion) -> bool,
     ) {
-        // Newton's method needs about ten steps; from a flat start or along an inflection it needs
-        // a few tens.
+        // About ten steps are typical; a flat start or an inflection requires a few tens.
         const STEPS: usize = 100;
         self.effort.spend(function.work());
         function.expand(scales, Curvature::True, &mut self.reached);
@@ -60,8 +60,8 @@ impl<'a> Newton<'a> {
             let Some(step) = self.minimise_model(function, scales) else {
                 return;
             };
-            // This near to the minimum, three steps end at the slopes' rounding, also across an
-            // envelope's end.
+            // This close to the minimum, three further steps reach the rounding level of the
+            // slopes, even across the end of an envelope.
             if step.has_true_curvature && step.decrease <= 1e-13 * self.reached.value.value.abs() {
                 near += 1;
             }
@@ -72,8 +72,8 @@ impl<'a> Newton<'a> {
         }
     }
 
-    /// Minimises the quadratic model: with the true curvature where the Hessian is positive
-    /// definite, otherwise with its magnitude. `None` where neither has a minimum.
+    /// Minimises the quadratic model, with the true curvature if the Hessian is positive definite,
+    /// otherwise with the curvature's magnitude. `None` if neither has a minimum.
     fn minimise_model(
         &mut self,
         function: &impl Differentiable,
@@ -94,8 +94,8 @@ impl<'a> Newton<'a> {
         })
     }
 
-    /// Takes the longest halving of the step that decreases the function; returns `false` where
-    /// none does, or where the step is at rounding.
+    /// Halves the step until the function decreases, and takes it; returns `false` if no step
+    /// decreases the function, or if the step is at rounding level.
     fn search_line(
         &mut self,
         function: &impl Differentiable,
@@ -121,7 +121,7 @@ impl<'a> Newton<'a> {
             if self.trial.value.value <= here.value - 1e-4 * fraction * decrease + noise {
                 scales.copy_from_slice(&self.next);
                 std::mem::swap(&mut self.reached, &mut self.trial);
-                // A step below the scales' rounding is the last.
+                // Stop after a step below the rounding level of the scales.
                 return fraction * longest > 1e-15;
             }
             fraction *= 0.5;
@@ -129,8 +129,8 @@ impl<'a> Newton<'a> {
         false
     }
 
-    /// Writes the point at a fraction of the step, exactly on the bounds that the full step
-    /// reaches.
+    /// Writes the point at a fraction of the step to `next`; a full step that ends on a bound is
+    /// placed exactly on it.
     fn place(&mut self, fraction: f64, bounds: ScaleBox<'_>, scales: &[f64]) {
         for (index, scale) in scales.iter().enumerate() {
             let step = self.model.step[index];
@@ -147,13 +147,13 @@ impl<'a> Newton<'a> {
 
 /// Step to the minimum of the quadratic model.
 struct ModelStep {
-    /// Decrease of the model over the step.
+    /// Predicted decrease of the model over the step.
     decrease: f64,
-    /// Whether the model has the function's curvature, not its magnitude.
+    /// Whether the model uses the function's curvature, not its magnitude.
     has_true_curvature: bool,
 }
 
-/// The quadratic model for a step over the box: `minimise` fills `step`.
+/// Quadratic model of the function over the box; `minimise` fills `step`.
 #[derive(Clone, Debug)]
 struct QuadraticModel {
     scales: usize,
@@ -162,19 +162,19 @@ struct QuadraticModel {
     /// Upper bound on the step of each scale, at least 0.
     high: Vec<f64>,
     step: Vec<f64>,
-    /// The model's slope after the step.
+    /// Slope of the model after the step.
     slope: Vec<f64>,
     /// Scales without an active bound, in ascending order.
     free: Vec<usize>,
     is_free: Vec<bool>,
-    /// Cholesky factor of the free part of the Hessian, row-major.
+    /// Cholesky factor of the Hessian of the free scales, row by row.
     factor: Vec<f64>,
-    /// Move to the minimum without bounds, for each free scale.
+    /// Step to the unbounded minimum, for each free scale.
     move_to: Vec<f64>,
 }
 
 impl QuadraticModel {
-    /// Allocates the model for `scales` scales.
+    /// Allocates the memory for `scales` scales.
     fn new(scales: usize) -> Self {
         Self {
             scales,
@@ -189,18 +189,18 @@ impl QuadraticModel {
         }
     }
 
-    /// Minimises `g d + d H d / 2`, with gradient and Hessian at a point, over `low <= d <= high`
-    /// by a primal active-set method: exact and finite.
+    /// Minimises `g d + d H d / 2`, with the gradient and Hessian at a point, over
+    /// `low <= d <= high` by a primal active-set method, which is exact and finite.
     ///
     /// ```text
-    /// 1  free: every scale that is not pressed against its bound by its slope
+    /// 1  free: every scale, unless its slope pushes it against its bound
     /// 2  move to the minimum over the free scales, as far as the box allows
-    /// 3  where a bound ends the move, make it active, again from 2
-    /// 4  release the active bound with the greatest inward slope, again from 2; end where there is none
+    /// 3  if a bound ends the move, make it active and repeat from 2
+    /// 4  release the active bound with the largest inward slope and repeat from 2; stop if there is none
     /// ```
     ///
-    /// Returns the decrease, or `None` where the effort is stopped or `H` is not positive definite
-    /// on a face that the method visits. Scales with `low == high` stay.
+    /// Returns the decrease, or `None` if the effort is stopped or `H` is not positive definite on
+    /// a face that the method visits. Scales with `low == high` do not move.
     fn minimise(&mut self, at: &Expansion, effort: &Effort<'_>) -> Option<f64> {
         let gradient = &at.gradient;
         let hessian = &at.hessian;
@@ -215,8 +215,8 @@ impl QuadraticModel {
             * (0..self.scales)
                 .map(|scale| hessian[scale * self.scales + scale])
                 .fold(0.0, f64::max);
-        // Each pass adds an active bound, or releases one after a decrease; 8 n passes are far more
-        // than needed.
+        // Each pass activates a bound, or releases one after a decrease; 8 n passes are far more
+        // than necessary.
         for _ in 0..8 * self.scales + 8 {
             effort.spend(self.work());
             if effort.is_stopped() {
@@ -243,15 +243,15 @@ impl QuadraticModel {
         Some(-change)
     }
 
-    /// Work of a pass: a Cholesky factorisation of the free part, and products with the whole
-    /// Hessian.
+    /// Returns the work of a pass: a Cholesky factorisation of the free part, and products with the
+    /// whole Hessian.
     fn work(&self) -> u64 {
         let free = self.is_free.iter().filter(|is_free| **is_free).count() as u64;
         1 + free * free * free / 96 + (self.scales * self.scales) as u64 / 16
     }
 
-    /// Computes `move_to = -H_ff^-1 slope_f` over the free scales, by Cholesky. `None` where `H_ff`
-    /// is not positive definite.
+    /// Computes `move_to = -H_ff^-1 slope_f` over the free scales by a Cholesky factorisation.
+    /// `None` if `H_ff` is not positive definite.
     fn solve_free(&mut self, hessian: &[f64], ridge: f64) -> Option<()> {
         self.free.clear();
         self.free
@@ -274,7 +274,8 @@ impl QuadraticModel {
                 } else if hessian[self.free[row] * self.scales + self.free[row]] == 0.0
                     && ridge == 0.0
                 {
-                    // No curvature anywhere: the objective does not depend on the scales.
+                    // Without any curvature, the objective does not depend on the scales: any pivot
+                    // is correct.
                     1.0
                 } else {
                     return None;
@@ -298,7 +299,7 @@ impl QuadraticModel {
         Some(())
     }
 
-    /// Returns the fraction of `move_to` that the box allows.
+    /// Returns the fraction of `move_to` that stays inside the box, and the bound that limits it.
     fn longest_step(&self) -> AllowedMove {
         let mut fraction = 1.0;
         let mut blocking = None;
@@ -330,7 +331,7 @@ impl QuadraticModel {
     }
 
     /// Returns the scale on an active bound from which the model decreases most steeply into the
-    /// box; `None` at the minimum.
+    /// box; `None` if there is none, so that the minimum is reached.
     fn worst_active_bound(&self) -> Option<usize> {
         let scale = self
             .slope
@@ -360,7 +361,7 @@ impl QuadraticModel {
 struct AllowedMove {
     /// Share of the move; 1 for the whole move.
     fraction: f64,
-    /// The first bound that the move reaches; `None` for the whole move.
+    /// The first bound that the move reaches; `None` if the whole move is inside the box.
     blocking: Option<Blocking>,
 }
 

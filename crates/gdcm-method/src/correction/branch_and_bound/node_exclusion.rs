@@ -1,4 +1,4 @@
-//! Tests that exclude a node: monotonicity (the node has no minimum) and convexity (the node has no
+//! Tests that exclude a node: monotonicity (it contains no minimum) and convexity (it contains no
 //! minimum other than one already found). Hansen & Walster, *Global Optimization Using Interval
 //! Analysis*, 2004.
 
@@ -17,9 +17,10 @@ pub(super) struct NodeExclusion<'a> {
     objective: &'a Objective,
     /// Reference scale of each scale: the ground, or the first scale in its floating piece.
     base: Vec<usize>,
-    /// Scales whose bounds can stop each scale: the ground, or the others in its floating piece.
+    /// For each scale, the scales relative to which it is bounded: the ground, or the other scales
+    /// in its floating piece.
     stops: Vec<Vec<usize>>,
-    /// Pieces of scales that no term ties to the ground.
+    /// Floating pieces: scales that terms connect with one another, but not with the ground.
     floating: Vec<Vec<usize>>,
 }
 
@@ -47,14 +48,15 @@ impl<'a> NodeExclusion<'a> {
         }
     }
 
-    /// Work of a test: the range of every slope, or the Hessian and its Cholesky factorisation.
+    /// Returns the work of a test: the range of every slope, or the Hessian and its Cholesky
+    /// factorisation.
     pub(super) fn work(&self) -> u64 {
         let scales = self.objective.scales() as u64;
         4 * self.objective.terms.len() as u64 + scales * scales * scales / 96
     }
 
-    /// Monotonicity test: whether the slope in some scale keeps its sign over the whole region
-    /// although no bound stops the scale, so that the region contains no local minimum.
+    /// Monotonicity test: returns whether the region contains no local minimum, because the slope
+    /// in some scale has a constant sign over the region and no bound stops this scale.
     pub(super) fn has_no_minimum(&self, region: &DifferenceBounds) -> bool {
         let slopes = self.slope_ranges(region);
         for (scale, slope) in slopes.iter().enumerate().take(self.objective.ground()) {
@@ -67,9 +69,9 @@ impl<'a> NodeExclusion<'a> {
         false
     }
 
-    /// Whether the region contains no local minimum other than `minimum`: over their hull, the
-    /// scales whose slope keeps its sign are on their bound at any local minimum, and the objective
-    /// is convex in the others.
+    /// Returns whether the region contains no local minimum other than `minimum`. Over the hull of
+    /// both, scales whose slope has a constant sign are on their bound at any local minimum, and
+    /// the objective must be convex in the other scales.
     pub(super) fn has_only(&self, region: &DifferenceBounds, minimum: &[f64]) -> bool {
         let hull = region.hull(minimum);
         let slopes = self.slope_ranges(&hull);
@@ -80,12 +82,12 @@ impl<'a> NodeExclusion<'a> {
         self.is_convex_in(&hull, free)
     }
 
-    /// Convexity test: whether the objective is convex over the region.
+    /// Convexity test: returns whether the objective is convex over the region.
     pub(super) fn is_convex(&self, region: &DifferenceBounds) -> bool {
         self.is_convex_in(region, (0..self.objective.ground()).collect())
     }
 
-    /// Whether a bound stops the scale from moving against a slope of this sign.
+    /// Returns whether a bound stops the scale from moving downhill, given the sign of its slope.
     fn is_stopped(&self, region: &DifferenceBounds, scale: usize, sign: i8) -> bool {
         self.stops[scale].iter().any(|&other| {
             if sign > 0 {
@@ -96,12 +98,13 @@ impl<'a> NodeExclusion<'a> {
         })
     }
 
-    /// Whether the maximum of `s_to - s_from` over the region equals that over the whole box.
+    /// Returns whether `s_to - s_from` has the same maximum over the region as over the whole box.
     fn reaches_box(&self, region: &DifferenceBounds, from: usize, to: usize) -> bool {
         region.range(from, to).high >= self.objective.upper[to] - self.objective.lower[from] - 1e-12
     }
 
-    /// Bounds the slope in each scale over the region; `size` sums over the terms' slopes.
+    /// Bounds the slope in each scale over the region; `size` is the sum of the sizes of the terms'
+    /// slopes.
     fn slope_ranges(&self, region: &DifferenceBounds) -> Vec<Range> {
         let mut ranges = vec![Range::default(); self.objective.scales()];
         for term in &self.objective.terms {
@@ -120,10 +123,10 @@ impl<'a> NodeExclusion<'a> {
     }
 
     /// Bounds the objective from below over a region on which it is convex, from its gradient and
-    /// Hessian next to `minimum`. `None` where these give no bound.
+    /// Hessian at `minimum`. `None` if the gradient is too large for such a bound.
     pub(super) fn bound_at(&self, minimum: &[f64], at: &Expansion) -> Option<f64> {
-        // Far greater than the error in the scales, far less than a change that affects the
-        // curvature.
+        // Distance from the minimum, much larger than the error of the scales, much smaller than a
+        // distance over which the curvature changes.
         const WITHIN: f64 = 0.01;
         let least = self.least_hessian(|term| {
             let u = term.difference(minimum);
@@ -149,8 +152,8 @@ impl<'a> NodeExclusion<'a> {
         quadratic_bound(at, &reach, WITHIN, |scale| push[scale] > 0.0)
     }
 
-    /// Returns the guaranteed slope magnitude that pushes the scale against its active bound;
-    /// otherwise 0.
+    /// Returns the magnitude of the slope that certainly pushes the scale against its active bound;
+    /// 0 without an active bound or a certain sign.
     fn push(&self, minimum: &[f64], at: &Expansion, scale: usize) -> f64 {
         let slope = at.gradient[scale];
         let is_stopped = if slope > 0.0 {
@@ -165,9 +168,9 @@ impl<'a> NodeExclusion<'a> {
         }
     }
 
-    /// Chooses a reference scale for each floating piece: a fixed scale or, where bounds push, the
-    /// scale pushed hardest. Returns `None` where its push is less than the sum of the slope
-    /// magnitudes in the piece's scales that no bound pushes.
+    /// Chooses a reference scale for each floating piece: a fixed scale or, if bounds are active,
+    /// the scale that is pushed hardest. Returns `None` if this push is less than the sum of the
+    /// slope magnitudes of the scales in the piece that no bound pushes.
     fn anchors(&self, at: &Expansion, push: &[f64]) -> Option<Vec<usize>> {
         let mut anchors = Vec::new();
         for piece in &self.floating {
@@ -195,8 +198,9 @@ impl<'a> NodeExclusion<'a> {
         Some(anchors)
     }
 
-    /// Builds the Hessian from every term's minimum curvature over its range. The error of a
-    /// gradient entry is the sum of the curvature sizes on that diagonal entry.
+    /// Builds the Hessian from the minimum curvature of every term over its range. `gradient_error`
+    /// then holds, for each diagonal entry, the sum of its curvature sizes, to which its rounding
+    /// error is proportional.
     fn least_hessian(&self, range: impl Fn(&Term) -> Interval) -> Expansion {
         let mut least = Expansion::zero(self.objective.scales());
         for term in &self.objective.terms {
@@ -208,18 +212,18 @@ impl<'a> NodeExclusion<'a> {
         least
     }
 
-    /// Whether the objective is convex in the `free` scales over the region: the Hessian built from
-    /// every term's minimum curvature is positive definite, and the true Hessian differs from it by
-    /// a positive semidefinite matrix.
+    /// Returns whether the objective is convex in the `free` scales over the region: the Hessian
+    /// built from the minimum curvature of every term is positive definite, and the true Hessian
+    /// exceeds it by a positive semidefinite matrix.
     fn is_convex_in(&self, region: &DifferenceBounds, mut free: Vec<usize>) -> bool {
         let least = self.least_hessian(|term| region.range(term.from, term.to));
-        // A floating piece's reference scale does not move.
+        // `retain`: the reference scale of a floating piece does not move.
         free.retain(|&scale| self.base[scale] != scale);
         free.is_empty() || reduced(&least, &free).cholesky().is_some()
     }
 }
 
-/// Adds a term's slope range, and the rounding in both sums: each is below the summed sizes.
+/// Adds a term's slope range, and widens the sum by the rounding error of both ends.
 fn add_range(sum: &mut Range, slope: Range) {
     sum.least += slope.least;
     sum.most += slope.most;
@@ -229,14 +233,14 @@ fn add_range(sum: &mut Range, slope: Range) {
     sum.most += rounding;
 }
 
-/// Returns the sign that a slope keeps over its range: -1, 1, or 0 where the sign is undecided.
+/// Returns the sign of a slope that is constant over its range, -1 or 1; 0 if the sign may change.
 fn sign(slope: &Range) -> i8 {
     i8::from(slope.least > 0.0) - i8::from(slope.most < 0.0)
 }
 
-/// Returns the Hessian in the `free` scales, less a margin for rounding in its sums (up to n terms)
-/// and in its factorisation (n (n + 1) roundings on the diagonal: Higham, *Accuracy and Stability
-/// of Numerical Algorithms*, 2002, theorem 10.3).
+/// Returns the Hessian in the `free` scales. Its diagonal is reduced by a margin for the rounding
+/// in its sums (up to n terms) and in its factorisation (n (n + 1) roundings: Higham, *Accuracy and
+/// Stability of Numerical Algorithms*, 2002, theorem 10.3).
 fn reduced(hessian: &Expansion, free: &[usize]) -> DMatrix<f64> {
     let scales = hessian.gradient.len();
     let roundings = ((scales + 1) * (scales + 2)) as f64;

@@ -3,8 +3,8 @@
 use super::rounded::Rounded;
 use super::term::Term;
 
-/// Value, gradient and Hessian (row-major) in the scales, with bounds on the rounding in value and
-/// gradient.
+/// Value, gradient and Hessian (row by row) with respect to the scales, with bounds on the rounding
+/// error of value and gradient.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Expansion {
     pub(crate) value: Rounded,
@@ -14,7 +14,7 @@ pub(crate) struct Expansion {
 }
 
 impl Expansion {
-    /// Creates a zero expansion in `scales` scales.
+    /// Creates an expansion of zeros in `scales` scales.
     pub(crate) fn zero(scales: usize) -> Self {
         Self {
             value: Rounded::default(),
@@ -24,7 +24,7 @@ impl Expansion {
         }
     }
 
-    /// Resets the expansion to a constant value and keeps the allocated memory.
+    /// Resets the expansion to a constant value, without new memory.
     pub(crate) fn clear(&mut self, constant: Rounded) {
         self.value = constant;
         self.gradient.fill(0.0);
@@ -32,7 +32,8 @@ impl Expansion {
         self.hessian.fill(0.0);
     }
 
-    /// Adds a term's slope and curvature; its value is added separately.
+    /// Adds the slope and curvature of a term to gradient and Hessian; the value is added
+    /// separately.
     pub(crate) fn add(&mut self, term: &Term, slope: Rounded, curvature: f64) {
         let scales = self.gradient.len();
         let from = term.from;
@@ -56,43 +57,43 @@ impl Expansion {
     }
 }
 
-/// Treatment of concave curvature.
+/// Treatment of negative curvature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Curvature {
     True,
-    /// The magnitude, which keeps the Hessian positive semidefinite far from a minimum.
+    /// Replaced by its magnitude, which keeps the Hessian positive semidefinite far from a minimum.
     Magnitude,
 }
 
-/// A function of the scales that Newton's method can minimise.
+/// A function of the scales that can be minimised by Newton's method.
 pub(crate) trait Differentiable {
-    /// Writes value, gradient and Hessian at `scales`.
+    /// Writes value, gradient and Hessian at `scales` to `into`.
     fn expand(&self, scales: &[f64], curvature: Curvature, into: &mut Expansion);
 
-    /// Work of an expansion ([`super::effort::Effort`]).
+    /// Returns the work of an expansion, in the unit of [`super::effort::Effort`].
     fn work(&self) -> u64;
 }
 
-/// The scale box `lower <= s <= upper`, the ground last.
+/// The box `lower <= s <= upper` of the scales; the ground is the last entry.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ScaleBox<'a> {
     pub(crate) lower: &'a [f64],
     pub(crate) upper: &'a [f64],
 }
 
-/// `constant + sum(terms)`, over the scale box.
+/// The objective `constant + sum(terms)` over the box of scales.
 ///
-/// Scale `n - 1` is the *ground*: it is 0, so a term that contains the ground depends on a single
-/// scale.
+/// Scale `n - 1` is the *ground*: it is 0, so that a term that contains the ground depends on a
+/// single scale.
 #[derive(Clone, Debug)]
 pub(crate) struct Objective {
-    /// Minimum of each scale, the ground last.
+    /// Lower bound of each scale; the ground is the last entry.
     pub(crate) lower: Vec<f64>,
-    /// Maximum of each scale, the ground last.
+    /// Upper bound of each scale; the ground is the last entry.
     pub(crate) upper: Vec<f64>,
     /// At most one term for each pair of scales.
     pub(crate) terms: Vec<Term>,
-    /// Part that does not depend on the scales.
+    /// Part of the objective that does not depend on the scales.
     pub(crate) constant: Rounded,
 }
 
@@ -102,12 +103,12 @@ impl Objective {
         self.lower.len()
     }
 
-    /// Index of the scale that is always 0.
+    /// Returns the index of the ground, the scale that is always 0.
     pub(crate) fn ground(&self) -> usize {
         self.lower.len() - 1
     }
 
-    /// Returns the whole box.
+    /// Returns the whole box of scales.
     pub(crate) fn bounds(&self) -> ScaleBox<'_> {
         ScaleBox {
             lower: &self.lower,
@@ -115,7 +116,7 @@ impl Objective {
         }
     }
 
-    /// Returns the point in the box nearest to 0.
+    /// Returns the point in the box that is nearest to 0.
     pub(crate) fn nearest_to_zero(&self) -> Vec<f64> {
         self.lower
             .iter()
@@ -134,8 +135,8 @@ impl Objective {
         self.constant.value + sum
     }
 
-    /// Finds the scale pieces that terms tie together but not to the ground: their scales are
-    /// determined up to a common shift.
+    /// Finds the *floating pieces*: groups of scales that terms connect with one another, but not
+    /// with the ground. Their scales are determined only up to a common shift.
     pub(crate) fn floating_pieces(&self) -> Vec<Vec<usize>> {
         let ties = self.terms.iter().map(|term| [term.from, term.to]);
         let mut pieces = connected_pieces(self.scales(), ties);
@@ -143,11 +144,12 @@ impl Objective {
         pieces
     }
 
-    /// Takes the limit `alpha -> 0+`: moves each floating piece in `scales` by a common amount, as
-    /// far as the box allows.
+    /// Takes the limit `alpha -> 0+`: shifts all scales in each floating piece by a common amount,
+    /// as far as the box allows.
     ///
-    /// `shift(piece, scales)` returns the shift without the box. The fit does not depend on the
-    /// shift, so the departures of the outputs determine it (M8, M9).
+    /// `shift(piece, scales)` returns the amount without regard to the box. The fit does not depend
+    /// on the shift, so that it is determined by the deviations of the output gains (or delays)
+    /// from neutral (M8, M9).
     pub(crate) fn shift_floating_pieces(
         &self,
         scales: &mut [f64],
@@ -187,8 +189,8 @@ impl Differentiable for Objective {
     }
 }
 
-/// Finds the connected pieces in a graph on `count` nodes with these edges: each lists its members
-/// in rising order.
+/// Finds the connected components of a graph with `count` nodes and the given edges; each lists its
+/// nodes in ascending order.
 pub(crate) fn connected_pieces(
     count: usize,
     edges: impl Iterator<Item = [usize; 2]>,

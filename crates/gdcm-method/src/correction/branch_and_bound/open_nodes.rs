@@ -1,16 +1,16 @@
-//! The open nodes of the search, in limited memory.
+//! The open nodes of the search, stored in limited memory.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use super::difference_bounds::DifferenceBounds;
 
-/// A part of the box that is still to be searched.
+/// A part of the box that remains to be searched.
 pub(super) struct Node {
-    /// Lower bound on the objective over the part.
+    /// Lower bound on the objective over this part.
     pub(super) bound: f64,
     pub(super) region: DifferenceBounds,
-    /// Start of the search for the underestimator's minimum.
+    /// Starting point for the minimisation of the underestimator.
     pub(super) start: Vec<f64>,
 }
 
@@ -29,7 +29,7 @@ impl PartialOrd for Node {
 }
 
 impl Ord for Node {
-    /// Reversed order, so that the heap returns the node with the lowest bound first.
+    /// Compares in reversed order, so that the heap returns the node with the lowest bound first.
     fn cmp(&self, other: &Self) -> Ordering {
         other.bound.total_cmp(&self.bound)
     }
@@ -38,17 +38,17 @@ impl Ord for Node {
 /// The open nodes, lowest bound first.
 pub(super) struct OpenNodes {
     heap: BinaryHeap<Node>,
-    /// Maximum number of nodes that fit into the memory.
+    /// Maximum number of nodes in memory.
     most: usize,
-    /// Minimum bound of the nodes refused for lack of memory.
+    /// Minimum bound of the nodes rejected for lack of memory.
     refused: f64,
 }
 
 impl OpenNodes {
-    /// Creates an empty heap for nodes with `scales` scales each, in at most `bytes` bytes; a
-    /// single node always fits.
+    /// Creates an empty heap for nodes with `scales` scales each, in at most `bytes` bytes; at
+    /// least one node is always stored.
     pub(super) fn new(scales: usize, bytes: usize) -> Self {
-        // Twice the overhead of an allocation, and the heap's growth, which doubles its memory.
+        // `32`: the overhead of two allocations. `3 *`: the heap doubles its memory when it grows.
         let node_bytes = DifferenceBounds::bytes(scales)
             + scales * size_of::<f64>()
             + 32
@@ -60,7 +60,7 @@ impl OpenNodes {
         }
     }
 
-    /// Adds a node, or only its bound where memory is exhausted.
+    /// Adds a node, or only its bound if the memory is exhausted.
     pub(super) fn push(&mut self, node: Node) {
         if self.heap.len() < self.most {
             self.heap.push(node);
@@ -69,7 +69,7 @@ impl OpenNodes {
         }
     }
 
-    /// Whether a node was refused for lack of memory.
+    /// Returns whether a node was rejected for lack of memory.
     pub(super) fn is_full(&self) -> bool {
         self.refused < f64::INFINITY
     }
@@ -79,7 +79,7 @@ impl OpenNodes {
         self.heap.pop()
     }
 
-    /// Returns the minimum bound over all nodes, including refused nodes; infinite without nodes.
+    /// Returns the minimum bound over all nodes, including rejected nodes; infinite without nodes.
     pub(super) fn least_bound(&self) -> f64 {
         match self.heap.peek() {
             Some(node) => node.bound.min(self.refused),
@@ -107,7 +107,7 @@ mod tests {
             }
             kept += 1;
         }
-        // 400 differences with 8 bytes each, and the rest of a node.
+        // A node has 400 differences of 8 bytes each, and some overhead.
         assert!((9..=12).contains(&kept), "{kept}");
         assert_eq!(open.least_bound(), 100.0 - f64::from(kept));
         assert_eq!(

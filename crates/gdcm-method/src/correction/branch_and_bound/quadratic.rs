@@ -1,24 +1,24 @@
-//! Quadratic terms: all entries of a least squares objective that share the same scale difference,
-//! as a single square.
+//! Quadratic terms: all entries of a least-squares objective that share the same difference of
+//! scales, combined into a single square.
 
 use super::rounded::Rounded;
 use super::term::{Function, Term, TermSum};
 
-/// An entry of a least squares objective: `weight (delta - offset - (s_input - s_output))^2`.
+/// An entry of a least-squares objective: `weight (delta - offset - (s_input - s_output))^2`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SquareEntry {
     /// Index of the output's scale.
     pub(crate) output: usize,
-    /// Index of the input's scale (the ground, for an output's own departure).
+    /// Index of the input's scale; the ground, for the deviation of an output from neutral.
     pub(crate) input: usize,
     pub(crate) weight: f64,
-    /// Target: delta gain or delta delay, in the coordinate.
+    /// Target: delta gain or delta delay; in a quadratic term, converted to the coordinate.
     pub(crate) delta: f64,
-    /// The entry's value where both scales are 0.
+    /// Value of the entry if both scales are 0.
     pub(crate) offset: Rounded,
 }
 
-/// The scale difference `s_to - s_from`, `from <= to`, at which an entry meets its target.
+/// The difference of scales `s_to - s_from`, `from <= to`, at which an entry meets its target.
 #[derive(Clone, Copy)]
 struct TargetDifference {
     from: usize,
@@ -27,7 +27,7 @@ struct TargetDifference {
 }
 
 impl SquareEntry {
-    /// Orders the two scales by index.
+    /// Returns the target difference, with the two scales ordered by index.
     fn target_difference(&self) -> TargetDifference {
         let difference = self.delta - self.offset.value;
         let error = self.offset.error + f64::EPSILON * (self.delta.abs() + difference.abs());
@@ -53,21 +53,20 @@ impl SquareEntry {
     }
 }
 
-/// Sums over the entries that share two scales.
+/// Sums over the entries that share the same two scales.
 #[derive(Clone, Copy, Default)]
 struct SquareGroup {
     count: f64,
     weight: f64,
     /// `sum weight difference`.
     moment: f64,
-    /// Maximum magnitude of a difference.
+    /// Maximum magnitude of the differences.
     size: f64,
-    /// Maximum error in a difference.
+    /// Maximum error of the differences.
     error: f64,
 }
 
 impl SquareGroup {
-    /// Adds an entry with this weight.
     fn add(&mut self, weight: f64, difference: Rounded) {
         self.count += 1.0;
         self.weight += weight;
@@ -76,8 +75,8 @@ impl SquareGroup {
         self.error = self.error.max(difference.error);
     }
 
-    /// Returns the scale difference at the group's minimum: a quotient of sums, whose error bound
-    /// includes the maximum error of an entry.
+    /// Returns the difference of scales at the group's minimum. It is a quotient of sums; its error
+    /// bound includes the maximum error of an entry.
     fn centre(&self) -> Rounded {
         Rounded {
             value: self.moment / self.weight,
@@ -94,8 +93,8 @@ impl SquareGroup {
     }
 }
 
-/// Combines entries over `scales` scales to one quadratic term for each pair of scales that share
-/// an entry; the constant is the sum of the squared residuals at the minima of the terms.
+/// Combines the entries into one quadratic term for each pair of scales that share an entry. The
+/// constant is the sum of the squared residuals at the minima of the terms.
 pub(crate) fn quadratic_terms(entries: &[SquareEntry], scales: usize) -> TermSum {
     let mut groups = vec![SquareGroup::default(); scales * scales];
     for entry in entries {
@@ -109,7 +108,8 @@ pub(crate) fn quadratic_terms(entries: &[SquareEntry], scales: usize) -> TermSum
             to,
             difference,
         } = entry.target_difference();
-        // Inside a component no scale changes the entry.
+        // Both channels in one component: no scale changes the entry, so that its whole residual is
+        // constant.
         let centre = if from == to {
             Rounded::default()
         } else {

@@ -1,4 +1,4 @@
-//! The branch and bound search, and its budget.
+//! The branch-and-bound search and its budget.
 
 use super::difference_bounds::DifferenceBounds;
 use super::effort::{Effort, SearchStopped};
@@ -8,13 +8,13 @@ use super::objective::{Curvature, Differentiable, Expansion, Objective, ScaleBox
 use super::open_nodes::{Node, OpenNodes};
 use super::underestimator::{ConcaveEnd, Underestimator, tangent_bound};
 
-/// Minima within this factor of the best are listed.
+/// Minima up to this factor above the best are listed.
 const NEAR: f64 = 1.01;
 
-/// Relative gap at which branching stops, to end safely below [`PROOF`].
+/// Relative gap at which branching stops, well below [`PROOF`].
 const AIM: f64 = 2e-10;
 
-/// A local minimum.
+/// A local minimum of the objective.
 #[derive(Clone, Debug)]
 pub(crate) struct Minimum {
     pub(crate) scales: Vec<f64>,
@@ -22,7 +22,7 @@ pub(crate) struct Minimum {
     pub(crate) value: f64,
 }
 
-/// Search result.
+/// Result of a search.
 #[derive(Clone, Debug)]
 pub(crate) struct Minima {
     /// Distinct local minima within 1 % of the best, best first.
@@ -31,21 +31,21 @@ pub(crate) struct Minima {
     pub(crate) lower_bound: f64,
     /// `(best - lower_bound) / max(best, floor)`.
     pub(crate) gap: f64,
-    /// Limit that ended the search, where the gap is not a proof.
+    /// Limit that ended the search; `None` if the gap is a proof.
     pub(crate) limit: Option<Limit>,
     pub(crate) nodes: usize,
     /// Whether the list is complete: no other local minimum lies within 1 % of the best.
     pub(crate) all_minima: bool,
 }
 
-/// Finds the global minimum of `objective` over its box, with a rigorous lower bound ([`super`] has
-/// the algorithm).
+/// Finds the global minimum of `objective` over its box, with a rigorous lower bound, by the
+/// algorithm in [`super`].
 ///
 /// Newton's method begins at `start`. `floor` is the rounding level of the objective: the gap is
-/// measured relative to the larger of the best value and `floor`.
+/// relative to the larger of the best value and `floor`.
 ///
 /// # Errors
-/// [`SearchStopped`] where the search was stopped from outside.
+/// [`SearchStopped`] if the search was stopped by its caller.
 pub(crate) fn search(
     objective: &Objective,
     start: &[f64],
@@ -58,7 +58,7 @@ pub(crate) fn search(
     Ok(search.into_minima())
 }
 
-/// A search in progress; its methods cite the line numbers in the algorithm ([`super`]).
+/// A search in progress; the line numbers in its comments refer to the algorithm in [`super`].
 struct Search<'a> {
     objective: &'a Objective,
     exclusion: NodeExclusion<'a>,
@@ -66,24 +66,25 @@ struct Search<'a> {
     floor: f64,
     effort: &'a Effort<'a>,
     newton: Newton<'a>,
-    /// Distinct local minima, in the order found.
+    /// Distinct local minima, in the order in which they were found.
     minima: Vec<Minimum>,
-    /// Minimum value among the minima.
+    /// Value of the best minimum.
     best: f64,
     open: OpenNodes,
     /// Minimum bound of the closed nodes.
     closed: f64,
     nodes: usize,
-    /// Work spent until the best minimum was proven; `None` before.
+    /// Work spent until the best minimum was proven; `None` before the proof.
     proven_at: Option<u64>,
     /// Whether every closed node was shown to contain no local minimum other than those found.
     all_minima: bool,
-    /// Box of the current node: minimum of each scale.
+    /// Lower bound of each scale in the current node.
     lower: Vec<f64>,
-    /// Box of the current node: maximum of each scale.
+    /// Upper bound of each scale in the current node.
     upper: Vec<f64>,
-    /// Curvature of underestimators beyond their node: well above the objective's own, so that a
-    /// node next to a minimum is bounded by its own edge.
+    /// Curvature of underestimators outside their node. It is well above the curvature of the
+    /// objective, so that the bound of a node next to a minimum is attained at the edge of that
+    /// node.
     beyond: f64,
 }
 
@@ -115,8 +116,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Lines 1 to 3: best-first, until the best minimum is proven and then until the other minima
-    /// are listed.
+    /// Lines 1 to 3: searches best-first, until the best minimum is proven and then until the other
+    /// minima are listed.
     fn run(&mut self, start: &[f64]) -> Result<(), SearchStopped> {
         self.descend(start);
         let region = DifferenceBounds::from_box(&self.objective.lower, &self.objective.upper);
@@ -141,7 +142,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Whether the budget for the proof, the listing or memory is used up.
+    /// Returns whether the budget for the proof, for the listing or for memory is exhausted.
     fn is_spent(&self) -> bool {
         let spent = self.effort.spent();
         let is_listing_spent = match self.proven_at {
@@ -151,12 +152,12 @@ impl<'a> Search<'a> {
         is_listing_spent || spent >= self.budget.work || self.open.is_full()
     }
 
-    /// Returns the divisor of the relative gap.
+    /// Returns the divisor in the relative gap.
     fn denominator(&self) -> f64 {
         self.best.max(self.floor)
     }
 
-    /// Returns the lower bound at which the search for a proof ends.
+    /// Returns the lower bound at which the best minimum is proven.
     fn aim(&self) -> f64 {
         self.best - AIM * self.denominator()
     }
@@ -188,7 +189,7 @@ impl<'a> Search<'a> {
         }
         let known = self.minima.len();
         let value = self.objective.value(&start);
-        // A minimum to be listed is below the cutoff, and so is a start near that minimum.
+        // A minimum to be listed lies below the cutoff; a start near it may lie slightly above.
         if value < self.best || (value < NEAR * self.cutoff() && !self.has_minimum_in(&region)) {
             self.descend(&start);
         }
@@ -213,13 +214,13 @@ impl<'a> Search<'a> {
         self.branch(&underestimator, &region, bound, &start);
     }
 
-    /// Closes a node with this bound.
+    /// Closes a node that has this lower bound.
     fn close(&mut self, bound: f64) {
         self.closed = self.closed.min(bound);
     }
 
-    /// Returns the best lower bound from Newton's method on the underestimator; `start` ends at its
-    /// minimum.
+    /// Returns the largest lower bound found by Newton's method on the underestimator. Moves
+    /// `start` to the minimum of the underestimator.
     fn lower_bound(
         &mut self,
         underestimator: &Underestimator<'_>,
@@ -245,8 +246,8 @@ impl<'a> Search<'a> {
             .minimise(underestimator, bounds, start, |scales, at| {
                 best = best.max(tangent_bound(scales, at, bounds));
                 let loss = at.value.value - best;
-                // A node that will be branched anyway needs no bound sharper than its distance from
-                // the goal.
+                // If the node will be branched anyway, a loss that is small relative to its
+                // distance from the goal is acceptable.
                 let branched_anyway = !exact && loss <= 0.05 * (goal - at.value.value);
                 let sharp = loss <= tolerance.max(2.0 * at.value.error);
                 best >= cutoff || branched_anyway || sharp || effort.spent() >= most
@@ -254,7 +255,8 @@ impl<'a> Search<'a> {
         best
     }
 
-    /// Minimises the objective from `start` over the whole box, and keeps the minimum if it is new.
+    /// Minimises the objective from `start` over the whole box, and stores the minimum if it is
+    /// new.
     fn descend(&mut self, start: &[f64]) {
         let mut scales = start.to_vec();
         self.newton.minimise(
@@ -288,8 +290,8 @@ impl<'a> Search<'a> {
         self.best = self.best.min(value);
     }
 
-    /// Whether two minima are duplicates: equal up to 1e-6, or the terms' curvature at `known`
-    /// raises the objective between them by no more than the aimed gap.
+    /// Returns whether two minima are duplicates: equal up to 1e-6, or so close that the curvature
+    /// of the terms at `known` raises the objective between them by at most the desired gap.
     fn is_same(&self, known: &[f64], found: &[f64]) -> bool {
         let mut longest = 0.0_f64;
         let mut rise = 0.0;
@@ -303,7 +305,7 @@ impl<'a> Search<'a> {
         longest <= 1e-6 || rise <= AIM * self.denominator()
     }
 
-    /// Whether a minimum found so far is inside the region.
+    /// Returns whether any known minimum is inside the region.
     fn has_minimum_in(&self, region: &DifferenceBounds) -> bool {
         let scales = self.objective.scales();
         self.effort
@@ -313,9 +315,9 @@ impl<'a> Search<'a> {
             .any(|minimum| region.contains(&minimum.scales))
     }
 
-    /// Line 8: bounds a node from the gradient and the Hessian at the best minimum; `None` where
-    /// the objective is not convex over the hull of node and minimum. `exact`: every term is convex
-    /// over the node.
+    /// Line 8: bounds a node with the gradient and the Hessian at the best minimum; `None` if the
+    /// objective is not convex over the hull of node and minimum. `exact` states that every term is
+    /// convex over the node.
     fn convex_bound(&mut self, region: &DifferenceBounds, exact: bool) -> Option<f64> {
         let best = self
             .minima
@@ -341,7 +343,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Whether the node contains no local minimum other than those found.
+    /// Returns whether the node contains no local minimum other than those already found.
     fn is_searched(&self, region: &DifferenceBounds) -> bool {
         self.effort.spend(self.exclusion.work());
         if self.exclusion.has_no_minimum(region) {
@@ -356,9 +358,9 @@ impl<'a> Search<'a> {
         false
     }
 
-    /// Line 9: branches where the node's bound loses most. Where nothing is lost or the best is
-    /// already proven, separates convex from concave parts first, and then reduces the slopes'
-    /// variation.
+    /// Line 9: branches at the term that loses most of the node's bound. If nothing is lost or the
+    /// best minimum is already proven, separates convex from concave parts, then reduces the
+    /// variation of the slopes.
     fn branch(
         &mut self,
         underestimator: &Underestimator<'_>,
@@ -393,13 +395,13 @@ impl<'a> Search<'a> {
                 return;
             }
         }
-        // The bound is as sharp as rounding allows.
+        // Not branched: the bound is as sharp as rounding permits.
         self.all_minima &= !listing;
         self.close(bound);
     }
 
-    /// Splits off, beyond each concave interval's end, the part on the far side from `start`, and
-    /// keeps the rest as one node.
+    /// Splits the region at the end of each concave interval. The part on the far side from `start`
+    /// becomes a node; the rest remains a single node.
     fn split_concave(
         &mut self,
         ends: &[ConcaveEnd],
@@ -426,7 +428,7 @@ impl<'a> Search<'a> {
         self.push(rest, bound, start);
     }
 
-    /// Adds a part to the open nodes, unless it is empty.
+    /// Adds a part of the box to the open nodes, unless it is empty.
     fn push(&mut self, region: Option<DifferenceBounds>, bound: f64, start: &[f64]) {
         if let Some(region) = region {
             self.open.push(Node {
@@ -437,11 +439,12 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Line 10: the lower bound, and the minima within 1 % of the best.
+    /// Line 10: returns the lower bound, and the minima within 1 % of the best.
     fn into_minima(mut self) -> Minima {
         let left = self.open.least_bound();
         let cutoff = self.cutoff();
-        // A sum of squares is never negative, and no bound exceeds a value that was reached.
+        // Limit the bound: a sum of squares is never negative, and no bound exceeds a value that
+        // was reached.
         let lower_bound = self.closed.min(left).max(0.0).min(self.best);
         let gap = (self.best - lower_bound) / self.denominator();
         let limit = if gap <= PROOF {
@@ -457,7 +460,7 @@ impl<'a> Search<'a> {
         let within = self
             .minima
             .partition_point(|minimum| minimum.value <= cutoff);
-        // The best minimum always stays in the list.
+        // `max(1)`: keep at least the best minimum.
         self.minima.truncate(within.max(1));
         Minima {
             minima: self.minima,
@@ -470,24 +473,26 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Relative gap that counts as a proof.
+/// Relative gap that is accepted as a proof.
 pub(crate) const PROOF: f64 = 1e-9;
 
-/// Budget of the search for a proof, counted instead of timed so that results repeat.
+/// Budget of the search for a proof. It is counted instead of timed, so that results are
+/// reproducible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProofBudget {
-    /// Total work, in evaluations of a term of the objective (20 to 30 ns on a core). A step in
-    /// progress is completed.
+    /// Maximum total work, in evaluations of a term of the objective (20 to 30 ns on a core). A
+    /// step in progress is completed.
     pub work: u64,
-    /// Work after the proof, to find every other local minimum within 1 % of the best.
+    /// Maximum work after the proof, spent on finding every other local minimum within 1 % of the
+    /// best.
     pub listing: u64,
-    /// Memory for the open nodes, in bytes.
+    /// Maximum memory for the open nodes \[bytes\].
     pub bytes: usize,
 }
 
 impl Default for ProofBudget {
-    /// About two seconds on one core and 64 MB, far more than a condition with constrained on-axis
-    /// responses needs; at most a few milliseconds for the other minima.
+    /// Returns a budget of about two seconds on one core and 64 MB, far more than a condition with
+    /// constrained on-axis responses needs, and of at most a few milliseconds for the other minima.
     fn default() -> Self {
         Self {
             work: 80_000_000,
@@ -500,10 +505,10 @@ impl Default for ProofBudget {
 /// Limit that ended a search before the proof.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Limit {
-    /// [`ProofBudget::work`].
+    /// The work, [`ProofBudget::work`].
     Work,
-    /// [`ProofBudget::bytes`].
+    /// The memory, [`ProofBudget::bytes`].
     Memory,
-    /// Double precision: no sharper bound is possible.
+    /// Double precision: a sharper bound is not possible.
     Rounding,
 }

@@ -1,11 +1,12 @@
-//! Terms of the objective: functions of a scale difference, with bounds on their rounding.
+//! Terms of the objective: functions of a difference of scales, with bounds on their rounding
+//! errors.
 
 use super::derivatives::{Derivatives, Range};
 use super::exponential::Exponential;
 use super::rounded::Rounded;
 use crate::correction::interval::Interval;
 
-/// A term of the objective, a function of `u = s_to - s_from`.
+/// A term of the objective: a function of `u = s_to - s_from`.
 #[derive(Clone, Debug)]
 pub(crate) struct Term {
     /// Index of the subtracted scale.
@@ -16,7 +17,7 @@ pub(crate) struct Term {
 }
 
 impl Term {
-    /// Returns `s_to - s_from`.
+    /// Returns `u = s_to - s_from`.
     pub(super) fn difference(&self, scales: &[f64]) -> f64 {
         scales[self.to] - scales[self.from]
     }
@@ -29,21 +30,21 @@ pub(crate) struct TermSum {
     pub(crate) constant: Rounded,
 }
 
-/// A function of a scale difference.
+/// A function of a difference of scales.
 #[derive(Clone, Debug)]
 pub(crate) enum Function {
     /// `weight (u - centre)^2`: gains compared in dB, and delays.
     Quadratic {
         weight: f64,
         centre: Rounded,
-        /// Relative error in the weight.
+        /// Relative error of the weight.
         relative: f64,
     },
     /// `forward` in `u` plus `backward` in `-u`: gains compared as ratios.
     Exponential {
         forward: Exponential,
         backward: Exponential,
-        /// The only interval on which the sum is concave.
+        /// The only interval on which the sum is concave; `None` if there is none.
         concave: Option<Interval>,
     },
 }
@@ -92,7 +93,7 @@ impl Function {
         }
     }
 
-    /// Whether the function is convex over the interval.
+    /// Returns whether the function is convex over the interval.
     pub(crate) fn is_convex_over(&self, over: Interval) -> bool {
         match self {
             Function::Exponential {
@@ -103,8 +104,8 @@ impl Function {
         }
     }
 
-    /// Returns the end of the concave interval on the side of `u`; `None` where `u` is inside that
-    /// interval, or its end is outside the open interval `within`.
+    /// Returns the end of the concave interval that is nearest to `u`; `None` if `u` is inside the
+    /// concave interval, or if the end is outside the open interval `within`.
     pub(crate) fn concave_end(&self, u: f64, within: Interval) -> Option<f64> {
         let Function::Exponential {
             concave: Some(concave),
@@ -127,7 +128,7 @@ impl Function {
         }
     }
 
-    /// Bounds the slope over an interval.
+    /// Returns bounds on the slope over an interval.
     pub(crate) fn slopes(&self, over: Interval) -> Range {
         match self {
             Function::Quadratic { .. } => {
@@ -155,7 +156,7 @@ impl Function {
         }
     }
 
-    /// Bounds the curvature over an interval; only the lower bound is sharp.
+    /// Returns bounds on the curvature over an interval; only the lower bound is sharp.
     pub(crate) fn curvatures(&self, over: Interval) -> Range {
         match self {
             Function::Quadratic {
@@ -187,14 +188,15 @@ impl Function {
     }
 }
 
-/// Finds the only interval on which the sum of two exponentials is concave, or a slightly wider
-/// interval; `None` where the sum is convex everywhere.
+/// Finds the only interval on which the sum of two exponentials is concave, widened slightly;
+/// `None` if the sum is convex everywhere.
 ///
-/// With `z = e^u` the curvature times `z^2 / 2` is the quartic `2 R1 z^4 - R1 c1 z^3 - R2 c2 z + 2
-/// R2`. Its coefficients change sign twice, so it has no or two positive roots (Descartes); its
-/// derivative has a single positive root.
+/// With `z = e^u` the curvature times `z^2 / 2` is the quartic
+/// `2 R1 z^4 - R1 c1 z^3 - R2 c2 z + 2 R2`. Its coefficients change sign twice, so that it has
+/// either no or two positive roots (Descartes); its derivative has a single positive root.
 fn concave_interval(forward: &Exponential, backward: &Exponential) -> Option<Interval> {
-    // Far above the rounding of a logarithm up to 83 (twice 180 dB, both ways).
+    // Far above the rounding error of a logarithm of magnitude up to 83 (twice 180 dB, in both
+    // directions).
     const SLACK: f64 = 1e-11;
     match (forward.is_zero(), backward.is_zero()) {
         (true, true) => return None,
@@ -216,8 +218,8 @@ fn concave_interval(forward: &Exponential, backward: &Exponential) -> Option<Int
     if is_surely_convex(forward, backward, deepest) {
         return None;
     }
-    // Beyond the two inflections `ln(c1 / 2)` and `-ln(c2 / 2)` both curvatures have the same sign;
-    // between them a single exponential is concave.
+    // First guess of the brackets: `reach` exceeds the distance between the inflections
+    // `ln(c1 / 2)` and `-ln(c2 / 2)`; `convex_end` moves further away if necessary.
     let reach = 1.0 + (forward.inflection() + backward.inflection()).abs();
     let left = convex_end(forward, backward, deepest - reach, deepest);
     let right = convex_end(forward, backward, deepest + reach, deepest);
@@ -227,8 +229,8 @@ fn concave_interval(forward: &Exponential, backward: &Exponential) -> Option<Int
     })
 }
 
-/// Whether the quartic of [`concave_interval`] over `z^2` is positive at `u` by more than its
-/// rounding.
+/// Returns whether the quartic of [`concave_interval`], divided by `z^2`, is positive at `u` by
+/// more than its rounding error.
 fn is_surely_convex(forward: &Exponential, backward: &Exponential, u: f64) -> bool {
     let z = u.exp();
     let parts = [
@@ -242,9 +244,9 @@ fn is_surely_convex(forward: &Exponential, backward: &Exponential, u: f64) -> bo
     least > 0.0
 }
 
-/// Returns the positive `z` at the minimum of the quartic of [`concave_interval`]: the root of `8
-/// R1 z^3 - 3 R1 c1 z^2 - R2 c2`, by Newton's method from the right, where the cubic is convex and
-/// increasing.
+/// Returns the positive `z` at which the quartic of [`concave_interval`] is minimal: the root of
+/// `8 R1 z^3 - 3 R1 c1 z^2 - R2 c2`, found by Newton's method from the right, where the cubic is
+/// convex and increasing.
 fn quartic_least(forward: &Exponential, backward: &Exponential) -> f64 {
     let square = 3.0 * forward.centre / 8.0;
     let constant = backward.weight * backward.centre / (8.0 * forward.weight);
@@ -260,8 +262,8 @@ fn quartic_least(forward: &Exponential, backward: &Exponential) -> f64 {
 }
 
 /// Finds the end of the concave interval between `outside` and `inside` by bisection, and returns
-/// the convex side of the final bracket. The sum is not surely convex at `inside`; `outside` is
-/// moved further away until it is surely convex there.
+/// the convex side of the final bracket. Requires that the sum is not certainly convex at `inside`;
+/// `outside` is moved further away until the sum is certainly convex there.
 fn convex_end(forward: &Exponential, backward: &Exponential, outside: f64, inside: f64) -> f64 {
     let mut convex = outside;
     let mut other = inside;

@@ -1,4 +1,4 @@
-//! Compares values and lower bounds with results computed in 50 digits.
+//! Comparison of computed values and lower bounds with exact values (50 digits).
 
 use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
@@ -20,28 +20,28 @@ use crate::correction::scaled_objective::{rounding_floor, scaled_objective};
 
 type Exact = FBig<HalfEven, 2>;
 
-/// 170 bits: 51 digits.
+/// Converts a value to 170 bits, about 51 digits.
 fn exact(figure: f64) -> Exact {
     Exact::try_from(figure).unwrap().with_precision(170).value()
 }
 
-/// The exact value less the computed value, in double precision.
+/// Returns the exact value minus the computed value, rounded to double precision.
 fn excess(figure: &Exact, computed: f64) -> f64 {
     (figure - exact(computed)).to_f64().value()
 }
 
-/// Exact logarithms of the channel gains.
+/// Exact logarithms of the channel gains, as tests compute them.
 struct Logarithms {
     inputs: Vec<Exact>,
     outputs: Vec<Exact>,
 }
 
-/// Computes the exact value of a node.
+/// Computes the exact value of a node at the given scales.
 fn exact_node(node: &Placement, scales: &[f64]) -> Exact {
     exact(node.offset.value) + exact(scales[node.component])
 }
 
-/// Problem of up to three outputs and three inputs, with at most one constrained entry for each
+/// A problem with up to three outputs and three inputs, and at most one constrained entry for each
 /// output.
 #[derive(Clone, Debug)]
 struct Sample {
@@ -61,8 +61,8 @@ impl Sample {
         }
     }
 
-    /// Computes the exact logarithmic gains: for an input the scale of its component, for a
-    /// constrained output the value that follows from its entry.
+    /// Computes the exact logarithms of the gains: an input's from the scale of its component, a
+    /// constrained output's from its entry.
     fn logarithms(&self, scales: &[f64]) -> Logarithms {
         let nodes = self.components.nodes();
         let inputs: Vec<Exact> = nodes
@@ -84,7 +84,7 @@ impl Sample {
         Logarithms { inputs, outputs }
     }
 
-    /// Computes the exact square of an entry's residual, as a ratio or in dB.
+    /// Computes the exact square of an entry's residual, a difference of ratios or of dB values.
     fn exact_square(&self, delta: f64, logarithm: &Exact) -> Exact {
         let miss = match self.problem.quantity {
             Quantity::Gain(GainObjective::Ratio) => exact(delta) - logarithm.exp(),
@@ -93,7 +93,7 @@ impl Sample {
         &miss * &miss
     }
 
-    /// The exact objective: eq. (7), or its counterpart in dB.
+    /// Computes the exact objective: eq. (7), or its counterpart in dB.
     fn exact_objective(&self, scales: &[f64]) -> Exact {
         let Logarithms { inputs, outputs } = self.logarithms(scales);
         let mut sum = exact(0.0);
@@ -107,7 +107,7 @@ impl Sample {
         sum
     }
 
-    /// Returns the point in the box at these shares of its width.
+    /// Returns the point in the box at the given shares of its width.
     fn at(&self, shares: &[f64]) -> Vec<f64> {
         let ends = self
             .objective
@@ -119,8 +119,8 @@ impl Sample {
             .collect()
     }
 
-    /// Returns a part of the box that contains `inside`: every difference is cut at a share of the
-    /// width on either side.
+    /// Returns a part of the box that contains `inside`; every difference is limited to at most the
+    /// share `width` on either side.
     fn region(&self, inside: &[f64], width: f64) -> DifferenceBounds {
         let mut region = DifferenceBounds::from_box(&self.objective.lower, &self.objective.upper);
         for from in 0..inside.len() {
@@ -175,8 +175,8 @@ proptest! {
         sample.objective.expand(&scales, Curvature::True, &mut expansion);
         let off = excess(&sample.exact_objective(&scales), expansion.value.value).abs();
         prop_assert!(off <= expansion.value.error, "off by {:e}, not {:e}", off, expansion.value.error);
-        // The bound is also sharp: a few hundred roundings relative to the squares, which exceed
-        // their sum where they cancel.
+        // The error bound is also sharp: at most a few hundred roundings relative to the squares,
+        // which exceed their sum if terms cancel.
         let squares: f64 = sample.problem.fit_entries().map(|entry| entry.delta.powi(2) + 1.0).sum();
         let size = 1e4 * (expansion.value.value + squares);
         prop_assert!(expansion.value.error <= 1e3 * f64::EPSILON * size * (1.0 + sample.problem.alpha));
@@ -187,7 +187,7 @@ proptest! {
         sample in samples(),
         inside in shares(),
         others in prop::collection::vec(shares(), 4),
-        // Down to nodes so small that rounding errors dominate.
+        // Exponent of the node size, down to sizes at which rounding errors dominate.
         decades in 0.0..16.0_f64,
     ) {
         let inside = sample.at(&inside);
@@ -224,7 +224,7 @@ proptest! {
         let start = sample.objective.nearest_to_zero();
         let found = search(&sample.objective, &start, budget, rounding_floor(&sample.problem), &effort).unwrap();
         let minimum = &found.minima[0].scales;
-        // Next to the minimum, where the bound is sharp, and all over the box.
+        // Points next to the minimum, where the bound is sharp, and points all over the box.
         let near = others.iter().enumerate().map(|(step, shares)| {
             let width = 10f64.powi(-4 * step as i32 - 2);
             let ends = sample.objective.lower.iter().zip(&sample.objective.upper).enumerate();

@@ -1,5 +1,5 @@
-//! A convex underestimator of the objective over a node (part of the scale box), and its lower
-//! bounds.
+//! A convex underestimator of the objective over a node (a part of the box of scales), and its
+//! lower bounds.
 
 use super::derivatives::Derivatives;
 use super::difference_bounds::DifferenceBounds;
@@ -9,7 +9,7 @@ use super::rounded::Rounded;
 use super::term::{Function, Term};
 use crate::correction::interval::Interval;
 
-/// Lines of the convex envelopes of a term's two exponentials; `None` for an exponential that is
+/// Lines in the convex envelopes of a term's two exponentials; `None` for an exponential that is
 /// convex over the node.
 #[derive(Clone, Copy, Debug)]
 struct EnvelopeLines {
@@ -19,12 +19,12 @@ struct EnvelopeLines {
 
 /// Underestimator of a term over the range of its difference.
 ///
-/// Newton's method keeps to the node's box only, so beyond the range the underestimator continues
-/// along its tangent and bends up: any convex continuation is valid, and this one keeps the minimum
-/// near.
+/// Newton's method respects only the node's box, and may leave this range. Outside it, the
+/// underestimator continues along its tangent and bends upwards. Any convex continuation is valid,
+/// and this one keeps the minimum close.
 #[derive(Clone, Copy, Debug)]
 struct TermUnder {
-    /// `None` where the term is convex over the node and is its own underestimator.
+    /// `None` if the term is convex over the node, and thus its own underestimator.
     lines: Option<EnvelopeLines>,
     range: Interval,
 }
@@ -48,12 +48,12 @@ impl TermUnder {
         self.lines.is_none()
     }
 
-    /// Returns the term's difference at `scales`, moved into the range.
+    /// Returns the term's difference at `scales`, clamped to its range.
     fn difference(&self, term: &Term, scales: &[f64]) -> f64 {
         self.range.nearest(term.difference(scales))
     }
 
-    /// Evaluates the underestimator of `function` at `u` in the range.
+    /// Evaluates the underestimator of `function` at `u`, which is within the range.
     fn inside(&self, function: &Function, u: f64) -> Derivatives {
         match (function, &self.lines) {
             (
@@ -71,38 +71,38 @@ impl TermUnder {
     }
 }
 
-/// End of a term's concave interval.
+/// End of the concave interval of a term.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ConcaveEnd {
     pub(super) from: usize,
     pub(super) to: usize,
-    /// Scale difference `s_to - s_from` at the end.
+    /// Difference `s_to - s_from` at the end.
     pub(super) at: f64,
     /// Distance of the end from the current difference.
     distance: f64,
 }
 
-/// A term with the value by which terms are compared.
+/// A term and the value by which terms are ranked.
 struct RankedTerm<'a> {
     term: &'a Term,
     rank: f64,
 }
 
-/// Returns the term with the highest rank, the last among equals.
+/// Returns the term with the highest rank; the last of equally ranked terms.
 fn highest<'a>(terms: impl Iterator<Item = RankedTerm<'a>>) -> Option<RankedTerm<'a>> {
     terms.max_by(|a, b| a.rank.total_cmp(&b.rank))
 }
 
-/// Convex function of the scales that nowhere in the node exceeds the objective.
+/// Convex function of the scales that does not exceed the objective anywhere in the node.
 pub(crate) struct Underestimator<'a> {
     objective: &'a Objective,
     unders: Vec<TermUnder>,
-    /// Curvature outside the differences' ranges.
+    /// Curvature outside the ranges of the differences.
     beyond: f64,
 }
 
 impl<'a> Underestimator<'a> {
-    /// Work of construction for each term: up to fourteen steps to a tangent.
+    /// Work of the construction per term: up to fourteen steps to a tangent.
     pub(crate) const WORK_PER_TERM: u64 = 12;
 
     /// Creates the underestimator of `objective` over `region`, with curvature `beyond` outside the
@@ -120,7 +120,8 @@ impl<'a> Underestimator<'a> {
         }
     }
 
-    /// Whether the underestimator equals the objective: every term is convex over the node.
+    /// Returns whether the underestimator equals the objective, because every term is convex over
+    /// the node.
     pub(crate) fn is_exact(&self) -> bool {
         self.unders.iter().all(TermUnder::is_exact)
     }
@@ -134,8 +135,8 @@ impl<'a> Underestimator<'a> {
             .filter(|(_, under)| !under.is_exact())
     }
 
-    /// Finds the term furthest above its envelope at `scales` (moved into the node's ranges); the
-    /// distance, less its rounding, has to exceed `least_gap`.
+    /// Finds the term that is furthest above its envelope at `scales` (clamped to the node's
+    /// ranges); `None` if the distance, less its rounding error, does not exceed `least_gap`.
     pub(crate) fn widest_gap(&self, scales: &[f64], least_gap: f64) -> Option<&'a Term> {
         let gaps = self.nonconvex().map(|(term, under)| {
             let u = under.difference(term, scales);
@@ -154,9 +155,9 @@ impl<'a> Underestimator<'a> {
         }
     }
 
-    /// Finds the terms that are not convex over the node but convex at `scales`, each with its
-    /// concave interval's end, furthest end first. The parts beyond the ends are easily bounded,
-    /// and the rest is convex in these terms.
+    /// Finds the terms that are not convex over the node but convex at `scales`, each with the end
+    /// of its concave interval, the furthest end first. The parts beyond the ends are easily
+    /// bounded, and the rest is convex in these terms.
     pub(super) fn concave_ends(&self, scales: &[f64]) -> Vec<ConcaveEnd> {
         let mut ends = Vec::new();
         for (term, under) in self.nonconvex() {
@@ -174,8 +175,8 @@ impl<'a> Underestimator<'a> {
         ends
     }
 
-    /// Returns the term whose slope varies most over the node, weighted with its range: it may
-    /// prevent the monotonicity and convexity tests from succeeding.
+    /// Returns the term whose slope varies most over the node, weighted by its range: this term is
+    /// the most likely obstacle to the monotonicity and convexity tests.
     pub(crate) fn widest_slope(&self) -> Option<&'a Term> {
         let terms = self.objective.terms.iter().zip(&self.unders);
         let variations = terms.map(|(term, under)| {
@@ -188,7 +189,7 @@ impl<'a> Underestimator<'a> {
         highest(variations).map(|widest| widest.term)
     }
 
-    /// Evaluates a term's underestimator, also outside its range.
+    /// Evaluates the underestimator of a term, also outside its range.
     fn at(&self, term: &Term, under: &TermUnder, scales: &[f64]) -> Derivatives {
         let u = term.difference(scales);
         let end = under.range.nearest(u);
@@ -219,7 +220,7 @@ impl Differentiable for Underestimator<'_> {
         for (term, under) in self.objective.terms.iter().zip(&self.unders) {
             let at = self.at(term, under, scales);
             into.value.add(at.value);
-            // Convex up to the rounding of the interval's ends.
+            // `max(0.0)`: the curvature is negative only by the rounding of the interval's ends.
             into.add(term, at.slope, at.curvature.max(0.0));
         }
     }
@@ -230,7 +231,7 @@ impl Differentiable for Underestimator<'_> {
 }
 
 /// Bounds a convex function over a box from below, by its tangent plane at `scales` (inside the
-/// box), less the rounding in the value, in every slope and in their sum.
+/// box), less the rounding errors of the value, of every slope and of their sum.
 pub(super) fn tangent_bound(scales: &[f64], at: &Expansion, bounds: ScaleBox<'_>) -> f64 {
     let mut bound = at.value.value - at.value.error;
     for (index, scale) in scales.iter().enumerate() {
@@ -240,20 +241,20 @@ pub(super) fn tangent_bound(scales: &[f64], at: &Expansion, bounds: ScaleBox<'_>
         let up = (error - slope).max(0.0) * (bounds.upper[index] - scale).max(0.0);
         bound -= down.max(up);
     }
-    // Each of the n + 1 subtractions rounds a number between the value and the bound; each product
-    // rounds four times, relative to their sum.
+    // Each of the n + 1 subtractions rounds a value between the function value and the bound; each
+    // product rounds four times, relative to the sum of the products.
     bound - (scales.len() as f64 + 5.0) * f64::EPSILON * at.value.value.abs().max(bound.abs())
 }
 
-/// Bounds a convex function from below by its tangent plane and Hessian next to a point where the
-/// slopes are almost zero. `None` where the bound does not hold.
+/// Bounds a convex function from below near a point at which its slopes are almost zero, by its
+/// tangent plane and Hessian. `None` if the slopes are too large.
 ///
-/// `reach` is `sqrt(diagonal of H^-1)` for a Hessian `H` that the function's own does not fall
-/// below while no scale is further than `within` from the point; 0 for a fixed scale. With the
-/// gradient `g` known to `e`, and `r = sum (|g| + e) reach`, the parabola `g d + d' H d / 2` is
-/// nowhere below `-r^2 / 2` and turns before any scale has moved by `r reach`; beyond, a convex
-/// function keeps rising. A scale that its slope has `pushed` against its bound can only raise the
-/// function.
+/// Let `H` be a matrix that the Hessian exceeds by a positive semidefinite matrix while no scale is
+/// further than `within` from the point. `reach` is `sqrt(diagonal of H^-1)`, and 0 for a fixed
+/// scale. With the gradient `g`, its error `e` and `r = sum (|g| + e) reach`, the parabola
+/// `g d + d' H d / 2` is nowhere below `-r^2 / 2`, and rises again before any scale has moved by
+/// `r reach`; beyond this distance, a convex function continues to rise. A scale that its slope has
+/// `pushed` against its bound can only raise the function.
 pub(super) fn quadratic_bound(
     at: &Expansion,
     reach: &[f64],
@@ -268,7 +269,7 @@ pub(super) fn quadratic_bound(
     }
     let farthest = sum * reach.iter().fold(0.0_f64, |most, reach| most.max(*reach));
     if farthest <= within {
-        // A millionth above the parabola's depth covers rounding in the sum and in the inverse.
+        // `1.0 + 1e-6`: margin for rounding in the sum and in the inverse.
         let bound = at.value.value - at.value.error - 0.5 * sum * sum * (1.0 + 1e-6);
         Some(bound - 4.0 * f64::EPSILON * bound.abs())
     } else {
@@ -290,7 +291,7 @@ mod tests {
         CombinedEntries::new(&[entry]).exponential
     }
 
-    /// Two exponentials with weights from 0.01 to 10 and centres from 0.05 to 20.
+    /// Generates sums of two exponentials with weights from 0.01 to 10 and centres from 0.05 to 20.
     fn functions() -> impl Strategy<Value = Function> {
         let forward = (0.01..10.0_f64, 0.05..20.0_f64);
         let backward = (0.01..10.0_f64, 0.05..20.0_f64);
@@ -302,7 +303,7 @@ mod tests {
         })
     }
 
-    /// Like [`functions`], or the forward exponential alone.
+    /// Generates as [`functions`], or only the forward exponential.
     fn functions_of_one_or_two() -> impl Strategy<Value = Function> {
         let forward = (0.01..10.0_f64, 0.05..20.0_f64);
         let alone = forward.prop_map(|(weight, centre)| {
@@ -342,8 +343,8 @@ mod tests {
                 underestimator.expand(&scales, Curvature::True, &mut at);
                 let value = objective.value(&scales);
                 prop_assert!(at.value.value - at.value.error <= value, "{} is above {}", at.value.value, value);
-                // The difference is measured from node 0 to node 1: the slope in node 1 falls as
-                // scale 0 rises.
+                // The difference is counted from node 0 to node 1, so that the slope in node 1
+                // decreases as scale 0 increases.
                 let rounding = 1e-9 * (1.0 + steepness.abs().min(1e9));
                 prop_assert!(at.gradient[1] <= steepness + rounding, "{} after {}", at.gradient[1], steepness);
                 steepness = at.gradient[1];
@@ -357,8 +358,8 @@ mod tests {
         ) {
             let convex = function.is_convex_over(Interval { low: at, high: at });
             let curvature = function.at(at).curvature;
-            // The interval is widened by 1e-11; the curvature at its ends is therefore 1e-11 times
-            // the slope of the curvature.
+            // The interval is widened by 1e-11, so that the curvature at its ends is 1e-11 times
+            // its slope there.
             prop_assert!(convex == (curvature > 0.0) || curvature.abs() <= 1e-6, "{} {}", convex, curvature);
         }
 
@@ -374,7 +375,7 @@ mod tests {
             let slopes = function.slopes(range);
             let curvatures = function.curvatures(range);
             prop_assert!(slopes.least <= at.slope.value + at.slope.error && at.slope.value - at.slope.error <= slopes.most);
-            // Rounding of numbers up to 1e4.
+            // Tolerance: rounding of values up to 1e4.
             prop_assert!(curvatures.least <= at.curvature + 1e-9 && at.curvature - 1e-9 <= curvatures.most);
         }
     }

@@ -95,7 +95,7 @@ fn the_matrices_have_the_response_of_the_loop() {
             &response_of(&coupled),
             &small_couplings().response(&response_of(&physics), 60.0),
         );
-        // A dozen operations in two orders, with values near 1.
+        // Rounding errors: a dozen operations on values near 1, done in two orders.
         assert!(difference < 1e-12, "{difference:e}");
     }
 }
@@ -132,7 +132,7 @@ fn channel_delays_are_inside_the_loop() {
         &response_of(&coupled),
         &small_couplings().response(&response_of(&physics), 60.0),
     );
-    // Sixth-order approximants for 0.03 s delays, up to 8 rad/s.
+    // Error of the sixth-order approximants of 0.03 s delays, up to 8 rad/s.
     assert!(difference < 1e-10, "{difference:e}");
 }
 

@@ -44,7 +44,7 @@ fn permuting_the_channels_permutes_the_couplings() {
     let k = found.matrices.feedback();
     let expected_m = DMatrix::from_fn(2, 2, |to, from| m[(inputs[to], inputs[from])]);
     let expected_k = DMatrix::from_fn(2, 3, |input, output| k[(inputs[input], outputs[output])]);
-    // In each of five passes the sums are rounded in another order.
+    // In each of the five passes, the sums are rounded in another order.
     assert!((moved.matrices.mixing(70.0) - expected_m).amax() < 1e-12);
     assert!((moved.matrices.feedback() - expected_k).amax() < 1e-12);
 }
@@ -70,7 +70,7 @@ fn scaled_response(
     }))
 }
 
-/// Divides each column of `shares` by the maximum physics response of the output.
+/// Divides each column of `shares` by the peak magnitude of the physics responses of its output.
 fn feedback_with_shares(problem: &CouplingProblem, shares: &DMatrix<f64>) -> DMatrix<f64> {
     let mut peaks = [0.0_f64; 3];
     for condition in &problem.conditions {
@@ -113,7 +113,8 @@ proptest! {
         let scaled = fit(&in_other_units(&disturbed(), &outputs, &inputs));
         for (to, from) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
             let [a, b] = [&found, &scaled].map(|fit| fit.matrices.mixing(70.0)[(to, from)]);
-            // Rounding errors in five solves with scaled condition numbers near 1e4.
+            // Tolerance: rounding errors of five solves whose scaled matrices have condition
+            // numbers near 1e4.
             prop_assert!((a * inputs[to] / inputs[from] - b).abs() < 1e-9 * b.abs().max(1e-3));
         }
         for (input, output) in [(0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2)] {
@@ -132,8 +133,8 @@ proptest! {
         let shares = DMatrix::from_row_slice(2, 3, &share);
         let feedback = feedback_with_shares(&disturbed(), &shares);
         let found = fit(&flown_with(&mixing, &feedback)).matrices;
-        // The ridge, 1e-9, times the ratio of the information about the best and the worst
-        // determined entry.
+        // Tolerance: the ridge, 1e-9, times the ratio of the information about the best and the
+        // worst determined entry.
         prop_assert!((found.normalised_mixing(70.0) - &mixing).amax() < 1e-5, "{found:?}");
         prop_assert!((found.feedback() - &feedback).amax() < 1e-5 * feedback.amax().max(1.0), "{found:?}");
     }

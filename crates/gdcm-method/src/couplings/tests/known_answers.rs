@@ -1,4 +1,4 @@
-//! Known answers from independent numpy code, the optimality of a pass, and error bars.
+//! Comparison with independent numpy results, the optimality of a pass, and error bars.
 
 use nalgebra::{Complex, DMatrix};
 use serde_json::Value;
@@ -99,8 +99,8 @@ fn a_state_space_with_feed_through_is_coupled_exactly() {
     }
 }
 
-/// Columns and weights of the last pass with a complex row for each response and frequency, stored
-/// densely.
+/// Dense form of the least-squares problem in the last pass, with a complex row for each response
+/// and frequency.
 struct DenseProblem {
     columns: Vec<Vec<Complex<f64>>>,
     target: Vec<Complex<f64>>,
@@ -232,6 +232,6 @@ fn bars_need_three_conditions_and_agree_with_the_jackknife() {
             found: 2
         }
     );
-    // Two airspeeds allow a straight line.
+    // Two airspeeds suffice for a straight line over airspeed.
     assert_eq!(fit(&two).unknowns.len(), 12);
 }

@@ -113,8 +113,8 @@ fn an_output_missing_in_flight_or_physics_is_not_fed_back() {
 fn an_input_column_is_skipped_where_flight_lacks_a_fed_back_output() {
     let mut lacking = disturbed();
     let mut unusable = disturbed();
-    // The first condition lacks a response: the result equals that of a fit without this input in
-    // this condition.
+    // The first condition lacks a response: the result equals the result of a fit without this
+    // input in this condition.
     lacking.conditions[0].flight = without(&lacking.conditions[0].flight, |pair, _| {
         pair == Pair::new(2, 1)
     });
@@ -127,7 +127,7 @@ fn an_input_column_is_skipped_where_flight_lacks_a_fed_back_output() {
         (found.coefficients, found.not_fed_back),
         (expected.coefficients, vec![])
     );
-    // A mixing alone needs no other response in the column.
+    // A mixing alone does not need the other responses of the column.
     lacking.kind = CouplingKind::Mixing;
     unusable.kind = CouplingKind::Mixing;
     unusable.conditions[0].usable = PairTable::from_fn(3, 2, |pair| pair != Pair::new(2, 1));
@@ -193,7 +193,7 @@ fn a_response_without_coherence_does_not_count() {
         .flatten()
         .zip(expected.coefficients.iter().flatten())
     {
-        // A common weight changes only rounding errors.
+        // A weight common to all responses changes only rounding errors.
         assert!((found - expected).abs() < 1e-12);
     }
 }

@@ -67,7 +67,7 @@ fn a_fit_reports_every_condition_in_every_pass_in_order() {
     let listener = Listener::cancelling_after(usize::MAX);
     fit_couplings(&disturbed(), &Sequential, &listener).unwrap();
     let reports = listener.reports.into_inner().unwrap();
-    // Reports for four conditions and the solution in each of five passes, and for the end.
+    // Each of the five passes reports four conditions and the solution; then the end is reported.
     assert_eq!(
         (
             reports.len(),

@@ -1,16 +1,16 @@
-//! Directory of the objects: their classes, and where each property value is found.
+//! Directory of the objects: the class of each object, and the place of each property value.
 
 use crate::formats::mat::cursor::ByteOrder;
 use crate::formats::mat::element::decode_name;
 use crate::formats::mat::subsystem::damaged;
 use crate::reading_budget::VariableFault;
 
-/// Bytes before the names: version, name count, and eight region offsets.
+/// Length of the header \[bytes\]: version, number of names, and eight region offsets.
 const HEADER_BYTES: usize = 40;
 /// Newest supported layout version.
 const NEWEST: u32 = 4;
 
-/// Regions of 32-bit words after the names, by index.
+/// Regions of 32-bit words after the names; the values are their indices.
 #[derive(Clone, Copy)]
 enum Region {
     Classes = 0,
@@ -21,12 +21,12 @@ enum Region {
 
 #[derive(Clone, Debug)]
 pub(super) struct Directory {
-    /// Property and class names, counted from 1; 0 means none.
+    /// Property and class names. Indices count from 1; 0 means none.
     names: Vec<String>,
-    /// Class names by class number; number 0 is unused.
+    /// Class names by class number; class 0 is not used.
     classes: Vec<String>,
     objects: Vec<ObjectEntry>,
-    /// Property lists of objects that are saved as another value, created by their class.
+    /// Property lists of objects that their class saves as another value.
     created: Vec<Vec<Property>>,
     /// Property lists of all other objects.
     plain: Vec<Vec<Property>>,
@@ -36,18 +36,16 @@ pub(super) struct Directory {
 
 #[derive(Clone, Copy, Debug)]
 struct ObjectEntry {
-    /// Class number.
     class: u32,
-    /// Index in the created property lists; 0 if the object has a plain list.
+    /// Index in `Directory::created`; 0 if the list is in `Directory::plain`.
     created: u32,
-    /// Index in the plain property lists.
+    /// Index in `Directory::plain`.
     plain: u32,
 }
 
-/// An object with its class.
+/// Properties of an object, with its class.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ObjectProperties<'d> {
-    /// Class number.
     pub(super) class: u32,
     pub(super) properties: &'d [Property],
 }
@@ -59,18 +57,18 @@ pub(super) struct Property {
     pub(super) content: Content,
 }
 
-/// Where a property value is found.
+/// Place of a property value.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Content {
     /// The value is the name with this index, counted from 1.
     Name(u32),
-    /// The value is in a cell, counted from the first cell with a value.
+    /// The value is in the cell with this index among the value cells, counted from 0.
     Cell(usize),
     /// The value is this integer.
     Number(u32),
 }
 
-/// Bytes of a directory with its decoded header.
+/// Bytes of a directory, with its decoded header.
 struct DirectoryBytes<'b> {
     bytes: &'b [u8],
     order: ByteOrder,
@@ -81,7 +79,7 @@ struct DirectoryBytes<'b> {
 }
 
 impl Directory {
-    /// Reads the bytes of the first cell.
+    /// Reads the directory from the bytes of the first cell.
     pub(super) fn read(bytes: &[u8]) -> Result<Self, VariableFault> {
         let bytes = DirectoryBytes::read(bytes)?;
         let names = bytes.names()?;
@@ -105,7 +103,7 @@ impl Directory {
         Ok(directory)
     }
 
-    /// Returns the full name of a class, from the indices of its package name and its own name.
+    /// Returns the class name with its package, from the indices of both names.
     fn qualified_name(&self, words: &[u32]) -> String {
         let package = self.name_or_empty(words.first());
         let name = self.name_or_empty(words.get(1));
@@ -122,14 +120,14 @@ impl Directory {
             .unwrap_or_default()
     }
 
-    /// Returns the name of a property or class by its index, counted from 1.
+    /// Returns the property or class name at an index, counted from 1.
     pub(super) fn name(&self, number: u32) -> Option<&str> {
         self.names
             .get((number as usize).checked_sub(1)?)
             .map(String::as_str)
     }
 
-    /// Returns a class name by the class number.
+    /// Returns the name of a class; `None` for 0 and unknown class numbers.
     pub(super) fn class(&self, number: u32) -> Option<&str> {
         if number == 0 {
             None
@@ -138,7 +136,7 @@ impl Directory {
         }
     }
 
-    /// Returns an object by its number.
+    /// Returns the properties of the object with a number; `None` if there is no such object.
     pub(super) fn object(&self, number: u32) -> Option<ObjectProperties<'_>> {
         let entry = self.objects.get(number as usize)?;
         let properties = if entry.created == 0 {
@@ -152,19 +150,19 @@ impl Directory {
         })
     }
 
-    /// Whether an object with this number exists; 0 marks a deleted object.
+    /// Returns whether an object number is valid; 0, a deleted object, is valid.
     pub(super) fn has_object(&self, number: u32) -> bool {
         number == 0 || (number as usize) < self.objects.len()
     }
 }
 
 impl<'b> DirectoryBytes<'b> {
-    /// Reads the header.
+    /// Reads the header; determines the byte order.
     fn read(bytes: &'b [u8]) -> Result<Self, VariableFault> {
         let head = bytes.get(..HEADER_BYTES).unwrap_or_default();
         let little = decode_words(head, ByteOrder::Little);
         let big = decode_words(head, ByteOrder::Big);
-        // A version is a small number and becomes large in the wrong byte order.
+        // The version is a small number; in the wrong byte order it would be large.
         let order = if little.first() <= big.first() {
             ByteOrder::Little
         } else {
@@ -191,7 +189,7 @@ impl<'b> DirectoryBytes<'b> {
         })
     }
 
-    /// Reads the names, each followed by a zero, between the header and the first region.
+    /// Reads the names, each ended by a zero byte, between the header and the first region.
     fn names(&self) -> Result<Vec<String>, VariableFault> {
         let first = self.regions.first().map_or(0, |&at| at as usize);
         let Some(names) = self.bytes.get(HEADER_BYTES..first) else {
@@ -217,13 +215,13 @@ impl<'b> DirectoryBytes<'b> {
     }
 }
 
-/// Decodes consecutive 32-bit words; incomplete words at the end are ignored.
+/// Decodes consecutive 32-bit words; ignores an incomplete word at the end.
 fn decode_words(bytes: &[u8], order: ByteOrder) -> Vec<u32> {
     let (words, _) = bytes.as_chunks();
     words.iter().map(|&word| order.u32(word)).collect()
 }
 
-/// Decodes the object entries, six words each.
+/// Decodes the object entries, which have six words each.
 fn object_entries(words: &[u32]) -> Vec<ObjectEntry> {
     let (entries, _) = words.as_chunks();
     entries
@@ -236,7 +234,8 @@ fn object_entries(words: &[u32]) -> Vec<ObjectEntry> {
         .collect()
 }
 
-/// Decodes consecutive property lists, each preceded by its length and padded to eight bytes.
+/// Decodes consecutive property lists; each is preceded by its length and padded to a multiple of
+/// eight bytes.
 fn property_lists(words: &[u32]) -> Result<Vec<Vec<Property>>, VariableFault> {
     let mut lists = Vec::new();
     let mut rest = words;

@@ -1,14 +1,14 @@
-//! Enumeration members, saved as a record with indices into a name list.
+//! Members of enumeration classes, saved as a record with indices into a list of names.
 
 use crate::formats::mat::subsystem::directory::Directory;
 use crate::formats::variables::{Object, StructArray, Value};
 
-/// Field that marks a record as enumeration members.
+/// Field by which a record of enumeration members is recognised.
 const TAG: &str = "EnumerationInstanceTag";
-/// Property with the name of the member.
+/// Property that holds the name of the member.
 const MEMBER: &str = "Name";
 
-/// Enumeration members with their names.
+/// Enumeration members, given by their names.
 pub(super) struct EnumerationMembers<'d> {
     class: &'d str,
     shape: Vec<usize>,
@@ -19,8 +19,7 @@ impl<'d> EnumerationMembers<'d> {
     /// Reads enumeration members; `class` is used if the records do not name a class.
     ///
     /// # Errors
-    ///
-    /// The class name, if the members cannot be decoded.
+    /// The class name if the members cannot be decoded.
     pub(super) fn read(
         directory: &'d Directory,
         records: &StructArray,
@@ -45,12 +44,12 @@ impl<'d> EnumerationMembers<'d> {
         })
     }
 
-    /// Estimates the memory of the value \[bytes\].
+    /// Estimates the memory of the converted value \[bytes\].
     pub(super) fn memory(&self) -> u64 {
         self.names.iter().map(|name| name.len() as u64 + 256).sum()
     }
 
-    /// Returns an object array whose only property is the name of the member.
+    /// Converts the members to an object array whose only property is the member name.
     pub(super) fn into_value(self) -> Value {
         let names = self.names.into_iter().map(Value::text).collect();
         let records = StructArray {
@@ -64,12 +63,12 @@ impl<'d> EnumerationMembers<'d> {
     }
 }
 
-/// Whether the records are enumeration members.
+/// Returns whether records are enumeration members.
 pub(super) fn is_enumeration(records: &StructArray) -> bool {
     records.field(TAG).is_some()
 }
 
-/// Returns the numbers of a field with a single array, as integers.
+/// Returns the numbers of a field as integers; `None` unless the field has a single array.
 fn integers(records: &StructArray, field: &str) -> Option<Vec<u32>> {
     match records.field(field)? {
         [Value::Array(array)] => Some(array.re.iter().map(|&number| number as u32).collect()),

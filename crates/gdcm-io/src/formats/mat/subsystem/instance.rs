@@ -1,4 +1,4 @@
-//! Objects assembled from the cells of their properties.
+//! Assembly of objects from the cells that hold their properties.
 
 use std::collections::{HashMap, HashSet};
 
@@ -14,18 +14,17 @@ use crate::formats::variables::{
 };
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Property with the value that a class creates when saving its objects.
+/// Property that holds the value that a class saves instead of an object.
 const CREATED: &str = "any";
 
 /// Assembles objects, including nested objects.
 pub(super) struct Assembly<'s> {
     subsystem: &'s Subsystem,
     budget: &'s ReadingBudget<'s>,
-    /// Objects being assembled, to detect an object that contains itself.
+    /// Numbers of the objects being assembled, to detect an object that contains itself.
     open: Vec<u32>,
 }
 
-/// A property with its name.
 struct NamedValue {
     name: String,
     value: Value,
@@ -40,7 +39,8 @@ impl<'s> Assembly<'s> {
         }
     }
 
-    /// Resolves a reference; objects that are nested too deeply or cannot be decoded are opaque.
+    /// Returns the objects to which a reference points; objects that are nested too deeply or
+    /// cannot be decoded become opaque.
     pub(super) fn resolve(
         &mut self,
         reference: &Reference,
@@ -53,7 +53,7 @@ impl<'s> Assembly<'s> {
                 Some(texts) => Value::Text(texts),
                 None => unreadable(
                     class,
-                    "its texts are packed in an unknown way",
+                    "its strings are stored in an unknown form",
                     &path.text(),
                 ),
             });
@@ -83,7 +83,7 @@ impl<'s> Assembly<'s> {
         }
     }
 
-    /// Unpacks the texts of a `string` object; `None` if they are packed in an unknown way.
+    /// Unpacks the strings of a `string` object; `None` if the form of packing is unknown.
     fn packed_texts(&self, object: u32) -> Result<Option<TextArray>, VariableFault> {
         let subsystem = self.subsystem;
         let Some(object) = subsystem.directory.object(object) else {
@@ -108,8 +108,8 @@ impl<'s> Assembly<'s> {
         }
     }
 
-    /// Assembles a record for each object of a reference; the fields are the union of their
-    /// properties.
+    /// Returns a record for each object of a reference; the fields are all properties that occur in
+    /// any of the objects.
     fn records(
         &mut self,
         reference: &Reference,
@@ -150,7 +150,7 @@ impl<'s> Assembly<'s> {
         })
     }
 
-    /// Appends empty values up to `length`, for objects without the property.
+    /// Appends empty values up to `length`, for objects that lack the property.
     fn pad(&self, values: &mut Vec<Value>, length: usize) -> Result<(), VariableFault> {
         let missing = length.saturating_sub(values.len());
         self.budget
@@ -159,7 +159,8 @@ impl<'s> Assembly<'s> {
         Ok(())
     }
 
-    /// Collects the saved properties of an object, and the defaults of its class for the others.
+    /// Returns the saved properties of an object, and the class defaults of the properties that are
+    /// not saved.
     fn properties(
         &mut self,
         object: u32,
@@ -235,7 +236,7 @@ impl<'s> Assembly<'s> {
         }
     }
 
-    /// Copies a value, with references replaced by their objects.
+    /// Copies a value and replaces references by their objects.
     fn copy(&mut self, value: &Value, path: &ValuePath<'_>) -> Result<Value, VariableFault> {
         self.budget.take(1, value.own_memory(), "")?;
         if let Some(reference) = self.reference(value) {
@@ -291,8 +292,8 @@ impl<'s> Assembly<'s> {
         })
     }
 
-    /// Returns the reference in a value if its class and objects exist: numbers may look like a
-    /// reference by chance.
+    /// Returns the reference in a value. Returns `None` unless its class and objects exist, because
+    /// numbers may look like a reference by chance.
     fn reference(&self, value: &Value) -> Option<Reference> {
         let directory = &self.subsystem.directory;
         let reference = Reference::from_value(value)?;
@@ -305,7 +306,7 @@ impl<'s> Assembly<'s> {
     }
 }
 
-/// Returns the numbers as integers; `None` if a number may have lost digits.
+/// Converts numbers to integers; `None` if any may have been rounded.
 fn exact_words(array: &Array) -> Option<Vec<u64>> {
     const MOST: f64 = (1_u64 << 53) as f64;
     let mut words = Vec::with_capacity(array.re.len());

@@ -1,9 +1,10 @@
-//! Objects of MATLAB classes, in a separate part of the file: the cells of a `FileWrapper__`.
+//! Objects of MATLAB classes, stored in a separate part of the file: the cells of a
+//! `FileWrapper__`.
 //!
 //! The first cell is a directory that lists the objects and the cell of each property; the last
-//! cells are shared by all objects with the same class. The format is not published by The
-//! MathWorks; it is known from the descriptions by the MatFileHandler, matio (Python) and MAT.jl
-//! projects. It is the same in files up to version 7 and in files at version 7.3 (HDF5).
+//! cells are shared by all objects of a class. The format is not published by The MathWorks; this
+//! reader follows the descriptions by the MatFileHandler, matio (Python) and MAT.jl projects. Files
+//! up to version 7 and files of version 7.3 (HDF5) use the same format.
 
 mod directory;
 mod enumeration;
@@ -23,31 +24,31 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 
 pub(in crate::formats::mat) use crate::formats::mat::subsystem::reference::Reference;
 
-/// Class system for the objects of MATLAB's own classes.
+/// Name of the class system for objects of MATLAB's `classdef` classes.
 pub(super) const CLASS_SYSTEM: &str = "MCOS";
 /// Number of cells before the property values.
 const CELLS_BEFORE_VALUES: usize = 2;
 
-/// Exact integers of cells that hold unsigned 64-bit integers, by cell index from 0.
+/// Exact values of cells that hold unsigned 64-bit integers, by cell index from 0.
 pub type LongWords = HashMap<usize, Vec<u64>>;
 
-/// Property storage of the objects in a MAT file.
+/// Properties of all objects in a MATLAB file.
 #[derive(Clone, Debug)]
 pub struct Subsystem {
     directory: Directory,
-    /// Property values, in directory order.
+    /// Values of the properties, by the index used in the directory.
     values: Vec<Value>,
-    /// Default property values, a record for each class.
+    /// Defaults of the properties, a record for each class.
     defaults: Vec<Value>,
-    /// Exact integers, by index in `values`.
+    /// Exact values of 64-bit integers, by index in `values`.
     long_words: LongWords,
 }
 
 impl Subsystem {
-    /// Reads the cells of a `FileWrapper__`; the first holds the bytes of the directory.
+    /// Reads the cells of a `FileWrapper__`; the first cell is the directory.
     pub fn new(cells: Vec<Value>, budget: &ReadingBudget<'_>) -> Result<Self, VariableFault> {
         let bytes = directory_bytes(cells.first())?;
-        // An empty name takes a single byte in the file and a whole `String` in memory.
+        // An empty name needs one byte in the file but a whole `String` in memory.
         budget.take(bytes.len() as u64, 2 * size_of::<String>() as u64, "")?;
         let directory = Directory::read(&bytes)?;
         let mut values = cells;
@@ -65,8 +66,8 @@ impl Subsystem {
         })
     }
 
-    /// Adds exact integers, by index among all cells: `string` objects are packed into 64-bit
-    /// integers, but a [`Value`] keeps only 53 bits.
+    /// Adds exact values by cell index, because `string` objects are packed into 64-bit integers,
+    /// of which a [`Value`] keeps only 53 bits.
     pub fn with_long_words(mut self, cells: LongWords) -> Self {
         for (cell, words) in cells {
             if let Some(value) = cell.checked_sub(CELLS_BEFORE_VALUES) {
@@ -76,9 +77,10 @@ impl Subsystem {
         self
     }
 
-    /// Returns the object, or the object array, for the words of a reference.
+    /// Returns the object, or the object array, to which the words of a reference point.
     ///
-    /// Parts that cannot be decoded are [`Value::Opaque`]; only the budget causes a fault.
+    /// Parts that cannot be decoded become [`Value::Opaque`]; the only error is an exhausted
+    /// budget.
     pub fn object(
         &self,
         reference: &[u32],
@@ -91,7 +93,7 @@ impl Subsystem {
         }
     }
 
-    /// Resolves a reference.
+    /// Returns the value that an object reference points to.
     pub(super) fn resolve(
         &self,
         reference: &Reference,
@@ -119,14 +121,14 @@ impl Subsystem {
             }
             Err(class) => Ok(unreadable(
                 class,
-                "the members of the enumeration are not read",
+                "the members of the enumeration cannot be decoded",
                 &path.text(),
             )),
         }
     }
 }
 
-/// Returns the directory bytes, stored as the numbers in a cell.
+/// Returns the bytes of the directory, which are stored as the numbers in a cell.
 fn directory_bytes(cell: Option<&Value>) -> Result<Vec<u8>, VariableFault> {
     let Some(Value::Array(array)) = cell else {
         return Err(damaged("the directory of objects is missing"));
@@ -143,7 +145,7 @@ fn directory_bytes(cell: Option<&Value>) -> Result<Vec<u8>, VariableFault> {
     Ok(bytes)
 }
 
-/// Returns the fault for damaged objects; their position in the file is unknown here.
+/// Returns the error for damaged objects, without a position in the file.
 fn damaged(what: impl Into<String>) -> VariableFault {
     VariableFault::damaged("", what, 0)
 }
@@ -165,7 +167,8 @@ mod tests {
         "Flag_",
     ];
 
-    /// A model with data and a name, a text, and an object that contains itself.
+    /// Returns a directory with a model that has data and a name, a string, and an object that
+    /// contains itself.
     fn directory(version: u32) -> Directory<'static> {
         Directory {
             version,

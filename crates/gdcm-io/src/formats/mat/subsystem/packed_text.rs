@@ -1,16 +1,16 @@
-//! Texts of a `string` object, packed into 64-bit integers.
+//! Strings of a `string` object, packed into 64-bit integers.
 
 use crate::formats::variables::TextArray;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// The only supported version of the packing.
 const VERSION: u64 = 1;
-/// Length that marks a missing text.
+/// Length that marks a missing string.
 const MISSING: u64 = u64::MAX;
 
-/// Unpacks texts from their words: version, dimension count, dimensions, text lengths, and UTF-16
-/// units, four to a word. Returns `None` for words in another form. A missing text becomes an empty
-/// text.
+/// Unpacks strings from words: version, number of dimensions, dimensions, string lengths, and
+/// UTF-16 units, four in each word. A missing string becomes an empty string. Returns `None` for
+/// words in any other form.
 pub(super) fn unpack_texts(
     words: &[u64],
     budget: &ReadingBudget<'_>,

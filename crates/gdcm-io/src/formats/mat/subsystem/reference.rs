@@ -1,4 +1,4 @@
-//! References to objects.
+//! References to objects, as stored in MATLAB files.
 
 use crate::formats::strides::count;
 use crate::formats::variables::{ElementKind, Value};
@@ -6,20 +6,18 @@ use crate::formats::variables::{ElementKind, Value};
 /// First word of every reference.
 const REFERENCE: u32 = 0xdd00_0000;
 
-/// A reference to objects.
+/// A reference to an object or an object array.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(in crate::formats::mat) struct Reference {
-    /// Length of each dimension of the object array.
     pub(super) shape: Vec<usize>,
-    /// Object numbers, the first index running fastest.
+    /// Object numbers in column-major order.
     pub(super) objects: Vec<u32>,
-    /// Class number.
     pub(super) class: u32,
 }
 
 impl Reference {
-    /// Parses the words of a reference: 0xDD000000, dimension count, dimensions, object numbers and
-    /// class number.
+    /// Parses the words of a reference: 0xDD000000, number of dimensions, dimensions, object
+    /// numbers and class number. Returns `None` for any other words.
     pub(super) fn parse(words: &[u32]) -> Option<Self> {
         let [REFERENCE, dimensions, rest @ ..] = words else {
             return None;
@@ -37,8 +35,8 @@ impl Reference {
         })
     }
 
-    /// Returns the reference in a value, if the value is a column of integers that forms a
-    /// reference.
+    /// Returns the reference in a value; `None` unless the value is a column of integers that form
+    /// a reference.
     pub(in crate::formats::mat) fn from_value(value: &Value) -> Option<Self> {
         let Value::Array(array) = value else {
             return None;

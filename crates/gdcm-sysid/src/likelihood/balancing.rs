@@ -3,16 +3,16 @@
 //! ```text
 //! Wc = Re sum X X^H,         X = (j omega - A)^-1 B U
 //! Wo = Re sum (W C R)^H W C R,   R = (j omega - A)^-1
-//! 1  Wc = L L'
-//! 2  L' Wo L = U S^2 U',  descending
-//! 3  T = L U S^(-1/2),  T^-1 = S^(1/2) U' L^-1:   T^-1 Wc T^-T = T' Wo T = S
+//! 1  Wc = L L',  Wo = M M'
+//! 2  M' L = Q S V',  S descending, at least 1e-9 of its largest value
+//! 3  T = L V S^(-1/2),  T^-1 = S^(1/2) V' L^-1:   T^-1 Wc T^-T = T' Wo T = S
 //! ```
 //!
 //! B. C. Moore, "Principal component analysis in linear systems: controllability, observability,
 //! and model reduction", IEEE Trans. Automat. Contr. 26, 1981, with sums over the measured lines
 //! instead of integrals.
 
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DMatrix};
 
 use gdcm_model::executor::each;
 
@@ -23,6 +23,10 @@ use super::linear_model::{LinearModel, OutputResolvents};
 /// Share of the mean of a Gramian's diagonal that is added to it: a state that the lines do not
 /// excite or show remains in the model.
 const FLOOR: f64 = 1e-14;
+
+/// Minimum singular value relative to the largest: a state below it is scaled as if it had this
+/// value, so that the transformation remains well-conditioned.
+const LEAST_SINGULAR: f64 = 1e-9;
 
 /// The sums of a segment.
 struct Gramians {
@@ -86,24 +90,20 @@ pub(crate) fn balanced(likelihood: &Likelihood, model: &DenseModel) -> Option<De
         sums.controllability += gramians.controllability;
         sums.observability += gramians.observability;
     }
-    let lower = with_floor(sums.controllability).cholesky()?.unpack();
-    let middle = lower.transpose() * with_floor(sums.observability) * &lower;
-    let eigen = middle.try_symmetric_eigen(f64::EPSILON, 10_000)?;
-    let mut places: Vec<usize> = (0..model.order()).collect();
-    places.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
-    let directions = eigen.eigenvectors.select_columns(&places);
-    // S^(1/2), from the eigenvalues of S^2.
-    let roots = DVector::from_iterator(
-        places.len(),
-        places
-            .iter()
-            .map(|&place| eigen.eigenvalues[place].max(f64::MIN_POSITIVE).powf(0.25)),
-    );
-    let mut transformation = &lower * &directions;
+    let reached = with_floor(sums.controllability).cholesky()?.unpack();
+    let seen = with_floor(sums.observability).cholesky()?.unpack();
+    let decomposition =
+        (seen.transpose() * &reached).try_svd(false, true, f64::EPSILON, 10_000)?;
+    let directions = decomposition.v_t?;
+    let largest = decomposition.singular_values.max();
+    let roots = decomposition
+        .singular_values
+        .map(|value| value.max(LEAST_SINGULAR * largest).sqrt());
+    let mut transformation = &reached * directions.transpose();
     for (mut column, root) in transformation.column_iter_mut().zip(roots.iter()) {
         column.unscale_mut(*root);
     }
-    let mut inverse = directions.transpose() * lower.clone().try_inverse()?;
+    let mut inverse = directions * reached.try_inverse()?;
     for (mut row, root) in inverse.row_iter_mut().zip(roots.iter()) {
         row.scale_mut(*root);
     }

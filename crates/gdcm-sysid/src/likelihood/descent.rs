@@ -19,10 +19,8 @@ use gdcm_model::progress::{Cancelled, Shares};
 use super::balancing::balanced;
 use super::cost::{Likelihood, SegmentCost};
 use super::dense_model::DenseModel;
-use super::dense_system::dense_system;
-use super::gram_matrix::scale_columns;
+use super::dense_system::{DenseSystem, dense_system};
 use super::linear_model::LinearModel;
-use super::normal_system::NormalSystem;
 use crate::subspace::search_extent::parameters_of_order;
 
 /// Limit on the Newton decrement over `k phi` at a minimum.
@@ -40,6 +38,9 @@ const LEAST_FAILED_DAMPING: f64 = 1e-7;
 /// Minimum damping: it takes the place of the pseudo-inverse in the directions that only change the
 /// coordinates.
 const LEAST_DAMPING: f64 = 1e-8;
+/// Minimum share of a column's square that is used as its scale, where the nuisance columns explain
+/// more.
+const LEAST_SHARE_LEFT: f64 = 1e-6;
 /// Maximum number of failures of a step.
 const FAILURES: usize = 10;
 /// Share of the total progress that is reported for a step.
@@ -128,6 +129,11 @@ impl DenseFit {
         self.decrement = scaled
             .decrement()
             .map_or(f64::INFINITY, |square| square / unit);
+        if std::env::var("TRACE2").is_ok() {
+            let mut e: Vec<f64> = scaled.matrix.clone().symmetric_eigen().eigenvalues.iter().copied().collect();
+            e.sort_by(f64::total_cmp);
+            println!("    eig {:?} max {:.3} k {}: {:.2e} {:.2e} {:.2e}", &e[..3], e[e.len()-1], self.parameters(), e[e.len()-self.parameters()-1], e[e.len()-self.parameters()], e[e.len()-self.parameters()+1]);
+        }
         if std::env::var("TRACE").is_ok() { println!("  n {} J {:.4} dec {:.4} lambda {:.2e}", self.order(), self.cost, self.decrement, self.damping); }
         if self.decrement < limit {
             return false;
@@ -202,7 +208,7 @@ fn damping_factor(ratio: f64) -> f64 {
     }
 }
 
-/// A normal system with columns scaled to unit length.
+/// A normal system in scaled columns.
 struct ScaledSystem {
     matrix: DMatrix<f64>,
     gradient: DVector<f64>,
@@ -210,9 +216,21 @@ struct ScaledSystem {
 }
 
 impl ScaledSystem {
-    fn new(system: NormalSystem) -> Self {
+    /// Scales the columns to unit length; columns of which the nuisance columns explain nearly all,
+    /// less, because what is left of them is mostly rounding error.
+    fn new(system: DenseSystem) -> Self {
+        let scales = system
+            .matrix
+            .diagonal()
+            .zip_map(&system.whole_diagonal, |left, whole| {
+                let square = left.max(LEAST_SHARE_LEFT * whole);
+                if square > 0.0 { 1.0 / square.sqrt() } else { 0.0 }
+            });
         let mut matrix = system.matrix;
-        let scales = scale_columns(&mut matrix);
+        let size = scales.len();
+        for (at, entry) in matrix.iter_mut().enumerate() {
+            *entry *= scales[at % size] * scales[at / size];
+        }
         Self {
             gradient: system.gradient.component_mul(&scales),
             matrix,
@@ -220,12 +238,12 @@ impl ScaledSystem {
         }
     }
 
-    /// Solves `(G + lambda diag G) d = g` in scaled columns; `None` if the matrix is not positive
+    /// Solves `(G + lambda I) d = g` in scaled columns; `None` if the matrix is not positive
     /// definite or the solution not finite.
     fn solve(&self, damping: f64) -> Option<DVector<f64>> {
         let mut damped = self.matrix.clone();
-        for (k, scale) in self.scales.iter().enumerate() {
-            damped[(k, k)] = if *scale > 0.0 { 1.0 + damping } else { 1.0 };
+        for k in 0..self.scales.len() {
+            damped[(k, k)] += damping;
         }
         let solution = damped.cholesky()?.solve(&self.gradient);
         if solution.iter().all(|entry| entry.is_finite()) {

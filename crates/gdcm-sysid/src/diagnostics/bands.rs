@@ -32,7 +32,7 @@ const UNKNOWN: f64 = 1e3;
 pub(crate) struct BandModels<'a> {
     pub(crate) model: &'a BlockModel,
     /// Models with neighbouring orders.
-    pub(crate) neighbours: &'a [&'a BlockModel],
+    pub(crate) neighbours: &'a [BlockModel],
     pub(crate) feedback: Option<&'a Feedback>,
 }
 
@@ -336,7 +336,7 @@ mod tests {
         let expected = &known["expected"];
         let models = BandModels {
             model: &fit.model,
-            neighbours: &[&below.model, &above.model],
+            neighbours: &[below.model.clone(), above.model.clone()],
             feedback: None,
         };
         let bands = models

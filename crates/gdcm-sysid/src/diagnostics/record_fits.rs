@@ -98,7 +98,7 @@ fn held_out_cost(held_out: &[RecordFit], moved: Option<f64>) -> Option<HeldOutCo
 /// Computes the fit of each record that has degrees of freedom, in record order.
 pub(crate) fn fits_of_records(
     likelihood: &Likelihood,
-    model: &BlockModel,
+    model: &impl LinearModel,
     parts: &[SegmentCost],
     held_out: bool,
 ) -> Vec<RecordFit> {

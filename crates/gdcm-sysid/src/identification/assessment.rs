@@ -74,9 +74,8 @@ impl Assessment<'_> {
     /// Computes covariance, bands, models fitted without one record each, fits, doubts and the
     /// validation.
     pub(super) fn assess(&self, progress: &Shares) -> Result<AssessedModel, IdentificationError> {
-        let Refinement {
-            fit, likelihood, ..
-        } = self.refinement;
+        let Refinement { fit, weights, .. } = self.refinement;
+        let likelihood = &weights.likelihood;
         progress.next(0.8, "uncertainty")?;
         let systems = fit
             .systems(likelihood)
@@ -114,12 +113,8 @@ impl Assessment<'_> {
 
     /// Computes covariance, feedback and bands.
     fn uncertainty(&self, systems: &[NormalSystem]) -> Result<Uncertainty, IdentificationError> {
-        let Refinement {
-            search,
-            fit,
-            likelihood,
-            ..
-        } = self.refinement;
+        let Refinement { fit, weights, .. } = self.refinement;
+        let likelihood = &weights.likelihood;
         let executor = likelihood.executor;
         let covariance = ParameterCovariance::from_systems(likelihood, fit, systems, fit.cost)
             .ok_or_else(|| self.data.no_model())?;
@@ -133,7 +128,7 @@ impl Assessment<'_> {
         let omegas = log_spaced(self.options.band[0], self.options.band[1], BAND_POINTS);
         let models = BandModels {
             model: &fit.model,
-            neighbours: &search.neighbours(),
+            neighbours: &self.refinement.neighbours,
             feedback: feedback.as_ref(),
         };
         let mut bands = models
@@ -170,7 +165,7 @@ impl Assessment<'_> {
         Feedback::measure(
             &records,
             &self.refinement.fit.model,
-            self.refinement.likelihood.executor,
+            self.refinement.weights.likelihood.executor,
         )
     }
 
@@ -186,8 +181,12 @@ impl Assessment<'_> {
             .before_reweighing
             .as_ref()
             .unwrap_or(&self.refinement.fit);
-        let contrasts = RecordContrasts::new(&self.data.likelihood, &self.data.spectra, fit)
-            .ok_or_else(|| self.data.no_model())?;
+        let contrasts = RecordContrasts::new(
+            &self.refinement.weights.without_factors,
+            &self.data.spectra,
+            fit,
+        )
+        .ok_or_else(|| self.data.no_model())?;
         Ok(Some(contrasts))
     }
 
@@ -236,7 +235,7 @@ impl Assessment<'_> {
 
     /// Returns an unstable pole above the highest spectral line used, if there is one.
     fn unstable_pole(&self) -> Option<Complex<f64>> {
-        fast_unstable_pole(&self.refinement.fit.model, self.options.highest())
+        fast_unstable_pole(self.refinement.fit.model.poles(), self.options.highest())
     }
 
     /// Compares the model with the held-out records in time; a failure becomes a caution.
@@ -256,7 +255,7 @@ impl Assessment<'_> {
             .data
             .in_units(&self.refinement.fit.model)
             .ok_or_else(|| self.data.no_model())?;
-        let executor = self.refinement.likelihood.executor;
+        let executor = self.refinement.weights.likelihood.executor;
         match validate(&model, segments, &settings, executor) {
             Ok(validation) => Ok(Some(validation)),
             Err(error) => {

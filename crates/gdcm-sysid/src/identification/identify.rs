@@ -179,7 +179,7 @@ impl Models<'_> {
     /// Returns the models of neighbouring orders, then the models fitted without one record each.
     fn bundle(&self, refinement: &Refinement, without: &[ModelWithoutRecord]) -> Vec<Model> {
         let mut bundle = Vec::new();
-        for neighbour in refinement.search.neighbours() {
+        for neighbour in &refinement.neighbours {
             bundle.extend(self.of_order(REFINED, neighbour));
         }
         for ModelWithoutRecord { record, model } in without {

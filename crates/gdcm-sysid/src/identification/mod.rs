@@ -15,6 +15,7 @@ pub mod identify;
 #[cfg(test)]
 pub(crate) mod known_answers_tests;
 pub(crate) mod model_selection;
+mod noise_weights;
 pub(crate) mod order;
 pub(crate) mod prepared_data;
 #[cfg(test)]

@@ -4,23 +4,20 @@ use std::collections::BTreeMap;
 
 use gdcm_model::progress::Shares;
 
+use super::noise_weights::NoiseWeights;
 use super::order::OrderSearch;
 use super::prepared_data::PreparedData;
 use crate::diagnostics::cautions::IdentificationCaution;
-use crate::diagnostics::record_fits::fits_of_records;
 use crate::identification_error::IdentificationError;
+use crate::likelihood::blocks::BlockModel;
 use crate::likelihood::cost::Likelihood;
-use crate::likelihood::refinement::{Fit, LEAST_GAIN};
+use crate::likelihood::descent::{CONVERGED, DenseFit, Limits};
+use crate::likelihood::refinement::Fit;
 use crate::options::Options;
 use crate::subspace::stabilisation::{StabilisationPoint, stabilisation};
 
-/// Maximum number of further steps at the chosen order, after the comparison of orders.
-const FURTHER_STEPS: usize = 15;
-/// Maximum number of steps after the records were reweighted.
-const STEPS_AFTER_REWEIGHING: usize = 3;
-/// Maximum ratio of the largest to the smallest cost per degree of freedom at which records keep
-/// their weights.
-const ALIKE: f64 = 1.5;
+/// Maximum relative change of the cost in the conversion to blocks.
+const BLOCK_ERROR: f64 = 1e-3;
 
 /// The models that CT-PBSID proposes.
 pub(crate) struct Proposal {
@@ -37,14 +34,16 @@ pub(crate) struct Proposal {
 /// The refined model of the chosen order, and the search for that order.
 pub(crate) struct Refinement<'a> {
     /// The orders that were compared.
-    pub(crate) search: OrderSearch,
+    pub(crate) search: OrderSearch<'a>,
+    /// Models of the nearest orders whose criterion is close to that of the chosen order.
+    pub(crate) neighbours: Vec<BlockModel>,
     /// The recommended model.
     pub(crate) fit: Fit,
     /// The model before the reweighting, if the records were reweighted: the minimum of the cost
     /// with the measured noise.
     pub(crate) before_reweighing: Option<Fit>,
-    /// The cost that `fit` minimises.
-    pub(crate) likelihood: Likelihood<'a>,
+    /// The weights of the cost that `fit` minimises.
+    pub(crate) weights: NoiseWeights<'a>,
     /// Caution about the changed weights.
     pub(crate) caution: Option<IdentificationCaution>,
 }
@@ -61,7 +60,9 @@ pub(crate) fn propose(
     progress.next(0.3, "models of all orders")?;
     let best = candidates.first().ok_or_else(|| data.no_model())?;
     let starts = settings.starts(&candidates, &data.likelihood);
-    let first = OrderSearch::first(&starts, &data.likelihood).ok_or_else(|| data.no_model())?;
+    let first = OrderSearch::first(&starts, &data.likelihood)
+        .and_then(|order| starts.get(&order))
+        .ok_or_else(|| data.no_model())?;
     if let Some(first) = data.in_units(&first.model) {
         progress.progress().first_model(&first);
     }
@@ -74,8 +75,10 @@ pub(crate) fn propose(
     })
 }
 
-/// Chooses the order, refines its model further, and reweights the records once if they differ in
-/// noise.
+/// Chooses the order, measures the noise once more at its model, and descends to the minimum.
+///
+/// The result is in blocks; at poles too close to be separated, the unrefined model is refined in
+/// blocks instead.
 pub(crate) fn refine<'a>(
     data: &PreparedData<'a>,
     proposal: &Proposal,
@@ -91,73 +94,43 @@ pub(crate) fn refine<'a>(
         .ok_or_else(|| data.no_model())?
         .clone();
     progress.next(0.7, "refinement")?;
-    let fit = chosen.refined(&data.likelihood, FURTHER_STEPS, LEAST_GAIN, progress)?;
-    let Some(reweighing) = Reweighing::of_unlike_records(&data.likelihood, &fit) else {
-        return Ok(Refinement {
-            search,
-            fit,
-            before_reweighing: None,
-            likelihood: data.likelihood.clone(),
-            caution: None,
-        });
+    let weights = search
+        .weights
+        .updated(data, &chosen)
+        .ok_or_else(|| data.no_model())?;
+    let start =
+        DenseFit::start(&weights.likelihood, chosen.model).ok_or_else(|| data.no_model())?;
+    let fit = start.descended(&weights.likelihood, Limits::to(CONVERGED), progress)?;
+    let equal = match weights.ratio {
+        Some(_) => {
+            let start = DenseFit::start(&weights.without_factors, fit.model.clone())
+                .ok_or_else(|| data.no_model())?;
+            Some(start.descended(&weights.without_factors, Limits::to(CONVERGED), progress)?)
+        }
+        None => None,
     };
-    let Reweighing {
-        likelihood,
-        start,
-        ratio,
-    } = reweighing;
-    let refitted = start.refined(&likelihood, STEPS_AFTER_REWEIGHING, LEAST_GAIN, progress)?;
+    let before_reweighing = match equal {
+        Some(fit) => {
+            Some(in_blocks(&fit, &weights.without_factors).ok_or_else(|| data.no_model())?)
+        }
+        None => None,
+    };
     Ok(Refinement {
+        neighbours: search.neighbours(),
+        fit: in_blocks(&fit, &weights.likelihood).ok_or_else(|| data.no_model())?,
+        before_reweighing,
+        caution: weights.ratio.map(IdentificationCaution::Reweighed),
         search,
-        fit: refitted,
-        before_reweighing: Some(fit),
-        likelihood,
-        caution: Some(IdentificationCaution::Reweighed(ratio)),
+        weights,
     })
 }
 
-/// Records weighted by their cost.
-struct Reweighing<'a> {
-    likelihood: Likelihood<'a>,
-    /// The model at the new weights.
-    start: Fit,
-    /// Ratio of the largest to the smallest cost per degree of freedom, before the reweighting.
-    ratio: f64,
-}
-
-impl<'a> Reweighing<'a> {
-    /// Reweights records with different noise levels; `None` if the levels are similar.
-    ///
-    /// ```text
-    /// Cv_r <- Cv_r (J_r/dof_r) / geometric mean of J/dof
-    /// ```
-    fn of_unlike_records(likelihood: &Likelihood<'a>, fit: &Fit) -> Option<Self> {
-        let fits = fits_of_records(likelihood, &fit.model, &fit.parts, false);
-        let costs: Vec<f64> = fits.iter().map(|record| record.cost).collect();
-        let least = costs.iter().copied().fold(f64::INFINITY, f64::min);
-        let greatest = costs.iter().copied().fold(0.0, f64::max);
-        let are_unlike = least > 0.0 && greatest > ALIKE * least;
-        if !are_unlike {
-            return None;
-        }
-        let log_mean = costs.iter().map(|cost| cost.ln()).sum::<f64>() / costs.len() as f64;
-        let mean = log_mean.exp();
-        let records = likelihood.records();
-        let mut segments = Vec::with_capacity(likelihood.segments.len());
-        for segment in &likelihood.segments {
-            let number = records.iter().position(|record| *record == segment.record);
-            let reweighed = match number.and_then(|number| costs.get(number)) {
-                Some(cost) => segment.with_noise(cost / mean),
-                None => segment.clone(),
-            };
-            segments.push(reweighed);
-        }
-        let likelihood = Likelihood::new(segments, likelihood.executor);
-        let start = Fit::start(&likelihood, fit.model.clone())?;
-        Some(Self {
-            likelihood,
-            start,
-            ratio: greatest / least,
-        })
+/// Converts a model to blocks and evaluates it; `None` if its poles cannot be separated.
+fn in_blocks(fit: &DenseFit, likelihood: &Likelihood) -> Option<Fit> {
+    let converted = Fit::start(likelihood, fit.model.blocks()?)?;
+    if (converted.cost / fit.cost - 1.0).abs() < BLOCK_ERROR {
+        Some(converted)
+    } else {
+        None
     }
 }

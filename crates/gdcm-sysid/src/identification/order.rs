@@ -1,138 +1,121 @@
-//! The model order, by the Bayesian information criterion with estimated dispersion (M14.4,
-//! M14.13).
+//! The model order, from above (M14.19), by the Bayesian information criterion with estimated
+//! dispersion.
 //!
 //! ```text
-//! BIC(n) = J (1 + k ln N / (N - k)),   k = n (m + l) + m l parameters (no state basis),
+//! BIC(n) = J (1 + k ln N / (N - k)),   k = n (m + l) + m l parameters (no coordinates),
 //!                                      N degrees of freedom
-//! 1  n0 = min(16, the order with the minimum BIC before any refinement)
-//! 2  small, k(n0) <= 80:  all orders from two above n0 downwards, refined as long as each step
-//!                         gains; each also from a second start: order n + 1 or n + 2 without the
-//!                         mode whose removal changes the fit to the measured response least
-//!    large:               n0 and its neighbours, three steps
-//! 3  n = argmin BIC; further orders until two (small) or one (large) on each side are done
-//! 4  a held-out record decides between orders whose BIC differ by less than 1 %; an order without
+//! 1  top = order of the minimum BIC before any refinement
+//! 2  top model: noise from its residuals, descent, noise again, descent to the minimum (M14.20)
+//! 3  with the same weights: one state less (two for m + l > 6 and n > 8), with or without its
+//!    static part, whichever costs less; descent;  until BIC has risen twice
+//!    an order ends early if BIC(J - 3 delta^2) cannot reach the best
+//! 4  if the top order is best: once more from the next available order
+//! 5  a held-out record decides between orders whose BIC differ by less than 1 %; an order without
 //!    an unstable pole above the lines used is preferred to one with such a pole within 3 %
 //! ```
+//!
+//! The weights remain those of the top order: a model that lacks a mode would take it for noise, and
+//! hide it from BIC.
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 
 use nalgebra::Complex;
 
-use gdcm_model::executor::each;
-use gdcm_model::progress::Shares;
+use gdcm_model::progress::{Cancelled, Shares};
 
+use super::noise_weights::NoiseWeights;
 use super::prepared_data::PreparedData;
 use crate::identification_error::IdentificationError;
+use crate::likelihood::balancing::without_last_states;
 use crate::likelihood::blocks::BlockModel;
 use crate::likelihood::cost::Likelihood;
+use crate::likelihood::dense_model::DenseModel;
+use crate::likelihood::descent::{COMPARABLE, DenseFit, Limits, NEARLY_CONVERGED};
 use crate::likelihood::linear_model::LinearModel;
-use crate::likelihood::refinement::{Fit, LEAST_GAIN};
+use crate::likelihood::refinement::Fit;
+use crate::subspace::search_extent::parameters_of_order;
 
-/// Maximum order at which the search begins.
-const FIRST: usize = 16;
-/// Maximum number of parameters of a small model.
-const SMALL: usize = 80;
 /// The held-out record decides between orders whose criterion exceeds the minimum by at most this
 /// share.
 const NEAR: f64 = 0.01;
 /// An order without a fast unstable pole is preferred if its criterion is worse by at most this
 /// share.
 const NEAR_UNSTABLE: f64 = 0.03;
-/// Ratio of the cost of a neighbouring order to the cost of the chosen order above which the
-/// neighbouring order does not enter the uncertainty.
-const STARVED: f64 = 1.5;
-
-/// Thoroughness of the comparison between orders.
-#[derive(Clone, Copy)]
-struct Thoroughness {
-    /// Number of orders that must be evaluated on each side of the best order before the search
-    /// ends.
-    bracket: usize,
-    /// Maximum number of refinement steps.
-    steps: usize,
-    /// Relative gain below which the refinement ends.
-    least_gain: f64,
-}
-
-const FOR_SMALL_MODELS: Thoroughness = Thoroughness {
-    bracket: 2,
-    steps: 20,
-    least_gain: LEAST_GAIN,
-};
-
-const FOR_LARGE_MODELS: Thoroughness = Thoroughness {
-    bracket: 1,
-    steps: 3,
-    least_gain: 1e-3,
-};
+/// Neighbouring orders whose criterion exceeds that of the chosen order by more than this share say
+/// nothing about its uncertainty (M14.22).
+const NEIGHBOUR: f64 = 0.1;
+/// Number of orders with a rising criterion after which the search ends.
+const RISES: usize = 2;
+/// Number of channels above which states are removed in pairs.
+const SINGLE_CHANNELS: usize = 6;
+/// Order up to which states are always removed singly.
+const SINGLE_ORDER: usize = 8;
 
 /// The orders that were compared.
-#[derive(Clone, Debug)]
-pub(crate) struct OrderSearch {
-    pub(crate) fits: BTreeMap<usize, Fit>,
+pub(crate) struct OrderSearch<'a> {
+    /// Refined models with the weights of the top order.
+    pub(crate) fits: BTreeMap<usize, DenseFit>,
     /// BIC of each order.
     pub(crate) criteria: BTreeMap<usize, f64>,
     /// The chosen order.
     pub(crate) order: usize,
     /// Whether the criterion still decreases at the highest available order.
     pub(crate) still_falls: bool,
+    /// The cost with the weights of the top order.
+    pub(crate) weights: NoiseWeights<'a>,
 }
 
-impl OrderSearch {
-    /// Returns the unrefined model with which the search begins.
-    pub(crate) fn first<'s>(
-        starts: &'s BTreeMap<usize, Fit>,
-        likelihood: &Likelihood,
-    ) -> Option<&'s Fit> {
-        starts.get(&first_order(starts, likelihood)?)
-    }
-
-    /// Returns the models of the next lower and the next higher order, without those whose cost is
-    /// too high.
-    pub(crate) fn neighbours(&self) -> Vec<&BlockModel> {
-        let below = self.fits.range(..self.order).next_back();
-        let above = self.fits.range(self.order + 1..).next();
-        let most = STARVED
-            * self
-                .fits
-                .get(&self.order)
-                .map_or(f64::INFINITY, |fit| fit.cost);
-        below
-            .into_iter()
-            .chain(above)
-            .filter(|(_, fit)| fit.cost < most)
-            .map(|(_, fit)| &fit.model)
-            .collect()
-    }
-}
-
-/// Returns the order at which the search begins.
-fn first_order(starts: &BTreeMap<usize, Fit>, likelihood: &Likelihood) -> Option<usize> {
-    let best = order_of_least(&criteria(starts, likelihood))?;
-    starts
-        .keys()
-        .copied()
-        .min_by_key(|order| order.abs_diff(best.min(FIRST)))
-}
-
-/// Computes the criterion of each fit that has fewer parameters than degrees of freedom.
-fn criteria(fits: &BTreeMap<usize, Fit>, likelihood: &Likelihood) -> BTreeMap<usize, f64> {
-    let mut criteria = BTreeMap::new();
-    for (order, fit) in fits {
-        if let Some(criterion) = criterion(fit, likelihood) {
-            criteria.insert(*order, criterion);
+impl OrderSearch<'_> {
+    /// Returns the order at which the search begins, that of the minimum criterion before any
+    /// refinement; `None` without models.
+    pub(crate) fn first(starts: &BTreeMap<usize, Fit>, likelihood: &Likelihood) -> Option<usize> {
+        let mut criteria = BTreeMap::new();
+        for (&order, fit) in starts {
+            if let Some(value) = criterion(fit.cost, order, &fit.model, likelihood) {
+                criteria.insert(order, value);
+            }
         }
+        order_of_least(&criteria)
     }
-    criteria
+
+    /// Returns the models of the nearest order on each side whose criterion is close to that of the
+    /// chosen order.
+    pub(crate) fn neighbours(&self) -> Vec<BlockModel> {
+        let Some(best) = self.criteria.get(&self.order) else {
+            return Vec::new();
+        };
+        let most = best * (1.0 + NEIGHBOUR);
+        let near = |order: &usize| self.criteria.get(order).is_some_and(|value| *value <= most);
+        let below = self
+            .fits
+            .keys()
+            .rev()
+            .find(|order| **order < self.order && near(order));
+        let above = self
+            .fits
+            .keys()
+            .find(|order| **order > self.order && near(order));
+        let mut models = Vec::new();
+        for order in below.into_iter().chain(above) {
+            models.extend(self.fits[order].model.blocks());
+        }
+        models
+    }
 }
 
-/// Computes the `BIC` of a fit; `None` if it has no more degrees of freedom than parameters.
-fn criterion(fit: &Fit, likelihood: &Likelihood) -> Option<f64> {
-    let k = fit.effective_parameters() as f64;
-    let n = likelihood.freedom(fit.model.order()) as f64;
+/// Computes the criterion of a model with this cost; `None` if the parameters leave no degrees of
+/// freedom.
+fn criterion(
+    cost: f64,
+    order: usize,
+    model: &impl LinearModel,
+    likelihood: &Likelihood,
+) -> Option<f64> {
+    let (outputs, inputs) = model.d().shape();
+    let k = parameters_of_order(order, inputs, outputs) as f64;
+    let n = likelihood.freedom(order) as f64;
     if n > k {
-        Some(fit.cost * (1.0 + k * n.ln() / (n - k)))
+        Some(cost * (1.0 + k * n.ln() / (n - k)))
     } else {
         None
     }
@@ -146,172 +129,217 @@ fn order_of_least(values: &BTreeMap<usize, f64>) -> Option<usize> {
         .map(|(order, _)| *order)
 }
 
-impl PreparedData<'_> {
+impl<'a> PreparedData<'a> {
     /// Searches the order from the unrefined models `starts`; `None` if the data do not support any
     /// model.
     pub(crate) fn search_order(
         &self,
         starts: &BTreeMap<usize, Fit>,
         progress: &Shares,
-    ) -> Result<Option<OrderSearch>, IdentificationError> {
-        let Some(begin) = first_order(starts, &self.likelihood) else {
+    ) -> Result<Option<OrderSearch<'a>>, IdentificationError> {
+        let Some(mut top) = OrderSearch::first(starts, &self.likelihood) else {
             return Ok(None);
         };
-        let is_small = starts
-            .get(&begin)
-            .is_some_and(|fit| fit.effective_parameters() <= SMALL);
-        let mut comparison = Comparison {
-            data: self,
-            starts,
-            progress,
-            thoroughness: if is_small {
-                FOR_SMALL_MODELS
-            } else {
-                FOR_LARGE_MODELS
-            },
-            fits: BTreeMap::new(),
-        };
-        let orders: Vec<usize> = starts.keys().copied().collect();
-        let mut range = comparison.bracket(&orders, begin);
-        if is_small {
-            range.start = 0;
-        }
         loop {
-            comparison.refine(&orders[range.clone()])?;
-            if is_small {
-                comparison.start_from_above()?;
-            }
-            let criteria = criteria(&comparison.fits, &self.likelihood);
-            let Some(best) = order_of_least(&criteria) else {
+            let Some(descent) = self.descend_from(top, starts, progress)? else {
                 return Ok(None);
             };
-            let bracket = comparison.bracket(&orders, best);
-            let wanted = range.start.min(bracket.start)..range.end.max(bracket.end);
-            if wanted == range {
-                return Ok(Some(OrderSearch {
-                    order: comparison.decide(&criteria, best),
-                    still_falls: orders.last() == Some(&best) && criteria.len() > 1,
-                    fits: comparison.fits,
-                    criteria,
-                }));
-            }
-            range = wanted;
-        }
-    }
-}
-
-/// State of the comparison between orders.
-struct Comparison<'s> {
-    data: &'s PreparedData<'s>,
-    /// The unrefined models.
-    starts: &'s BTreeMap<usize, Fit>,
-    progress: &'s Shares<'s>,
-    thoroughness: Thoroughness,
-    /// The refined models.
-    fits: BTreeMap<usize, Fit>,
-}
-
-impl Comparison<'_> {
-    /// Returns the index range of an order and its neighbours in `orders`.
-    fn bracket(&self, orders: &[usize], order: usize) -> Range<usize> {
-        let at = orders.partition_point(|other| *other < order);
-        let reach = self.thoroughness.bracket;
-        at.saturating_sub(reach)..(at + reach + 1).min(orders.len())
-    }
-
-    /// Refines the models in `orders` that are not refined yet.
-    fn refine(&mut self, orders: &[usize]) -> Result<(), IdentificationError> {
-        let likelihood = &self.data.likelihood;
-        let new: Vec<usize> = orders
-            .iter()
-            .copied()
-            .filter(|order| !self.fits.contains_key(order))
-            .collect();
-        let Thoroughness {
-            steps, least_gain, ..
-        } = self.thoroughness;
-        let refined = each(likelihood.executor, &new, |order| {
-            self.starts[order]
-                .clone()
-                .refined(likelihood, steps, least_gain, self.progress)
-        });
-        for (order, fit) in new.into_iter().zip(refined) {
-            self.fits.insert(order, fit?);
-        }
-        Ok(())
-    }
-
-    /// Starts each order, from the highest down, a second time from the models of the two orders
-    /// above it, and keeps the model with the lower cost.
-    fn start_from_above(&mut self) -> Result<(), IdentificationError> {
-        let likelihood = &self.data.likelihood;
-        let Thoroughness {
-            steps, least_gain, ..
-        } = self.thoroughness;
-        let orders: Vec<usize> = self.fits.keys().rev().copied().collect();
-        for order in orders {
-            let Some(start) = self.cheapest_from_above(order) else {
-                continue;
+            let Some(best) = order_of_least(&descent.criteria) else {
+                return Ok(None);
             };
-            let fit = start.refined(likelihood, steps, least_gain, self.progress)?;
-            if self.fits.get(&order).is_some_and(|own| fit.cost < own.cost) {
-                self.fits.insert(order, fit);
+            let next = starts.range(top + 1..).next().map(|(order, _)| *order);
+            match next {
+                Some(next) if best == top => top = next,
+                _ => {
+                    return Ok(Some(OrderSearch {
+                        order: self.decide(&descent, best),
+                        still_falls: best == top && next.is_none() && descent.criteria.len() > 1,
+                        fits: descent.fits,
+                        criteria: descent.criteria,
+                        weights: descent.weights,
+                    }));
+                }
             }
         }
-        Ok(())
     }
 
-    /// Removes a real pole from the model one order higher, or a complex pair from the model two
-    /// orders higher, and returns the result with the lower cost.
-    fn cheapest_from_above(&self, order: usize) -> Option<Fit> {
-        let mut starts = Vec::new();
-        for size in [1, 2] {
-            let Some(above) = self.fits.get(&(order + size)) else {
-                continue;
+    /// Converges the top order and removes states (steps 2 and 3).
+    fn descend_from(
+        &self,
+        top: usize,
+        starts: &BTreeMap<usize, Fit>,
+        progress: &Shares,
+    ) -> Result<Option<Descent<'a>>, Cancelled> {
+        let Some((fit, weights)) = self.converge_top(&starts[&top].model, progress)? else {
+            return Ok(None);
+        };
+        let mut descent = Descent {
+            fits: BTreeMap::new(),
+            criteria: BTreeMap::new(),
+            weights,
+        };
+        descent.insert(fit);
+        let mut order = top;
+        let mut rises = 0;
+        while let Some(next) = self.order_below(order, starts) {
+            let best = descent.least();
+            let Some(fit) = descent.reduced(order, order - next, progress)? else {
+                break;
             };
-            let Some(model) = above.model.without_least_mode(size, &self.data.measured) else {
-                continue;
-            };
-            starts.extend(Fit::start(&self.data.likelihood, model));
+            descent.insert(fit);
+            order = next;
+            if descent
+                .criteria
+                .get(&next)
+                .is_none_or(|value| *value > best)
+            {
+                rises += 1;
+                if rises == RISES {
+                    break;
+                }
+            } else {
+                rises = 0;
+            }
         }
-        starts.into_iter().min_by(|a, b| a.cost.total_cmp(&b.cost))
+        Ok(Some(descent))
     }
 
-    /// Decides between orders with nearly the same criterion as `best` (step 4).
-    fn decide(&self, criteria: &BTreeMap<usize, f64>, best: usize) -> usize {
-        let near = within(criteria, best, NEAR_UNSTABLE);
+    /// Returns the order after `order` on the way down; `None` at the end.
+    fn order_below(&self, order: usize, starts: &BTreeMap<usize, Fit>) -> Option<usize> {
+        if self.are_orders_given {
+            return starts.range(..order).next_back().map(|(next, _)| *next);
+        }
+        let channels = self.scales.inputs.len() + self.scales.outputs.len();
+        let removed = if channels > SINGLE_CHANNELS && order > SINGLE_ORDER {
+            2
+        } else {
+            1
+        };
+        order.checked_sub(removed).filter(|next| *next > 0)
+    }
+
+    /// Converges the model of the top order, with noise from its own residuals (step 2).
+    fn converge_top(
+        &self,
+        start: &BlockModel,
+        progress: &Shares,
+    ) -> Result<Option<(DenseFit, NoiseWeights<'a>)>, Cancelled> {
+        let Some(model) = start
+            .state_space()
+            .and_then(|model| DenseModel::from_state_space(&model))
+        else {
+            return Ok(None);
+        };
+        let Some(mut fit) = DenseFit::start(&self.likelihood, model) else {
+            return Ok(None);
+        };
+        let mut weights = NoiseWeights::measured(self);
+        for limit in [NEARLY_CONVERGED, COMPARABLE] {
+            let Some(updated) = weights.updated(self, &fit) else {
+                return Ok(None);
+            };
+            weights = updated;
+            let Some(start) = DenseFit::start(&weights.likelihood, fit.model) else {
+                return Ok(None);
+            };
+            fit = start.descended(&weights.likelihood, Limits::to(limit), progress)?;
+        }
+        Ok(Some((fit, weights)))
+    }
+
+    /// Decides between orders with nearly the same criterion as `best` (step 5).
+    fn decide(&self, descent: &Descent, best: usize) -> usize {
+        let near = within(&descent.criteria, best, NEAR_UNSTABLE);
         let sound: BTreeMap<usize, f64> = near
             .into_iter()
-            .filter(|(order, _)| self.is_sound(*order))
+            .filter(|(order, _)| self.is_sound(descent, *order))
             .collect();
         let best = order_of_least(&sound).unwrap_or(best);
-        if self.data.held_out.segments.is_empty() {
+        if self.held_out.segments.is_empty() {
             return best;
         }
         let mut held_out_costs = BTreeMap::new();
-        for order in within(criteria, best, NEAR).into_keys() {
-            if self.is_sound(order) != self.is_sound(best) {
+        for order in within(&descent.criteria, best, NEAR).into_keys() {
+            if self.is_sound(descent, order) != self.is_sound(descent, best) {
                 continue;
             }
-            if let Some(cost) = self.held_out_cost(order) {
+            if let Some(cost) = self.held_out_cost(descent, order) {
                 held_out_costs.insert(order, cost);
             }
         }
         order_of_least(&held_out_costs).unwrap_or(best)
     }
 
-    /// Returns whether the model of an order exists and has no fast unstable pole.
-    fn is_sound(&self, order: usize) -> bool {
-        self.fits
+    /// Returns whether the model of an order has no fast unstable pole.
+    fn is_sound(&self, descent: &Descent, order: usize) -> bool {
+        descent
+            .fits
             .get(&order)
-            .is_some_and(|fit| fast_unstable_pole(&fit.model, self.data.highest).is_none())
+            .is_some_and(|fit| fast_unstable_pole(fit.model.poles(), self.highest).is_none())
     }
 
     /// Computes the held-out cost per degree of freedom of an order.
-    fn held_out_cost(&self, order: usize) -> Option<f64> {
-        let model = &self.fits.get(&order)?.model;
-        let held_out = &self.data.held_out;
-        Some(held_out.cost(model)? / held_out.freedom(model.order()).max(1) as f64)
+    fn held_out_cost(&self, descent: &Descent, order: usize) -> Option<f64> {
+        let model = &descent.fits.get(&order)?.model;
+        let held_out = &self.held_out;
+        Some(held_out.cost(model)? / held_out.freedom(order).max(1) as f64)
+    }
+}
+
+/// Refined models of descending orders, with common weights.
+struct Descent<'a> {
+    fits: BTreeMap<usize, DenseFit>,
+    criteria: BTreeMap<usize, f64>,
+    weights: NoiseWeights<'a>,
+}
+
+impl Descent<'_> {
+    /// Adds a model and its criterion.
+    fn insert(&mut self, fit: DenseFit) {
+        let order = fit.order();
+        if let Some(value) = criterion(fit.cost, order, &fit.model, &self.weights.likelihood) {
+            self.criteria.insert(order, value);
+        }
+        self.fits.insert(order, fit);
+    }
+
+    /// Returns the minimum criterion.
+    fn least(&self) -> f64 {
+        self.criteria
+            .values()
+            .copied()
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// Removes states from the model of an order and refines the result; `None` if no model is
+    /// left.
+    fn reduced(
+        &self,
+        order: usize,
+        removed: usize,
+        progress: &Shares,
+    ) -> Result<Option<DenseFit>, Cancelled> {
+        let likelihood = &self.weights.likelihood;
+        let mut cheapest: Option<DenseFit> = None;
+        for model in without_last_states(&self.fits[&order].model, removed) {
+            let Some(fit) = DenseFit::start(likelihood, model) else {
+                continue;
+            };
+            if cheapest.as_ref().is_none_or(|other| fit.cost < other.cost) {
+                cheapest = Some(fit);
+            }
+        }
+        let Some(start) = cheapest else {
+            return Ok(None);
+        };
+        // The cost at which the criterion of this order equals the best.
+        let unit = criterion(1.0, start.order(), &start.model, likelihood);
+        let hopeless_above = unit.map_or(f64::INFINITY, |unit| self.least() / unit);
+        let limits = Limits {
+            decrement: COMPARABLE,
+            hopeless_above,
+        };
+        Ok(Some(start.descended(likelihood, limits, progress)?))
     }
 }
 
@@ -327,10 +355,11 @@ fn within(criteria: &BTreeMap<usize, f64>, best: usize, share: f64) -> BTreeMap<
 
 /// Returns an unstable pole faster than `highest` \[rad/s\], the highest spectral line: the data
 /// cannot support such a pole.
-pub(crate) fn fast_unstable_pole(model: &BlockModel, highest: f64) -> Option<Complex<f64>> {
-    model
-        .blocks
-        .iter()
-        .flat_map(|block| block.poles())
+pub(crate) fn fast_unstable_pole(
+    poles: impl IntoIterator<Item = Complex<f64>>,
+    highest: f64,
+) -> Option<Complex<f64>> {
+    poles
+        .into_iter()
         .find(|pole| pole.re > 0.0 && pole.norm() > highest)
 }

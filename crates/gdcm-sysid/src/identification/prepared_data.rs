@@ -72,6 +72,8 @@ pub(crate) struct PreparedData<'a> {
     pub(crate) direct: Option<Likelihood<'a>>,
     /// The cost over the held-out records.
     pub(crate) held_out: Likelihood<'a>,
+    /// Whether the engineer chose the orders.
+    pub(crate) are_orders_given: bool,
     /// Highest line used \[rad/s\].
     pub(crate) highest: f64,
     /// Doubts about the records.
@@ -148,6 +150,7 @@ impl<'a> PreparedData<'a> {
             likelihood,
             direct,
             held_out,
+            are_orders_given: options.orders.is_some(),
             highest: used.highest,
             cautions,
         })

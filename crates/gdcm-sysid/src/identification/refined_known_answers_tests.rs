@@ -13,7 +13,7 @@ use crate::identification::known_answers_tests::{matrix, number, numbers, respon
 use crate::identification::prepared_data::PreparedData;
 use crate::likelihood::cost::{Likelihood, SpectralLines};
 use crate::likelihood::dense_model::DenseModel;
-use crate::likelihood::descent::{CONVERGED, DenseFit};
+use crate::likelihood::descent::{CONVERGED, DenseFit, Limits};
 use crate::likelihood::linear_model::LinearModel;
 use crate::likelihood::noise_covariance::NoiseCovariance;
 use crate::likelihood::residual_noise::residual_noise;
@@ -118,8 +118,18 @@ fn step_case(known: &Value) {
     let data = PreparedData::new(&records, &options, &Sequential, &progress).unwrap();
     let step = &known["step"];
     let model = scaled_start(step, &data);
-    println!("lines {:?}", data.spectra.iter().map(|s| (s.omega.len(), s.omega[0])).collect::<Vec<_>>());
-    println!("dof {} {}", data.likelihood.freedom(model.order()), step["dof"]);
+    println!(
+        "lines {:?}",
+        data.spectra
+            .iter()
+            .map(|s| (s.omega.len(), s.omega[0]))
+            .collect::<Vec<_>>()
+    );
+    println!(
+        "dof {} {}",
+        data.likelihood.freedom(model.order()),
+        step["dof"]
+    );
     let fit = DenseFit::start(&data.likelihood, model).unwrap();
     println!("f lpm {} {}", fit.cost, step["f_lpm_noise"]);
     let noise = residual_noise(&data.likelihood, &fit.model, &fit.parts).unwrap();
@@ -130,16 +140,38 @@ fn step_case(known: &Value) {
             found.row_mut(o).scale_mut(*scale);
             found.column_mut(o).scale_mut(*scale);
         }
-        println!("noise {omega}: {:.6} {:.6} | {:.6} {:.6}", found[(0, 0)], found[(0, 1)], expected[(0, 0)], expected[(0, 1)]);
+        println!(
+            "noise {omega}: {:.6} {:.6} | {:.6} {:.6}",
+            found[(0, 0)],
+            found[(0, 1)],
+            expected[(0, 0)],
+            expected[(0, 1)]
+        );
     }
     let likelihood = weighed(&data, &noise);
     let fit = DenseFit::start(&likelihood, fit.model).unwrap();
     println!("f start {} {}", fit.cost, step["f_start"]);
     let started = std::time::Instant::now();
-    let once = fit.clone().descended(&likelihood, f64::INFINITY, &progress).unwrap();
-    println!("decrement {} {}, {:?}", once.decrement, step["decrement_start_over_k_phi"], started.elapsed());
-    let fit = fit.descended(&likelihood, CONVERGED, &progress).unwrap();
-    println!("minimum {} {}, decrement {}, {:?}", fit.cost, step["f_minimum"], fit.decrement, started.elapsed());
+    let once = fit
+        .clone()
+        .descended(&likelihood, Limits::to(f64::INFINITY), &progress)
+        .unwrap();
+    println!(
+        "decrement {} {}, {:?}",
+        once.decrement,
+        step["decrement_start_over_k_phi"],
+        started.elapsed()
+    );
+    let fit = fit
+        .descended(&likelihood, Limits::to(CONVERGED), &progress)
+        .unwrap();
+    println!(
+        "minimum {} {}, decrement {}, {:?}",
+        fit.cost,
+        step["f_minimum"],
+        fit.decrement,
+        started.elapsed()
+    );
 }
 
 #[test]
@@ -154,4 +186,50 @@ fn steps_whole() {
 #[test]
 fn steps_helicopter() {
     step_case(&answers()["helicopter"]);
+}
+
+fn whole_case(known: &Value) {
+    let records = flight_records(known);
+    let options = options(known);
+    let started = std::time::Instant::now();
+    let found =
+        crate::identification::identify::identify(&records, &options, &Sequential, &Unobserved)
+            .unwrap();
+    println!(
+        "order {} {}, bic {:?}, cost {}, {:?}",
+        found.refined.name,
+        known["whole"]["order"],
+        found.criteria,
+        found.cost,
+        started.elapsed()
+    );
+    println!(
+        "F {:?} {}",
+        found
+            .contrasts
+            .iter()
+            .map(|c| c.contrast)
+            .collect::<Vec<_>>(),
+        known["whole"]["F"]
+    );
+    for caution in &found.cautions {
+        println!(
+            "  {}",
+            format!("{caution:?}").chars().take(100).collect::<String>()
+        );
+    }
+}
+
+#[test]
+fn whole_whole() {
+    let mut known = answers();
+    known["gap"]["outputs_missing"] = Value::Array(Vec::new());
+    let whole = known["whole"]["whole"].clone();
+    known["gap"]["whole"] = whole;
+    whole_case(&known["gap"]);
+}
+
+#[test]
+fn whole_helicopter() {
+    whole_case(&answers()["helicopter"]);
 }

@@ -92,8 +92,7 @@ pub(crate) fn balanced(likelihood: &Likelihood, model: &DenseModel) -> Option<De
     }
     let reached = with_floor(sums.controllability).cholesky()?.unpack();
     let seen = with_floor(sums.observability).cholesky()?.unpack();
-    let decomposition =
-        (seen.transpose() * &reached).try_svd(false, true, f64::EPSILON, 10_000)?;
+    let decomposition = (seen.transpose() * &reached).try_svd(false, true, f64::EPSILON, 10_000)?;
     let directions = decomposition.v_t?;
     let largest = decomposition.singular_values.max();
     let roots = decomposition

@@ -144,6 +144,11 @@ impl BlockModel {
         }
     }
 
+    /// Returns the poles of all blocks.
+    pub(crate) fn poles(&self) -> Vec<Complex<f64>> {
+        self.blocks.iter().flat_map(|block| block.poles()).collect()
+    }
+
     /// Returns the four matrices of the model; `None` if they are not finite.
     pub(crate) fn state_space(&self) -> Option<StateSpace> {
         let mut a = DMatrix::zeros(self.order(), self.order());

@@ -5,6 +5,7 @@ use nalgebra::{Complex, DMatrix};
 use gdcm_model::dataset::StateSpace;
 use gdcm_model::response::schur_form::SchurForm;
 
+use super::blocks::BlockModel;
 use super::linear_model::LinearModel;
 
 /// A state-space model with the Schur form of its `A`.
@@ -106,9 +107,15 @@ impl DenseModel {
         .ok()
     }
 
+    /// Returns the model in blocks; `None` if it has poles so close that their eigenvectors cannot
+    /// be separated.
+    pub(crate) fn blocks(&self) -> Option<BlockModel> {
+        BlockModel::from_state_space(&self.state_space()?)
+    }
+
     /// Returns the eigenvalues of `A`.
-    pub(crate) fn poles(&self) -> impl Iterator<Item = Complex<f64>> {
-        self.t.diagonal().data.as_vec().clone().into_iter()
+    pub(crate) fn poles(&self) -> Vec<Complex<f64>> {
+        self.t.diagonal().iter().copied().collect()
     }
 }
 

@@ -3,56 +3,27 @@
 //! ```text
 //! The column of entry (v, s) of [[A, B], [C, D]] at a line is v s:
 //!    v in the columns of V = [W C R, W],   s in the entries of S = [X; U],   X = R (B U + tau)
-//!    nuisance columns are V times a vector, times a scalar: 1, 1/(j omega), b_q
-//! 1  bins of 0.04 in ln omega, each with V^H V at its middle
+//! 1  bins over ln omega, each with V^H V at its middle
 //! 2  G = sum over bins of Re(V^H V (x) sum conj(S) S')
-//! 3  J'T, T'T likewise for each segment; G less J'T (T'T)^+ T'J
+//! 3  G less the part that the nuisance columns explain (nuisance_elimination)
 //! 4  g = Re sum (V^H e) S^H at every line: exact
 //! ```
 //!
-//! The error of `G` is about 1e-4; it changes the path to the minimum, not the minimum. The changes
-//! of coordinates, n^2 of the (n + l)(n + m) directions, are orthogonal to `g`.
+//! Bins narrower than the spacing of the lines hold equal frequencies of records of equal length:
+//! then `G` is exact. The changes of coordinates, n^2 of the (n + l)(n + m) directions, are
+//! orthogonal to `g`.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::executor::each;
 
-use super::cost::{DEPENDENT, Likelihood, SegmentCost, SpectralLines, multiply, whiten};
+use super::cost::{Likelihood, SegmentCost, SpectralLines, multiply, whiten};
 use super::dense_model::DenseModel;
-use super::gram_matrix::pseudo_inverse_root;
-use super::linear_model::LinearModel;
+use super::linear_model::{LinearModel, OutputResolvents};
+use super::nuisance_elimination::{NuisanceSums, VectorProducts};
 
-/// Width of a bin in ln omega.
+/// Width of a bin in ln omega: lines of the same frequency share one.
 const BIN_WIDTH: f64 = 1e-9;
-
-/// Lines of all segments with nearly the same frequency.
-struct Bin {
-    /// Mean frequency \[rad/s\].
-    omega: f64,
-    /// `V^H V`, (n + outputs) x (n + outputs), for weights of scale 1.
-    products: DMatrix<Complex<f64>>,
-}
-
-/// Scalars of a segment, summed over the lines of each bin.
-struct SegmentSums {
-    /// `sum conj(S) S'` in each bin, by the index of the bin.
-    squares: Vec<DMatrix<Complex<f64>>>,
-    /// `sum conj(S) sigma` in each bin, (n + inputs) x scalars of the nuisance columns.
-    with_nuisance: Vec<DMatrix<Complex<f64>>>,
-    /// `sum conj(sigma) sigma'` in each bin.
-    nuisance: Vec<DMatrix<Complex<f64>>>,
-    /// `g` of the segment.
-    gradient: DMatrix<f64>,
-}
-
-/// A nuisance column: `V vector` times a scalar.
-struct NuisanceColumn {
-    /// Entries of the vector that are not zero, with their index in `V`.
-    vector: Vec<(usize, f64)>,
-    /// Index of the scalar: 0 for 1, 1 for 1/(j omega), then the hats.
-    scalar: usize,
-}
 
 /// `G` and `g` in all entries of `[[A, B], [C, D]]`, column after column.
 pub(crate) struct DenseSystem {
@@ -72,27 +43,36 @@ pub(crate) fn dense_system(
     model: &DenseModel,
     parts: &[SegmentCost],
 ) -> Option<DenseSystem> {
+    let resolvents = likelihood.resolvents(model);
     let binning = Binning::new(likelihood);
-    let bins = binning.bins(likelihood, model);
+    let products = binning.vector_products(likelihood, model);
+    let bins = binning.omega.len();
     let segments = likelihood.segments.iter().zip(parts).zip(&binning.places);
     let sums = each(likelihood.executor, segments, |((lines, part), places)| {
-        SegmentSums::new(lines, model, part, places, bins.len())
+        let segment = SegmentAtModel {
+            lines,
+            model,
+            part,
+            resolvents: &resolvents,
+        };
+        segment.sums(places, bins)
     });
-    let size = model.order() + model.d().ncols();
-    let vectors = model.order() + model.d().nrows();
-    let mut squares = vec![DMatrix::<Complex<f64>>::zeros(size, size); bins.len()];
-    let mut gradient = DMatrix::zeros(vectors, size);
+    let inputs = model.d().ncols();
+    let outputs = model.d().nrows();
+    let size = model.order() + inputs;
+    let mut squares = vec![DMatrix::<Complex<f64>>::zeros(size, size); bins];
+    let mut gradient = DMatrix::zeros(model.order() + outputs, size);
     for segment in &sums {
-        for (sum, own) in squares.iter_mut().zip(&segment.squares) {
-            *sum += own;
+        for (place, own) in &segment.squares {
+            squares[*place] += own;
         }
         gradient += &segment.gradient;
     }
-    let mut matrix = kronecker_sum(&bins, &squares);
+    let mut matrix = kronecker_sum(&products, &squares);
     let whole_diagonal = matrix.diagonal();
     let segments = likelihood.segments.iter().zip(&sums);
     let explained = each(likelihood.executor, segments, |(lines, sums)| {
-        explained_by_nuisance(&bins, sums, &nuisance_columns(lines, model))
+        sums.nuisance.explained(&products, lines, model)
     });
     for root in explained {
         let root = root?;
@@ -155,30 +135,24 @@ impl Binning {
     }
 
     /// Computes `V^H V` of every bin.
-    fn bins(&self, likelihood: &Likelihood, model: &DenseModel) -> Vec<Bin> {
+    fn vector_products(&self, likelihood: &Likelihood, model: &DenseModel) -> VectorProducts {
         let middles = self.omega.iter().zip(&self.representatives);
-        each(likelihood.executor, middles, |(&omega, &(segment, k))| {
+        let products = each(likelihood.executor, middles, |(&omega, &(segment, k))| {
             let lines = &likelihood.segments[segment];
             let weight = lines.weights[k].unscale(lines.scale);
-            let vectors = vectors_at(model, omega, &weight);
-            Bin {
-                omega,
-                products: vectors.adjoint() * &vectors,
-            }
-        })
+            let mut cr = vec![Complex::default(); model.c().nrows() * model.order()];
+            model.output_resolvent(omega, &mut cr);
+            let vectors = vectors(&cr, &weight);
+            vectors.adjoint() * &vectors
+        });
+        VectorProducts::new(products)
     }
 }
 
-/// Computes `V = [W C R, W]` at a frequency, outputs x (n + outputs).
-fn vectors_at(
-    model: &DenseModel,
-    omega: f64,
-    weight: &DMatrix<Complex<f64>>,
-) -> DMatrix<Complex<f64>> {
-    let outputs = model.c().nrows();
-    let order = model.order();
-    let mut cr = vec![Complex::default(); outputs * order];
-    model.output_resolvent(omega, &mut cr);
+/// Returns `V = [W C R, W]`, outputs x (n + outputs), from `C R`, column after column.
+fn vectors(cr: &[Complex<f64>], weight: &DMatrix<Complex<f64>>) -> DMatrix<Complex<f64>> {
+    let outputs = weight.nrows();
+    let order = cr.len() / outputs;
     let mut vectors = DMatrix::zeros(outputs, order + outputs);
     for (state, column) in cr.chunks_exact(outputs).enumerate() {
         let mut to = vectors.column_mut(state);
@@ -188,52 +162,66 @@ fn vectors_at(
     vectors
 }
 
-impl SegmentSums {
-    fn new(
-        lines: &SpectralLines,
-        model: &DenseModel,
-        part: &SegmentCost,
-        places: &[usize],
-        bins: usize,
-    ) -> Self {
-        let order = model.order();
-        let inputs = model.d().ncols();
+/// A segment and its cost at a model.
+struct SegmentAtModel<'s> {
+    lines: &'s SpectralLines,
+    model: &'s DenseModel,
+    part: &'s SegmentCost,
+    resolvents: &'s OutputResolvents<'s>,
+}
+
+/// Sums over the lines of a segment.
+struct SegmentSums {
+    /// `sum conj(S) S'` in each bin with lines, with the index of the bin.
+    squares: Vec<(usize, DMatrix<Complex<f64>>)>,
+    nuisance: NuisanceSums,
+    /// `g`, (n + outputs) x (n + inputs).
+    gradient: DMatrix<f64>,
+}
+
+impl SegmentAtModel<'_> {
+    /// Sums over the lines; `places` holds the bin of each line.
+    fn sums(&self, places: &[usize], bins: usize) -> SegmentSums {
+        let lines = self.lines;
+        let order = self.model.order();
+        let (outputs, inputs) = self.model.d().shape();
         let size = order + inputs;
-        let scalars = 2 + lines.hats.len();
-        let mut sums = Self {
-            squares: vec![DMatrix::zeros(size, size); bins],
-            with_nuisance: vec![DMatrix::zeros(size, scalars); bins],
-            nuisance: vec![DMatrix::zeros(scalars, scalars); bins],
-            gradient: DMatrix::zeros(order + model.c().nrows(), size),
-        };
-        let completed = lines.completed_inputs(&part.hat_values);
+        let completed = lines.completed_inputs(&self.part.hat_values);
         let power = Complex::from(lines.scale * lines.scale);
+        let mut sums = SegmentSums {
+            squares: Vec::new(),
+            nuisance: NuisanceSums::new(size, bins, lines.hats.len()),
+            gradient: DMatrix::zeros(order + outputs, size),
+        };
         let mut x = vec![Complex::default(); order];
-        for (k, (&omega, &place)) in lines.omega.iter().zip(places).enumerate() {
-            multiply(model.b(), completed.column(k).as_slice(), &mut x);
-            for (value, tau) in x.iter_mut().zip(part.transient.iter()) {
+        for (k, cr) in self
+            .resolvents
+            .at_lines(&lines.omega)
+            .into_iter()
+            .enumerate()
+        {
+            let input = completed.column(k);
+            multiply(self.model.b(), input.as_slice(), &mut x);
+            for (value, tau) in x.iter_mut().zip(self.part.transient.iter()) {
                 *value += tau;
             }
-            model.resolve(omega, &mut x);
+            self.model.resolve(lines.omega[k], &mut x);
             let mut s = DVector::<Complex<f64>>::zeros(size);
             s.rows_mut(0, order).copy_from_slice(&x);
-            s.rows_mut(order, inputs).copy_from(&completed.column(k));
+            s.rows_mut(order, inputs).copy_from(&input);
             let conjugate = s.conjugate();
-            let mut sigma = DVector::<Complex<f64>>::zeros(scalars);
-            sigma[0] = Complex::from(1.0);
-            sigma[1] = Complex::new(0.0, -1.0 / omega);
-            for (hat, to) in lines
-                .hats
-                .iter()
-                .zip(sigma.rows_mut(2, scalars - 2).iter_mut())
+            if sums
+                .squares
+                .last()
+                .is_none_or(|(place, _)| *place != places[k])
             {
-                *to = hat.lines[k];
+                sums.squares.push((places[k], DMatrix::zeros(size, size)));
             }
-            sums.squares[place].ger(power, &conjugate, &s, Complex::from(1.0));
-            sums.with_nuisance[place].ger(power, &conjugate, &sigma, Complex::from(1.0));
-            sums.nuisance[place].ger(power, &sigma.conjugate(), &sigma, Complex::from(1.0));
-            let vectors = vectors_at(model, omega, &lines.weights[k]);
-            let along = vectors.ad_mul(&part.residual.column(k));
+            if let Some((_, square)) = sums.squares.last_mut() {
+                square.ger(power, &conjugate, &s, Complex::from(1.0));
+            }
+            sums.nuisance.add(lines, k, places[k], &conjugate);
+            let along = vectors(cr, &lines.weights[k]).ad_mul(&self.part.residual.column(k));
             for (column, scalar) in conjugate.iter().enumerate() {
                 let mut to = sums.gradient.column_mut(column);
                 for (entry, value) in to.iter_mut().zip(along.iter()) {
@@ -247,18 +235,19 @@ impl SegmentSums {
 
 /// Computes `sum over bins of Re(P (x) Q)` for Hermitian `P` and `Q`: entry ((v, s), (v', s')) is
 /// `Re(P[v, v'] Q[s, s'])`, with v running fastest.
-fn kronecker_sum(bins: &[Bin], squares: &[DMatrix<Complex<f64>>]) -> DMatrix<f64> {
-    let vectors = bins.first().map_or(0, |bin| bin.products.nrows());
+fn kronecker_sum(products: &VectorProducts, squares: &[DMatrix<Complex<f64>>]) -> DMatrix<f64> {
+    let vectors = products.vectors;
+    let bins = squares.len();
     let scalars = squares.first().map_or(0, DMatrix::nrows);
     let vector_pairs = ordered_pairs(vectors);
     let scalar_pairs = ordered_pairs(scalars);
-    let mut left_re = DMatrix::zeros(vector_pairs.len(), bins.len());
+    let mut left_re = DMatrix::zeros(vector_pairs.len(), bins);
     let mut left_im = left_re.clone();
-    let mut right_re = DMatrix::zeros(bins.len(), scalar_pairs.len());
+    let mut right_re = DMatrix::zeros(bins, scalar_pairs.len());
     let mut right_im = right_re.clone();
-    for (bin, own) in bins.iter().enumerate() {
+    for bin in 0..bins {
         for (row, &(v, w)) in vector_pairs.iter().enumerate() {
-            let product = own.products[(v, w)];
+            let product = products.entry(bin, v, w);
             left_re[(row, bin)] = product.re;
             left_im[(row, bin)] = product.im;
         }
@@ -301,95 +290,11 @@ fn ordered_pairs(count: usize) -> Vec<(usize, usize)> {
     pairs
 }
 
-/// Returns the nuisance columns of a segment: tau, c0, c1, hats.
-fn nuisance_columns(lines: &SpectralLines, model: &DenseModel) -> Vec<NuisanceColumn> {
-    let order = model.order();
-    let outputs = model.c().nrows();
-    let mut columns = Vec::with_capacity(order + 2 * outputs + lines.hats.len());
-    for vector in 0..order + outputs {
-        columns.push(NuisanceColumn {
-            vector: vec![(vector, 1.0)],
-            scalar: 0,
-        });
-    }
-    for output in 0..outputs {
-        columns.push(NuisanceColumn {
-            vector: vec![(order + output, 1.0)],
-            scalar: 1,
-        });
-    }
-    for (number, hat) in lines.hats.iter().enumerate() {
-        let vector = match hat.side {
-            ChannelSide::Output => vec![(order + hat.channel, 1.0)],
-            ChannelSide::Input => {
-                let b = model.b().column(hat.channel);
-                let d = model.d().column(hat.channel);
-                b.iter().chain(d.iter()).copied().enumerate().collect()
-            }
-        };
-        columns.push(NuisanceColumn {
-            vector,
-            scalar: 2 + number,
-        });
-    }
-    columns
-}
-
-/// Computes `J'T F` with `F F' = (T'T)^+` for the nuisance columns of a segment; `None` if an
-/// iteration does not converge.
-fn explained_by_nuisance(
-    bins: &[Bin],
-    sums: &SegmentSums,
-    columns: &[NuisanceColumn],
-) -> Option<DMatrix<f64>> {
-    let vectors = bins.first()?.products.nrows();
-    let scalars = sums.with_nuisance.first()?.nrows();
-    let count = columns.len();
-    let mut with_parameters = DMatrix::<f64>::zeros(vectors * scalars, count);
-    let mut with_nuisance = DMatrix::<f64>::zeros(count, count);
-    for (place, bin) in bins.iter().enumerate() {
-        if sums.nuisance[place][(0, 0)].re == 0.0 {
-            continue;
-        }
-        // V^H V vector of each column.
-        let mut images = DMatrix::<Complex<f64>>::zeros(vectors, count);
-        for (number, column) in columns.iter().enumerate() {
-            let mut image = images.column_mut(number);
-            for &(vector, factor) in &column.vector {
-                image.axpy(
-                    Complex::from(factor),
-                    &bin.products.column(vector),
-                    Complex::from(1.0),
-                );
-            }
-        }
-        for (number, column) in columns.iter().enumerate() {
-            let image = images.column(number);
-            let products = sums.with_nuisance[place].column(column.scalar);
-            let mut to = with_parameters.column_mut(number);
-            for (s, product) in products.iter().enumerate() {
-                for (v, value) in image.iter().enumerate() {
-                    to[s * vectors + v] += (value * product).re;
-                }
-            }
-            for (other, second) in columns.iter().enumerate().take(number + 1) {
-                let mut product = Complex::<f64>::default();
-                for &(vector, factor) in &second.vector {
-                    product += image[vector] * factor;
-                }
-                let scalar = sums.nuisance[place][(second.scalar, column.scalar)];
-                with_nuisance[(other, number)] += (product * scalar).re;
-            }
-        }
-    }
-    with_nuisance.fill_lower_triangle_with_upper_triangle();
-    let root = pseudo_inverse_root(with_nuisance, DEPENDENT)?;
-    Some(with_parameters * root)
-}
-
 #[cfg(test)]
 mod tests {
     use nalgebra::{Complex, dmatrix};
+
+    use gdcm_model::dataset::channel::ChannelSide;
 
     use super::*;
     use crate::identification::known_answers_tests::{answers, known_records, matrix};
@@ -408,7 +313,10 @@ mod tests {
                 weight[(1, 0)].im = 0.3;
             }
             for side in [ChannelSide::Input, ChannelSide::Output] {
-                let lines = segment.omega.iter().map(|w| Complex::from_polar(0.1, -3.0 * w));
+                let lines = segment
+                    .omega
+                    .iter()
+                    .map(|w| Complex::from_polar(0.1, -3.0 * w));
                 segment.hats.push(GapHat {
                     side,
                     channel: 1,

@@ -20,13 +20,19 @@ use super::balancing::balanced;
 use super::cost::{Likelihood, SegmentCost};
 use super::dense_model::DenseModel;
 use super::dense_system::{DenseSystem, dense_system};
+use super::gram_matrix::solve_positive_definite;
 use super::linear_model::LinearModel;
 use crate::subspace::search_extent::parameters_of_order;
 
 /// Limit on the Newton decrement over `k phi` at a minimum.
 pub(crate) const CONVERGED: f64 = 0.02;
+/// Limit on the Newton decrement over `k phi` for the comparison of orders: the cost may still fall
+/// by about 5 % of what k parameters explain of the noise.
+pub(crate) const COMPARABLE: f64 = 0.05;
 /// Limit on the Newton decrement over `k phi` before the noise is measured again.
 pub(crate) const NEARLY_CONVERGED: f64 = 0.2;
+/// Multiple of the squared Newton decrement by which the cost may at most still fall.
+const HOPE: f64 = 3.0;
 /// Maximum number of steps of a descent.
 const LARGEST_STEPS: usize = 40;
 /// Damping of the first step.
@@ -46,6 +52,25 @@ const FAILURES: usize = 10;
 /// Share of the total progress that is reported for a step.
 const SHARE: f64 = 0.01;
 
+/// When a descent ends.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Limits {
+    /// Newton decrement over `k phi` at which the model has converged.
+    pub(crate) decrement: f64,
+    /// Cost above which the model is of no use: the descent ends if `J - 3 delta^2` exceeds it.
+    pub(crate) hopeless_above: f64,
+}
+
+impl Limits {
+    /// Creates limits that only ask for this Newton decrement over `k phi`.
+    pub(crate) fn to(decrement: f64) -> Self {
+        Self {
+            decrement,
+            hopeless_above: f64::INFINITY,
+        }
+    }
+}
+
 /// A model and its cost.
 #[derive(Clone, Debug)]
 pub(crate) struct DenseFit {
@@ -54,7 +79,7 @@ pub(crate) struct DenseFit {
     pub(crate) parts: Vec<SegmentCost>,
     /// `J`.
     pub(crate) cost: f64,
-    /// Newton decrement at the model over `k phi`; infinite before it is computed.
+    /// Newton decrement over `k phi` where it was last computed; infinite before.
     pub(crate) decrement: f64,
     damping: f64,
 }
@@ -98,17 +123,16 @@ impl DenseFit {
         Some(self.cost / spare as f64)
     }
 
-    /// Descends until the Newton decrement is below `limit` times `k phi`, or no step lowers the
-    /// cost; `Err` if cancelled.
+    /// Descends until a limit is reached, or no step lowers the cost; `Err` if cancelled.
     pub(crate) fn descended(
         mut self,
         likelihood: &Likelihood,
-        limit: f64,
+        limits: Limits,
         progress: &Shares,
     ) -> Result<Self, Cancelled> {
         for step in 1..=LARGEST_STEPS {
             progress.advance(SHARE, &format!("order {}, step {step}", self.order()))?;
-            if !self.step(likelihood, limit) {
+            if !self.step(likelihood, limits) {
                 break;
             }
         }
@@ -116,7 +140,7 @@ impl DenseFit {
     }
 
     /// Takes a step; returns whether a further one may be worthwhile.
-    fn step(&mut self, likelihood: &Likelihood, limit: f64) -> bool {
+    fn step(&mut self, likelihood: &Likelihood, limits: Limits) -> bool {
         let Some(dispersion) = self.dispersion(likelihood) else {
             return false;
         };
@@ -126,23 +150,31 @@ impl DenseFit {
         };
         let scaled = ScaledSystem::new(system);
         let unit = self.parameters() as f64 * dispersion;
-        self.decrement = scaled
-            .decrement()
-            .map_or(f64::INFINITY, |square| square / unit);
-        if std::env::var("TRACE2").is_ok() {
-            let mut e: Vec<f64> = scaled.matrix.clone().symmetric_eigen().eigenvalues.iter().copied().collect();
-            e.sort_by(f64::total_cmp);
-            println!("    eig {:?} max {:.3} k {}: {:.2e} {:.2e} {:.2e}", &e[..3], e[e.len()-1], self.parameters(), e[e.len()-self.parameters()-1], e[e.len()-self.parameters()], e[e.len()-self.parameters()+1]);
-        }
-        if std::env::var("TRACE").is_ok() { println!("  n {} J {:.4} dec {:.4} lambda {:.2e}", self.order(), self.cost, self.decrement, self.damping); }
-        if self.decrement < limit {
-            return false;
+        let mut direction = scaled.solve(self.damping);
+        // With damping, g'd is a lower bound of delta^2: the decrement is computed where it may
+        // end the descent.
+        let bound = direction
+            .as_ref()
+            .map_or(0.0, |direction| scaled.gradient.dot(direction));
+        let may_end =
+            bound < limits.decrement * unit || self.cost - HOPE * bound > limits.hopeless_above;
+        if may_end {
+            let square = scaled.decrement().unwrap_or(f64::INFINITY);
+            self.decrement = square / unit;
+            if self.decrement < limits.decrement
+                || self.cost - HOPE * square > limits.hopeless_above
+            {
+                return false;
+            }
         }
         for _ in 0..=FAILURES {
-            if self.try_step(likelihood, &scaled) {
+            if let Some(direction) = direction
+                && self.try_step(likelihood, &scaled, &direction)
+            {
                 return true;
             }
             self.damping = (DAMPING_FACTOR * self.damping).max(LEAST_FAILED_DAMPING);
+            direction = scaled.solve(self.damping);
         }
         self.damping = FIRST_DAMPING;
         false
@@ -163,19 +195,20 @@ impl DenseFit {
         }
     }
 
-    /// Tries the step of the present damping; returns whether it lowered the cost.
-    fn try_step(&mut self, likelihood: &Likelihood, system: &ScaledSystem) -> bool {
-        let damping = self.damping.max(LEAST_DAMPING);
-        let Some(direction) = system.solve(damping) else {
-            return false;
-        };
-        let predicted = system.predicted_decrease(&direction);
+    /// Tries a step, in scaled columns; returns whether it lowered the cost.
+    fn try_step(
+        &mut self,
+        likelihood: &Likelihood,
+        system: &ScaledSystem,
+        direction: &DVector<f64>,
+    ) -> bool {
+        let predicted = system.predicted_decrease(direction);
         let (outputs, inputs) = self.model.d().shape();
         let order = self.order();
         let step = DMatrix::from_column_slice(
             order + outputs,
             order + inputs,
-            system.unscaled(&direction).as_slice(),
+            system.unscaled(direction).as_slice(),
         );
         let Some(model) = self.model.stepped(&step) else {
             return false;
@@ -190,7 +223,7 @@ impl DenseFit {
         self.model = stepped.model;
         self.parts = stepped.parts;
         self.cost = stepped.cost;
-        self.damping = damping * damping_factor(ratio);
+        self.damping = (self.damping * damping_factor(ratio)).max(LEAST_DAMPING);
         true
     }
 }
@@ -224,7 +257,11 @@ impl ScaledSystem {
             .diagonal()
             .zip_map(&system.whole_diagonal, |left, whole| {
                 let square = left.max(LEAST_SHARE_LEFT * whole);
-                if square > 0.0 { 1.0 / square.sqrt() } else { 0.0 }
+                if square > 0.0 {
+                    1.0 / square.sqrt()
+                } else {
+                    0.0
+                }
             });
         let mut matrix = system.matrix;
         let size = scales.len();
@@ -245,7 +282,7 @@ impl ScaledSystem {
         for k in 0..self.scales.len() {
             damped[(k, k)] += damping;
         }
-        let solution = damped.cholesky()?.solve(&self.gradient);
+        let solution = solve_positive_definite(damped, &self.gradient)?;
         if solution.iter().all(|entry| entry.is_finite()) {
             Some(solution)
         } else {

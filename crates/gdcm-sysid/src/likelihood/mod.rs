@@ -21,5 +21,6 @@ mod mode_removal;
 pub(crate) mod models_without_record;
 pub mod noise_covariance;
 pub(crate) mod normal_system;
+mod nuisance_elimination;
 pub(crate) mod refinement;
 pub(crate) mod residual_noise;

@@ -701,7 +701,9 @@ mod tests {
         let likelihood = known_records(known);
         let model = known_start(known);
         let segment = &likelihood.segments[0];
-        let part = segment.cost(&model, &likelihood.resolvents(&model)).unwrap();
+        let part = segment
+            .cost(&model, &likelihood.resolvents(&model))
+            .unwrap();
         let system = Gram::new(segment, &model, &part).system().unwrap();
         // Columns of the dense Jacobian by differences of W (G U + C R tau), exact up to rounding
         // in B and D.

@@ -59,7 +59,11 @@ pub(crate) fn residual_noise(
 ) -> Option<NoiseCovariance> {
     let outputs = model.c().nrows();
     let parameters = parameters_of_order(model.order(), model.b().ncols(), outputs);
-    let lines: usize = likelihood.segments.iter().map(|lines| lines.omega.len()).sum();
+    let lines: usize = likelihood
+        .segments
+        .iter()
+        .map(|lines| lines.omega.len())
+        .sum();
     let values = 2 * outputs * lines;
     if values <= parameters {
         return None;

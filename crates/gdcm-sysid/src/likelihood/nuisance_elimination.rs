@@ -1,0 +1,251 @@
+//! The part of the dense normal equations that the nuisance columns of a segment explain (M14.8,
+//! M14.19).
+//!
+//! ```text
+//! A nuisance column is V times a real vector, times a scalar sigma of the line:
+//!    tau_i, c0_o, c1_o          unit vectors,   sigma = 1, 1, 1/(j omega)
+//!    missing output o           unit vector,    sigma = b_q
+//!    missing input j            [B_j; D_j],     sigma = b_q
+//! 1  J'T[(v, s), (w, sigma)] = sum over bins of Re(V^H V[v, w] sum conj(S_s) sigma)
+//! 2  T'T[(v, sigma), (w, sigma')] = sum over bins of Re(V^H V[v, w] sum conj(sigma) sigma')
+//! 3  J'T F with F F' = (T'T)^+:  G is reduced by its product with its transpose
+//! ```
+
+use nalgebra::{Complex, DMatrix, DVector};
+
+use gdcm_model::dataset::channel::ChannelSide;
+
+use super::cost::{DEPENDENT, SpectralLines};
+use super::dense_model::DenseModel;
+use super::gram_matrix::pseudo_inverse_root;
+use super::linear_model::LinearModel;
+
+/// Index of the scalar 1.
+const ONE: usize = 0;
+/// Index of the scalar 1/(j omega).
+const INTEGRATOR: usize = 1;
+/// Index of the first hat.
+const FIRST_HAT: usize = 2;
+
+/// `V^H V` of every bin, for weights of scale 1.
+pub(super) struct VectorProducts {
+    /// Size of `V^H V`: n + outputs.
+    pub(super) vectors: usize,
+    /// Real parts and negative imaginary parts of the entries: a row for each entry of `V^H V`,
+    /// column after column, and two columns for each bin.
+    table: DMatrix<f64>,
+}
+
+impl VectorProducts {
+    /// Gathers `V^H V` of all bins.
+    pub(super) fn new(products: Vec<DMatrix<Complex<f64>>>) -> Self {
+        let vectors = products.first().map_or(0, DMatrix::nrows);
+        let mut table = DMatrix::zeros(vectors * vectors, 2 * products.len());
+        for (bin, product) in products.iter().enumerate() {
+            for (row, entry) in product.iter().enumerate() {
+                table[(row, 2 * bin)] = entry.re;
+                table[(row, 2 * bin + 1)] = -entry.im;
+            }
+        }
+        Self { vectors, table }
+    }
+
+    /// Returns an entry of `V^H V` in a bin.
+    pub(super) fn entry(&self, bin: usize, v: usize, w: usize) -> Complex<f64> {
+        let row = w * self.vectors + v;
+        Complex::new(self.table[(row, 2 * bin)], -self.table[(row, 2 * bin + 1)])
+    }
+
+    /// Computes `sum over bins of Re(V^H V[v, w] z)` for the columns w from `first` on: rows are
+    /// entries (v, w) with v running fastest, columns those of `scalars`.
+    fn times(&self, first: usize, count: usize, scalars: &BinnedScalars) -> DMatrix<f64> {
+        let rows = self.table.rows(first * self.vectors, count * self.vectors);
+        rows * &scalars.table
+    }
+}
+
+/// Complex scalars z summed in bins: real and imaginary parts in two rows for each bin.
+struct BinnedScalars {
+    table: DMatrix<f64>,
+}
+
+impl BinnedScalars {
+    fn zeros(bins: usize, count: usize) -> Self {
+        Self {
+            table: DMatrix::zeros(2 * bins, count),
+        }
+    }
+
+    fn add(&mut self, bin: usize, column: usize, value: Complex<f64>) {
+        self.table[(2 * bin, column)] += value.re;
+        self.table[(2 * bin + 1, column)] += value.im;
+    }
+}
+
+/// Sums over the lines of a segment in bins.
+pub(super) struct NuisanceSums {
+    /// `conj(S) sigma` for each scalar sigma; columns are the entries of S.
+    with_parameters: Vec<BinnedScalars>,
+    /// `conj(sigma) sigma'`; columns are pairs of scalars, sigma running fastest.
+    squares: BinnedScalars,
+}
+
+impl NuisanceSums {
+    /// Starts the sums; `size` is n + inputs.
+    pub(super) fn new(size: usize, bins: usize, hats: usize) -> Self {
+        let scalars = FIRST_HAT + hats;
+        let mut with_parameters = Vec::with_capacity(scalars);
+        for _ in 0..scalars {
+            with_parameters.push(BinnedScalars::zeros(bins, size));
+        }
+        Self {
+            with_parameters,
+            squares: BinnedScalars::zeros(bins, scalars * scalars),
+        }
+    }
+
+    /// Adds line `k` of a segment, which is in the bin `place`; `conjugate` is conj(S).
+    pub(super) fn add(
+        &mut self,
+        lines: &SpectralLines,
+        k: usize,
+        place: usize,
+        conjugate: &DVector<Complex<f64>>,
+    ) {
+        let power = lines.scale * lines.scale;
+        let scalars = scalars_of_line(lines, k);
+        for (second, sigma) in scalars.iter().enumerate() {
+            let weighted = sigma * power;
+            for (entry, value) in conjugate.iter().enumerate() {
+                self.with_parameters[second].add(place, entry, value * weighted);
+            }
+            for (first, other) in scalars.iter().enumerate() {
+                let column = second * scalars.len() + first;
+                self.squares.add(place, column, other.conj() * weighted);
+            }
+        }
+    }
+
+    /// Computes `J'T F`, a row for each entry of `[[A, B], [C, D]]`; `None` if an iteration does
+    /// not converge.
+    pub(super) fn explained(
+        &self,
+        products: &VectorProducts,
+        lines: &SpectralLines,
+        model: &DenseModel,
+    ) -> Option<DMatrix<f64>> {
+        let columns = nuisance_columns(lines, model);
+        let with_parameters = self.with_parameters(products, &columns);
+        let root = pseudo_inverse_root(self.with_each_other(products, &columns), DEPENDENT)?;
+        Some(with_parameters * root)
+    }
+
+    /// Computes `J'T` (step 1).
+    fn with_parameters(
+        &self,
+        products: &VectorProducts,
+        columns: &[NuisanceColumn],
+    ) -> DMatrix<f64> {
+        let vectors = products.vectors;
+        let size = self.with_parameters[ONE].table.ncols();
+        let mut result = DMatrix::zeros(vectors * size, columns.len());
+        for (scalar, sums) in self.with_parameters.iter().enumerate() {
+            let of_scalar = columns.iter().filter(|column| column.scalar == scalar);
+            let used = of_scalar.flat_map(|column| column.vector.iter().map(|(w, _)| *w));
+            let Some(first) = used.clone().min() else {
+                continue;
+            };
+            let last = used.max().unwrap_or(first);
+            // Rows are entries (v, w), columns are entries of S.
+            let table = products.times(first, last - first + 1, sums);
+            for (number, column) in columns.iter().enumerate() {
+                if column.scalar != scalar {
+                    continue;
+                }
+                for &(w, factor) in &column.vector {
+                    let block = table.rows((w - first) * vectors, vectors);
+                    let mut to = result.column_mut(number);
+                    for (entry, value) in to.iter_mut().zip(block.iter()) {
+                        *entry += value * factor;
+                    }
+                }
+            }
+        }
+        result
+    }
+
+    /// Computes `T'T` (step 2).
+    fn with_each_other(
+        &self,
+        products: &VectorProducts,
+        columns: &[NuisanceColumn],
+    ) -> DMatrix<f64> {
+        let vectors = products.vectors;
+        let scalars = self.with_parameters.len();
+        let table = products.times(0, vectors, &self.squares);
+        let mut result = DMatrix::zeros(columns.len(), columns.len());
+        for (number, second) in columns.iter().enumerate() {
+            for (other, first) in columns.iter().enumerate().take(number + 1) {
+                let pair = second.scalar * scalars + first.scalar;
+                let mut product = 0.0;
+                for &(w, right) in &second.vector {
+                    for &(v, left) in &first.vector {
+                        product += table[(w * vectors + v, pair)] * left * right;
+                    }
+                }
+                result[(other, number)] = product;
+                result[(number, other)] = product;
+            }
+        }
+        result
+    }
+}
+
+/// Returns the scalars of the nuisance columns at a line: 1, 1/(j omega), the hats.
+fn scalars_of_line(lines: &SpectralLines, k: usize) -> Vec<Complex<f64>> {
+    let mut scalars = vec![Complex::from(1.0), Complex::new(0.0, -1.0 / lines.omega[k])];
+    scalars.extend(lines.hats.iter().map(|hat| hat.lines[k]));
+    scalars
+}
+
+/// A nuisance column: `V vector` times a scalar.
+struct NuisanceColumn {
+    /// Entries of the vector that are not zero, with their index in `V`.
+    vector: Vec<(usize, f64)>,
+    /// Index of the scalar.
+    scalar: usize,
+}
+
+/// Returns the nuisance columns of a segment: tau, c0, c1, hats.
+fn nuisance_columns(lines: &SpectralLines, model: &DenseModel) -> Vec<NuisanceColumn> {
+    let order = model.order();
+    let outputs = model.c().nrows();
+    let mut columns = Vec::with_capacity(order + 2 * outputs + lines.hats.len());
+    for vector in 0..order + outputs {
+        columns.push(NuisanceColumn {
+            vector: vec![(vector, 1.0)],
+            scalar: ONE,
+        });
+    }
+    for output in 0..outputs {
+        columns.push(NuisanceColumn {
+            vector: vec![(order + output, 1.0)],
+            scalar: INTEGRATOR,
+        });
+    }
+    for (number, hat) in lines.hats.iter().enumerate() {
+        let vector = match hat.side {
+            ChannelSide::Output => vec![(order + hat.channel, 1.0)],
+            ChannelSide::Input => {
+                let b = model.b().column(hat.channel);
+                let d = model.d().column(hat.channel);
+                b.iter().chain(d.iter()).copied().enumerate().collect()
+            }
+        };
+        columns.push(NuisanceColumn {
+            vector,
+            scalar: FIRST_HAT + number,
+        });
+    }
+    columns
+}

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Complex, DMatrix};
 
-use gdcm_method::couplings::coupling_effects::{
+use gdcm_method::couplings::coupling_shares::{
     FeedbackShare, MixingShare, cyclic_inputs, feedback_shares, mixing_shares,
 };
 use gdcm_method::couplings::{LEAST_CONDITIONS, LoopMargin, PoleShift, Unknown};

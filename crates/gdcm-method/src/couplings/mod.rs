@@ -24,11 +24,12 @@
 //! | 5 | `weighted_condition` |
 //! | 6 | `condition_blocks`, `pair_products`, `normal_equations` |
 //! | 7 | `normal_equations`, `arrow_system` |
-//! | 8, 10 | `coupling_matrices`, `coupling_effects` |
-//! | 9 | `fit` |
+//! | 8 | `coupling_matrices` |
+//! | 9 | `jackknife` |
+//! | 10 | `coupling_matrices`, `pole_shifts`, `response_effects`; entries in pilot units: `coupling_shares` |
 //!
-//! M16; the jackknife: B. Efron, "The Jackknife, the Bootstrap and Other Resampling Plans", SIAM
-//! 1982, chapter 3.
+//! Step 9: B. Efron, "The Jackknife, the Bootstrap and Other Resampling Plans", SIAM 1982,
+//! chapter 3.
 //!
 //! Index order: `[output, input]` for responses, `[to, from]` for `M` (input, input) and for `K`
 //! (input, output); omega in rad/s.
@@ -36,14 +37,17 @@
 mod arrow_system;
 mod closed_loop;
 mod condition_blocks;
-pub mod coupling_effects;
 pub mod coupling_matrices;
+pub mod coupling_shares;
 mod error;
 pub mod fit;
 mod flight_data;
+pub mod jackknife;
 mod normal_equations;
 mod pair_products;
+mod pole_shifts;
 pub mod problem;
+pub mod response_effects;
 mod unknown;
 mod unknown_layout;
 mod weighted_condition;
@@ -51,8 +55,10 @@ mod weighted_condition;
 #[cfg(test)]
 mod tests;
 
-pub use coupling_effects::{LoopMargin, PoleShift};
 pub use coupling_matrices::{CoupledModelError, CouplingMatrices};
-pub use fit::{CouplingBars, LEAST_CONDITIONS, LeftOutFit, fit_couplings};
+pub use fit::fit_couplings;
+pub use jackknife::{CouplingBars, LEAST_CONDITIONS, LeftOutFit};
+pub use pole_shifts::PoleShift;
 pub use problem::{CouplingCondition, CouplingKind, CouplingProblem};
+pub use response_effects::LoopMargin;
 pub use unknown::Unknown;

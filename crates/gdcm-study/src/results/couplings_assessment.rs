@@ -96,7 +96,7 @@ impl CouplingsAssessment {
     }
 
     fn bars(&self, airspeed_kt: f64) -> Option<CouplingBars> {
-        CouplingBars::of(&self.left_out_fits, airspeed_kt, self.level).ok()
+        CouplingBars::from_fits(&self.left_out_fits, airspeed_kt, self.level).ok()
     }
 
     /// Returns `M~`, m x m, at an airspeed, with its error bars.

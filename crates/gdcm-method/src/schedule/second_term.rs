@@ -121,7 +121,7 @@ mod tests {
             second: Some(SecondVariable::Altitude),
             ..ScheduleSettings::default()
         };
-        Schedule::of(&points, settings)
+        Schedule::fit(&points, settings)
     }
 
     fn exponential(kt: f64, feet: f64) -> f64 {

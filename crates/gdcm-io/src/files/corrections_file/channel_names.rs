@@ -100,7 +100,7 @@ impl<'a> ChannelNames<'a> {
 
     /// Returns the regression coefficients of each channel.
     pub(super) fn coefficients(&self, regressions: &Channels<Regression>) -> Value {
-        self.by_channel(|channel| regressions[channel].figures().to_vec())
+        self.by_channel(|channel| regressions[channel].parameters().to_vec())
     }
 
     pub(super) fn gains(&self, correction: &ChannelCorrection) -> Value {

@@ -172,7 +172,7 @@ fn attitude_commands_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>)
     }
     for output in outputs {
         let channel = &state.dataset().outputs()[output];
-        if AttitudeOutput::of(channel).is_err() {
+        if AttitudeOutput::classify(channel).is_err() {
             continue;
         }
         let name = &channel.name;
@@ -192,7 +192,7 @@ fn attitude_commands_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>)
 
 /// Draws the number of level boundaries, and the buttons that remove them or read them from a file.
 fn levels_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    let levels = state.study.requirements.levels.all().len();
+    let levels = state.study.requirements.levels.as_slice().len();
     let text = if levels == 0 {
         "levels: none".to_owned()
     } else {

@@ -82,6 +82,7 @@ impl ConditionBlocks {
         let mut terms = ColumnTerms::zeros(inputs, outputs, factors);
         let mut chunk = ProductChunk::new(inputs, factors);
         let mut closed_loop = ClosedLoop::new(last.feedback);
+        // Indices of the frequencies at which a response has a weight.
         let counting: Vec<usize> = (0..condition.omega.len())
             .filter(|&k| condition.has_weight_at(k))
             .collect();
@@ -89,6 +90,7 @@ impl ConditionBlocks {
             if progress.cancelled() {
                 return Err(CouplingError::Cancelled(Cancelled));
             }
+            // Step 1.
             let mut closed = Vec::with_capacity(frequencies.len());
             for &k in frequencies {
                 closed.push(ClosedResponse::new(condition, k, &mut closed_loop)?);
@@ -96,11 +98,13 @@ impl ConditionBlocks {
             for input in 0..inputs {
                 chunk.clear();
                 for response in &closed {
+                    // Steps 2 to 4.
                     if terms.set(condition, response, &last, input) {
                         chunk.push(&terms.factors, &response.rows, &terms.squared_weights);
                         blocks.add_right(&terms, input);
                     }
                 }
+                // Step 5, for all frequencies of the chunk at once.
                 blocks.columns[input].products.add_pairs_with_first(&chunk);
                 blocks.feedback.add_pairs_without_first(&chunk);
             }
@@ -162,7 +166,7 @@ struct LastPass<'a> {
 
 /// Closed-loop response `F = S H` at one frequency, in both storage orders.
 struct ClosedResponse {
-    /// Index of the frequency.
+    /// Index of the frequency in the condition.
     k: usize,
     /// `F`, column by column.
     columns: Vec<Complex<f64>>,

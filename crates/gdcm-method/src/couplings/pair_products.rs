@@ -24,8 +24,8 @@ pub(super) fn pair_count(count: usize) -> usize {
     count * (count + 1) / 2
 }
 
-/// Returns the index of the pair `a <= b` among `count` items, in the order of the module: the pairs
-/// with a smaller first index number `count + (count - 1) + ...`, in `a` terms.
+/// Returns the index of the pair `a <= b` among `count` items. Before it are the pairs with a smaller
+/// first index, `count + (count - 1) + ...` with `a` terms, and `b - a` pairs with the same one.
 pub(super) fn pair_index(a: usize, b: usize, count: usize) -> usize {
     a * count - a * a.saturating_sub(1) / 2 + b - a
 }
@@ -52,7 +52,7 @@ impl PairProducts {
     }
 
     /// Returns the sum for the factor pair `row` and the inputs `j` and `l`, which may be in either
-    /// order.
+    /// order: `P_lj` is the conjugate of `P_jl`.
     pub(super) fn entry(&self, row: usize, j: usize, l: usize) -> f64 {
         if j <= l {
             let column = pair_index(j, l, self.inputs);

@@ -173,7 +173,8 @@ fn columns_by_frequency(curves: &PairTable<Vec<Complex<f64>>>, points: usize) ->
     values
 }
 
-/// Returns the fixed weights, ordered like [`columns_by_frequency`].
+/// Returns the fixed weights, ordered like [`columns_by_frequency`], by the rules in
+/// [`WeightedCondition::new`].
 fn fixed_weights(
     problem: &CouplingProblem,
     condition: &CouplingCondition,

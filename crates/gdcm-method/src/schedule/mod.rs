@@ -8,7 +8,8 @@
 //! | `second_variable`, `second_term` | altitude or mass besides airspeed, and its contribution |
 //! | `scheduled_point`, `channel_schedule`, `lead_schedule` | fit and evaluation |
 //! | `interpolation_check`, `caution` | checks between the conditions |
-//! | `form_comparison`, `lead_degree_comparison`, `predictions` | residuals and leave-one-condition-out errors by form, and by degree of the signed delays |
+//! | `form_comparison`, `predictions` | residuals and leave-one-condition-out errors by form |
+//! | `lead_degree_comparison` | the same for the signed delays by degree |
 //! | `assessment` | J before and after a correction |
 //! | `coefficient_table` | coefficients with channel names |
 

@@ -1,4 +1,6 @@
 //! Cursor for sequential reading in the byte order of a file.
+//!
+//! A cursor is a copy: `let start = cursor;` keeps a position, to which reading can return.
 
 use crate::reading_budget::VariableFault;
 
@@ -50,6 +52,7 @@ enum Section {
 }
 
 impl<'b> Cursor<'b> {
+    /// Creates a cursor at the beginning of a file.
     pub(super) fn file(bytes: &'b [u8], order: ByteOrder) -> Self {
         Self {
             bytes,
@@ -124,6 +127,7 @@ impl<'b> Cursor<'b> {
         self.take(length.min(self.len())).map(drop)
     }
 
+    /// Reads the next 32-bit integer.
     pub(super) fn u32(&mut self) -> Result<u32, VariableFault> {
         let order = self.order;
         let bytes = self.array()?;
@@ -141,6 +145,7 @@ impl<'b> Cursor<'b> {
         VariableFault::damaged("", what, self.offset)
     }
 
+    /// Returns the error for a section that ends too early.
     fn too_short(&self) -> VariableFault {
         match self.section {
             Section::File => VariableFault::CutOff {

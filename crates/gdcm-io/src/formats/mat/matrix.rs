@@ -1,6 +1,21 @@
 //! Contents of arrays, which may contain further arrays.
 //!
-//! Source: "MAT-File Format", The MathWorks, "miMATRIX Format".
+//! Each array is an element (`element.rs`) whose data are a header (`array_header.rs`) and, by
+//! class, these elements:
+//!
+//! ```text
+//! numbers           real parts; imaginary parts if complex
+//! sparse matrix     row indices, column starts, real parts; imaginary parts if complex
+//! characters        character codes
+//! cell array        an array for each cell
+//! struct array      length of a field name, field names, then an array for each field of the
+//!                   first record, of the second, ...
+//! old-style object  class name, then as a struct array
+//! opaque array      class system, class name, then a reference to an object
+//! ```
+//!
+//! Source: "MAT-File Format", The MathWorks, "miMATRIX Format". It does not describe opaque arrays:
+//! for these, this reader follows the MatFileHandler, matio (Python) and MAT.jl projects.
 
 use std::collections::HashSet;
 
@@ -17,11 +32,20 @@ use crate::formats::variables::{Array, CellArray, Object, RECORD, StructArray, V
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Reads arrays within a budget.
+///
+/// In the methods, `contents` is the position in the data of an array, and `path` leads to the
+/// value that is being read.
 #[derive(Clone, Copy)]
 pub(super) struct ArrayReader<'a> {
     pub(super) budget: &'a ReadingBudget<'a>,
-    /// Objects of the file, or the reason why they cannot be read.
-    pub(super) objects: Result<&'a Subsystem, &'a str>,
+    pub(super) objects: &'a Objects,
+}
+
+/// Objects to which the opaque arrays of a file refer.
+pub(super) enum Objects {
+    Read(Subsystem),
+    /// The objects cannot be read, for this reason; references to them become opaque values.
+    Unread(String),
 }
 
 impl ArrayReader<'_> {
@@ -70,6 +94,7 @@ impl ArrayReader<'_> {
             .map_err(|fault| path.locate(fault))
     }
 
+    /// Reads the value as its class requires; errors do not yet contain `path`.
     fn value_of_class(
         &self,
         header: &ArrayHeader,
@@ -125,6 +150,7 @@ impl ArrayReader<'_> {
         };
         let rows = read_sizes(&Element::read(contents)?, self.budget)?;
         let starts = read_sizes(&Element::read(contents)?, self.budget)?;
+        // The starts end with the number of stored entries.
         let stored = starts.last().copied().unwrap_or(0);
         let re = self.sparse_numbers(header, stored, contents)?;
         let im = if header.is_complex {
@@ -240,11 +266,8 @@ impl ArrayReader<'_> {
             .take(count as u64, 2 * size_of::<Value>() as u64, "")
     }
 
-    /// Reads an opaque array after its name: an object, whose contents are stored in another part
-    /// of the file, or a value that cannot be read.
-    ///
-    /// The format is not published by The MathWorks; this reader follows the descriptions by the
-    /// MatFileHandler, matio (Python) and MAT.jl projects.
+    /// Reads an opaque array after its name: an object, whose contents are stored in the object
+    /// part of the file, an enumeration, or a value that cannot be read.
     fn opaque(
         &self,
         contents: &mut Cursor<'_>,
@@ -261,8 +284,8 @@ impl ArrayReader<'_> {
         let contents = self.nested_value(contents, path)?;
         let variable = path.text();
         let objects = match self.objects {
-            Ok(objects) => objects,
-            Err(why) => return Ok(unreadable(&class, why, &variable)),
+            Objects::Read(objects) => objects,
+            Objects::Unread(why) => return Ok(unreadable(&class, why, &variable)),
         };
         if let Some(reference) = Reference::from_value(&contents) {
             return objects.resolve(&reference, path, self.budget);

@@ -1,4 +1,8 @@
 //! Assembly of objects from the cells that hold their properties.
+//!
+//! An object becomes a record with its saved properties, followed by the class defaults of the
+//! properties that are not saved. References in the values of properties are replaced by the objects
+//! to which they point; `Assembly::open` prevents endless recursion.
 
 use std::collections::{HashMap, HashSet};
 
@@ -14,8 +18,11 @@ use crate::formats::variables::{
 };
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Property that holds the value that a class saves instead of an object.
+/// Property that holds the value that a class saves instead of an object; such an object has no
+/// defaults.
 const CREATED: &str = "any";
+/// All integers below this limit are exact as floats.
+const EXACT_BELOW: f64 = (1_u64 << 53) as f64;
 
 /// Assembles objects, including nested objects.
 pub(super) struct Assembly<'s> {
@@ -65,9 +72,10 @@ impl<'s> Assembly<'s> {
         if contains_itself {
             return Ok(unreadable(class, "it contains itself", &path.text()));
         }
-        let open = self.open.len();
+        let open_before = self.open.len();
         let records = self.records(reference, path);
-        self.open.truncate(open);
+        // After an error, the objects inside are still marked as open.
+        self.open.truncate(open_before);
         match records {
             Ok(records) => Ok(Value::Object(Object {
                 class: class.to_owned(),
@@ -117,6 +125,7 @@ impl<'s> Assembly<'s> {
     ) -> Result<StructArray, VariableFault> {
         let mut fields: Vec<(String, Vec<Value>)> = Vec::new();
         let mut field_indices: HashMap<String, usize> = HashMap::new();
+        // A property may be missing in some objects: its values are padded to one per object.
         for (at, &object) in reference.objects.iter().enumerate() {
             let record = path.step(Step::Record(at))?;
             let path = if reference.objects.len() == 1 {
@@ -207,6 +216,7 @@ impl<'s> Assembly<'s> {
         Ok(properties)
     }
 
+    /// Returns the value of a saved property.
     fn property(
         &mut self,
         property: &Property,
@@ -223,6 +233,7 @@ impl<'s> Assembly<'s> {
                 subsystem.directory.name(name).unwrap_or_default(),
             )),
             Content::Number(number) => {
+                // The directory stores logical values like integers.
                 let kind = if number <= 1 {
                     ElementKind::Logical
                 } else {
@@ -308,10 +319,9 @@ impl<'s> Assembly<'s> {
 
 /// Converts numbers to integers; `None` if any may have been rounded.
 fn exact_words(array: &Array) -> Option<Vec<u64>> {
-    const MOST: f64 = (1_u64 << 53) as f64;
     let mut words = Vec::with_capacity(array.re.len());
     for &number in &array.re {
-        if !(0.0..MOST).contains(&number) {
+        if !(0.0..EXACT_BELOW).contains(&number) {
             return None;
         }
         words.push(number as u64);

@@ -20,6 +20,7 @@ pub mod npy;
 pub(crate) mod octave;
 pub(crate) mod recorded_columns;
 pub(crate) mod sparse_matrix;
+pub(crate) mod stored_number;
 pub mod strides;
 pub mod text;
 pub mod variables;
@@ -183,7 +184,8 @@ fn ending_of(path: &Path) -> String {
 
 /// Receives the progress of reading files, and can cancel it.
 pub trait FolderProgress {
-    /// Receives the start of a file: its number, counted from 1, the number of files, and its name.
+    /// Called when the reading of a file begins, with its number, counted from 1, the number of
+    /// files, and its name.
     fn reading(&self, number: usize, count: usize, name: &str);
     /// Receives the memory taken for the contents of a file \[bytes\].
     fn taken(&self, _bytes: u64) {}

@@ -12,18 +12,19 @@
 
 use std::collections::BTreeMap;
 
-use gdcm_sysid::records::RecordColumn;
+use gdcm_sysid::records::{ModeSpan, RecordColumn};
 
 use crate::file_error::FileError;
 use crate::formats::logs::blackbox_frames::{
     FrameFields, HeaderNumbers, PackedBytes, Predecessors,
 };
-use crate::formats::logs::meanings::{BETAFLIGHT, give_meanings};
+use crate::formats::logs::meanings::{BETAFLIGHT, assign_documented_meanings};
 use crate::formats::logs::mode_spans::{mode_spans, modes_note};
 use crate::formats::recorded_columns::{Columns, MOST_RECORDS};
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
+/// Beginning of the header of a flight.
 const MARK: &[u8] = b"H Product:Blackbox";
 /// Maximum time step between main frames \[µs\]; a longer step marks damaged data.
 const LONGEST_STEP_US: i64 = 10_000_000;
@@ -31,6 +32,8 @@ const LONGEST_STEP_US: i64 = 10_000_000;
 const FEWEST_FRAMES: usize = 50;
 /// The number 1.0 in the header, as an IEEE 754 bit pattern.
 const ONE: &str = "0x3f800000";
+/// Letters of all frames.
+const FRAME_LETTERS: &[u8] = b"IPSGHE";
 /// Column names of the controller terms; an axis index follows in square brackets.
 const TERMS: [&str; 4] = ["axisP", "axisI", "axisD", "axisF"];
 
@@ -66,7 +69,7 @@ fn read_blackbox(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Columns
             format!("flight {}", index + 1)
         };
         match Flight::read(&bytes[begin..end], &name, budget)? {
-            Some(flight) => flights.push(flight.columns(name, budget)?),
+            Some(flight) => flights.push(flight.into_columns(name, budget)?),
             None => ignored += 1,
         }
     }
@@ -110,6 +113,7 @@ struct Heading {
 }
 
 impl Heading {
+    /// Reads the header of a flight, with which `bytes` begin.
     fn read(bytes: &[u8]) -> Self {
         let mut heading = Self::default();
         heading.read_lines(bytes);
@@ -132,6 +136,7 @@ impl Heading {
         heading
     }
 
+    /// Reads the lines `H key:value` up to the first frame.
     fn read_lines(&mut self, bytes: &[u8]) {
         while bytes[self.length..].starts_with(b"H ") {
             let rest = &bytes[self.length..];
@@ -157,6 +162,7 @@ impl Heading {
         first.parse().unwrap_or(0)
     }
 
+    /// Returns the descriptions of the fields in frames with the letter `kind`.
     fn fields(&self, kind: char) -> FrameFields {
         FrameFields {
             names: self.field_cells(kind, "name").map(str::to_owned).collect(),
@@ -200,7 +206,7 @@ impl Heading {
     /// frame, or a predicted frame without a predecessor.
     fn parse(&self, kind: u8, bytes: &mut PackedBytes<'_>, before: &Predecessors) -> Option<Frame> {
         if kind == b'E' {
-            return event(bytes);
+            return parse_event(bytes);
         }
         let fields = self.frame(kind)?;
         if kind == b'P' && before.last.is_none() {
@@ -219,26 +225,43 @@ impl Heading {
 
 /// A decoded frame.
 enum Frame {
+    /// Values of an intra or a predicted frame.
     Main(Vec<i64>),
+    /// Values of a slow frame.
     Slow(Vec<i64>),
+    /// Frame whose contents are not used.
     Other,
+    /// Event that ends the log.
     End,
 }
 
-/// Parses an event frame, whose length depends on the event type.
-fn event(bytes: &mut PackedBytes<'_>) -> Option<Frame> {
+/// Numbers of the event types.
+mod event_type {
+    pub(super) const SYNC_BEEP: u8 = 0;
+    pub(super) const INFLIGHT_ADJUSTMENT: u8 = 13;
+    pub(super) const LOGGING_RESUME: u8 = 14;
+    pub(super) const DISARM: u8 = 15;
+    pub(super) const FLIGHT_MODE: u8 = 30;
+    pub(super) const IMU_FAILURE: u8 = 40;
+    pub(super) const LOG_END: u8 = 255;
+}
+
+/// Parses an event frame, whose length depends on the event type. The contents of events are not
+/// used.
+fn parse_event(bytes: &mut PackedBytes<'_>) -> Option<Frame> {
     match bytes.byte()? {
-        // Beep, disarming and inertial unit failure: one integer.
-        0 | 15 | 40 => {
+        // One integer.
+        event_type::SYNC_BEEP | event_type::DISARM | event_type::IMU_FAILURE => {
             bytes.unsigned()?;
         }
-        // Resumed logging and change of flight mode: two integers.
-        14 | 30 => {
+        // Two integers.
+        event_type::LOGGING_RESUME | event_type::FLIGHT_MODE => {
             bytes.unsigned()?;
             bytes.unsigned()?;
         }
-        // In-flight adjustment: a float of four bytes or a packed integer.
-        13 => {
+        // The function that is adjusted, then a float of four bytes if its highest bit is set,
+        // otherwise a packed integer.
+        event_type::INFLIGHT_ADJUSTMENT => {
             if bytes.byte()? & 0x80 == 0 {
                 bytes.signed()?;
             } else {
@@ -247,7 +270,7 @@ fn event(bytes: &mut PackedBytes<'_>) -> Option<Frame> {
                 }
             }
         }
-        255 => {
+        event_type::LOG_END => {
             for letter in b"End of log" {
                 if bytes.byte() != Some(*letter) {
                     return None;
@@ -264,10 +287,11 @@ fn event(bytes: &mut PackedBytes<'_>) -> Option<Frame> {
 struct Flight {
     heading: Heading,
     /// Index of the field "time".
-    time: Option<usize>,
+    time_field: Option<usize>,
     /// Values from the main frames, one list for each field.
     values: Vec<Vec<f64>>,
     modes: Vec<ModeSample>,
+    /// Number of damaged frames.
     damaged: usize,
 }
 
@@ -303,7 +327,7 @@ impl Flight {
         let version = heading.value("Data version");
         match heading.frame(b'I') {
             Some(fields) if version == "2" => Ok(Self {
-                time: fields.names.iter().position(|field| field == "time"),
+                time_field: fields.names.iter().position(|field| field == "time"),
                 values: vec![Vec::new(); fields.names.len()],
                 modes: Vec::new(),
                 damaged: 0,
@@ -323,28 +347,30 @@ impl Flight {
         }
     }
 
+    /// Reads the frames in `bytes`, which begin with the header. At a byte that begins no valid
+    /// frame, reading continues at the next byte.
     fn read_frames(
         &mut self,
         bytes: &[u8],
         name: &str,
         budget: &ReadingBudget<'_>,
     ) -> Result<(), VariableFault> {
-        let count = self.values.len();
+        let field_count = self.values.len();
         let mut before = Predecessors::default();
         let mut at = self.heading.length;
         while at < bytes.len() {
-            budget.work(count as u64, name)?;
+            budget.work(field_count as u64, name)?;
             let mut packed = PackedBytes::new(bytes, at + 1);
             let mut frame = self.heading.parse(bytes[at], &mut packed, &before);
             // A frame is damaged if no frame letter follows it.
             let next = bytes.get(packed.at);
-            if next.is_some_and(|next| !b"IPSGHE".contains(next)) {
+            if next.is_some_and(|next| !FRAME_LETTERS.contains(next)) {
                 frame = None;
             }
             match frame {
                 Some(Frame::End) => break,
                 Some(Frame::Main(values)) if self.continues(&values, &before) => {
-                    budget.take(count as u64, 8, name)?;
+                    budget.take(field_count as u64, 8, name)?;
                     for (column, value) in self.values.iter_mut().zip(&values) {
                         column.push(*value as f64);
                     }
@@ -356,11 +382,12 @@ impl Flight {
                     at = packed.at;
                 }
                 Some(Frame::Slow(values)) => {
-                    self.take_modes(&values, &before, name, budget)?;
+                    self.add_mode_sample(&values, &before, name, budget)?;
                     at = packed.at;
                 }
                 Some(Frame::Other) => at = packed.at,
                 Some(Frame::Main(_)) | None => {
+                    // Count a damaged frame once, not at each byte up to the next intra frame.
                     if before.last.is_some() {
                         self.damaged += 1;
                     }
@@ -375,7 +402,7 @@ impl Flight {
     /// Returns whether a main frame is no earlier than its predecessor and at most
     /// `LONGEST_STEP_US` later; true for frames without a time or a predecessor.
     fn continues(&self, frame: &[i64], before: &Predecessors) -> bool {
-        if let Some(time) = self.time
+        if let Some(time) = self.time_field
             && let Some(last) = &before.last
         {
             return (0..=LONGEST_STEP_US).contains(&(frame[time] - last[time]));
@@ -384,14 +411,14 @@ impl Flight {
     }
 
     /// Stores the mode flags of a slow frame with the time of the preceding main frame.
-    fn take_modes(
+    fn add_mode_sample(
         &mut self,
         slow: &[i64],
         before: &Predecessors,
         name: &str,
         budget: &ReadingBudget<'_>,
     ) -> Result<(), VariableFault> {
-        if let Some(time) = self.time
+        if let Some(time) = self.time_field
             && let Some(flags) = slow.first()
             && let Some(last) = &before.last
         {
@@ -406,7 +433,11 @@ impl Flight {
 
     /// Returns the columns of the fields, and for each axis a column with the sum of the controller
     /// terms.
-    fn columns(self, name: String, budget: &ReadingBudget<'_>) -> Result<Columns, VariableFault> {
+    fn into_columns(
+        self,
+        name: String,
+        budget: &ReadingBudget<'_>,
+    ) -> Result<Columns, VariableFault> {
         let mut notes =
             vec!["a Betaflight log; axisSum is the sum of the controller terms".to_owned()];
         let names = &self.heading.frames[&b'I'].names;
@@ -427,7 +458,7 @@ impl Flight {
         }
         // The documented unit of the rates, deg/s, requires a scale of 1.
         if self.heading.value("gyro_scale") == ONE {
-            notes.extend(give_meanings(&mut columns, &BETAFLIGHT));
+            notes.extend(assign_documented_meanings(&mut columns, &BETAFLIGHT));
         } else {
             notes.push(
                 "gyro_scale is not 1: the unit of gyroADC is unknown, so no channels are proposed"
@@ -440,13 +471,7 @@ impl Flight {
                 self.damaged
             ));
         }
-        let time_s: Vec<f64> = self
-            .modes
-            .iter()
-            .map(|sample| sample.time_us * 1e-6)
-            .collect();
-        let flags = self.modes.iter().map(|sample| sample.flags);
-        let modes = mode_spans(&time_s, flags, |flags| Some(mode_name(flags).to_owned()));
+        let modes = flight_modes(&self.modes);
         notes.extend(modes_note(&modes));
         Ok(Columns {
             notes,
@@ -479,13 +504,23 @@ fn controller_sum(
     Ok(Some(RecordColumn::new(format!("axisSum[{axis}]"), sum)))
 }
 
-/// Returns the flight mode in `flightModeFlags`: angle if bit 1 (counted from 0) is set, else
-/// horizon if bit 2 is set, else acro.
+/// Returns the time spans of the flight modes.
+fn flight_modes(samples: &[ModeSample]) -> Vec<ModeSpan> {
+    let time_s: Vec<f64> = samples.iter().map(|sample| sample.time_us * 1e-6).collect();
+    let flags = samples.iter().map(|sample| sample.flags);
+    mode_spans(&time_s, flags, |flags| Some(mode_name(flags).to_owned()))
+}
+
+/// Returns the flight mode in `flightModeFlags`.
 fn mode_name(flags: f64) -> &'static str {
+    /// Bit of the mode in which the stick sets the attitude.
+    const ANGLE: u32 = 1 << 1;
+    /// Bit of the mode between angle and acro.
+    const HORIZON: u32 = 1 << 2;
     let flags = flags as u32;
-    if flags & 2 != 0 {
+    if flags & ANGLE != 0 {
         "angle"
-    } else if flags & 4 != 0 {
+    } else if flags & HORIZON != 0 {
         "horizon"
     } else {
         "acro"

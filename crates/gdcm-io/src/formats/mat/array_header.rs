@@ -77,7 +77,7 @@ impl ArrayHeader {
         };
         // Reject a shape whose nonzero dimensions have a product that overflows: no budget is so
         // large.
-        if strides::count(&shape).is_none() {
+        if strides::element_count(&shape).is_none() {
             budget.take(u64::MAX, 1, "")?;
         }
         Ok(ArrayHeader {

@@ -10,7 +10,7 @@
 //! Source: "MAT-File Format", The MathWorks, "Data Element Format".
 
 use crate::formats::mat::cursor::{ByteOrder, Cursor};
-use crate::formats::strides::{NumberClass, StoredNumber};
+use crate::formats::stored_number::{NumberClass, StoredNumber};
 use crate::reading_budget::VariableFault;
 
 /// Length of the tag of an element that is not small \[bytes\].

@@ -19,7 +19,7 @@ use crate::formats::mat::cursor::{ByteOrder, Cursor};
 use crate::formats::mat::element::decode_name;
 use crate::formats::mat::value_path::ValuePath;
 use crate::formats::sparse_matrix::SparseEntries;
-use crate::formats::strides::{NumberClass, StoredNumber};
+use crate::formats::stored_number::{NumberClass, StoredNumber};
 use crate::formats::variables::{Array, Value, Variable};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 

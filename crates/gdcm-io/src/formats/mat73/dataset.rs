@@ -5,7 +5,7 @@ use hdf5_pure::{Dataset, Datatype, ReferenceType};
 use crate::formats::mat73::chunks::check_chunks;
 use crate::formats::mat73::library_fault::{damaged, library_fault};
 use crate::formats::mat73::number_type::NumberType;
-use crate::formats::strides::{Places, count, matrix_shape};
+use crate::formats::strides::{Places, element_count, matrix_shape};
 use crate::formats::variables::{Array, ElementKind};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
@@ -65,7 +65,7 @@ impl Elements {
             .element_size()
             .map_err(|error| library_fault(&error, path))?;
         let sides = sides_in_memory(&file_sides).ok_or_else(|| too_many_elements(path))?;
-        let count = count(&sides).ok_or_else(|| too_many_elements(path))?;
+        let count = element_count(&sides).ok_or_else(|| too_many_elements(path))?;
         budget.take(count as u64, size, path)?;
         check_chunks(dataset, &sides, size, path, budget)?;
         let bytes = dataset

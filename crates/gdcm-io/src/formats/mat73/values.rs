@@ -9,7 +9,7 @@ use crate::formats::mat73::dataset::{Elements, Order};
 use crate::formats::mat73::library_fault::{damaged, library_fault};
 use crate::formats::mat73::number_type::NumberType;
 use crate::formats::sparse_matrix::CompressedColumns;
-use crate::formats::strides::count;
+use crate::formats::strides::element_count;
 use crate::formats::variables::{Array, CellArray, ElementKind, StructArray, TextArray, Value};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
@@ -111,7 +111,7 @@ pub(super) fn empty_value(
     let Some(shape) = stored_shape(elements, path, budget)? else {
         return Err(damaged(path, "the shape of an empty array is wrong"));
     };
-    if shape.len() < 2 || count(&shape) != Some(0) {
+    if shape.len() < 2 || element_count(&shape) != Some(0) {
         return Err(damaged(path, "the shape of an empty array is wrong"));
     }
     Ok(match attributes.class_name() {

@@ -2,7 +2,8 @@
 
 use serde_json::Value as Json;
 
-use crate::formats::strides::{NumberClass, StoredNumber, count};
+use crate::formats::stored_number::{NumberClass, StoredNumber};
+use crate::formats::strides::element_count;
 use crate::reading_budget::VariableFault;
 
 /// Type of an array element, given by `dtype.descr` of NumPy.
@@ -169,7 +170,7 @@ impl Field {
 
     /// Returns the offset of the byte after the field; `None` on overflow.
     fn end(&self) -> Option<usize> {
-        let length = count(&self.shape)?.checked_mul(self.element.size())?;
+        let length = element_count(&self.shape)?.checked_mul(self.element.size())?;
         self.offset.checked_add(length)
     }
 }

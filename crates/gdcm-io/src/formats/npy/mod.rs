@@ -12,7 +12,8 @@ mod writer;
 
 use crate::formats::npy::element::{Element, Field};
 use crate::formats::npy::header::{Header, MAGIC};
-use crate::formats::strides::{Places, StoredNumber, count, matrix_shape};
+use crate::formats::stored_number::StoredNumber;
+use crate::formats::strides::{Places, element_count, matrix_shape};
 use crate::formats::variables::{
     Array, ElementKind, RECORD, StructArray, TextArray, Value, Variable,
 };
@@ -47,7 +48,8 @@ pub fn read_npy(
     budget: &ReadingBudget<'_>,
 ) -> Result<Vec<Variable>, VariableFault> {
     let header = Header::parse(bytes, name, budget)?;
-    let length = count(&header.shape).and_then(|count| count.checked_mul(header.element.size()));
+    let length =
+        element_count(&header.shape).and_then(|count| count.checked_mul(header.element.size()));
     let Some(length) = length else {
         return Err(too_many_elements(name));
     };

@@ -3,7 +3,7 @@
 
 use crate::formats::octave::form::{Element, Form, NumberParts};
 use crate::formats::sparse_matrix::SparseEntries;
-use crate::formats::strides::{Places, count};
+use crate::formats::strides::{Places, element_count};
 use crate::formats::variables::{Array, CellArray, Object, StructArray, TextArray, Value};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
@@ -116,7 +116,7 @@ impl Assembler<'_> {
         size: u64,
         variable: &str,
     ) -> Result<usize, VariableFault> {
-        let Some(count) = count(shape) else {
+        let Some(count) = element_count(shape) else {
             return Err(self
                 .parts
                 .fault(variable, "the number of elements is too large"));

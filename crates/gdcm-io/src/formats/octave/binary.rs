@@ -6,7 +6,7 @@ use crate::formats::octave::assembly::{
 };
 use crate::formats::octave::form::{Element, Form, NumberParts, StorageType};
 use crate::formats::sparse_matrix::{CompressedColumns, SparseEntries};
-use crate::formats::strides::{NumberClass, StoredNumber};
+use crate::formats::stored_number::{NumberClass, StoredNumber};
 use crate::formats::variables::{TextArray, Value, Variable};
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};

@@ -7,7 +7,7 @@
 use crate::formats::octave::assembly::{Range, text_rows};
 use crate::formats::octave::form::Form;
 use crate::formats::sparse_matrix::CompressedColumns;
-use crate::formats::strides::{Places, count};
+use crate::formats::strides::{Places, element_count};
 use crate::formats::variables::{
     Array, CellArray, ElementKind, Object, StructArray, TextArray, Value, Variable,
 };
@@ -195,7 +195,7 @@ impl<'v> GroupParts<'v> {
                 values.push(convert_group(member, &inner, self.budget)?);
             }
         }
-        if count(&shape) != Some(values.len()) {
+        if element_count(&shape) != Some(values.len()) {
             return Err(self.damaged(
                 "the number of values in a cell array does not match its \
                 dimensions",

@@ -13,6 +13,9 @@ use crate::formats::strides::element_count;
 use crate::formats::variables::{Array, CellArray, ElementKind, StructArray, TextArray, Value};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
+/// Memory of the shape and the number in an array with a single number \[bytes\].
+const NUMBER_MEMORY: u64 = 24;
+
 /// Converts a character array, stored as UTF-16 codes, to a string for each row.
 pub(super) fn character_rows(
     codes: &Array,
@@ -42,7 +45,7 @@ pub(super) fn strings(
             budget.take(count as u64, u64::from(*size), path)?;
             elements
                 .places()
-                .map(|place| decode_fixed_text(elements.at(place), padding))
+                .map(|place| decode_fixed_text(elements.bytes_at(place), padding))
                 .collect()
         }
         Datatype::VariableLength {
@@ -157,6 +160,7 @@ fn stored_shape(
         .collect())
 }
 
+/// Returns an array without elements.
 fn empty_array(shape: Vec<usize>, kind: ElementKind) -> Array {
     Array {
         shape,
@@ -178,12 +182,16 @@ pub(super) fn compound_records(
     };
     let mut fields = Vec::with_capacity(members.len());
     for member in members {
-        // Memory of a value, its shape and its number.
-        let size = size_of::<Value>() as u64 + 24;
+        let size = size_of::<Value>() as u64 + NUMBER_MEMORY;
         budget.take(elements.count() as u64, size, path)?;
         let mut values = Vec::new();
         for place in elements.places() {
-            values.push(member_value(member, elements.at(place), path, budget)?);
+            values.push(member_value(
+                member,
+                elements.bytes_at(place),
+                path,
+                budget,
+            )?);
         }
         fields.push((member.name.clone(), values));
     }
@@ -221,12 +229,18 @@ fn member_value(
     ))
 }
 
+/// Dataset or group in a group.
+pub(super) struct Member {
+    pub(super) name: String,
+    pub(super) object: Object,
+}
+
 /// Group with a sparse matrix in compressed sparse column format (`MATLAB_sparse`).
 pub(super) struct SparseGroup<'g> {
     pub(super) height: u64,
     pub(super) is_logical: bool,
     /// Members of the group: row indices `ir`, column starts `jc` and numbers `data`.
-    pub(super) members: &'g [(String, Object)],
+    pub(super) members: &'g [Member],
     pub(super) path: &'g str,
     pub(super) budget: &'g ReadingBudget<'g>,
 }
@@ -295,16 +309,18 @@ impl SparseGroup<'_> {
         ))
     }
 
+    /// Reads the dataset called `name`; `None` if the group has no such dataset.
     fn member(&self, name: &str) -> Result<Option<Elements>, VariableFault> {
-        let found = self.members.iter().find(|(member, _)| member == name);
-        match found {
-            Some((_, Object::Dataset(dataset))) => {
+        let found = self.members.iter().find(|member| member.name == name);
+        match found.map(|member| &member.object) {
+            Some(Object::Dataset(dataset)) => {
                 Elements::read(dataset, Order::Columns, self.path, self.budget).map(Some)
             }
             _ => Ok(None),
         }
     }
 
+    /// Returns the error for a sparse matrix whose parts do not match.
     fn contradiction(&self) -> VariableFault {
         damaged(self.path, "the sparse matrix is inconsistent")
     }

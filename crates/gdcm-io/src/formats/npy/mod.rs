@@ -22,6 +22,10 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 
 pub use crate::formats::npy::writer::write_npz;
 
+/// Offset of the length of the header text in a file \[bytes\], used as the position of errors in
+/// the header.
+const TEXT_LENGTH_AT: usize = 8;
+
 /// Importer of NumPy arrays.
 pub(crate) const NPY: Importer = Importer {
     name: "a NumPy array",
@@ -53,7 +57,7 @@ pub fn read_npy(
     let Some(length) = length else {
         return Err(too_many_elements(name));
     };
-    let data = &bytes[header.length..];
+    let data = &bytes[header.elements_at..];
     if data.len() < length {
         return Err(VariableFault::cut_off(name, bytes.len()));
     }
@@ -78,10 +82,14 @@ pub fn read_npy(
 }
 
 fn too_many_elements(name: &str) -> VariableFault {
-    VariableFault::damaged(name, "the number of elements in the shape is too large", 8)
+    VariableFault::damaged(
+        name,
+        "the number of elements in the shape is too large",
+        TEXT_LENGTH_AT as u64,
+    )
 }
 
-/// Array elements as stored in a file.
+/// Array elements as stored: those of the file, or those of a field within a record.
 struct StoredArray<'a> {
     element: &'a Element,
     shape: &'a [usize],
@@ -90,8 +98,8 @@ struct StoredArray<'a> {
 }
 
 impl<'a> StoredArray<'a> {
-    /// Returns the bytes of the element at a position in the file.
-    fn at(&self, place: usize) -> &'a [u8] {
+    /// Returns the bytes of the element at a place, counted in elements in stored order.
+    fn bytes_at(&self, place: usize) -> &'a [u8] {
         let size = self.element.size();
         self.data
             .get(place * size..(place + 1) * size)
@@ -106,6 +114,7 @@ struct ArrayReader<'r> {
 }
 
 impl ArrayReader<'_> {
+    /// Decodes an array, or the field of a record.
     fn value(&self, stored: &StoredArray<'_>) -> Result<Value, VariableFault> {
         let count = self.places(stored)?.len() as u64;
         let shape = matrix_shape(stored.shape);
@@ -152,7 +161,7 @@ impl ArrayReader<'_> {
         }
     }
 
-    /// Returns the position of each element in the file, in column-major order.
+    /// Returns the place of each element as stored, in column-major order.
     fn places(&self, stored: &StoredArray<'_>) -> Result<Places, VariableFault> {
         let places = if stored.column_major {
             Places::column_major(stored.shape)
@@ -173,7 +182,7 @@ impl ArrayReader<'_> {
         let mut numbers = Vec::with_capacity(places.len());
         for (at, place) in places.enumerate() {
             self.budget.go_on(at)?;
-            let bytes = stored.at(place).get(offset..).unwrap_or_default();
+            let bytes = stored.bytes_at(place).get(offset..).unwrap_or_default();
             numbers.push(number.decode(bytes));
         }
         Ok(numbers)
@@ -191,7 +200,7 @@ impl ArrayReader<'_> {
         let mut texts = Vec::new();
         for (at, place) in places.enumerate() {
             self.budget.go_on(at)?;
-            texts.push(decode(stored.at(place)));
+            texts.push(decode(stored.bytes_at(place)));
         }
         Ok(texts)
     }
@@ -207,12 +216,17 @@ impl ArrayReader<'_> {
         self.budget.take(places.len() as u64, size, self.name)?;
         let mut values = Vec::new();
         for place in places {
-            values.push(self.value(&StoredArray {
-                element: &field.element,
-                shape: &field.shape,
-                column_major: false,
-                data: records.at(place).get(field.offset..).unwrap_or_default(),
-            })?);
+            values.push(
+                self.value(&StoredArray {
+                    element: &field.element,
+                    shape: &field.shape,
+                    column_major: false,
+                    data: records
+                        .bytes_at(place)
+                        .get(field.offset..)
+                        .unwrap_or_default(),
+                })?,
+            );
         }
         Ok(values)
     }

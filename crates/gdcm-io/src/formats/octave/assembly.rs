@@ -22,12 +22,14 @@ pub(super) struct ValueHeading {
     pub(super) type_name: String,
 }
 
-/// Reads the consecutive parts of values in one of the encodings; `variable` is the name of the
-/// value in errors.
+/// Reads the consecutive parts of values in one of the encodings, text or binary. Each method reads
+/// the part at the current position and moves past it; `variable` is the name of the value in
+/// errors.
 pub(super) trait Parts {
     fn budget(&self) -> &ReadingBudget<'_>;
     /// Reads the next name and type.
     fn heading(&mut self, variable: &str) -> Result<ValueHeading, VariableFault>;
+    /// Reads the dimensions of an array; there are at least two.
     fn sides(&mut self, variable: &str) -> Result<Sides, VariableFault>;
     /// Reads `count` elements; each complex element yields two numbers.
     fn numbers(
@@ -36,12 +38,15 @@ pub(super) trait Parts {
         count: usize,
         variable: &str,
     ) -> Result<Vec<f64>, VariableFault>;
+    /// Reads the dimensions and the nonzero elements of a sparse matrix.
     fn sparse(&mut self, element: Element, variable: &str) -> Result<SparseEntries, VariableFault>;
+    /// Reads the dimensions and the rows of a character array.
     fn text(&mut self, variable: &str) -> Result<TextArray, VariableFault>;
     /// Reads the number of fields in a struct or an object.
     fn field_count(&mut self, form: Form, variable: &str) -> Result<usize, VariableFault>;
+    /// Reads the class name of an object.
     fn class(&mut self, variable: &str) -> Result<String, VariableFault>;
-    /// Returns an error at this position in the file.
+    /// Returns the error `what` at the current position in the file.
     fn fault(&self, variable: &str, what: &str) -> VariableFault;
 }
 
@@ -60,6 +65,7 @@ struct Assembler<'p> {
 }
 
 impl Assembler<'_> {
+    /// Reads the parts of a value in the order that its form requires.
     fn value(
         &mut self,
         type_name: &str,
@@ -127,6 +133,7 @@ impl Assembler<'_> {
 
     fn matrix(&mut self, element: Element, variable: &str) -> Result<Array, VariableFault> {
         let Sides { shape, by_rows } = self.parts.sides(variable)?;
+        // Numbers in an element: real and imaginary part alternate.
         let width = if element.is_complex { 2 } else { 1 };
         let count = self.take_elements(&shape, 16 * width as u64, variable)?;
         let mut numbers = self.parts.numbers(element, count, variable)?;
@@ -232,8 +239,8 @@ impl Range {
         variable: &str,
         budget: &ReadingBudget<'_>,
     ) -> Result<Array, VariableFault> {
-        // The factor includes the limit even if rounding puts the last step just short of it, as in
-        // Octave.
+        // Number of steps = floor((limit - first) / step). The last factor includes the limit even
+        // if rounding puts the last step just short of it, as in Octave.
         let steps = ((self.limit - self.first) / self.step * (1.0 + f64::EPSILON)).floor();
         let length = if steps >= 0.0 {
             (steps as usize).saturating_add(1)
@@ -255,6 +262,7 @@ pub(super) fn text_rows(letters: &[u8], height: usize) -> TextArray {
     }
     let mut texts = Vec::new();
     for row in 0..height {
+        // The letters of a row are `height` apart.
         let letters: Vec<u8> = letters.iter().skip(row).step_by(height).copied().collect();
         texts.push(String::from_utf8_lossy(&letters).into_owned());
     }

@@ -1,5 +1,14 @@
-//! GNU Octave's `save -binary` format: after "Octave-1-L" (little endian) or "Octave-1-B" (big
-//! endian), values whose names and parts are preceded by their lengths.
+//! GNU Octave's `save -binary` format: a header, followed by the values.
+//!
+//! ```text
+//! header   "Octave-1-L" (little endian) or "Octave-1-B" (big endian), float format (1 byte)
+//! value    name, documentation, 1 if global (1 byte), FF, type name, then parts that depend on the
+//!          type
+//! string   length [bytes] (32 bits), characters; also for each name
+//! matrix   minus the number of dimensions (32 bits), dimensions, numbers; or the numbers of rows and
+//!          columns, numbers
+//! floats   a byte with the storage type, then the numbers
+//! ```
 
 use crate::formats::octave::assembly::{
     Parts, Sides, ValueHeading, read_value, text_rows, texts_in_pages,
@@ -15,7 +24,7 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 const MAGIC: &[u8] = b"Octave-1-";
 /// Length of signature, byte order and float format \[bytes\].
 const HEADER: usize = MAGIC.len() + 2;
-/// Byte that announces a type name.
+/// Byte that announces a type name, instead of a type number as in old versions.
 const NAMED_TYPE: u8 = 0xff;
 
 /// Importer of files written by `save -binary`.
@@ -77,6 +86,7 @@ impl<'b> BinaryReader<'b> {
         Ok(found)
     }
 
+    /// Reads the next signed 32-bit integer.
     fn int(&mut self, variable: &str) -> Result<i32, VariableFault> {
         let bytes = self.take(4, variable)?.try_into().unwrap_or_default();
         Ok(if self.big_endian {
@@ -86,12 +96,13 @@ impl<'b> BinaryReader<'b> {
         })
     }
 
+    /// Reads a length or an index, which must not be negative.
     fn length(&mut self, variable: &str) -> Result<usize, VariableFault> {
         let length = self.int(variable)?;
         usize::try_from(length).map_err(|_| self.fault(variable, "a length is negative"))
     }
 
-    /// Reads `count` lengths or indices, which must not be negative.
+    /// Reads `count` lengths or indices.
     fn lengths(&mut self, count: usize, variable: &str) -> Result<Vec<usize>, VariableFault> {
         let mut lengths = Vec::new();
         for _ in 0..count {
@@ -100,14 +111,15 @@ impl<'b> BinaryReader<'b> {
         Ok(lengths)
     }
 
+    /// Reads a string, which is preceded by its length.
     fn string(&mut self, variable: &str) -> Result<String, VariableFault> {
         let length = self.length(variable)?;
         Ok(String::from_utf8_lossy(self.take(length, variable)?).into_owned())
     }
 
-    /// Returns the number type as stored: floats may be stored as integers or as shorter floats if
-    /// nothing is lost.
-    fn number_type(
+    /// Returns the number type as stored. For floats, which may be stored as integers or as shorter
+    /// floats if nothing is lost, reads the byte that gives the type.
+    fn read_number_type(
         &mut self,
         element: Element,
         variable: &str,
@@ -186,7 +198,7 @@ impl Parts for BinaryReader<'_> {
         count: usize,
         variable: &str,
     ) -> Result<Vec<f64>, VariableFault> {
-        let number_type = self.number_type(element, variable)?;
+        let number_type = self.read_number_type(element, variable)?;
         let count = if element.is_complex {
             count.saturating_mul(2)
         } else {

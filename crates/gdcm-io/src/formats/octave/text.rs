@@ -1,5 +1,16 @@
-//! GNU Octave's `save -text` format: lines such as `# name: A`, `# type: matrix` and `# rows: 8`,
-//! followed by numbers.
+//! GNU Octave's `save -text` format: lines with keys, followed by numbers.
+//!
+//! ```text
+//! # name: A
+//! # type: matrix
+//! # rows: 2
+//! # columns: 3
+//!  1 2 3
+//!  4 5 6
+//! ```
+//!
+//! Matrices are written row by row; arrays with other dimensions have `# ndims: 3`, a line with the
+//! dimensions, and their numbers in column-major order.
 
 use crate::file_error::FileError;
 use crate::formats::octave::assembly::{Parts, Sides, ValueHeading, read_value, texts_in_pages};
@@ -72,6 +83,7 @@ struct TextReader<'t> {
 }
 
 impl<'t> TextReader<'t> {
+    /// Returns the text from the current position on.
     fn rest(&self) -> &'t str {
         &self.text[self.at..]
     }
@@ -144,12 +156,14 @@ impl<'t> TextReader<'t> {
         Ok(&rest[..length])
     }
 
+    /// Reads the next word as a non-negative integer.
     fn index(&mut self, variable: &str) -> Result<usize, VariableFault> {
         let word = self.word(variable)?;
         word.parse()
             .map_err(|_| self.fault(variable, "expected a whole number"))
     }
 
+    /// Parses a word as a number.
     fn number(&self, word: &str, variable: &str) -> Result<f64, VariableFault> {
         // Octave writes NA for a missing number.
         if word == "NA" {
@@ -235,6 +249,7 @@ impl Parts for TextReader<'_> {
         count: usize,
         variable: &str,
     ) -> Result<Vec<f64>, VariableFault> {
+        // Skip the line before the three numbers of a range.
         if self.has_key("base, limit") {
             self.line();
         }
@@ -319,6 +334,7 @@ impl Parts for TextReader<'_> {
     }
 
     fn fault(&self, variable: &str, what: &str) -> VariableFault {
+        // The line of the byte before the current position.
         let read = &self.text.as_bytes()[..self.at.saturating_sub(1).min(self.text.len())];
         let line = 1 + read.iter().filter(|byte| **byte == b'\n').count();
         VariableFault::line(variable, line, what)

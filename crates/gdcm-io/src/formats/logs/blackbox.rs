@@ -15,6 +15,7 @@ use std::collections::BTreeMap;
 use gdcm_sysid::records::{ModeSpan, RecordColumn};
 
 use crate::file_error::FileError;
+use crate::formats::counted::counted;
 use crate::formats::logs::blackbox_frames::{
     FrameFields, HeaderNumbers, PackedBytes, Predecessors,
 };
@@ -82,8 +83,7 @@ fn read_blackbox(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Columns
     }
     if ignored > 0 {
         flights[0].notes.push(format!(
-            "{ignored} of {count} flights in the file are omitted: they have fewer than \
-            {FEWEST_FRAMES} frames"
+            "{ignored} of {count} flights in the file omitted: fewer than {FEWEST_FRAMES} frames"
         ));
     }
     Ok(flights)
@@ -467,8 +467,8 @@ impl Flight {
         }
         if self.damaged > 0 {
             notes.push(format!(
-                "{} damaged frames: the frames up to the next intra frame are omitted",
-                self.damaged
+                "{}: the frames up to the next intra frame are omitted",
+                counted(self.damaged, "damaged frame")
             ));
         }
         let modes = flight_modes(&self.modes);

@@ -14,6 +14,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use crate::file_error::FileError;
+use crate::formats::counted::counted;
 use crate::formats::logs::array;
 use crate::formats::logs::dataflash_messages::{
     FieldKind, Layouts, MessageLayout, SampleFields, Topics,
@@ -76,7 +77,8 @@ fn read_dataflash(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, V
     let mut notes =
         vec!["an ArduPilot log; time in seconds since the start of the autopilot".to_owned()];
     if skipped > 0 {
-        notes.push(format!("{skipped} bytes between messages are skipped"));
+        let bytes = counted(skipped, "byte");
+        notes.push(format!("{bytes} between messages skipped"));
     }
     topics.into_columns(notes)
 }

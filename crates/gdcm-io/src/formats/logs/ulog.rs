@@ -16,6 +16,7 @@ use std::ops::Range;
 use gdcm_sysid::records::ModeSpan;
 
 use crate::file_error::FileError;
+use crate::formats::counted::counted;
 use crate::formats::logs::array;
 use crate::formats::logs::meanings::{PX4, assign_documented_meanings};
 use crate::formats::logs::mode_spans::{mode_spans, modes_note};
@@ -270,14 +271,14 @@ impl<'b> Messages<'b> {
         if self.dropouts > 0 {
             let lost_s = self.lost_ms as f64 * 1e-3;
             notes.push(format!(
-                "{} dropouts of the logger, {lost_s:.2} s in total, leave gaps",
-                self.dropouts
+                "{} of the logger, {lost_s:.2} s in total: the columns have gaps",
+                counted(self.dropouts, "dropout")
             ));
         }
         if self.unread > 0 {
             notes.push(format!(
-                "{} messages are omitted: they have no topic or are too short",
-                self.unread
+                "{} omitted: no topic, or too short for their topic",
+                counted(self.unread, "message")
             ));
         }
         if is_cut {
@@ -410,7 +411,8 @@ mod tests {
             columns
                 .notes
                 .iter()
-                .any(|note| note == "1 dropouts of the logger, 0.25 s in total, leave gaps")
+                .any(|note| note
+                    == "1 dropout of the logger, 0.25 s in total: the columns have gaps")
         );
         let modes: Vec<&str> = columns
             .modes

@@ -1,5 +1,6 @@
 //! Values in MATLAB or Octave statements: numbers, strings, matrices, cell arrays and models.
 
+use crate::formats::counted::counted;
 use crate::formats::strides::first_index_fastest;
 use crate::formats::text::literal_functions::{Call, Function};
 use crate::formats::text::matlab_scanner::{
@@ -96,8 +97,9 @@ impl ValueReader<'_, '_, '_> {
         }
     }
 
-    /// Reads a real number, or a complex number such as `1 - 2i`, at this position; `None` if there
-    /// is no number.
+    /// Reads a real number, or a complex number such as `1 - 2i`, at this position; `None`, without
+    /// moving, if there is no number. `in_matrix`: between square brackets, where a blank may
+    /// separate two elements.
     fn complex(&mut self, in_matrix: bool) -> Result<Option<ComplexNumber>, ValueError> {
         let before = self.scanner.clone();
         let Some(Number {
@@ -111,7 +113,8 @@ impl ValueReader<'_, '_, '_> {
         let behind = self.scanner.clone();
         let is_spaced = self.scanner.pass_blanks()?;
         let is_sign = matches!(self.scanner.peek(), Some('+' | '-'));
-        // The blank in `[1 -2i]` separates two elements, but not in `[1 - 2i]`.
+        // The blank in `[1 -2i]` separates two elements, but not in `[1 - 2i]`, where another blank
+        // follows the sign.
         let is_separate = in_matrix
             && is_spaced
             && !self.scanner.rest()[usize::from(is_sign)..].starts_with([' ', '\t']);
@@ -163,38 +166,39 @@ impl ValueReader<'_, '_, '_> {
         }))
     }
 
-    /// Reads rows of elements from an opening bracket to the closing bracket; `element` reads an
-    /// element.
+    /// Reads rows of elements from an opening bracket, at this position, to the closing bracket
+    /// `close`; `read_element` reads an element. Commas or blanks separate elements, semicolons or
+    /// line ends separate rows; empty rows do not count.
     fn rows<T>(
         &mut self,
         close: char,
         opening: Position,
-        mut element: impl FnMut(&mut Self) -> Result<T, ValueError>,
+        mut read_element: impl FnMut(&mut Self) -> Result<T, ValueError>,
     ) -> Result<Rows<T>, ValueError> {
         self.scanner.at += 1;
         let mut elements = Vec::new();
         let mut columns = 0;
         let mut rows = 0;
-        // Number of elements in the current row.
-        let mut row = 0;
+        let mut row_length = 0;
         loop {
             let is_spaced = self.scanner.pass_blanks()?;
             let place = self.scanner.position();
             let next = self.scanner.peek();
             let ends_row = matches!(next, Some(';' | '\n' | '\r')) || next == Some(close);
-            if ends_row && row > 0 {
+            if ends_row && row_length > 0 {
                 if rows == 0 {
-                    columns = row;
+                    columns = row_length;
                 }
                 rows += 1;
-                if row != columns {
+                if row_length != columns {
+                    let found = counted(row_length, "column");
                     let what = format!(
-                        "row {rows} has {row} columns, but the first row has {columns}; complete \
-                        the shorter row"
+                        "row {rows} has {found}, but the first row has {columns}; complete the \
+                        shorter row"
                     );
                     return refused(what, opening);
                 }
-                row = 0;
+                row_length = 0;
             }
             match next {
                 None => return refused("the bracket is never closed; close it", opening),
@@ -209,12 +213,12 @@ impl ValueReader<'_, '_, '_> {
                     });
                 }
                 Some(sign) => {
-                    if row > 0 && self.is_operator(sign, is_spaced) {
+                    if row_length > 0 && self.is_operator(sign, is_spaced) {
                         return not_computed(place);
                     }
                     self.budget.take(2, size_of::<T>() as u64, "")?;
-                    elements.push(element(self)?);
-                    row += 1;
+                    elements.push(read_element(self)?);
+                    row_length += 1;
                 }
             }
         }
@@ -237,6 +241,7 @@ impl ValueReader<'_, '_, '_> {
         behind.starts_with([' ', '\t']) && OPERATORS.contains(sign)
     }
 
+    /// Reads a cell array.
     fn cell_array(&mut self, opening: Position, depth: usize) -> Result<Value, ValueError> {
         let Rows {
             rows,
@@ -265,17 +270,21 @@ impl ValueReader<'_, '_, '_> {
         self.budget
             .take(count as u64, 2 * size_of::<Element>() as u64, "")?;
         let is_transposed = self.scanner.take("'");
-        // Values are stored in column-major order: row-major order is the storage of the transpose.
-        let (shape, elements) = if is_transposed {
-            (vec![columns, rows], elements)
+        // Values are stored in column-major order, which for the transpose is the order as read, row
+        // by row.
+        let shape;
+        let by_column;
+        if is_transposed {
+            shape = vec![columns, rows];
+            by_column = elements;
         } else {
-            let by_column = first_index_fastest(&[rows, columns], elements);
-            (vec![rows, columns], by_column)
-        };
+            shape = vec![rows, columns];
+            by_column = first_index_fastest(&[rows, columns], elements);
+        }
         let mut real_parts = Vec::new();
         let mut imaginary_parts = Vec::new();
         let mut texts = Vec::new();
-        for element in elements {
+        for element in by_column {
             match element {
                 Element::Number { re, im } => {
                     real_parts.push(re);
@@ -307,6 +316,7 @@ impl ValueReader<'_, '_, '_> {
         Ok(Value::Text(TextArray { shape, texts }))
     }
 
+    /// Reads an element between square brackets.
     fn matrix_element(&mut self) -> Result<Element, ValueError> {
         let place = self.scanner.position();
         if let Some(ComplexNumber { re, im }) = self.complex(true)? {

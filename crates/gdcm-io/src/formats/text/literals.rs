@@ -8,7 +8,7 @@ use crate::formats::text::encoding::refuse_binary;
 use crate::formats::text::lines::excerpt;
 use crate::formats::text::literal_values::ValueReader;
 use crate::formats::text::matlab_scanner::{
-    Position, Scanner, ValueError, begins_word, is_of_word, refused,
+    Position, Scanner, ValueError, begins_name, is_name_character, refused,
 };
 use crate::formats::text::workspace::Workspace;
 use crate::formats::variables::{Value, Variable};
@@ -91,6 +91,7 @@ struct Beginning {
 }
 
 impl<'t> Reading<'t, '_> {
+    /// Reads or skips the next statement, or moves past a separator between statements.
     fn statement(&mut self) -> Result<(), VariableFault> {
         self.scanner.pass_blanks()?;
         let begin = Beginning {
@@ -165,8 +166,8 @@ impl<'t> Reading<'t, '_> {
             return self.pass_over(begin, "is not executed");
         };
         let why = "it is the result of a function, which is not executed; write its value";
-        for name in names.split(|c: char| !is_of_word(c)) {
-            if begins_word(name) {
+        for name in names.split(|c: char| !is_name_character(c)) {
+            if begins_name(name) {
                 self.set_unread(&[name], begin.position, why)?;
             }
         }
@@ -189,6 +190,7 @@ impl<'t> Reading<'t, '_> {
             .map_err(|fault| fault.of(|| path.join(".")))
     }
 
+    /// Reads the value after the equals sign of an assignment.
     fn assigned_value(&mut self, begin: Position) -> Result<Value, ValueError> {
         if self.open_blocks > 0 {
             return refused(
@@ -411,7 +413,7 @@ mod tests {
     fn errors_give_the_place_and_the_remedy() {
         assert_eq!(
             why("A = [1 2; 3];"),
-            "line 1, column 5: row 2 has 1 columns, but the first row has 2; complete the shorter row"
+            "line 1, column 5: row 2 has 1 column, but the first row has 2; complete the shorter row"
         );
         assert_eq!(
             why("\nA = \n"),

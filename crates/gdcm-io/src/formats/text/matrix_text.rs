@@ -31,13 +31,13 @@ pub fn read_matrix(
     let single_number = table
         .skipped
         .iter()
-        .find(|(_, line)| cell_number(line, table.decimal_comma).is_some());
-    if let Some((line, _)) = single_number {
+        .find(|line| cell_number(&line.text, table.decimal_comma).is_some());
+    if let Some(line) = single_number {
         let what = format!(
             "a single number, but other rows have {}; complete the row",
             table.columns.len()
         );
-        return Err(VariableFault::line(name, *line, what));
+        return Err(VariableFault::line(name, line.number, what));
     }
     let value = joined(&[table], 1.0, budget, name)?;
     Ok(Variable {
@@ -60,7 +60,7 @@ pub fn read_matrices(text: &str, budget: &ReadingBudget) -> Result<NamedMatrices
     for (number, line) in lines(text) {
         budget.work(1, "")?;
         if !line.trim().is_empty() && comment(line).is_none() && !is_rule(line) {
-            reading.line(number, line)?;
+            reading.take_line(number, line)?;
         }
     }
     reading.finish()
@@ -74,8 +74,8 @@ struct Part {
     text: String,
 }
 
-/// A matrix whose rows are being read.
-struct OpenMatrix {
+/// A matrix as read, whose numbers are not yet parsed.
+struct UnparsedMatrix {
     name: String,
     /// Line number of the matrix name.
     line: usize,
@@ -89,19 +89,23 @@ struct OpenMatrix {
     parts: Vec<Part>,
 }
 
+/// State of reading named matrices.
 struct Reading<'m> {
-    matrices: Vec<OpenMatrix>,
+    /// Matrices so far; rows belong to the last.
+    matrices: Vec<UnparsedMatrix>,
     notes: Vec<String>,
     budget: &'m ReadingBudget<'m>,
 }
 
 impl Reading<'_> {
-    fn line(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
+    /// Reads a line that is neither empty nor a comment. The kinds of lines are tried in this order:
+    /// matrix name, "Columns …", common factor, row, row that begins with a name, any other.
+    fn take_line(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
         if let Some(name_line) = name_line(line) {
             return if !name_line.assigned && self.awaits_columns() {
-                self.column_names(number, line)
+                self.take_column_names(number, line)
             } else {
-                self.begin(number, &name_line)
+                self.begin_matrix(number, &name_line)
             };
         }
         if is_columns_line(line) {
@@ -115,21 +119,21 @@ impl Reading<'_> {
             return Ok(());
         }
         if is_row_of_numbers(line) {
-            return self.row(number, line);
+            return self.take_row(number, line);
         }
         let has_row_names = self.matrices.last().is_some_and(|matrix| matrix.labelled);
         if has_row_names
             && let Some((_, rest)) = line.trim_start().split_once(char::is_whitespace)
             && is_row_of_numbers(rest)
         {
-            return self.row(number, rest);
+            return self.take_row(number, rest);
         }
-        self.other_line(number, line, has_row_names)
+        self.take_other_line(number, line, has_row_names)
     }
 
     /// Reads a line that is neither a name nor a row: a line with column names, a row with errors,
     /// or a line to be skipped.
-    fn other_line(
+    fn take_other_line(
         &mut self,
         number: usize,
         line: &str,
@@ -141,7 +145,7 @@ impl Reading<'_> {
             .filter(|word| is_number_word(word))
             .count();
         if numbers == 0 && (self.awaits_columns() || has_row_names) {
-            return self.column_names(number, line);
+            return self.take_column_names(number, line);
         }
         if 2 * numbers >= words {
             let what = format!("\"{}\" is not a row of numbers; correct it", excerpt(line));
@@ -159,14 +163,19 @@ impl Reading<'_> {
             .is_some_and(|matrix| matrix.assigned && matrix.parts.is_empty())
     }
 
-    fn begin(&mut self, number: usize, name_line: &NameLine<'_>) -> Result<(), VariableFault> {
+    /// Begins a matrix with the line of its name.
+    fn begin_matrix(
+        &mut self,
+        number: usize,
+        name_line: &NameLine<'_>,
+    ) -> Result<(), VariableFault> {
         let NameLine {
             name,
             assigned,
             rest,
         } = *name_line;
         self.budget.take(256 + name.len() as u64, 1, name)?;
-        self.matrices.push(OpenMatrix {
+        self.matrices.push(UnparsedMatrix {
             name: name.to_owned(),
             line: number,
             assigned,
@@ -177,12 +186,12 @@ impl Reading<'_> {
         if rest.is_empty() {
             Ok(())
         } else {
-            self.row(number, rest)
+            self.take_row(number, rest)
         }
     }
 
     /// Reads a line with column names; the rows below it then begin with names.
-    fn column_names(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
+    fn take_column_names(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
         if let Some(matrix) = self.matrices.last_mut() {
             matrix.labelled = true;
         }
@@ -206,7 +215,8 @@ impl Reading<'_> {
         }
     }
 
-    fn row(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
+    /// Adds a row to the last part of the last matrix.
+    fn take_row(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
         let Some(matrix) = self.matrices.last_mut() else {
             let what = "numbers without a name; write the name of the matrix on a line above them";
             return Err(VariableFault::line("", number, what));
@@ -224,12 +234,13 @@ impl Reading<'_> {
         Ok(())
     }
 
+    /// Converts the matrices to variables.
     fn finish(mut self) -> Result<NamedMatrices, VariableFault> {
         let mut variables: Vec<Variable> = Vec::with_capacity(self.matrices.len());
         let mut names = HashSet::with_capacity(self.matrices.len());
         for mut matrix in self.matrices {
             matrix.parts.retain(|part| !part.line_numbers.is_empty());
-            let OpenMatrix { name, line, .. } = &matrix;
+            let UnparsedMatrix { name, line, .. } = &matrix;
             if matrix.parts.is_empty() {
                 self.notes.push(format!(
                     "line {line} (\"{name}\") is skipped: no numbers follow"
@@ -264,7 +275,8 @@ impl Reading<'_> {
     }
 }
 
-impl OpenMatrix {
+impl UnparsedMatrix {
+    /// Parses the parts, and joins them.
     fn value(&self, budget: &ReadingBudget) -> Result<Value, VariableFault> {
         let mut tables = Vec::with_capacity(self.parts.len());
         for part in &self.parts {
@@ -284,12 +296,16 @@ impl Part {
             other => other,
         })?;
         match table.skipped.first() {
-            Some((line, text)) => {
+            Some(line) => {
                 let what = format!(
                     "\"{}\" is not a row like the others; complete it",
-                    excerpt(text)
+                    excerpt(&line.text)
                 );
-                Err(VariableFault::line(name, self.line_number(*line), what))
+                Err(VariableFault::line(
+                    name,
+                    self.line_number(line.number),
+                    what,
+                ))
             }
             None => Ok(table),
         }
@@ -302,6 +318,7 @@ impl Part {
     }
 }
 
+/// Returns whether a word, without a separator at its end, is a number or a missing number.
 fn is_number_word(word: &str) -> bool {
     let word = word.trim_end_matches([',', ';']);
     !word.is_empty() && is_number(word)
@@ -342,6 +359,7 @@ fn joined(
     }
     let columns = tables.iter().map(|table| table.columns.len()).sum();
     budget.take((rows * columns) as u64, 8, name)?;
+    // The tables hold their numbers by column: in order, these are the columns of the matrix.
     let values = tables
         .iter()
         .flat_map(|table| table.columns.iter().flatten())
@@ -406,6 +424,7 @@ fn without_size(text: &str) -> &str {
     }
 }
 
+/// Returns whether a word consists of digits.
 fn is_count(word: &str) -> bool {
     !word.is_empty() && word.bytes().all(|byte| byte.is_ascii_digit())
 }

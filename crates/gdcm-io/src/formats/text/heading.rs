@@ -41,10 +41,10 @@ impl Heading {
             heading.note_misfit(above, layout);
             return heading;
         };
+        // The names must be above the units: a fitting comment below them is not meant.
         if is_units_line(&names.cells)
             && let Some(before) = lines.next()
-            // A comment may come earlier in the list than a line above it.
-        && names.number > before.number
+            && names.number > before.number
         {
             heading.units = names.cells.iter().map(|cell| unit_of(cell)).collect();
             heading

@@ -1,5 +1,15 @@
 //! Text files with numbers: tables in columns, frequency responses, matrices, and MATLAB
 //! statements.
+//!
+//! ```text
+//! bytes -> text                              (encoding)
+//!       -> table: columns, names, units      (columns, with layout, heading, cell_number)
+//!            -> frequency responses          (frequency_columns)
+//!       -> table, after complex numbers, words or times of day are replaced by plain numbers
+//!                                            (complex_columns, word_columns)
+//!       -> matrices with names               (matrix_text)
+//!       -> variables of MATLAB statements    (literals)
+//! ```
 
 mod cell_number;
 mod clock_time;
@@ -117,6 +127,7 @@ fn begins_with_numbers(bytes: &[u8]) -> bool {
     false
 }
 
+/// Returns whether a line holds only plain numbers, with any separator.
 fn is_row_of_numbers(line: &str) -> bool {
     let mut has_number = false;
     for cell in line.split([',', ';', '\t', ' ']) {

@@ -28,7 +28,7 @@ use crate::formats::mat::subsystem::{CLASS_SYSTEM, Reference, Subsystem};
 use crate::formats::mat::unreadable::{unread_class, unreadable};
 use crate::formats::mat::value_path::{Step, ValuePath};
 use crate::formats::sparse_matrix::CompressedColumns;
-use crate::formats::variables::{Array, CellArray, Object, RECORD, StructArray, Value};
+use crate::formats::variables::{Array, CellArray, Object, RECORD_MEMORY, StructArray, Value};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Reads arrays within a budget.
@@ -235,7 +235,7 @@ impl ArrayReader<'_> {
         let count = header.count;
         self.take_values(count.saturating_mul(names.len()), contents)?;
         // A file of a few bytes can announce any number of records without fields.
-        self.budget.take(count as u64, RECORD, "")?;
+        self.budget.take(count as u64, RECORD_MEMORY, "")?;
         let mut fields: Vec<(String, Vec<Value>)> = Vec::with_capacity(names.len());
         for name in names {
             fields.push((name, Vec::new()));

@@ -15,7 +15,7 @@ use crate::formats::npy::header::{Header, MAGIC};
 use crate::formats::stored_number::StoredNumber;
 use crate::formats::strides::{Places, element_count, matrix_shape};
 use crate::formats::variables::{
-    Array, ElementKind, RECORD, StructArray, TextArray, Value, Variable,
+    Array, ElementKind, RECORD_MEMORY, StructArray, TextArray, Value, Variable,
 };
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
@@ -148,7 +148,7 @@ impl ArrayReader<'_> {
             Element::Record { fields, .. } => {
                 // A header can announce any number of records without fields, or of fields without
                 // elements, which occupy no bytes in the file.
-                self.budget.take(count, RECORD, self.name)?;
+                self.budget.take(count, RECORD_MEMORY, self.name)?;
                 let mut values = Vec::new();
                 for field in fields {
                     values.push((field.name.clone(), self.field_values(stored, field)?));
@@ -212,7 +212,7 @@ impl ArrayReader<'_> {
         field: &Field,
     ) -> Result<Vec<Value>, VariableFault> {
         let places = self.places(records)?;
-        let size = size_of::<Value>() as u64 + RECORD;
+        let size = size_of::<Value>() as u64 + RECORD_MEMORY;
         self.budget.take(places.len() as u64, size, self.name)?;
         let mut values = Vec::new();
         for place in places {

@@ -7,6 +7,9 @@
 //!       -> models or records                  (recognise)
 //! ```
 //!
+//! Readers take memory and work from a `ReadingBudget` before they use it. The last argument is the
+//! name of the variable in an error; where it is empty, a caller adds the name or there is none.
+//!
 //! A new format is an `Importer` in a file of its own in this folder, and an entry in `FORMATS`.
 
 mod counted;

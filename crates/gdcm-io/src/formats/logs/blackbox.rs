@@ -10,15 +10,12 @@
 //! A frame is accepted if another frame begins where it ends. After a damaged frame, all frames
 //! predicted from it are omitted up to the next intra frame, which leaves a gap.
 
-use std::collections::BTreeMap;
-
 use gdcm_sysid::records::{ModeSpan, RecordColumn};
 
 use crate::file_error::FileError;
 use crate::formats::counted::counted;
-use crate::formats::logs::blackbox_frames::{
-    FrameFields, HeaderNumbers, PackedBytes, Predecessors,
-};
+use crate::formats::logs::blackbox_frames::{PackedBytes, Predecessors};
+use crate::formats::logs::blackbox_heading::Heading;
 use crate::formats::logs::meanings::{BETAFLIGHT, assign_documented_meanings};
 use crate::formats::logs::mode_spans::{mode_spans, modes_note};
 use crate::formats::recorded_columns::{Columns, MOST_RECORDS};
@@ -100,129 +97,6 @@ fn flight_offsets(bytes: &[u8]) -> Vec<usize> {
     offsets
 }
 
-/// Contents of the header lines before the frames.
-#[derive(Default)]
-struct Heading {
-    /// Header values by key.
-    lines: BTreeMap<String, String>,
-    /// Field descriptions by frame letter.
-    frames: BTreeMap<u8, FrameFields>,
-    numbers: HeaderNumbers,
-    /// Header length \[bytes\].
-    length: usize,
-}
-
-impl Heading {
-    /// Reads the header of a flight, with which `bytes` begin.
-    fn read(bytes: &[u8]) -> Self {
-        let mut heading = Self::default();
-        heading.read_lines(bytes);
-        for kind in *b"IPSGH" {
-            let fields = heading.fields(char::from(kind));
-            heading.frames.insert(kind, fields);
-        }
-        // The header gives names and signs only for intra frames; predicted frames have the same
-        // fields.
-        let intra = heading.frames[&b'I'].clone();
-        if let Some(predicted) = heading.frames.get_mut(&b'P') {
-            predicted.names = intra.names;
-            predicted.signed = intra.signed;
-        }
-        heading.numbers = HeaderNumbers {
-            least_throttle: heading.number("minthrottle"),
-            least_motor: heading.number("motorOutput"),
-            battery: heading.number("vbatref"),
-        };
-        heading
-    }
-
-    /// Reads the lines `H key:value` up to the first frame.
-    fn read_lines(&mut self, bytes: &[u8]) {
-        while bytes[self.length..].starts_with(b"H ") {
-            let rest = &bytes[self.length..];
-            let Some(end) = rest.iter().position(|byte| *byte == b'\n') else {
-                break;
-            };
-            let line = String::from_utf8_lossy(&rest[2..end]);
-            if let Some((key, value)) = line.split_once(':') {
-                self.lines.insert(key.to_owned(), value.trim().to_owned());
-            }
-            self.length += end + 1;
-        }
-    }
-
-    /// Returns the header value of a key; empty if the key is missing.
-    fn value(&self, key: &str) -> &str {
-        self.lines.get(key).map_or("", String::as_str)
-    }
-
-    /// Returns the first number in the header value of a key; 0 if there is none.
-    fn number(&self, key: &str) -> i64 {
-        let first = self.value(key).split(',').next().unwrap_or_default();
-        first.parse().unwrap_or(0)
-    }
-
-    /// Returns the descriptions of the fields in frames with the letter `kind`.
-    fn fields(&self, kind: char) -> FrameFields {
-        FrameFields {
-            names: self.field_cells(kind, "name").map(str::to_owned).collect(),
-            signed: self
-                .field_numbers(kind, "signed")
-                .iter()
-                .map(|signed| *signed == 1)
-                .collect(),
-            predictors: self.field_numbers(kind, "predictor"),
-            encodings: self.field_numbers(kind, "encoding"),
-        }
-    }
-
-    /// Returns the cells of a header line such as "Field I name".
-    fn field_cells(&self, kind: char, property: &str) -> impl Iterator<Item = &str> {
-        self.value(&format!("Field {kind} {property}"))
-            .split(',')
-            .filter(|cell| !cell.is_empty())
-    }
-
-    /// Returns the numbers in a header line such as "Field I signed"; a cell that is not a number
-    /// becomes 255.
-    fn field_numbers(&self, kind: char, property: &str) -> Vec<u8> {
-        self.field_cells(kind, property)
-            .map(|cell| cell.parse().unwrap_or(u8::MAX))
-            .collect()
-    }
-
-    /// Returns the fields of the frames with the letter `kind`; `None` if a field cannot be
-    /// decoded.
-    fn frame(&self, kind: u8) -> Option<&FrameFields> {
-        let fields = self.frames.get(&kind)?;
-        if fields.is_whole() {
-            Some(fields)
-        } else {
-            None
-        }
-    }
-
-    /// Parses a frame with the letter `kind`; returns `None` for an unknown letter, a damaged
-    /// frame, or a predicted frame without a predecessor.
-    fn parse(&self, kind: u8, bytes: &mut PackedBytes<'_>, before: &Predecessors) -> Option<Frame> {
-        if kind == b'E' {
-            return parse_event(bytes);
-        }
-        let fields = self.frame(kind)?;
-        if kind == b'P' && before.last.is_none() {
-            return None;
-        }
-        let differences = fields.differences(bytes)?;
-        let independent = Predecessors::default();
-        Some(match kind {
-            b'G' | b'H' => Frame::Other,
-            b'S' => Frame::Slow(fields.values(differences, &independent, self.numbers)),
-            b'P' => Frame::Main(fields.values(differences, before, self.numbers)),
-            _ => Frame::Main(fields.values(differences, &independent, self.numbers)),
-        })
-    }
-}
-
 /// A decoded frame.
 enum Frame {
     /// Values of an intra or a predicted frame.
@@ -233,6 +107,31 @@ enum Frame {
     Other,
     /// Event that ends the log.
     End,
+}
+
+/// Parses a frame with the letter `kind`; returns `None` for an unknown letter, a damaged
+/// frame, or a predicted frame without a predecessor.
+fn parse_frame(
+    heading: &Heading,
+    kind: u8,
+    bytes: &mut PackedBytes<'_>,
+    before: &Predecessors,
+) -> Option<Frame> {
+    if kind == b'E' {
+        return parse_event(bytes);
+    }
+    let fields = heading.frame(kind)?;
+    if kind == b'P' && before.last.is_none() {
+        return None;
+    }
+    let differences = fields.differences(bytes)?;
+    let independent = Predecessors::default();
+    Some(match kind {
+        b'G' | b'H' => Frame::Other,
+        b'S' => Frame::Slow(fields.values(differences, &independent, heading.numbers)),
+        b'P' => Frame::Main(fields.values(differences, before, heading.numbers)),
+        _ => Frame::Main(fields.values(differences, &independent, heading.numbers)),
+    })
 }
 
 /// Numbers of the event types.
@@ -361,7 +260,7 @@ impl Flight {
         while at < bytes.len() {
             budget.work(field_count as u64, name)?;
             let mut packed = PackedBytes::new(bytes, at + 1);
-            let mut frame = self.heading.parse(bytes[at], &mut packed, &before);
+            let mut frame = parse_frame(&self.heading, bytes[at], &mut packed, &before);
             // A frame is damaged if no frame letter follows it.
             let next = bytes.get(packed.at);
             if next.is_some_and(|next| !FRAME_LETTERS.contains(next)) {
@@ -440,7 +339,7 @@ impl Flight {
     ) -> Result<Columns, VariableFault> {
         let mut notes =
             vec!["a Betaflight log; axisSum is the sum of the controller terms".to_owned()];
-        let names = &self.heading.frames[&b'I'].names;
+        let names = self.heading.main_fields();
         let mut columns = Vec::new();
         for (field, values) in names.iter().zip(self.values) {
             if field == "loopIteration" {

@@ -37,21 +37,21 @@ impl Heading {
             notes: Vec::new(),
         };
         let mut lines = fitting_lines(above, layout).into_iter();
-        let Some(mut names) = lines.next() else {
+        let Some(nearest) = lines.next() else {
             heading.note_misfit(above, layout);
             return heading;
         };
-        // The names must be above the units: a fitting comment below them is not meant.
-        if is_units_line(&names.cells)
-            && let Some(before) = lines.next()
-            && names.number > before.number
-        {
-            heading.units = names.cells.iter().map(|cell| unit_of(cell)).collect();
-            heading
-                .notes
-                .push(format!("line {} gives the units", names.number));
-            names = before;
-        }
+        let names = match lines.next() {
+            // The names must be above the units: the next candidate may be a comment below them.
+            Some(next) if is_units_line(&nearest.cells) && next.number < nearest.number => {
+                heading.units = nearest.cells.iter().map(|cell| unit_of(cell)).collect();
+                heading
+                    .notes
+                    .push(format!("line {} gives the units", nearest.number));
+                next
+            }
+            _ => nearest,
+        };
         heading.take_names(&names.cells);
         heading
             .notes

@@ -14,6 +14,7 @@
 mod cell_number;
 mod clock_time;
 mod column_meaning;
+mod column_words;
 mod columns;
 mod complex_columns;
 pub(crate) mod encoding;

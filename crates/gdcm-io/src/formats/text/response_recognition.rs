@@ -7,7 +7,8 @@
 
 use std::f64::consts::TAU;
 
-use crate::formats::text::column_meaning::{ColumnMeaning, KnownUnit, Quantity};
+use crate::formats::text::column_meaning::ColumnMeaning;
+use crate::formats::text::column_words::{KnownUnit, Quantity};
 use crate::formats::text::columns::TextTable;
 use crate::formats::text::response_columns::{
     CoherenceColumn, RecognisedResponse, ResponseParts, column_name, column_place,

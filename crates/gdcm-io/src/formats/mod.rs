@@ -8,7 +8,8 @@
 //! ```
 //!
 //! Readers take memory and work from a `ReadingBudget` before they use it. The last argument is the
-//! name of the variable in an error; where it is empty, a caller adds the name or there is none.
+//! name of the variable in an error; where it is empty, a caller adds the name or there is none. A
+//! factor of 2 allows for vectors, which grow by doubling.
 //!
 //! A new format is an `Importer` in a file of its own in this folder, and an entry in `FORMATS`.
 

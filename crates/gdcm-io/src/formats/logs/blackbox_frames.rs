@@ -3,8 +3,9 @@
 //! A frame holds the difference of each field from a prediction. Decoding has two steps, for which
 //! the header of the flight gives each field a number: the encoding says how the difference is
 //! packed into bytes (`FrameFields::differences`), the predictor what it is added to
-//! (`FrameFields::values`). The numbers and names are those of
-//! <https://betaflight.com/docs/development/Blackbox-Internals>.
+//! (`FrameFields::values`).
+//!
+//! Source: <https://betaflight.com/docs/development/Blackbox-Internals>.
 
 /// Maximum number of fields in a frame.
 const MOST_FIELDS: usize = 256;

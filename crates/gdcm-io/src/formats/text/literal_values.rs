@@ -49,7 +49,7 @@ impl ValueReader<'_, '_, '_> {
         self.scanner.pass_blanks()?;
         match self.scanner.peek() {
             None | Some(';' | ',' | '\n' | '\r') => Ok(value),
-            Some(_) => not_computed(self.scanner.position()),
+            Some(_) => refuse_expression(self.scanner.position()),
         }
     }
 
@@ -214,7 +214,7 @@ impl ValueReader<'_, '_, '_> {
                 }
                 Some(sign) => {
                     if row_length > 0 && self.is_operator(sign, is_spaced) {
-                        return not_computed(place);
+                        return refuse_expression(place);
                     }
                     self.budget.take(2, size_of::<T>() as u64, "")?;
                     elements.push(read_element(self)?);
@@ -272,15 +272,16 @@ impl ValueReader<'_, '_, '_> {
         let is_transposed = self.scanner.take("'");
         // Values are stored in column-major order, which for the transpose is the order as read, row
         // by row.
-        let shape;
-        let by_column;
-        if is_transposed {
-            shape = vec![columns, rows];
-            by_column = elements;
+        let shape = if is_transposed {
+            vec![columns, rows]
         } else {
-            shape = vec![rows, columns];
-            by_column = first_index_fastest(&[rows, columns], elements);
-        }
+            vec![rows, columns]
+        };
+        let by_column = if is_transposed {
+            elements
+        } else {
+            first_index_fastest(&[rows, columns], elements)
+        };
         let mut real_parts = Vec::new();
         let mut imaginary_parts = Vec::new();
         let mut texts = Vec::new();
@@ -354,7 +355,7 @@ impl ValueReader<'_, '_, '_> {
                 break;
             }
             if !self.scanner.take(",") {
-                return not_computed(self.scanner.position());
+                return refuse_expression(self.scanner.position());
             }
         }
         let call = Call {
@@ -367,6 +368,6 @@ impl ValueReader<'_, '_, '_> {
 }
 
 /// Returns the error for an expression, because this reader evaluates none.
-fn not_computed<T>(place: Position) -> Result<T, ValueError> {
+fn refuse_expression<T>(place: Position) -> Result<T, ValueError> {
     refused(format!("expressions are not evaluated; {REMEDY}"), place)
 }

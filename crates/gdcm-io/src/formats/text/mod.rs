@@ -27,6 +27,7 @@ mod literal_functions;
 mod literal_values;
 mod literals;
 mod matlab_scanner;
+mod matrix_lines;
 mod matrix_text;
 mod response_columns;
 mod response_label;
@@ -121,15 +122,15 @@ fn begins_with_numbers(bytes: &[u8]) -> bool {
         if line.contains('=') {
             return false;
         }
-        if is_row_of_numbers(line) {
+        if is_row_of_plain_numbers(line) {
             return true;
         }
     }
     false
 }
 
-/// Returns whether a line holds only plain numbers, with any separator.
-fn is_row_of_numbers(line: &str) -> bool {
+/// Returns whether a line holds only numbers in the notation of Rust, with any separator.
+fn is_row_of_plain_numbers(line: &str) -> bool {
     let mut has_number = false;
     for cell in line.split([',', ';', '\t', ' ']) {
         if cell.is_empty() {

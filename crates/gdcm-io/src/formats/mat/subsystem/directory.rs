@@ -8,7 +8,7 @@
 //! region 2   objects, 6 words each: class, 2 unused, index of the list in region 1 (0 if there is
 //!            none), index of the list in region 3, 1 unused
 //! region 3   property lists of all other objects
-//! regions 4 to 7, not used
+//! regions 4 to 7 are not read
 //! ```
 //!
 //! A property list is the number of its properties, 3 words for each (index of the name, kind of

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! cell 0        directory: names, classes, objects, and the cell of each property  (directory.rs)
-//! cell 1        not used
+//! cell 1        not read
 //! cells 2 ...   values of the properties
 //! last cells    1, 2 or 3 depending on the version of the directory; the very last holds the
 //!               defaults of the properties, a record for each class; the others are not used

@@ -63,7 +63,7 @@ impl ArrayHeader {
             return Err(flags.data.damaged("an array without flags"));
         }
         let mut words = flags.data;
-        let bits = words.u32()?;
+        let bits = words.read_u32()?;
         let number = bits & CLASS_BITS;
         let Some(class) = ArrayClass::from_number(number) else {
             return Err(flags

@@ -128,14 +128,14 @@ impl<'b> Cursor<'b> {
     }
 
     /// Reads the next 32-bit integer.
-    pub(super) fn u32(&mut self) -> Result<u32, VariableFault> {
+    pub(super) fn read_u32(&mut self) -> Result<u32, VariableFault> {
         let order = self.order;
-        let bytes = self.array()?;
+        let bytes = self.read_array()?;
         Ok(order.u32(bytes))
     }
 
     /// Reads the next `N` bytes.
-    fn array<const N: usize>(&mut self) -> Result<[u8; N], VariableFault> {
+    fn read_array<const N: usize>(&mut self) -> Result<[u8; N], VariableFault> {
         let taken = self.take(N)?;
         <[u8; N]>::try_from(taken.bytes).map_err(|_| self.too_short())
     }
@@ -165,8 +165,14 @@ mod tests {
 
     #[test]
     fn a_number_is_read_in_both_orders() {
-        assert_eq!(Cursor::file(&[1, 0, 0, 0], ByteOrder::Little).u32(), Ok(1));
-        assert_eq!(Cursor::file(&[0, 0, 0, 1], ByteOrder::Big).u32(), Ok(1));
+        assert_eq!(
+            Cursor::file(&[1, 0, 0, 0], ByteOrder::Little).read_u32(),
+            Ok(1)
+        );
+        assert_eq!(
+            Cursor::file(&[0, 0, 0, 1], ByteOrder::Big).read_u32(),
+            Ok(1)
+        );
     }
 
     #[test]
@@ -174,11 +180,11 @@ mod tests {
         let mut file = Cursor::file(&[0; 6], ByteOrder::Little);
         let mut element = file.take(3).unwrap();
         assert!(matches!(
-            element.u32(),
+            element.read_u32(),
             Err(VariableFault::Damaged { offset: 0, .. })
         ));
         assert!(matches!(
-            file.u32(),
+            file.read_u32(),
             Err(VariableFault::CutOff { offset: 3, .. })
         ));
         assert!(file.pass(9).is_ok() && file.is_empty());

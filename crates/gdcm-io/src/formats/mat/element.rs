@@ -91,7 +91,7 @@ impl<'b> Element<'b> {
     /// Reads the next element and skips its padding.
     pub(super) fn read(cursor: &mut Cursor<'b>) -> Result<Self, VariableFault> {
         let tag = *cursor;
-        let first = cursor.u32()?;
+        let first = cursor.read_u32()?;
         let small_length = first >> 16;
         if small_length != 0 {
             let kind = known_kind(first & 0xffff, tag)?;
@@ -103,7 +103,7 @@ impl<'b> Element<'b> {
             });
         }
         let kind = known_kind(first, tag)?;
-        let length = cursor.u32()? as usize;
+        let length = cursor.read_u32()? as usize;
         if kind == DataKind::Matrix && length > cursor.len() {
             // GNU Octave announces a few bytes too many for some arrays: take the bytes that are
             // present.
@@ -216,10 +216,10 @@ fn begins_array(cursor: &Cursor<'_>) -> bool {
         return true;
     }
     let mut tag = *cursor;
-    let Ok(number) = tag.u32() else {
+    let Ok(number) = tag.read_u32() else {
         return false;
     };
-    let Ok(length) = tag.u32() else {
+    let Ok(length) = tag.read_u32() else {
         return false;
     };
     let is_array = matches!(

@@ -60,7 +60,7 @@ pub(super) fn read(
         let header = MatrixHeader::read(&mut file)?;
         let name = decode_name(file.take(header.name_length)?.rest());
         let value = header
-            .value(&mut file, budget)
+            .read_value(&mut file, budget)
             .map_err(|fault| ValuePath::start(&name).locate(fault))?;
         if !names.insert(name.clone()) {
             return Err(VariableFault::Duplicate { name });
@@ -78,10 +78,10 @@ impl MatrixHeader {
             return Err(no_matrix(start, "no matrix type"));
         };
         file.order = order;
-        let type_digits = file.u32()?;
+        let type_digits = file.read_u32()?;
         let mut sizes = [0; 4];
         for size in &mut sizes {
-            let number = file.u32()?;
+            let number = file.read_u32()?;
             *size =
                 i32::try_from(number).map_err(|_| no_matrix(start, "a negative size"))? as usize;
         }
@@ -109,15 +109,15 @@ impl MatrixHeader {
     }
 
     /// Reads the numbers after header and name, and converts them to a value.
-    fn value(
+    fn read_value(
         &self,
         file: &mut Cursor<'_>,
         budget: &ReadingBudget<'_>,
     ) -> Result<Value, VariableFault> {
         let start = *file;
-        let re = self.numbers(file, budget)?;
+        let re = self.read_numbers(file, budget)?;
         let im = if self.is_complex {
-            Some(self.numbers(file, budget)?)
+            Some(self.read_numbers(file, budget)?)
         } else {
             None
         };
@@ -146,7 +146,7 @@ impl MatrixHeader {
     }
 
     /// Reads the real or the imaginary parts of all elements.
-    fn numbers(
+    fn read_numbers(
         &self,
         file: &mut Cursor<'_>,
         budget: &ReadingBudget<'_>,

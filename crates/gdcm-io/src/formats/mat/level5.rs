@@ -151,7 +151,7 @@ fn read_named_array(
         Element::pass_all(contents)?;
         return Ok(None);
     }
-    let value = reader.value(&header, contents, &ValuePath::start(&header.name))?;
+    let value = reader.read_value(&header, contents, &ValuePath::start(&header.name))?;
     Ok(Some(Variable {
         name: header.name,
         value,

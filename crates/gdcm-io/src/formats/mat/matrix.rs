@@ -50,17 +50,17 @@ pub(super) enum Objects {
 
 impl ArrayReader<'_> {
     /// Reads the next array within another array; errors contain `path`.
-    pub(super) fn nested_value(
+    pub(super) fn read_nested_value(
         &self,
         contents: &mut Cursor<'_>,
         path: &ValuePath<'_>,
     ) -> Result<Value, VariableFault> {
-        self.next_value(contents, path)
+        self.read_next_value(contents, path)
             .map_err(|fault| path.locate(fault))
     }
 
     /// Reads the next array and moves `contents` to the element after it.
-    fn next_value(
+    fn read_next_value(
         &self,
         contents: &mut Cursor<'_>,
         path: &ValuePath<'_>,
@@ -72,7 +72,7 @@ impl ArrayReader<'_> {
             return Ok(Value::empty());
         }
         let header = ArrayHeader::read(&mut data, self.budget)?;
-        let value = self.value(&header, &mut data, path)?;
+        let value = self.read_value(&header, &mut data, path)?;
         *contents = ReadArray {
             start,
             element,
@@ -84,42 +84,44 @@ impl ArrayReader<'_> {
     }
 
     /// Reads the value of an array after its header.
-    pub(super) fn value(
+    pub(super) fn read_value(
         &self,
         header: &ArrayHeader,
         contents: &mut Cursor<'_>,
         path: &ValuePath<'_>,
     ) -> Result<Value, VariableFault> {
-        self.value_of_class(header, contents, path)
+        self.read_value_of_class(header, contents, path)
             .map_err(|fault| path.locate(fault))
     }
 
     /// Reads the value as its class requires; errors do not yet contain `path`.
-    fn value_of_class(
+    fn read_value_of_class(
         &self,
         header: &ArrayHeader,
         contents: &mut Cursor<'_>,
         path: &ValuePath<'_>,
     ) -> Result<Value, VariableFault> {
         Ok(match header.class {
-            ArrayClass::Float | ArrayClass::Integer => Value::Array(self.array(header, contents)?),
-            ArrayClass::Sparse => Value::Array(self.sparse(header, contents)?),
+            ArrayClass::Float | ArrayClass::Integer => {
+                Value::Array(self.read_array(header, contents)?)
+            }
+            ArrayClass::Sparse => Value::Array(self.read_sparse(header, contents)?),
             ArrayClass::Char => {
                 let element = Element::read(contents)?;
                 Value::Text(read_text(&element, &header.shape, self.budget)?)
             }
-            ArrayClass::Cell => Value::Cell(self.cell(header, contents, path)?),
-            ArrayClass::Struct => Value::Struct(self.records(header, contents, path)?),
-            ArrayClass::Object => Value::Object(self.folder_object(header, contents, path)?),
+            ArrayClass::Cell => Value::Cell(self.read_cell(header, contents, path)?),
+            ArrayClass::Struct => Value::Struct(self.read_records(header, contents, path)?),
+            ArrayClass::Object => Value::Object(self.read_folder_object(header, contents, path)?),
             ArrayClass::FunctionHandle => {
                 Element::pass_all(contents)?;
                 unread_class("function_handle", path)
             }
-            ArrayClass::Opaque => self.opaque(contents, path)?,
+            ArrayClass::Opaque => self.read_opaque(contents, path)?,
         })
     }
 
-    fn array(
+    fn read_array(
         &self,
         header: &ArrayHeader,
         contents: &mut Cursor<'_>,
@@ -139,7 +141,7 @@ impl ArrayReader<'_> {
         })
     }
 
-    fn sparse(
+    fn read_sparse(
         &self,
         header: &ArrayHeader,
         contents: &mut Cursor<'_>,
@@ -152,9 +154,9 @@ impl ArrayReader<'_> {
         let starts = read_sizes(&Element::read(contents)?, self.budget)?;
         // The starts end with the number of stored entries.
         let stored = starts.last().copied().unwrap_or(0);
-        let re = self.sparse_numbers(header, stored, contents)?;
+        let re = self.read_sparse_numbers(header, stored, contents)?;
         let im = if header.is_complex {
-            Some(self.sparse_numbers(header, stored, contents)?)
+            Some(self.read_sparse_numbers(header, stored, contents)?)
         } else {
             None
         };
@@ -176,7 +178,7 @@ impl ArrayReader<'_> {
     }
 
     /// Reads the real or imaginary parts of the `stored` entries of a sparse matrix.
-    fn sparse_numbers(
+    fn read_sparse_numbers(
         &self,
         header: &ArrayHeader,
         stored: usize,
@@ -194,7 +196,7 @@ impl ArrayReader<'_> {
         read_numbers(&element, element.count()?, self.budget)
     }
 
-    fn cell(
+    fn read_cell(
         &self,
         header: &ArrayHeader,
         contents: &mut Cursor<'_>,
@@ -203,7 +205,7 @@ impl ArrayReader<'_> {
         self.take_values(header.count, contents)?;
         let mut values = Vec::new();
         for at in 0..header.count {
-            values.push(self.nested_value(contents, &path.step(Step::Cell(at))?)?);
+            values.push(self.read_nested_value(contents, &path.step(Step::Cell(at))?)?);
         }
         Ok(CellArray {
             shape: header.shape.clone(),
@@ -212,7 +214,7 @@ impl ArrayReader<'_> {
     }
 
     /// Reads an object of an old-style class, defined in an `@` folder.
-    fn folder_object(
+    fn read_folder_object(
         &self,
         header: &ArrayHeader,
         contents: &mut Cursor<'_>,
@@ -221,11 +223,11 @@ impl ArrayReader<'_> {
         let class = Element::read(contents)?.name()?;
         Ok(Object {
             class,
-            records: self.records(header, contents, path)?,
+            records: self.read_records(header, contents, path)?,
         })
     }
 
-    fn records(
+    fn read_records(
         &self,
         header: &ArrayHeader,
         contents: &mut Cursor<'_>,
@@ -246,7 +248,7 @@ impl ArrayReader<'_> {
             let record = path.step(Step::Record(at))?;
             let path = if count == 1 { path } else { &record };
             for (name, values) in &mut fields {
-                values.push(self.nested_value(contents, &path.step(Step::Field(name))?)?);
+                values.push(self.read_nested_value(contents, &path.step(Step::Field(name))?)?);
             }
         }
         Ok(StructArray {
@@ -268,7 +270,7 @@ impl ArrayReader<'_> {
 
     /// Reads an opaque array after its name: an object, whose contents are stored in the object
     /// part of the file, an enumeration, or a value that cannot be read.
-    fn opaque(
+    fn read_opaque(
         &self,
         contents: &mut Cursor<'_>,
         path: &ValuePath<'_>,
@@ -281,7 +283,7 @@ impl ArrayReader<'_> {
                 numbers or text";
             return Ok(Value::opaque(format!("{class} ({system})"), why));
         }
-        let contents = self.nested_value(contents, path)?;
+        let contents = self.read_nested_value(contents, path)?;
         let variable = path.text();
         let objects = match self.objects {
             Objects::Read(objects) => objects,

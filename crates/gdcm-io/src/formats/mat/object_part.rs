@@ -145,7 +145,7 @@ fn read_cells(
     let mut long_words = LongWords::new();
     for index in 0..header.count {
         let cell_start = contents;
-        let value = reader.nested_value(&mut contents, &path.step(Step::Cell(index))?)?;
+        let value = reader.read_nested_value(&mut contents, &path.step(Step::Cell(index))?)?;
         if let Some(words) = read_exact_words(cell_start, &value, budget)? {
             long_words.insert(index, words);
         }

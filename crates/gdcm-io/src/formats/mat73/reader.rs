@@ -19,9 +19,8 @@ use crate::formats::mat73::attributes::{FOLDER_OBJECT, FUNCTION_HANDLE, MatlabAt
 use crate::formats::mat73::dataset::{Elements, Order, is_object_reference};
 use crate::formats::mat73::library_fault::{damaged, library_fault};
 use crate::formats::mat73::objects::Objects;
-use crate::formats::mat73::values::{
-    Member, SparseGroup, character_rows, compound_records, empty_value, strings,
-};
+use crate::formats::mat73::sparse_group::{Member, SparseGroup};
+use crate::formats::mat73::values::{character_rows, compound_records, empty_value, strings};
 use crate::formats::variables::{
     self, Array, CellArray, ElementKind, StructArray, Value, Variable,
 };

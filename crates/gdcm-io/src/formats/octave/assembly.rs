@@ -28,24 +28,28 @@ pub(super) struct ValueHeading {
 pub(super) trait Parts {
     fn budget(&self) -> &ReadingBudget<'_>;
     /// Reads the next name and type.
-    fn heading(&mut self, variable: &str) -> Result<ValueHeading, VariableFault>;
+    fn read_heading(&mut self, variable: &str) -> Result<ValueHeading, VariableFault>;
     /// Reads the dimensions of an array; there are at least two.
-    fn sides(&mut self, variable: &str) -> Result<Sides, VariableFault>;
+    fn read_sides(&mut self, variable: &str) -> Result<Sides, VariableFault>;
     /// Reads `count` elements; each complex element yields two numbers.
-    fn numbers(
+    fn read_numbers(
         &mut self,
         element: Element,
         count: usize,
         variable: &str,
     ) -> Result<Vec<f64>, VariableFault>;
     /// Reads the dimensions and the nonzero elements of a sparse matrix.
-    fn sparse(&mut self, element: Element, variable: &str) -> Result<SparseEntries, VariableFault>;
+    fn read_sparse(
+        &mut self,
+        element: Element,
+        variable: &str,
+    ) -> Result<SparseEntries, VariableFault>;
     /// Reads the dimensions and the rows of a character array.
-    fn text(&mut self, variable: &str) -> Result<TextArray, VariableFault>;
+    fn read_text(&mut self, variable: &str) -> Result<TextArray, VariableFault>;
     /// Reads the number of fields in a struct or an object.
-    fn field_count(&mut self, form: Form, variable: &str) -> Result<usize, VariableFault>;
+    fn read_field_count(&mut self, form: Form, variable: &str) -> Result<usize, VariableFault>;
     /// Reads the class name of an object.
-    fn class(&mut self, variable: &str) -> Result<String, VariableFault>;
+    fn read_class(&mut self, variable: &str) -> Result<String, VariableFault>;
     /// Returns the error `what` at the current position in the file.
     fn fault(&self, variable: &str, what: &str) -> VariableFault;
 }
@@ -56,7 +60,7 @@ pub(super) fn read_value(
     type_name: &str,
     variable: &str,
 ) -> Result<Value, VariableFault> {
-    Assembler { parts }.value(type_name, variable, 0)
+    Assembler { parts }.read_value(type_name, variable, 0)
 }
 
 /// Assembles values; `depth` in the methods is the nesting depth of a value.
@@ -66,7 +70,7 @@ struct Assembler<'p> {
 
 impl Assembler<'_> {
     /// Reads the parts of a value in the order that its form requires.
-    fn value(
+    fn read_value(
         &mut self,
         type_name: &str,
         variable: &str,
@@ -87,26 +91,28 @@ impl Assembler<'_> {
         };
         Ok(match form {
             Form::Scalar(element) => {
-                let numbers = self.parts.numbers(element, 1, variable)?;
+                let numbers = self.parts.read_numbers(element, 1, variable)?;
                 Value::Array(element.array(vec![1, 1], numbers))
             }
-            Form::Matrix(element) => Value::Array(self.matrix(element, variable)?),
-            Form::Diagonal(element) => Value::Array(self.diagonal(element, variable)?),
+            Form::Matrix(element) => Value::Array(self.read_matrix(element, variable)?),
+            Form::Diagonal(element) => Value::Array(self.read_diagonal(element, variable)?),
             Form::Sparse(element) => {
-                let entries = self.parts.sparse(element, variable)?;
+                let entries = self.parts.read_sparse(element, variable)?;
                 Value::Array(self.full_matrix(&entries, variable)?)
             }
-            Form::Range => Value::Array(self.range(variable)?),
-            Form::Text => Value::Text(self.parts.text(variable)?),
-            Form::Cell => Value::Cell(self.cell(variable, depth)?),
-            Form::ScalarStruct => Value::Struct(self.records(form, vec![1, 1], variable, depth)?),
+            Form::Range => Value::Array(self.read_range(variable)?),
+            Form::Text => Value::Text(self.parts.read_text(variable)?),
+            Form::Cell => Value::Cell(self.read_cell(variable, depth)?),
+            Form::ScalarStruct => {
+                Value::Struct(self.read_records(form, vec![1, 1], variable, depth)?)
+            }
             Form::StructArray => {
-                let shape = self.parts.sides(variable)?.shape;
-                Value::Struct(self.records(form, shape, variable, depth)?)
+                let shape = self.parts.read_sides(variable)?.shape;
+                Value::Struct(self.read_records(form, shape, variable, depth)?)
             }
             Form::Class => {
-                let class = self.parts.class(variable)?;
-                let records = self.records(form, vec![1, 1], variable, depth)?;
+                let class = self.parts.read_class(variable)?;
+                let records = self.read_records(form, vec![1, 1], variable, depth)?;
                 Value::Object(Object { class, records })
             }
         })
@@ -131,12 +137,12 @@ impl Assembler<'_> {
         Ok(count)
     }
 
-    fn matrix(&mut self, element: Element, variable: &str) -> Result<Array, VariableFault> {
-        let Sides { shape, by_rows } = self.parts.sides(variable)?;
+    fn read_matrix(&mut self, element: Element, variable: &str) -> Result<Array, VariableFault> {
+        let Sides { shape, by_rows } = self.parts.read_sides(variable)?;
         // Numbers in an element: real and imaginary part alternate.
         let width = if element.is_complex { 2 } else { 1 };
         let count = self.take_elements(&shape, 16 * width as u64, variable)?;
-        let mut numbers = self.parts.numbers(element, count, variable)?;
+        let mut numbers = self.parts.read_numbers(element, count, variable)?;
         if by_rows && let Some(places) = Places::row_major(&shape) {
             numbers = places
                 .flat_map(|place| &numbers[place * width..(place + 1) * width])
@@ -146,12 +152,12 @@ impl Assembler<'_> {
         Ok(element.array(shape, numbers))
     }
 
-    fn diagonal(&mut self, element: Element, variable: &str) -> Result<Array, VariableFault> {
-        let shape = self.parts.sides(variable)?.shape;
+    fn read_diagonal(&mut self, element: Element, variable: &str) -> Result<Array, VariableFault> {
+        let shape = self.parts.read_sides(variable)?.shape;
         let rows = shape[0];
         let columns = shape[1];
         let length = rows.min(columns);
-        let numbers = self.parts.numbers(element, length, variable)?;
+        let numbers = self.parts.read_numbers(element, length, variable)?;
         let NumberParts { re, im } = element.parts(numbers);
         let entries = SparseEntries {
             shape: [rows, columns],
@@ -171,8 +177,8 @@ impl Assembler<'_> {
         })
     }
 
-    fn range(&mut self, variable: &str) -> Result<Array, VariableFault> {
-        let numbers = self.parts.numbers(Element::FLOAT, 3, variable)?;
+    fn read_range(&mut self, variable: &str) -> Result<Array, VariableFault> {
+        let numbers = self.parts.read_numbers(Element::FLOAT, 3, variable)?;
         let &[first, limit, step] = numbers.as_slice() else {
             return Err(self
                 .parts
@@ -182,21 +188,21 @@ impl Assembler<'_> {
         range.array(variable, self.parts.budget())
     }
 
-    fn cell(&mut self, variable: &str, depth: usize) -> Result<CellArray, VariableFault> {
-        let shape = self.parts.sides(variable)?.shape;
+    fn read_cell(&mut self, variable: &str, depth: usize) -> Result<CellArray, VariableFault> {
+        let shape = self.parts.read_sides(variable)?.shape;
         let count = self.take_elements(&shape, size_of::<Value>() as u64, variable)?;
         let mut values = Vec::new();
         for index in 1..=count {
             let inner = format!("{variable}{{{index}}}");
-            let ValueHeading { type_name, .. } = self.parts.heading(&inner)?;
-            values.push(self.value(&type_name, &inner, depth + 1)?);
+            let ValueHeading { type_name, .. } = self.parts.read_heading(&inner)?;
+            values.push(self.read_value(&type_name, &inner, depth + 1)?);
         }
         Ok(CellArray { shape, values })
     }
 
     /// Reads the records of a struct or an object. In a struct array or an object, each field is a
     /// cell array with a value for each record.
-    fn records(
+    fn read_records(
         &mut self,
         form: Form,
         shape: Vec<usize>,
@@ -205,10 +211,10 @@ impl Assembler<'_> {
     ) -> Result<StructArray, VariableFault> {
         let count = self.take_elements(&shape, size_of::<Value>() as u64, variable)?;
         let mut fields = Vec::new();
-        for _ in 0..self.parts.field_count(form, variable)? {
-            let ValueHeading { name, type_name } = self.parts.heading(variable)?;
+        for _ in 0..self.parts.read_field_count(form, variable)? {
+            let ValueHeading { name, type_name } = self.parts.read_heading(variable)?;
             let inner = format!("{variable}.{name}");
-            let values = match (form, self.value(&type_name, &inner, depth + 1)?) {
+            let values = match (form, self.read_value(&type_name, &inner, depth + 1)?) {
                 (Form::StructArray | Form::Class, Value::Cell(cell)) => cell.values,
                 (_, value) => vec![value],
             };

@@ -32,9 +32,35 @@ pub(super) struct Assembly<'s> {
     open: Vec<u32>,
 }
 
+/// Property of an object.
 struct NamedValue {
     name: String,
     value: Value,
+}
+
+/// Fields of records that are being assembled.
+#[derive(Default)]
+struct Fields {
+    /// Name and values of each field, in the order in which the fields were found.
+    fields: Vec<(String, Vec<Value>)>,
+    /// Index in `fields`, by name.
+    indices: HashMap<String, usize>,
+}
+
+impl Fields {
+    /// Returns the values of a field; adds the field if it is new.
+    fn values_mut(&mut self, name: String) -> &mut Vec<Value> {
+        let index = match self.indices.get(&name) {
+            Some(&index) => index,
+            None => {
+                self.fields.push((name.clone(), Vec::new()));
+                let index = self.fields.len() - 1;
+                self.indices.insert(name, index);
+                index
+            }
+        };
+        &mut self.fields[index].1
+    }
 }
 
 impl<'s> Assembly<'s> {
@@ -123,8 +149,7 @@ impl<'s> Assembly<'s> {
         reference: &Reference,
         path: &ValuePath<'_>,
     ) -> Result<StructArray, VariableFault> {
-        let mut fields: Vec<(String, Vec<Value>)> = Vec::new();
-        let mut field_indices: HashMap<String, usize> = HashMap::new();
+        let mut fields = Fields::default();
         // A property may be missing in some objects: its values are padded to one per object.
         for (at, &object) in reference.objects.iter().enumerate() {
             let record = path.step(Step::Record(at))?;
@@ -135,27 +160,18 @@ impl<'s> Assembly<'s> {
             };
             self.open.push(object);
             for NamedValue { name, value } in self.properties(object, reference.class, path)? {
-                let field = match field_indices.get(&name) {
-                    Some(&field) => field,
-                    None => {
-                        fields.push((name.clone(), Vec::new()));
-                        field_indices.insert(name, fields.len() - 1);
-                        fields.len() - 1
-                    }
-                };
-                if let Some((_, values)) = fields.get_mut(field) {
-                    self.pad(values, at)?;
-                    values.push(value);
-                }
+                let values = fields.values_mut(name);
+                self.pad(values, at)?;
+                values.push(value);
             }
             self.open.pop();
         }
-        for (_, values) in &mut fields {
+        for (_, values) in &mut fields.fields {
             self.pad(values, reference.objects.len())?;
         }
         Ok(StructArray {
             shape: reference.shape.clone(),
-            fields,
+            fields: fields.fields,
         })
     }
 

@@ -44,8 +44,8 @@ enum Element {
 
 impl ValueReader<'_, '_, '_> {
     /// Reads a value; rejects a statement that continues after it.
-    pub(super) fn whole_value(&mut self) -> Result<Value, ValueError> {
-        let value = self.value(0)?;
+    pub(super) fn read_whole_value(&mut self) -> Result<Value, ValueError> {
+        let value = self.read_value(0)?;
         self.scanner.pass_blanks()?;
         match self.scanner.peek() {
             None | Some(';' | ',' | '\n' | '\r') => Ok(value),
@@ -54,13 +54,13 @@ impl ValueReader<'_, '_, '_> {
     }
 
     /// Reads a value; `depth` is its nesting depth.
-    fn value(&mut self, depth: usize) -> Result<Value, ValueError> {
+    fn read_value(&mut self, depth: usize) -> Result<Value, ValueError> {
         if depth > MOST_NESTED {
             return Err(VariableFault::too_deep("").into());
         }
         self.scanner.pass_blanks()?;
         let place = self.scanner.position();
-        if let Some(ComplexNumber { re, im }) = self.complex(false)? {
+        if let Some(ComplexNumber { re, im }) = self.read_complex(false)? {
             let im = if im == 0.0 { None } else { Some(vec![im]) };
             return Ok(Value::Array(Array {
                 im,
@@ -68,20 +68,20 @@ impl ValueReader<'_, '_, '_> {
             }));
         }
         match self.scanner.peek() {
-            Some('[') => self.matrix(),
-            Some('{') => self.cell_array(place, depth),
-            Some('\'' | '"') => Ok(Value::text(self.scanner.quoted(self.budget)?)),
+            Some('[') => self.read_matrix(),
+            Some('{') => self.read_cell_array(place, depth),
+            Some('\'' | '"') => Ok(Value::text(self.scanner.read_quoted(self.budget)?)),
             Some('@') => refused(format!("functions are not supported; {REMEDY}"), place),
             None | Some('\n' | '\r' | ';' | ',') => {
                 refused("a value is missing here; write it", place)
             }
-            Some(_) => self.named_value(place, depth),
+            Some(_) => self.read_named_value(place, depth),
         }
     }
 
     /// Reads a function call, or a copy of a variable or field.
-    fn named_value(&mut self, place: Position, depth: usize) -> Result<Value, ValueError> {
-        let path = self.scanner.path(self.budget)?;
+    fn read_named_value(&mut self, place: Position, depth: usize) -> Result<Value, ValueError> {
+        let path = self.scanner.read_path(self.budget)?;
         let before = self.scanner.clone();
         self.scanner.pass_blanks()?;
         match path.as_slice() {
@@ -89,7 +89,7 @@ impl ValueReader<'_, '_, '_> {
                 format!("this is not a number, string or matrix; {REMEDY}"),
                 place,
             ),
-            [function] if self.scanner.take("(") => self.call(function, place, depth),
+            [function] if self.scanner.take("(") => self.read_call(function, place, depth),
             path => {
                 *self.scanner = before;
                 self.workspace.copy(path, place, self.budget)
@@ -100,12 +100,12 @@ impl ValueReader<'_, '_, '_> {
     /// Reads a real number, or a complex number such as `1 - 2i`, at this position; `None`, without
     /// moving, if there is no number. `in_matrix`: between square brackets, where a blank may
     /// separate two elements.
-    fn complex(&mut self, in_matrix: bool) -> Result<Option<ComplexNumber>, ValueError> {
+    fn read_complex(&mut self, in_matrix: bool) -> Result<Option<ComplexNumber>, ValueError> {
         let before = self.scanner.clone();
         let Some(Number {
             value,
             is_imaginary,
-        }) = self.signed()?
+        }) = self.read_signed()?
         else {
             *self.scanner = before;
             return Ok(None);
@@ -124,7 +124,7 @@ impl ValueReader<'_, '_, '_> {
             && let Ok(Some(Number {
                 value: im,
                 is_imaginary: true,
-            })) = self.signed()
+            })) = self.read_signed()
         {
             return Ok(Some(ComplexNumber { re: value, im }));
         }
@@ -137,7 +137,7 @@ impl ValueReader<'_, '_, '_> {
     }
 
     /// Reads a number with any signs before it; `None` if there is no number.
-    fn signed(&mut self) -> Result<Option<Number>, ValueError> {
+    fn read_signed(&mut self) -> Result<Option<Number>, ValueError> {
         let mut sign = 1.0;
         loop {
             match self.scanner.peek() {
@@ -149,13 +149,13 @@ impl ValueReader<'_, '_, '_> {
             self.scanner.pass_blanks()?;
             self.budget.work(1, "")?;
         }
-        if let Some(number) = self.scanner.number()? {
+        if let Some(number) = self.scanner.read_number()? {
             return Ok(Some(Number {
                 value: sign * number.value,
                 ..number
             }));
         }
-        let value = match self.scanner.name() {
+        let value = match self.scanner.read_name() {
             Some("inf" | "Inf") => sign * f64::INFINITY,
             Some("nan" | "NaN") => f64::NAN,
             _ => return Ok(None),
@@ -169,7 +169,7 @@ impl ValueReader<'_, '_, '_> {
     /// Reads rows of elements from an opening bracket, at this position, to the closing bracket
     /// `close`; `read_element` reads an element. Commas or blanks separate elements, semicolons or
     /// line ends separate rows; empty rows do not count.
-    fn rows<T>(
+    fn read_rows<T>(
         &mut self,
         close: char,
         opening: Position,
@@ -242,14 +242,14 @@ impl ValueReader<'_, '_, '_> {
     }
 
     /// Reads a cell array.
-    fn cell_array(&mut self, opening: Position, depth: usize) -> Result<Value, ValueError> {
+    fn read_cell_array(&mut self, opening: Position, depth: usize) -> Result<Value, ValueError> {
         let Rows {
             rows,
             columns,
             elements,
-        } = self.rows('}', opening, |reader| {
+        } = self.read_rows('}', opening, |reader| {
             reader.budget.take(4, 64, "")?;
-            reader.value(depth + 1)
+            reader.read_value(depth + 1)
         })?;
         Ok(Value::Cell(CellArray {
             shape: vec![rows, columns],
@@ -259,13 +259,13 @@ impl ValueReader<'_, '_, '_> {
 
     /// Reads a matrix of numbers, transposed if a quotation mark follows it, or of strings in
     /// double quotation marks.
-    fn matrix(&mut self) -> Result<Value, ValueError> {
+    fn read_matrix(&mut self) -> Result<Value, ValueError> {
         let opening = self.scanner.position();
         let Rows {
             rows,
             columns,
             elements,
-        } = self.rows(']', opening, Self::matrix_element)?;
+        } = self.read_rows(']', opening, Self::read_matrix_element)?;
         let count = elements.len();
         self.budget
             .take(count as u64, 2 * size_of::<Element>() as u64, "")?;
@@ -318,13 +318,13 @@ impl ValueReader<'_, '_, '_> {
     }
 
     /// Reads an element between square brackets.
-    fn matrix_element(&mut self) -> Result<Element, ValueError> {
+    fn read_matrix_element(&mut self) -> Result<Element, ValueError> {
         let place = self.scanner.position();
-        if let Some(ComplexNumber { re, im }) = self.complex(true)? {
+        if let Some(ComplexNumber { re, im }) = self.read_complex(true)? {
             return Ok(Element::Number { re, im });
         }
         match self.scanner.peek() {
-            Some('"') => Ok(Element::Text(self.scanner.quoted(self.budget)?)),
+            Some('"') => Ok(Element::Text(self.scanner.read_quoted(self.budget)?)),
             Some('\'') => refused(
                 "strings in brackets are not joined; write {'A', 'B'}",
                 place,
@@ -338,7 +338,12 @@ impl ValueReader<'_, '_, '_> {
 
     /// Reads the arguments after the opening bracket of a function call, and returns the value of
     /// the function.
-    fn call(&mut self, name: &str, place: Position, depth: usize) -> Result<Value, ValueError> {
+    fn read_call(
+        &mut self,
+        name: &str,
+        place: Position,
+        depth: usize,
+    ) -> Result<Value, ValueError> {
         let Some(function) = Function::find(name) else {
             return refused(format!("{name}(…) is not evaluated; {REMEDY}"), place);
         };
@@ -349,7 +354,7 @@ impl ValueReader<'_, '_, '_> {
                 break;
             }
             self.budget.take(2, size_of::<Value>() as u64, "")?;
-            arguments.push(self.value(depth + 1)?);
+            arguments.push(self.read_value(depth + 1)?);
             self.scanner.pass_blanks()?;
             if self.scanner.take(")") {
                 break;

@@ -195,7 +195,7 @@ impl<'t> Scanner<'t> {
     }
 
     /// Reads the name at this position; `None` if there is none.
-    pub(super) fn name(&mut self) -> Option<&'t str> {
+    pub(super) fn read_name(&mut self) -> Option<&'t str> {
         let rest = self.rest();
         if !begins_name(rest) {
             return None;
@@ -209,14 +209,21 @@ impl<'t> Scanner<'t> {
 
     /// Reads the names at this position, separated by points as in "sys.A"; empty if there are
     /// none.
-    pub(super) fn path(&mut self, budget: &ReadingBudget) -> Result<Vec<&'t str>, VariableFault> {
-        let mut path: Vec<&'t str> = self.name().into_iter().collect();
+    pub(super) fn read_path(
+        &mut self,
+        budget: &ReadingBudget,
+    ) -> Result<Vec<&'t str>, VariableFault> {
+        let mut path: Vec<&'t str> = self.read_name().into_iter().collect();
         while let Some(first) = path.first() {
             if path.len() > MOST_NESTED {
                 return Err(VariableFault::too_deep(first));
             }
             let before = self.clone();
-            let next = if self.take(".") { self.name() } else { None };
+            let next = if self.take(".") {
+                self.read_name()
+            } else {
+                None
+            };
             let Some(name) = next else {
                 *self = before;
                 break;
@@ -229,7 +236,7 @@ impl<'t> Scanner<'t> {
 
     /// Reads a string up to the closing quotation mark on the same line; a doubled quotation mark
     /// stands for a single one.
-    pub(super) fn quoted(&mut self, budget: &ReadingBudget) -> Result<String, ValueError> {
+    pub(super) fn read_quoted(&mut self, budget: &ReadingBudget) -> Result<String, ValueError> {
         let opening = self.position();
         let quote = self.peek().unwrap_or('\'');
         self.at += 1;
@@ -255,7 +262,7 @@ impl<'t> Scanner<'t> {
     }
 
     /// Reads the unsigned number at this position; `None` if there is none.
-    pub(super) fn number(&mut self) -> Result<Option<Number>, ValueError> {
+    pub(super) fn read_number(&mut self) -> Result<Option<Number>, ValueError> {
         let rest = self.rest();
         let place = self.position();
         let bytes = rest.as_bytes();
@@ -332,7 +339,7 @@ impl<'t> Scanner<'t> {
 
     /// Moves past a string, or to the end of the line if the string is not closed.
     fn pass_text(&mut self, budget: &ReadingBudget) -> Result<(), VariableFault> {
-        match self.quoted(budget) {
+        match self.read_quoted(budget) {
             Err(ValueError::Fault(fault)) => return Err(fault),
             Err(ValueError::NotUnderstood { .. }) => self.pass_line(),
             Ok(_) => {}

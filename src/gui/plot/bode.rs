@@ -17,10 +17,10 @@ use super::curve_menu::menu_ui;
 use super::drawn_curves::{BodeCurve, CurveId, PANES, Pane};
 use super::legend::{Chips, role_chips};
 use super::navigation::pressed_digit;
+use super::nearest_curve::{Hit, curves_in, nearest_curve};
 use super::painter::use_frame_colors;
 use super::pane_scene::PaneScene;
 use super::panel_text::message_ui;
-use super::picking::{Hit, nearest, touched};
 use super::reference_lines::PaneLines;
 use super::thinning::is_finite;
 use crate::gui::widgets::palette::Palette;
@@ -188,7 +188,7 @@ impl Panes<'_> {
         if let Some(selection) = view.selection.take()
             && let Some(transform) = view.transform(selection.pane)
         {
-            let curves = touched(scene.curves, selection.pane, selection.area, transform);
+            let curves = curves_in(scene.curves, selection.pane, selection.area, transform);
             events.push(BodeEvent::Boxed(curves));
         }
         PanesResponse { events, has_focus }
@@ -253,7 +253,7 @@ fn curve_at(
     pointer: Pos2,
     transform: &PlotTransform,
 ) -> Option<Hit> {
-    let hit = nearest(scene.curves, pane, pointer, transform)?;
+    let hit = nearest_curve(scene.curves, pane, pointer, transform)?;
     let lines = PaneLines {
         lines: scene.rules,
         pane,

@@ -10,10 +10,10 @@ use gdcm_plot::figure::{MarkId, Panel, Range};
 use super::figure_marks::{DrawnMarks, MarkScene, RING};
 use super::figure_scene::FigureScene;
 use super::navigation::ZoomGesture;
+use super::nearest_dot::{PointedMark, nearest_dot};
 use super::painter::{Gestures, PanelPainter};
 use super::panel_axis::{LABELLED_HEIGHT, PanelAxis, TICKS_HEIGHT, TickSpacing, tick_font};
 use super::panel_text::caption_font;
-use super::picking::{PointedMark, nearest_dot};
 use super::ticks::Ticks;
 use super::viewed_range::{ZoomLimit, bounds_of, ranges_of, zoomed_within};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE, medium};
@@ -139,7 +139,10 @@ impl PlacedPanel<'_> {
 
     /// Returns the accessible name.
     fn description(&self) -> String {
-        let plot = self.scene.words.plot(self.scene.first_plot + self.plot);
+        let plot = self
+            .scene
+            .words
+            .plot_name(self.scene.first_plot + self.plot);
         if self.number == 0 {
             plot
         } else {
@@ -230,7 +233,7 @@ impl PlacedPanel<'_> {
         let plot = self.scene.first_plot + self.plot;
         for dot in self.panel().dots() {
             let Some(id) = &dot.id else { continue };
-            let Some(words) = self.scene.words.dot(plot, id, [dot.x, dot.y]) else {
+            let Some(words) = self.scene.words.dot_name(plot, id, [dot.x, dot.y]) else {
                 continue;
             };
             let at = transform.position_from_point(&PlotPoint::new(dot.x, dot.y));

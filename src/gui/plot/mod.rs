@@ -5,15 +5,16 @@
 //! `chart`, `overview`) describes its content; the parts below serve all of them:
 //!
 //! ```text
-//! painter           frame, axes, grid and gestures; each scene adds its layers
-//! panel_axis, ticks numbers and grid lines
-//! viewed_range      visible ranges and zoom limits
-//! navigation        wheel, pinching, boxes
-//! picking           curve or dot under the pointer
-//! thinning          visible points, no finer than the pixels; drawn_curves keeps them
-//! curve_layer       order and styles of curves; cached_raster holds the image of many
-//! layers, canvas    areas, lines across a panel; shapes from printed figures
-//! legend, readout   chips above a plot, values at the pointer
+//! painter                     frame, axes, grid and gestures; each scene adds its layers
+//! panel_axis, ticks           numbers and grid lines
+//! viewed_range                visible ranges and zoom limits
+//! navigation                  wheel, pinching, boxes
+//! nearest_curve, nearest_dot  curve or dot under the pointer
+//! pointed_curve_text          status text for the curve under the pointer
+//! thinning                    visible points, no finer than the pixels; drawn_curves keeps them
+//! curve_layer                 order and styles of curves; cached_raster holds the image of many
+//! layers, canvas              areas, lines across a panel; shapes from printed figures
+//! legend, readout             chips above a plot, values at the pointer
 //! ```
 
 mod axis_strip;
@@ -47,14 +48,15 @@ mod layers;
 pub mod legend;
 mod limits_form;
 mod navigation;
+pub mod nearest_curve;
+mod nearest_dot;
 pub mod overview;
 mod painter;
 mod pane_scene;
 mod panel_axis;
 mod panel_text;
-pub mod picking;
 mod plot_axis;
-pub mod pointed_curve;
+pub mod pointed_curve_text;
 pub mod quantity;
 pub mod questions;
 pub mod readout;

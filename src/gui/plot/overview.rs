@@ -15,8 +15,8 @@ use super::bode_event::CurveWish;
 use super::curve_layer::DrawnPane;
 use super::curve_menu::model_wishes_ui;
 use super::drawn_curves::{BodeCurve, CurveId, PANES, Pane};
+use super::nearest_curve::{Hit, nearest_curve};
 use super::panel_text::{caption_font, message_ui};
-use super::picking::{Hit, nearest};
 use super::sketch::{Sketch, range_text};
 use crate::gui::widgets::controls::{elided, row_text};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
@@ -65,8 +65,8 @@ pub enum OverviewEvent {
     PairClicked(Pair),
     /// A curve is under the pointer.
     Hovered(CurveId),
-    /// Description of the element under the pointer.
-    Told(String),
+    /// Status text for the element under the pointer.
+    StatusText(String),
     /// A curve was clicked with Alt pressed.
     Isolated(CurveId),
     /// An entry of a curve's menu was chosen.
@@ -105,7 +105,7 @@ impl OverviewView {
             if !transform.frame().contains(pointer) {
                 continue;
             }
-            if let Some(hit) = nearest(cell.curves, pane, pointer, transform)
+            if let Some(hit) = nearest_curve(cell.curves, pane, pointer, transform)
                 && best.is_none_or(|best| hit.distance < best.distance)
             {
                 best = Some(hit);
@@ -120,7 +120,7 @@ impl OverviewView {
         Some(transform.position_from_point(&PlotPoint::new(log_omega, magnitude_db)))
     }
 
-    /// Returns the screen centre of the magnitude in a cell.
+    /// Returns the screen position of the centre of a cell's magnitude plot.
     pub fn screen_position(&self, pair: Pair) -> Option<Pos2> {
         let transform = self.transform(pair, Pane::Magnitude)?;
         Some(transform.frame().center())
@@ -347,7 +347,7 @@ impl PlacedCell<'_> {
         let mut events = Vec::new();
         events.extend(pointed.clone().map(OverviewEvent::Hovered));
         if response.hovered() {
-            events.push(OverviewEvent::Told(match curve {
+            events.push(OverviewEvent::StatusText(match curve {
                 Some(curve) => format!("{} · {}", self.name, curve.label),
                 None => self.name.clone(),
             }));

@@ -10,7 +10,7 @@ use gdcm_study::{Analysis, Edit};
 use gdcm_words::Table;
 use gdcm_words::decisions::decision_differences;
 
-use super::gain_plots::net_gain_pairs;
+use super::net_gain_pairs::net_gain_pairs;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::state::window_state::State;

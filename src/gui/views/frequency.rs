@@ -21,7 +21,7 @@ use crate::gui::commands::study::StudyCommand;
 use crate::gui::plot::bode_event::{BodeEvent, CurveWish};
 use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::plot::drawn_curves::PANES;
-use crate::gui::plot::pointed_curve::pointed_words;
+use crate::gui::plot::pointed_curve_text::pointed_curve_text;
 use crate::gui::plot::quantity::BodeQuantity;
 use crate::gui::plot::{BodeCurve, BodeScene, BodeView, CurveId, bode_ui};
 use crate::gui::state::window_state::State;
@@ -90,7 +90,7 @@ impl FrequencyPlot<'_> {
         if let Some(CurveId::Model(id)) = &view.hovered {
             commands.push(SelectionCommand::Hover(id.clone()).into());
         }
-        if let Some(words) = pointed_words(view, curves, quantity, unit) {
+        if let Some(words) = pointed_curve_text(view, curves, quantity, unit) {
             commands.push(SelectionCommand::Tell(words).into());
         }
         if let Some(omega) = view.pointed_omega {

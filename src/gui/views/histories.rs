@@ -94,7 +94,7 @@ pub fn histories_ui(
     if let OverTime::Test(_) = responses {
         // `1 +`: the first plot shows the input.
         scene.accented = Some(1 + state.display.selection.pair.output);
-        scene.least = LEAST_PLOT;
+        scene.least_plot_size = LEAST_PLOT;
     }
     figure_ui(ui, &scene, &mut view, palette);
     state.display.figures.insert(View::Requirements, view);
@@ -240,7 +240,7 @@ fn set_test_input(state: &State, name: &'static str, test: TestInput) -> Command
 struct HistoryWords<'a>(&'a Figure);
 
 impl FigureWords for HistoryWords<'_> {
-    fn plot(&self, plot: usize) -> String {
+    fn plot_name(&self, plot: usize) -> String {
         format!("{} over time", self.0.plots[plot].title)
     }
 }

@@ -100,7 +100,7 @@ pub fn poles_view_ui(
             FigureEvent::Pointed(MarkId::Model(id)) => {
                 commands.push(SelectionCommand::Hover(id).into());
             }
-            FigureEvent::Told(words) => commands.push(SelectionCommand::Tell(words).into()),
+            FigureEvent::StatusText(words) => commands.push(SelectionCommand::Tell(words).into()),
             FigureEvent::Clicked(_, MarkId::Model(id), keys) => {
                 commands.push(if keys.alt {
                     SelectionCommand::Isolate(id).into()
@@ -110,7 +110,9 @@ pub fn poles_view_ui(
                     Edit::Reject(id).into()
                 });
             }
-            FigureEvent::Clicked(..) | FigureEvent::Pointed(_) | FigureEvent::Asked(_) => {}
+            FigureEvent::Clicked(..)
+            | FigureEvent::Pointed(_)
+            | FigureEvent::ExplanationRequested(_) => {}
         }
     }
     state.display.figures.insert(View::Poles, view);
@@ -186,12 +188,12 @@ struct PoleWords<'a> {
 }
 
 impl FigureWords for PoleWords<'_> {
-    fn plot(&self, plot: usize) -> String {
+    fn plot_name(&self, plot: usize) -> String {
         let name = ["s-plane", "s-plane, slow modes"][plot.min(1)];
         format!("{name}: {} poles and zeros", self.dots)
     }
 
-    fn pointed(&self, _: usize, id: &MarkId, [re, im]: [f64; 2]) -> Option<String> {
+    fn status_text(&self, _: usize, id: &MarkId, [re, im]: [f64; 2]) -> Option<String> {
         let modes = self.state.modes()?;
         let MarkId::Model(id) = id else {
             return None;

@@ -20,7 +20,7 @@ use gdcm_words::Table;
 use super::figures::figure_of;
 use super::histories::histories_ui;
 use super::need::Need;
-use super::over_time::{current, over_time_need, time_histories_job};
+use super::over_time::{current_analysis, over_time_need, time_histories_job};
 use super::requirement_limits::{decided, mode_tolerances_ui, overview_limits_ui};
 use super::requirement_tables::page_tables;
 use crate::gui::commands::command::Command;
@@ -41,7 +41,7 @@ use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::tables::{TableClick, TableLook, table_grid_ui};
 
 /// Text above every page.
-pub(super) const NO_QUALIFICATION: &str =
+pub(super) const NOT_A_QUALIFICATION: &str =
     "These values describe models and do not replace a qualification (docs/requirements.md)";
 /// Minimum plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(220.0, 150.0);
@@ -84,7 +84,7 @@ pub fn requirements_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Com
 
 /// Returns the job for the displayed requirements; `None` until there is an analysis.
 pub fn requirements_job(state: &State) -> Option<RequirementsJob> {
-    let analysis = current(state)?;
+    let analysis = current_analysis(state)?;
     Some(RequirementsJob {
         analysis: analysis.into(),
         uncertainty: state.uncertainty().cloned().map(Into::into),
@@ -429,7 +429,7 @@ struct BandwidthWords<'a> {
 }
 
 impl FigureWords for BandwidthWords<'_> {
-    fn plot(&self, plot: usize) -> String {
+    fn plot_name(&self, plot: usize) -> String {
         let name = match self.pairs.get(plot) {
             Some(pair) => self.state.dataset().pair_name(*pair),
             None => String::new(),
@@ -437,7 +437,7 @@ impl FigureWords for BandwidthWords<'_> {
         format!("Phase delay over bandwidth of {name}")
     }
 
-    fn pointed(&self, plot: usize, id: &MarkId, _: [f64; 2]) -> Option<String> {
+    fn status_text(&self, plot: usize, id: &MarkId, _: [f64; 2]) -> Option<String> {
         let pair = self.pairs.get(plot)?;
         let MarkId::Condition(id) = id else {
             return None;

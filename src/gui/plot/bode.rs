@@ -1,6 +1,8 @@
 //! Bode plot: magnitude above phase of every model of a condition for one response, or the ratio
 //! and phase difference between the identified and the other models.
 
+use std::borrow::Cow;
+
 use egui::{CursorIcon, Pos2, Response, Ui, UiBuilder, Vec2, vec2};
 use egui_plot::PlotTransform;
 
@@ -11,11 +13,11 @@ use super::bode_layout::BodeLayout;
 use super::bode_pane::pane_ui;
 use super::bode_scene::BodeScene;
 use super::bode_view::{BodeView, MenuSubject};
+use super::chips::{Chips, role_chips};
 use super::curve_command::CurveCommand;
 use super::curve_layer::CurveLooks;
 use super::curve_menu::menu_ui;
 use super::drawn_curves::{BodeCurve, CurveId, PANES, Pane};
-use super::legend::{Chips, role_chips};
 use super::navigation::pressed_digit;
 use super::nearest_curve::{Hit, curves_in, nearest_curve};
 use super::painter::use_frame_colors;
@@ -50,13 +52,12 @@ pub fn bode_ui(
         view.pointed_omega = None;
         return events;
     }
-    let drawn: Vec<BodeCurve>;
-    let mut visible = *scene;
-    if scene.curves.iter().any(|curve| curve.hidden) {
-        let shown = scene.curves.iter().filter(|curve| !curve.hidden);
-        drawn = shown.cloned().collect();
-        visible.curves = &drawn;
-    }
+    let curves = visible_curves(scene.curves);
+    // `scene` includes the hidden curves, which still have chips; the panes show `visible`.
+    let visible = BodeScene {
+        curves: &curves,
+        ..*scene
+    };
     // While a band end is dragged, the view must not move under the pointer.
     if scene.omega_range.is_none() && !ui.input(|input| input.pointer.any_down()) {
         view.follow_curves(scene.curves);
@@ -93,6 +94,15 @@ pub fn bode_ui(
     });
     ui.advance_cursor_after_rect(rect);
     events
+}
+
+/// Returns the curves that are not hidden; borrowed if none is hidden.
+fn visible_curves(curves: &[BodeCurve]) -> Cow<'_, [BodeCurve]> {
+    if !curves.iter().any(|curve| curve.hidden) {
+        return Cow::Borrowed(curves);
+    }
+    let visible = curves.iter().filter(|curve| !curve.hidden);
+    Cow::Owned(visible.cloned().collect())
 }
 
 /// Returns the request for a pressed digit, which toggles the role chip with this number.
@@ -296,7 +306,7 @@ fn handle_click(
             view.request_fit();
             response.ctx.request_repaint();
         }
-        return before.map(BodeEvent::TakenBack);
+        return before.map(BodeEvent::ClickUndone);
     }
     let id = clicked?;
     if response.ctx.input(|input| input.modifiers.alt) {

@@ -14,12 +14,13 @@
 //! thinning                    visible points, no finer than the pixels; drawn_curves keeps them
 //! curve_layer                 order and styles of curves; cached_raster holds the image of many
 //! layers, canvas              areas, lines across a panel; shapes from printed figures
-//! legend, readout             chips above a plot, values at the pointer
+//! chips, readout              chips above a plot, values at the pointer
 //! ```
 
 mod axis_strip;
 mod band_handles;
 pub mod bode;
+mod bode_axis;
 pub mod bode_event;
 mod bode_headings;
 mod bode_keys;
@@ -32,11 +33,14 @@ pub mod canvas;
 pub mod chart;
 mod chart_layers;
 pub mod chart_view;
+mod chip_row;
+pub mod chips;
 mod coherence_strip;
 pub mod curve_command;
 mod curve_layer;
 mod curve_menu;
 pub mod curve_style;
+pub mod dragged_range;
 pub mod drawn_curves;
 mod end_labels;
 mod figure_marks;
@@ -45,7 +49,6 @@ pub mod figure_scene;
 pub mod figure_view;
 mod invalid_region;
 mod layers;
-pub mod legend;
 mod limits_form;
 mod navigation;
 pub mod nearest_curve;
@@ -55,14 +58,12 @@ mod painter;
 mod pane_scene;
 mod panel_axis;
 mod panel_text;
-mod plot_axis;
 pub mod pointed_curve_text;
 pub mod quantity;
 pub mod questions;
 pub mod readout;
 mod reference_lines;
 mod sketch;
-pub mod stretch;
 mod thinning;
 mod ticks;
 mod tiles;

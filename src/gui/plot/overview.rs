@@ -11,12 +11,12 @@ use egui_plot::{PlotPoint, PlotTransform};
 use gdcm_model::dataset::Pair;
 use gdcm_plot::figure::Range;
 
-use super::bode_event::CurveWish;
+use super::bode_event::CurveAction;
 use super::curve_layer::DrawnPane;
-use super::curve_menu::model_wishes_ui;
+use super::curve_menu::model_actions_ui;
 use super::drawn_curves::{BodeCurve, CurveId, PANES, Pane};
 use super::nearest_curve::{Hit, nearest_curve};
-use super::panel_text::{caption_font, message_ui};
+use super::panel_text::{AT_RIGHT, caption_font, message_ui};
 use super::sketch::{Sketch, range_text};
 use crate::gui::widgets::controls::{elided, row_text};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
@@ -70,7 +70,7 @@ pub enum OverviewEvent {
     /// A curve was clicked with Alt pressed.
     Isolated(CurveId),
     /// An entry of a curve's menu was chosen.
-    Wished(CurveId, CurveWish),
+    ActionChosen(CurveId, CurveAction),
 }
 
 /// Curve whose menu is open, and its cell.
@@ -316,7 +316,14 @@ impl PlacedCell<'_> {
     fn paint_head(&self, ui: &Ui, head: Rect, ranges: &str) {
         let palette = self.palette;
         let head = head.shrink2(vec2(3.0, 0.0));
-        let note = row_text(ui, head, -0.01, &self.cell.note, SMALL_SIZE, palette.text);
+        let note = row_text(
+            ui,
+            head,
+            AT_RIGHT,
+            &self.cell.note,
+            SMALL_SIZE,
+            palette.text,
+        );
         let room = note.left() - head.left() - 6.0;
         let ranges = elided(ui, ranges, room, SMALL_SIZE);
         row_text(ui, head, 0.0, &ranges, SMALL_SIZE, palette.dim_text);
@@ -366,8 +373,8 @@ impl PlacedCell<'_> {
         if let Some(curve) = self.menu_curve(view) {
             response.context_menu(|ui| {
                 ui.label(RichText::new(&curve.label).strong());
-                if let Some(wish) = model_wishes_ui(ui, curve) {
-                    events.push(OverviewEvent::Wished(curve.id.clone(), wish));
+                if let Some(action) = model_actions_ui(ui, curve) {
+                    events.push(OverviewEvent::ActionChosen(curve.id.clone(), action));
                 }
             });
         }

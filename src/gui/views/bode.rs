@@ -13,7 +13,7 @@ use gdcm_plot::figure::responses::uncertainty_bands;
 use super::frequency::{FrequencyPlot, bode_curves, bode_options, condition_source};
 use crate::gui::commands::command::Command;
 use crate::gui::plot::bode_scene::{BodeBand, InvalidRegion, PaneNote};
-use crate::gui::plot::quantity::{BodeQuantity, ResponsePlace};
+use crate::gui::plot::quantity::{BodeQuantity, ResponseSubject};
 use crate::gui::plot::{BodeCurve, BodeScene, Pane, Role};
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
@@ -35,7 +35,7 @@ pub fn bode_view_ui(
         magnitude: display.magnitude,
         phase: display.phase,
         ratio_unit: &ratio_unit,
-        place: ResponsePlace::Condition,
+        subject: ResponseSubject::Condition,
     };
     let band = state.study.settings.band;
     let bands = uncertainty_bands(state.dataset(), pair, &curves);

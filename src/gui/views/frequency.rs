@@ -18,7 +18,7 @@ use crate::gui::commands::command::Command;
 use crate::gui::commands::output::OutputCommand;
 use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::commands::study::StudyCommand;
-use crate::gui::plot::bode_event::{BodeEvent, CurveWish};
+use crate::gui::plot::bode_event::{BodeEvent, CurveAction};
 use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::plot::drawn_curves::PANES;
 use crate::gui::plot::pointed_curve_text::pointed_curve_text;
@@ -76,7 +76,7 @@ impl FrequencyPlot<'_> {
         };
         for event in bode_ui(ui, &scene, view, palette) {
             match event {
-                BodeEvent::Wished(id, CurveWish::CopyValues) => {
+                BodeEvent::ActionChosen(id, CurveAction::CopyValues) => {
                     if let Some(curve) = curves.iter().find(|curve| curve.id == id) {
                         commands.push(OutputCommand::CopyText(values_text(quantity, curve)).into());
                     }
@@ -103,7 +103,7 @@ impl FrequencyPlot<'_> {
 fn event_command(state: &State, event: BodeEvent) -> Option<Command> {
     match event {
         BodeEvent::Clicked(CurveId::Model(id)) => Some(reject_or_restore(state, id)),
-        BodeEvent::TakenBack(CurveId::Model(id)) => {
+        BodeEvent::ClickUndone(CurveId::Model(id)) => {
             let edit = if state.study.is_rejected(&id) {
                 Edit::Reject(id)
             } else {
@@ -122,14 +122,14 @@ fn event_command(state: &State, event: BodeEvent) -> Option<Command> {
         BodeEvent::RejectedBecause(CurveId::Model(model), reason) => {
             Some(Edit::RejectBecause { model, reason }.into())
         }
-        BodeEvent::Wished(id, wish) => wish_command(state, id, wish),
+        BodeEvent::ActionChosen(id, action) => action_command(state, id, action),
         BodeEvent::Boxed(curves) => {
             let models = curves.into_iter().filter_map(model_of_curve).collect();
             Some(CurveCommand::Select(models).into())
         }
         BodeEvent::Hovered(_)
         | BodeEvent::Clicked(_)
-        | BodeEvent::TakenBack(_)
+        | BodeEvent::ClickUndone(_)
         | BodeEvent::Isolated(_)
         | BodeEvent::RejectedBecause(..)
         | BodeEvent::ChipClicked(_) => None,
@@ -153,17 +153,17 @@ fn reject_or_restore(state: &State, id: ModelId) -> Command {
 
 /// Returns the command for an entry in a curve's menu; `None` if the entry concerns models but the
 /// curve is not a model.
-pub(super) fn wish_command(state: &State, id: CurveId, wish: CurveWish) -> Option<Command> {
-    match (wish, id) {
-        (CurveWish::Turn(turns), id) => {
+pub(super) fn action_command(state: &State, id: CurveId, action: CurveAction) -> Option<Command> {
+    match (action, id) {
+        (CurveAction::Turn(turns), id) => {
             let condition = state.condition().id();
             let pair = state.display.selection.pair;
             Some(CurveCommand::Turn(condition, pair, id, turns).into())
         }
-        (CurveWish::RejectOrRestore, CurveId::Model(id)) => Some(reject_or_restore(state, id)),
-        (CurveWish::Pin, CurveId::Model(id)) => Some(Edit::Pin(id).into()),
-        (CurveWish::Isolate, CurveId::Model(id)) => Some(SelectionCommand::Isolate(id).into()),
-        (CurveWish::Hide, CurveId::Model(id)) => Some(CurveCommand::HideModel(id).into()),
+        (CurveAction::RejectOrRestore, CurveId::Model(id)) => Some(reject_or_restore(state, id)),
+        (CurveAction::Pin, CurveId::Model(id)) => Some(Edit::Pin(id).into()),
+        (CurveAction::Isolate, CurveId::Model(id)) => Some(SelectionCommand::Isolate(id).into()),
+        (CurveAction::Hide, CurveId::Model(id)) => Some(CurveCommand::HideModel(id).into()),
         _ => None,
     }
 }

@@ -12,7 +12,7 @@ use gdcm_words::time_histories::record_history_table;
 
 use super::figures::figure_of;
 use super::over_time::{over_time, record_job};
-use super::requirement_limits::{decided, tolerances_ui};
+use super::requirement_limits::{requirement_edit, tolerances_ui};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::commands::form::FormCommand;
@@ -231,7 +231,7 @@ fn test_number_ui(ui: &mut Ui, name: &str, value: f64, commands: &mut Vec<Comman
 /// Returns the command that changes the test input, or that reports why it is refused.
 fn set_test_input(state: &State, name: &'static str, test: TestInput) -> Command {
     match test.checked() {
-        Ok(test) => decided(state, name, |settings| settings.test = test),
+        Ok(test) => requirement_edit(state, name, |settings| settings.test = test),
         Err(why) => FormCommand::Refuse(why.to_string()).into(),
     }
 }

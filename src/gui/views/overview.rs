@@ -4,7 +4,7 @@ use egui::Ui;
 
 use gdcm_model::dataset::Pair;
 
-use super::frequency::{bode_curves, wish_command};
+use super::frequency::{action_command, bode_curves};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::commands::selection::SelectionCommand;
@@ -61,7 +61,9 @@ pub fn overview_view_ui(
             OverviewEvent::Isolated(CurveId::Model(id)) => {
                 commands.push(SelectionCommand::Isolate(id).into())
             }
-            OverviewEvent::Wished(id, wish) => commands.extend(wish_command(state, id, wish)),
+            OverviewEvent::ActionChosen(id, action) => {
+                commands.extend(action_command(state, id, action))
+            }
             OverviewEvent::Hovered(_) | OverviewEvent::Isolated(_) => {}
         }
     }

@@ -21,7 +21,7 @@ use super::figures::figure_of;
 use super::histories::histories_ui;
 use super::need::Need;
 use super::over_time::{current_analysis, over_time_need, time_histories_job};
-use super::requirement_limits::{decided, mode_tolerances_ui, overview_limits_ui};
+use super::requirement_limits::{mode_tolerances_ui, overview_limits_ui, requirement_edit};
 use super::requirement_tables::page_tables;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
@@ -179,7 +179,7 @@ fn attitude_commands_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>)
         let is_on = state.study.requirements.attitude_command.contains(name);
         let hint = "The stick commands the attitude instead of its rate; the phase margin alone then determines the bandwidth";
         if let Some(is_on) = check_ui(ui, is_on, format!("attitude of {name}"), hint) {
-            commands.push(decided(state, "attitude command", |settings| {
+            commands.push(requirement_edit(state, "attitude command", |settings| {
                 if is_on {
                     settings.attitude_command.insert(name.clone());
                 } else {
@@ -200,7 +200,7 @@ fn levels_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
     };
     ui.label(palette.small(text));
     if levels > 0 && ui.small_button("Remove levels").clicked() {
-        commands.push(decided(state, "levels", |settings| {
+        commands.push(requirement_edit(state, "levels", |settings| {
             settings.levels = LevelBoundaries::default();
         }));
     }

@@ -19,7 +19,7 @@ use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::plot::chart::{Chart, ChartAxis, ChartLine, ChartSpan};
 use crate::gui::plot::chart_view::chart_ui;
-use crate::gui::plot::stretch::chosen_stretch;
+use crate::gui::plot::dragged_range::take_dragged_range;
 use crate::gui::widgets::choices::check_ui;
 use crate::gui::widgets::controls::entry_ui;
 use crate::gui::widgets::palette::Palette;
@@ -52,13 +52,13 @@ pub(super) fn histories_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comma
         part_ui(ui, page, commands);
         span_ui(ui, page);
     });
-    if let Some((part_s, has_ended)) = chosen_stretch(ui, Page::time_axis()) {
+    if let Some(part_s) = take_dragged_range(ui, Page::time_axis()) {
         spans.push(ChartSpan {
-            ends: part_s,
+            ends: part_s.ends,
             color: palette.accent.gamma_multiply(0.35),
         });
-        if has_ended {
-            commands.push(RecordsCommand::AddPart(records.chosen, part_s).into());
+        if part_s.has_ended {
+            commands.push(RecordsCommand::AddPart(records.chosen, part_s.ends).into());
         }
     }
     preparation_ui(ui, page);

@@ -10,7 +10,8 @@ use gdcm_plot::figure::ConditionSource;
 use gdcm_plot::figure::error::muad_about;
 use gdcm_plot::figure::responses::uncertainty_bands;
 
-use super::frequency::{FrequencyPlot, bode_curves, bode_options, condition_source};
+use super::frequency::FrequencyPlot;
+use super::frequency_curves::{bode_curves, bode_options, condition_source};
 use crate::gui::commands::command::Command;
 use crate::gui::plot::bode_scene::{BodeBand, InvalidRegion, PaneNote};
 use crate::gui::plot::quantity::{BodeQuantity, ResponseSubject};

@@ -7,7 +7,7 @@ use gdcm_plot::figure::{Figure, FigureKind, FigureRequest, all_channels};
 use gdcm_study::results::couplings_assessment::CouplingsAssessment;
 use gdcm_study::results::requirements::Requirements;
 
-use super::frequency::{bode_options, condition_source};
+use super::frequency_curves::{bode_options, condition_source};
 use super::over_time::shown_over_time;
 use super::view_content;
 use crate::gui::plot::BodeView;

@@ -55,25 +55,39 @@ pub fn histories_ui(
         }
     };
     if let OverTime::Record(history, _) = &responses {
-        restore_panel_size(ui, "tolerances");
-        let size = TABLE_PART * ui.available_height();
-        let panel = Panel::bottom("tolerances")
-            .resizable(true)
-            .default_size(size)
-            .min_size(60.0);
         let table = record_history_table(history);
-        panel.show(ui, |ui| {
-            let shares = SharesTable {
-                table: &table,
-                palette,
-            };
-            let sorting = &mut state.display.judging.requirements_sorting[0];
-            shares.ui(ui, sorting, commands);
-        });
+        shares_panel_ui(ui, state, &table, palette, commands);
     }
+    plots_ui(ui, state, &responses, palette);
+}
+
+/// Draws the table of the shares of time inside the corridor, in a panel below the plots.
+fn shares_panel_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    table: &Table,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    restore_panel_size(ui, "tolerances");
+    let size = TABLE_PART * ui.available_height();
+    let panel = Panel::bottom("tolerances")
+        .resizable(true)
+        .default_size(size)
+        .min_size(60.0);
+    panel.show(ui, |ui| {
+        let shares = SharesTable { table, palette };
+        let sorting = &mut state.display.judging.requirements_sorting[0];
+        shares.ui(ui, sorting, commands);
+    });
+}
+
+/// Draws the responses over time below their caption and legend.
+fn plots_ui(ui: &mut Ui, state: &mut State, responses: &OverTime, palette: &Palette) {
     let figure: Figure = figure_of(state, View::Requirements).unwrap_or_default();
     ui.add(Label::new(palette.small(&figure.caption)).wrap());
     figure_legend_ui(ui, &figure, palette);
+    // The scene borrows the state, so the view is taken out of it while the figure is drawn.
     let mut view = state
         .display
         .figures

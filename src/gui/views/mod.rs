@@ -10,13 +10,15 @@ pub mod bode;
 pub mod channels;
 pub mod compare;
 pub mod couplings;
+pub mod couplings_use;
 mod cursor_readout;
 mod curve_chips;
 pub mod error_bars;
 pub mod evidence;
 pub mod figure_button;
 pub mod figures;
-pub(in crate::gui) mod frequency;
+mod frequency;
+pub(in crate::gui) mod frequency_curves;
 pub mod gain_plots;
 pub mod histories;
 pub mod leads;
@@ -34,6 +36,7 @@ mod requirement_tables;
 pub mod requirements;
 mod schedule_evidence;
 pub mod setting_controls;
+pub mod variants;
 
 use std::sync::Arc;
 
@@ -52,7 +55,7 @@ use assessment::{assessment_header_ui, assessment_view_ui};
 use assessment_content::assessed_pairs;
 use bode::bode_view_ui;
 use channels::{channels_header_ui, channels_view_ui};
-use compare::{compare_view_ui, variant_jobs};
+use compare::compare_view_ui;
 use couplings::{couplings_header_ui, couplings_view_ui};
 use evidence::evidence_view_ui;
 use leads::leads_view_ui;
@@ -67,9 +70,10 @@ use records::{records_header_ui, records_view_ui, simulation_jobs};
 use requirements::{
     NOT_A_QUALIFICATION, requirements_header_ui, requirements_needs, requirements_view_ui,
 };
+use variants::variant_jobs;
 
-pub use compare::overlay_job;
-pub use couplings::{are_couplings_judged, couplings_job, offered_couplings, used_couplings};
+pub use couplings_use::{are_couplings_judged, couplings_job, offered_couplings, used_couplings};
+pub use variants::overlay_job;
 
 /// Returns a view's content: drawing function, header, background jobs and figure.
 pub fn view_content(view: View) -> ViewContent {

@@ -8,12 +8,12 @@ use gdcm_plot::figure::gains::{Across, GainQuantity, add_variant, net_gain_figur
 use gdcm_plot::figure::{Figure, MarkId};
 use gdcm_study::decisions::setting;
 
-use super::compare::overlaid_analysis;
 use super::error_bars::{error_bars_switch_ui, shown_uncertainty};
 use super::gain_plots::{GainPlots, gain_command};
 use super::net_gain_pairs::net_gain_pairs;
 use super::schedule_evidence::{FormsTable, coefficient_table, lead_degrees_table, residual_table};
 use super::setting_controls::SettingControls;
+use super::variants::overlaid_analysis;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::plot::{FigureScene, figure_ui};
@@ -129,6 +129,7 @@ pub fn net_gain_view_ui(
             .min_size(120.0);
         panel.show(ui, |ui| evidence_ui(ui, state, palette, commands));
     }
+    // The scene borrows the state, so the view is taken out of it while the figure is drawn.
     let mut view = state
         .display
         .figures

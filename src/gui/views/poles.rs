@@ -8,7 +8,7 @@ use gdcm_plot::figure::poles::{damping_grid, poles_figure};
 use gdcm_plot::figure::{Figure, Mark, MarkId, Range, Role};
 use gdcm_study::Edit;
 
-use super::frequency::{bode_options, condition_source};
+use super::frequency_curves::{bode_options, condition_source};
 use super::mode_table::mode_description;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
@@ -75,6 +75,7 @@ pub fn poles_view_ui(
         Some(_) => "The models of this condition have no poles: they are measured responses",
         None => state.results.absence(),
     };
+    // The scene borrows the state, so the view is taken out of it while the figure is drawn.
     let mut view = state
         .display
         .figures
@@ -96,26 +97,27 @@ pub fn poles_view_ui(
         ..FigureScene::new("poles", &figure, LEAST_PLOT, message, &words)
     };
     for event in figure_ui(ui, &scene, &mut view, palette) {
-        match event {
-            FigureEvent::Pointed(MarkId::Model(id)) => {
-                commands.push(SelectionCommand::Hover(id).into());
-            }
-            FigureEvent::StatusText(words) => commands.push(SelectionCommand::Tell(words).into()),
-            FigureEvent::Clicked(_, MarkId::Model(id), keys) => {
-                commands.push(if keys.alt {
-                    SelectionCommand::Isolate(id).into()
-                } else if state.study.is_rejected(&id) {
-                    Edit::Restore(id).into()
-                } else {
-                    Edit::Reject(id).into()
-                });
-            }
-            FigureEvent::Clicked(..)
-            | FigureEvent::Pointed(_)
-            | FigureEvent::ExplanationRequested(_) => {}
-        }
+        commands.extend(pole_command(state, event));
     }
     state.display.figures.insert(View::Poles, view);
+}
+
+/// Returns the command for an event in the pole plots; `None` if the event has no effect.
+fn pole_command(state: &State, event: FigureEvent) -> Option<Command> {
+    match event {
+        FigureEvent::Pointed(MarkId::Model(id)) => Some(SelectionCommand::Hover(id).into()),
+        FigureEvent::StatusText(words) => Some(SelectionCommand::Tell(words).into()),
+        FigureEvent::Clicked(_, MarkId::Model(id), keys) => Some(if keys.alt {
+            SelectionCommand::Isolate(id).into()
+        } else if state.study.is_rejected(&id) {
+            Edit::Restore(id).into()
+        } else {
+            Edit::Reject(id).into()
+        }),
+        FigureEvent::Clicked(..)
+        | FigureEvent::Pointed(_)
+        | FigureEvent::ExplanationRequested(_) => None,
+    }
 }
 
 /// Builds the pole figure of all models in the displayed condition, optionally with the zeros of

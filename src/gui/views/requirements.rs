@@ -244,6 +244,7 @@ impl RequirementsView<'_> {
         let figure: Figure = figure_of(state, View::Requirements).unwrap_or_default();
         let pairs = bandwidth_pairs(self.requirements);
         figure_legend_ui(ui, &figure, self.palette);
+        // The scene borrows the state, so the view is taken out of it while the figure is drawn.
         let mut view = state
             .display
             .figures

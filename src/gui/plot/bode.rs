@@ -3,7 +3,7 @@
 
 use std::borrow::Cow;
 
-use egui::{CursorIcon, Pos2, Response, Ui, UiBuilder, Vec2, vec2};
+use egui::{CursorIcon, Pos2, Rect, Response, Ui, UiBuilder, Vec2, vec2};
 use egui_plot::PlotTransform;
 
 use super::band_handles::band_handles_ui;
@@ -46,14 +46,17 @@ pub fn bode_ui(
         return events;
     }
     if !has_data(scene.curves) {
-        let message = scene.message.unwrap_or("Nothing to draw");
-        message_ui(ui, rect, message, palette);
+        message_ui(
+            ui,
+            rect,
+            scene.message.unwrap_or("Nothing to draw"),
+            palette,
+        );
         set_hovered(view, None, &mut events);
         view.pointed_omega = None;
         return events;
     }
     let curves = visible_curves(scene.curves);
-    // `scene` includes the hidden curves, which still have chips; the panes show `visible`.
     let visible = BodeScene {
         curves: &curves,
         ..*scene
@@ -66,6 +69,34 @@ pub fn bode_ui(
     let builder = UiBuilder::new().id_salt(scene.quantity.salt());
     ui.scope_builder(builder.max_rect(rect), |ui| {
         use_frame_colors(ui, palette);
+        let plot = BodePlot {
+            scene,
+            visible: &visible,
+            palette,
+        };
+        plot.ui(ui, rect, view, &mut events);
+    });
+    ui.advance_cursor_after_rect(rect);
+    events
+}
+
+/// Plot with data.
+struct BodePlot<'a> {
+    /// Scene with all curves, including hidden curves, which still have chips.
+    scene: &'a BodeScene<'a>,
+    /// Scene without hidden curves, which the panes show.
+    visible: &'a BodeScene<'a>,
+    palette: &'a Palette,
+}
+
+impl BodePlot<'_> {
+    /// Draws the chips, the panes below, and the texts around the panes.
+    fn ui(&self, ui: &mut Ui, rect: Rect, view: &mut BodeView, events: &mut Vec<BodeEvent>) {
+        let Self {
+            scene,
+            visible,
+            palette,
+        } = *self;
         let mut chips = plot_chips(scene, view, palette);
         if chips.width(ui) > rect.width() {
             chips.tighten();
@@ -75,7 +106,7 @@ pub fn bode_ui(
         let layout = BodeLayout::new(rect.with_min_y(rect.top() + chips.height), scene);
         let panes = Panes {
             layout: &layout,
-            scene: &visible,
+            scene: visible,
             palette,
         };
         let panes = panes.ui(ui, view);
@@ -86,14 +117,12 @@ pub fn bode_ui(
             events.push(BodeEvent::Display(request));
         }
         let headings = BodeHeadings {
-            scene: &visible,
+            scene: visible,
             view,
             palette,
         };
         headings.ui(ui, &layout);
-    });
-    ui.advance_cursor_after_rect(rect);
-    events
+    }
 }
 
 /// Returns the curves that are not hidden; borrowed if none is hidden.

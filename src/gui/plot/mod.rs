@@ -1,7 +1,8 @@
 //! Plots: each is drawn from a scene and its state of the last frame, and returns the engineer's
 //! actions.
 //!
-//! Every panel with axes is drawn by `painter`. A scene (`bode_scene`, `figure_scene`,
+//! Every panel with axes is drawn by `painter`, which also paints the frames of plots without axes
+//! in the overview. A scene (`bode_scene`, `figure_scene`,
 //! `chart`, `overview`) describes its content; the parts below serve all of them:
 //!
 //! ```text

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use egui::{
-    Align2, Button, CursorIcon, Painter, Pos2, Rect, Response, RichText, Sense, Stroke, StrokeKind,
-    Ui, UiBuilder, Vec2, WidgetInfo, pos2, vec2,
+    Align2, Button, CursorIcon, Painter, Pos2, Rect, Response, RichText, Sense, Stroke, Ui,
+    UiBuilder, Vec2, WidgetInfo, pos2, vec2,
 };
 use egui_plot::{PlotPoint, PlotTransform};
 
@@ -16,6 +16,7 @@ use super::curve_layer::DrawnPane;
 use super::curve_menu::model_actions_ui;
 use super::drawn_curves::{BodeCurve, CurveId, PANES, Pane};
 use super::nearest_curve::{Hit, nearest_curve};
+use super::painter::paint_frame;
 use super::panel_text::{AT_RIGHT, caption_font, message_ui};
 use super::sketch::{Sketch, range_text};
 use crate::gui::widgets::controls::{elided, row_text};
@@ -280,8 +281,7 @@ impl PlacedCell<'_> {
         } else {
             Stroke::new(1.0, palette.line)
         };
-        ui.painter()
-            .rect(self.place, 2.0, fill, outline, StrokeKind::Inside);
+        paint_frame(ui, self.place, fill, outline);
     }
 
     /// Draws the curves, and the texts above them if there is room.

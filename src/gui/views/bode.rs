@@ -31,19 +31,12 @@ pub fn bode_view_ui(
     let curves = bode_curves(state, pair);
     let title = state.dataset().pair_name(pair);
     let ratio_unit = ConditionSource::ratio_unit(state.dataset(), pair);
-    let display = &state.display.curves;
-    let quantity = BodeQuantity::Response {
-        magnitude: display.magnitude,
-        phase: display.phase,
-        ratio_unit: &ratio_unit,
-        subject: ResponseSubject::Condition,
-    };
     let band = state.study.settings.band;
     let bands = uncertainty_bands(state.dataset(), pair, &curves);
     let shows_bands = if bands.is_empty() {
         None
     } else {
-        Some(display.shows_bands)
+        Some(state.display.curves.shows_bands)
     };
     let options = bode_options(state);
     let unnoticed = muad_about(&curves, &options);
@@ -57,7 +50,7 @@ pub fn bode_view_ui(
     let invalid = invalid_region(state, &curves);
     let notes = effect_notes(state, pair);
     let scene = BodeScene {
-        quantity,
+        quantity: response_quantity(state, &ratio_unit),
         rules: &unnoticed,
         coherence: &coherence,
         least_coherence,
@@ -82,6 +75,17 @@ pub fn bode_view_ui(
     state.display.frequency.error.share_frequencies(&view);
     state.display.frequency.bode = view;
     state.display.frequency.drawn = curves;
+}
+
+/// Returns the quantity of the plot in the displayed units; `ratio_unit` as in "(deg/s)/in".
+fn response_quantity<'a>(state: &State, ratio_unit: &'a str) -> BodeQuantity<'a> {
+    let display = &state.display.curves;
+    BodeQuantity::Response {
+        magnitude: display.magnitude,
+        phase: display.phase,
+        ratio_unit,
+        subject: ResponseSubject::Condition,
+    }
 }
 
 /// Returns the curve with this role, unless it is hidden.

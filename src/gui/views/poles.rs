@@ -82,7 +82,7 @@ pub fn poles_view_ui(
         .remove(&View::Poles)
         .unwrap_or_default();
     let figure = match poles(state) {
-        Some(figure) => dressed(figure, &view),
+        Some(figure) => with_screen_marks(figure, &view),
         None => Figure::default(),
     };
     figure_legend_ui(ui, &figure, palette);
@@ -140,7 +140,7 @@ pub fn poles(state: &State) -> Option<Figure> {
 
 /// Returns the figure as shown in the window: arcs of equal frequency follow the visible range, and
 /// the nominal model and the representatives have larger marks.
-fn dressed(mut figure: Figure, view: &FigureView) -> Figure {
+fn with_screen_marks(mut figure: Figure, view: &FigureView) -> Figure {
     if let [_, slow] = &mut figure.plots[..] {
         slow.title = "s-plane, slow modes".to_owned();
         let [real, imaginary] = SLOW;

@@ -145,6 +145,9 @@ fn record_spectra(ui: &Ui, page: Page<'_>, band: Band) -> Vec<RecordSpectra> {
 /// Computes the power spectral density of each input about its mean,
 /// `2 dt² / T |Σ u exp(-j ω t)|²`, averaged over [`SMOOTHED`] lines.
 ///
+/// The spectrum `U = dt / sqrt(T) Σ u exp(-j ω t)` comes from [`spectra`]; u is the input, dt the
+/// sample time and T the length of the record \[s\].
+///
 /// One-sided: the integral over frequency \[Hz\] is the variance (Bendat and Piersol, Random Data,
 /// 5.2.2). The spectrum extends to twice the band end `highest` \[rad/s\].
 fn autospectra(flight: &FlightRecord, highest: f64) -> Autospectra {

@@ -315,7 +315,8 @@ fn tick_width(ui: &Ui, text: &str, palette: &Palette) -> f32 {
     galley.size().x
 }
 
-/// Updates the visible ranges after a gesture: the wheel zooms about the pointer, dragging pans.
+/// Updates the visible ranges after a gesture: the wheel zooms about the pointer. Dragging has
+/// panned the bounds of `transform` already, which egui_plot does itself.
 fn navigate(panel: &Panel, response: &Response, transform: &PlotTransform, view: &mut PanelView) {
     let whole = whole(panel);
     let limits = zoom_limits(panel);

@@ -14,10 +14,10 @@ use gdcm_words::couplings::{
 use gdcm_words::remark::RemarkKind;
 
 use super::couplings_use::are_couplings_used;
-use super::figures::request;
+use super::figures::figure_request;
 use super::frequency_curves::condition_source;
 use crate::gui::commands::command::Command;
-use crate::gui::plot::canvas::figure_legend_ui;
+use crate::gui::plot::figure_legend::figure_legend_ui;
 use crate::gui::plot::{FigureScene, figure_ui};
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
@@ -97,7 +97,7 @@ pub fn couplings_view_ui(
 /// Draws the figure below its legend; empty until its curves are available.
 fn couplings_figure_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
     let mut figure = Figure::default();
-    if let Some(request) = request(state, View::Couplings)
+    if let Some(request) = figure_request(state, View::Couplings)
         && let Some(drawn) = request.figure(None, condition_source(state).as_ref())
     {
         figure = drawn;

@@ -17,7 +17,7 @@ use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::records::RecordsCommand;
-use crate::gui::plot::canvas::figure_legend_ui;
+use crate::gui::plot::figure_legend::figure_legend_ui;
 use crate::gui::plot::{FigureScene, FigureWords, figure_ui};
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;

@@ -9,7 +9,7 @@ use gdcm_model::units::telling;
 use gdcm_sysid::records::ModeSpan;
 use gdcm_sysid::spectra::gaps::{Gap, Treatment};
 
-use super::frame_cache::kept;
+use super::frame_cache::cached;
 use super::page::Page;
 use super::simulation::{Simulated, simulated, time_models_ui};
 use super::spectrogram::{spectrogram_choice_ui, spectrogram_ui};
@@ -166,7 +166,7 @@ impl ChannelCharts<'_> {
         };
         let flight = self.flight;
         let source = Arc::clone(flight) as _;
-        let lines = kept(ui, &format!("channel {index}"), &[source], (), || {
+        let lines = cached(ui, &format!("channel {index}"), &[source], (), || {
             recorded_points(flight, index)
         });
         lines

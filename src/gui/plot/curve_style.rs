@@ -12,6 +12,11 @@ use crate::gui::widgets::palette::Palette;
 const GAP_OF_DASH: f32 = 0.618;
 /// Length of the dots between dashes \[pt\].
 const DOT_LENGTH: f32 = 1.8;
+/// Additional width of an emphasized line \[pt\].
+const EMPHASIZED_WIDER: f32 = 1.6;
+/// Additional width of emphasized dots \[pt\], and the factor of their spacing.
+const EMPHASIZED_DOTS_WIDER: f32 = 0.7;
+const EMPHASIZED_DOTS_APART: f32 = 1.5;
 
 /// Colour, width and pattern of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,19 +33,18 @@ pub struct CurveStyle {
 impl CurveStyle {
     /// Returns the style of this line when emphasized: opaque and wider.
     pub fn emphasized(self) -> Self {
-        let color = self.color.to_opaque();
-        // Dots need a wider spacing to remain dots.
-        let (wider, longer) = if self.dash == Dash::Dotted {
-            (0.7, 1.5)
-        } else {
-            (1.6, 1.0)
-        };
-        Self {
-            color,
-            width: self.width + wider,
-            length: longer * self.length,
+        let mut style = Self {
+            color: self.color.to_opaque(),
             ..self
+        };
+        if self.dash == Dash::Dotted {
+            // Dots need a wider spacing to remain dots.
+            style.width += EMPHASIZED_DOTS_WIDER;
+            style.length *= EMPHASIZED_DOTS_APART;
+        } else {
+            style.width += EMPHASIZED_WIDER;
         }
+        style
     }
 
     /// Returns the style of this line in a small plot: narrower, with a shorter pattern.

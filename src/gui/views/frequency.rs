@@ -152,11 +152,15 @@ fn reject_or_restore(state: &State, id: ModelId) -> Command {
 /// curve is not a model.
 pub(super) fn action_command(state: &State, id: CurveId, action: CurveAction) -> Option<Command> {
     match (action, id) {
-        (CurveAction::Turn(turns), id) => {
-            let condition = state.condition().id();
-            let pair = state.display.selection.pair;
-            Some(CurveCommand::Turn(condition, pair, id, turns).into())
-        }
+        (CurveAction::Turn(turns), curve) => Some(
+            CurveCommand::Turn {
+                condition: state.condition().id(),
+                pair: state.display.selection.pair,
+                curve,
+                turns,
+            }
+            .into(),
+        ),
         (CurveAction::RejectOrRestore, CurveId::Model(id)) => Some(reject_or_restore(state, id)),
         (CurveAction::Pin, CurveId::Model(id)) => Some(Edit::Pin(id).into()),
         (CurveAction::Isolate, CurveId::Model(id)) => Some(SelectionCommand::Isolate(id).into()),

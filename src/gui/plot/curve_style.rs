@@ -10,6 +10,8 @@ use crate::gui::widgets::palette::Palette;
 
 /// Length of the gaps between dashes, relative to the dashes.
 const GAP_OF_DASH: f32 = 0.618;
+/// Length of the gaps on either side of a dot, relative to the gaps between dashes.
+const GAP_AT_DOT: f32 = 0.6;
 /// Length of the dots between dashes \[pt\].
 const DOT_LENGTH: f32 = 1.8;
 /// Additional width of an emphasized line \[pt\].
@@ -79,7 +81,7 @@ impl CurveStyle {
                 Shape::dashed_line_many(&path, stroke, length, GAP_OF_DASH * length, shapes);
             }
             Dash::DashDot | Dash::ShortDashDot => {
-                let gap = GAP_OF_DASH * 0.6 * length;
+                let gap = GAP_OF_DASH * GAP_AT_DOT * length;
                 Shape::dashed_line_many_with_offset(
                     &path,
                     stroke,

@@ -2,8 +2,8 @@
 //! actions.
 //!
 //! Every panel with axes is drawn by `painter`, which also paints the frames of plots without axes
-//! in the overview. A scene (`bode_scene`, `figure_scene`,
-//! `chart`, `overview`) describes its content; the parts below serve all of them:
+//! in the overview. A scene (`bode_scene`, `figure_scene`, `chart`, `overview_scene`) describes the
+//! content of plots; the parts below serve all of them:
 //!
 //! ```text
 //! painter                     frame, axes, grid and gestures; each scene adds its layers
@@ -49,6 +49,7 @@ mod figure_marks;
 mod figure_panel;
 pub mod figure_scene;
 pub mod figure_view;
+mod figure_zoom;
 mod invalid_region;
 mod layers;
 mod limits_form;
@@ -56,6 +57,8 @@ mod navigation;
 pub mod nearest_curve;
 mod nearest_dot;
 pub mod overview;
+mod overview_cell;
+pub mod overview_scene;
 mod painter;
 mod pane_scene;
 mod panel_axis;

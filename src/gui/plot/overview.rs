@@ -47,8 +47,7 @@ pub fn overview_ui(
                 log_omega,
                 palette,
             };
-            let response = placed.ui(ui, view);
-            events.extend(placed.events(&response, view));
+            events.extend(placed.ui(ui, view));
         }
     });
     ui.advance_cursor_after_rect(rect);

@@ -36,8 +36,8 @@ pub(super) struct PlacedCell<'a> {
 }
 
 impl PlacedCell<'_> {
-    /// Draws the cell; returns its response, for [`Self::events`].
-    pub(super) fn ui(&self, ui: &Ui, view: &mut OverviewView) -> Response {
+    /// Draws the cell; returns its events.
+    pub(super) fn ui(&self, ui: &Ui, view: &mut OverviewView) -> Vec<OverviewEvent> {
         let id = ui.scope_id().with(self.cell.pair);
         let response = ui.interact(self.place, id, Sense::click());
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, &self.name));
@@ -45,7 +45,8 @@ impl PlacedCell<'_> {
             self.paint_frame(ui, response.hovered() || response.has_focus());
             self.paint_content(ui, view);
         }
-        response.on_hover_cursor(CursorIcon::PointingHand)
+        let response = response.on_hover_cursor(CursorIcon::PointingHand);
+        self.events(&response, view)
     }
 
     fn paint_frame(&self, ui: &Ui, is_pointed_at: bool) {
@@ -127,11 +128,7 @@ impl PlacedCell<'_> {
 
     /// Handles the events in the cell: a click brings its response into focus; all others concern
     /// the curve under the pointer.
-    pub(super) fn events(
-        &self,
-        response: &Response,
-        view: &mut OverviewView,
-    ) -> Vec<OverviewEvent> {
+    fn events(&self, response: &Response, view: &mut OverviewView) -> Vec<OverviewEvent> {
         let pointer = response.hover_pos().or(response.interact_pointer_pos());
         let curve = pointer.and_then(|pointer| view.curve_at(self.cell, pointer));
         let pointed = curve.map(|curve| curve.id.clone());

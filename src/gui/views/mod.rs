@@ -6,6 +6,7 @@ pub mod assembling;
 pub mod assessment;
 pub mod assessment_content;
 mod assessment_plots;
+mod bandwidth;
 pub mod bode;
 pub mod channels;
 pub mod compare;

@@ -79,8 +79,8 @@ impl Ticks {
         }
     }
 
-    /// Returns the ticks and grid lines between two axis coordinates; the step size of a mark tells
-    /// egui_plot whether the mark has a label.
+    /// Returns the ticks and grid lines between two axis coordinates; the step size of a mark
+    /// determines whether egui_plot labels it.
     pub(super) fn marks(self, bounds: (f64, f64), units_per_point: f64) -> Vec<GridMark> {
         let is_finite = [bounds.0, bounds.1, units_per_point]
             .into_iter()

@@ -13,7 +13,7 @@ use gdcm_model::units::{s_to_ms, signed};
 use gdcm_study::decisions::setting;
 use gdcm_words::Table;
 
-use super::gain_plots::net_gain_pairs;
+use super::net_gain_pairs::net_gain_pairs;
 use crate::gui::commands::command::Command;
 use crate::gui::state::evidence_cache::CachedEvidence;
 use crate::gui::state::window_state::State;

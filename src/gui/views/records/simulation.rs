@@ -10,7 +10,7 @@ use gdcm_model::simulation::Validation;
 use gdcm_study::jobs::identification_jobs::SimulationJob;
 use gdcm_sysid::identification::Identification;
 
-use super::frame_cache::kept;
+use super::frame_cache::cached;
 use super::page::Page;
 use super::record_list::cost_text;
 use crate::gui::commands::command::Command;
@@ -67,7 +67,7 @@ impl Simulated<'_> {
         };
         let name = format!("{} {output}", self.model.name());
         let source = Arc::clone(validation) as _;
-        let lines = kept(ui, &name, &[source], (), || {
+        let lines = cached(ui, &name, &[source], (), || {
             simulated_points(validation, output)
         });
         lines

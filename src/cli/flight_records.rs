@@ -83,7 +83,7 @@ pub(super) fn laid_out_records(
         }
     } else {
         cut_parts(&tables, &arguments.part, |table| {
-            layouts.lay_out(table.clone(), channels).0
+            layouts.lay_out(table.clone(), channels).0.span_s()
         })?
     };
     let mut records = layouts.lay_out_all(tables, channels);

@@ -19,6 +19,7 @@ mod histories;
 mod identification_task;
 mod identify;
 mod identify_arguments;
+mod interruption;
 mod misspelling;
 mod model_arguments;
 mod option_values;

@@ -46,7 +46,8 @@ use clap::Parser;
 use clap::error::{ContextKind, ContextValue};
 
 use gdcm_io::files::dataset_file::write_example;
-use gdcm_io::files::study_file::{holds_models, open_study_of};
+use gdcm_io::files::opened_file::holds_models;
+use gdcm_io::files::study_file::open_study_of;
 use gdcm_io::reading_budget::ReadingBudget;
 use gdcm_io::{Existing, Opened, load_any};
 use gdcm_model::message_text::sanitized_path;

@@ -3,8 +3,9 @@
 
 use std::collections::BTreeSet;
 
+use gdcm_io::files::requirement_tables::add_tolerances;
 use gdcm_io::files::requirements_file::{
-    REQUIREMENT_FILES, RequirementResults, add_tolerances, requirement_paths, write_requirements,
+    REQUIREMENT_FILES, RequirementResults, requirement_paths, write_requirements,
 };
 use gdcm_io::output_set::{OutputSet, make_directory};
 use gdcm_method::requirements::ModeVerdict;

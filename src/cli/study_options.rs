@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use gdcm_io::files::requirements_file::{load_tolerances, read_levels};
+use gdcm_io::files::requirement_tables::{load_tolerances, read_levels};
 use gdcm_io::output_set::OutputSet;
 use gdcm_io::{LoadedDataset, embedded_example};
 use gdcm_method::correction;

@@ -12,7 +12,7 @@ use crate::formats::variables::{
     Array, CellArray, ElementKind, StructArray, TextArray, Value, Variable,
 };
 use crate::formats::{Contents, Importer, importer_of};
-use crate::location::Outline;
+use crate::json_outline::Outline;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::source::{GZIP_MAGIC, Source, text_of, without_mark};
 

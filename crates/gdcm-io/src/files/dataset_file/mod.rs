@@ -143,7 +143,7 @@ pub(crate) fn check_dataset_text(
 pub fn load_dataset_bytes(bytes: &[u8], origin: DatasetOrigin) -> Result<LoadedDataset, FileError> {
     let budget = ReadingBudget::default();
     dataset_from(
-        &Source::of(bytes, &origin.path(), &budget)?,
+        &Source::from_bytes(bytes, &origin.path(), &budget)?,
         origin,
         &budget,
     )
@@ -157,7 +157,7 @@ pub fn embedded_example() -> Result<LoadedDataset, FileError> {
 /// Writes the example dataset, uncompressed, into a directory, which is created if missing; returns
 /// the path of the file.
 pub fn write_example(directory: &Path, existing: Existing) -> Result<PathBuf, FileError> {
-    let source = Source::of(
+    let source = Source::from_bytes(
         EXAMPLE,
         &DatasetOrigin::EmbeddedExample.path(),
         &ReadingBudget::default(),

@@ -178,7 +178,7 @@ impl<'t> Reading<'t, '_> {
         let before = self.scanner.clone();
         match self.assigned_value(begin) {
             Ok(value) => return self.workspace.set(path, value, self.budget),
-            Err(ValueError::Fault(fault)) => return Err(fault.of(|| path.join("."))),
+            Err(ValueError::Fault(fault)) => return Err(fault.in_variable(|| path.join("."))),
             Err(ValueError::NotUnderstood { what, at }) => {
                 self.scanner = before;
                 self.set_unread(path, at, &what)?;
@@ -186,7 +186,7 @@ impl<'t> Reading<'t, '_> {
         }
         self.scanner
             .pass_statement(self.budget)
-            .map_err(|fault| fault.of(|| path.join(".")))
+            .map_err(|fault| fault.in_variable(|| path.join(".")))
     }
 
     fn assigned_value(&mut self, begin: Position) -> Result<Value, ValueError> {

@@ -22,13 +22,14 @@ use gdcm_words::Table;
 use gdcm_words::caution::caution_text;
 
 use super::channel_values::ChannelSign;
+use super::condition_messages::{ConditionMessage, shared_messages, with_conditions};
 use super::failure::Failure;
 use super::open;
 use super::study_arguments::OpeningArguments;
 use super::study_options::apply_signs;
 use super::summary::doubt_words;
 use super::terminal::{error, print};
-use super::text::{ConditionMessage, indented, line, shared_messages, with_conditions};
+use super::text::{indented, line};
 
 /// Prints the contents of a dataset or study.
 pub(super) fn check(

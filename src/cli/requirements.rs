@@ -20,13 +20,15 @@ use gdcm_study::results::time_histories::TimeHistories;
 use gdcm_words::Table;
 use gdcm_words::time_histories::{history_cost_table, output_weights_text, share_table};
 
+use super::condition_messages::{ConditionMessage, shared_messages};
 use super::failure::Failure;
 use super::histories::{read_histories, simulated_histories};
 use super::progress::TerminalProgress;
 use super::result_arguments::RequirementsArguments;
-use super::study_options::{CommandStudy, ErrorBars, StudyAnalysis, analyze_study};
+use super::study_analysis::{ErrorBars, StudyAnalysis, analyze_study};
+use super::study_options::CommandStudy;
 use super::terminal::{caution_for, note, print};
-use super::text::{ConditionMessage, counted, indented, indented_untitled, line, shared_messages};
+use super::text::{counted, indented, indented_untitled, line};
 
 /// Writes the tolerance table if requested; analyses the study, writes the requirements, and prints
 /// a short table.

@@ -61,10 +61,11 @@ impl UnknownKeys {
             .map(|unknown| unknown.caution(&outline))
             .collect();
         if self.beyond > 0 {
-            cautions.push(format!(
-                "{} other keys are not known and not used",
-                self.beyond
-            ));
+            let others = match self.beyond {
+                1 => "1 other key is".to_owned(),
+                count => format!("{count} other keys are"),
+            };
+            cautions.push(format!("{others} not known and not used"));
         }
         cautions
     }

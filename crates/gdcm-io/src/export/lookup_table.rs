@@ -7,7 +7,7 @@ use gdcm_method::correction::Channel;
 use gdcm_method::couplings::CouplingMatrices;
 use gdcm_plot::figure::all_channels;
 
-use super::matlab_struct::{Fields, cell_of_texts, column, contained_parts, matrix, row};
+use super::matlab_values::{Fields, cell_of_texts, column, contained_parts, matrix, row};
 use super::program_text::{comment, number};
 use super::scheduled::Scheduled;
 use super::table_error::TableError;

@@ -208,7 +208,10 @@ fn bandwidth_remark(finding: &BandwidthFinding, name: &'static str, is_known: bo
         remarks.push("depends on the response below the band".to_owned());
     }
     if let Some(count) = finding.swaps_left_out.get(name) {
-        remarks.push(format!("{count} exchanges of models give no value"));
+        remarks.push(match count {
+            1 => "1 exchange of models gives no value".to_owned(),
+            _ => format!("{count} exchanges of models give no value"),
+        });
     }
     remarks.join("; ")
 }

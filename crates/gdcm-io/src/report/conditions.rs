@@ -23,8 +23,10 @@ use gdcm_words::condition_remarks::{details, remarks};
 use gdcm_words::leads::lead_words;
 use gdcm_words::remark::RemarkKind;
 
-use super::Unobtrusive;
-use super::page::{CONDITIONS_DRAWN, MODELS_SHOWN, PAIRS_DRAWN, PAIRS_LISTED, Page, names};
+use super::CancellationOnly;
+use super::page::{
+    CONDITIONS_DRAWN, MISSING, MODELS_SHOWN, PAIRS_DRAWN, PAIRS_LISTED, Page, counted, names,
+};
 
 /// Adds a subsection for each condition: representatives, gains and delays with their basis, and
 /// plots.
@@ -54,7 +56,7 @@ pub(super) fn add_conditions(
             Some(Ok(result)) => {
                 add_result(page, analysis, result);
                 if index < CONDITIONS_DRAWN {
-                    let step = Unobtrusive(progress);
+                    let step = CancellationOnly(progress);
                     add_condition_plots(page, analysis, result, engine, &step)?;
                 }
             }
@@ -274,15 +276,17 @@ fn add_responses(page: &mut Page, study: &Study, result: &ConditionAnalysis) {
     page.table(&table);
     if shown.len() < all.len() {
         page.paragraph(&format!(
-            "Not listed: {} responses that are neither on-axis nor held.",
-            all.len() - shown.len()
+            "Not listed: {} neither on-axis nor held.",
+            responses_that_are(all.len() - shown.len())
         ));
     }
     page.list(undefined_lines(study, result));
 }
 
-/// Placeholder for a missing value in tables.
-const MISSING: &str = "–";
+fn responses_that_are(count: usize) -> String {
+    let verb = if count == 1 { "is" } else { "are" };
+    format!("{} that {verb}", counted(count, "response"))
+}
 
 /// Formats a value with `digits` decimals; a missing value as [`MISSING`].
 fn decimals_or_missing(value: Option<f64>, digits: usize) -> String {
@@ -430,7 +434,9 @@ fn kept_word(
 }
 
 /// Maximum number of responses in a figure, in at most two rows.
-const IN_A_FIGURE: usize = 10;
+const PAIRS_IN_A_FIGURE: usize = 10;
+/// Maximum number of responses in the overview, which shows magnitudes alone.
+const PAIRS_IN_OVERVIEW: usize = 6 * PAIRS_IN_A_FIGURE;
 
 /// Adds the plots of a condition: the responses in the objective, their ratios and phase
 /// differences, an overview of all responses, and the poles.
@@ -450,7 +456,7 @@ fn add_response_plots(page: &mut Page, source: &ConditionSource<'_>, options: &B
     let id = source.curves.condition.id();
     let measuring: Vec<Pair> = source.study.dataset.measuring_pairs().marked().collect();
     let drawn = &measuring[..measuring.len().min(PAIRS_DRAWN)];
-    for pairs in drawn.chunks(IN_A_FIGURE) {
+    for pairs in drawn.chunks(PAIRS_IN_A_FIGURE) {
         let title = format!("Condition {id}, responses{}", on_axis_words(source));
         let caption = "Magnitude and phase of every model, and of the representative under its own and under the scheduled \
                        correction.";
@@ -477,7 +483,7 @@ fn add_overview(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOpt
         ..options.clone()
     };
     let overview = overview_figure(source, &without_bundles);
-    if overview.plots.len() <= 6 * IN_A_FIGURE {
+    if overview.plots.len() <= PAIRS_IN_OVERVIEW {
         let id = source.curves.condition.id();
         page.figure(
             &overview,

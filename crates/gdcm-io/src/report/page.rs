@@ -19,6 +19,9 @@ pub(super) const MODELS_SHOWN: usize = 40;
 /// Maximum number of names in a list within a sentence.
 pub(super) const NAMES_SHOWN: usize = 12;
 
+/// Placeholder for a missing value in tables.
+pub(super) const MISSING: &str = "–";
+
 /// Joins names with commas; of more than [`NAMES_SHOWN`] names, the first ones and the number of
 /// the others.
 pub(super) fn names<S: AsRef<str>>(all: &[S]) -> String {
@@ -28,6 +31,30 @@ pub(super) fn names<S: AsRef<str>>(all: &[S]) -> String {
         return shown;
     }
     format!("{shown} and {} more", all.len() - NAMES_SHOWN)
+}
+
+/// Returns a count with its noun: "1 model", "3 models".
+pub(super) fn counted(count: usize, noun: &str) -> String {
+    if count == 1 {
+        format!("1 {noun}")
+    } else {
+        format!("{count} {noun}s")
+    }
+}
+
+/// Returns a count with its noun and verb: "1 model is", "3 models are".
+pub(super) fn counted_are(count: usize, noun: &str) -> String {
+    let verb = if count == 1 { "is" } else { "are" };
+    format!("{} {verb}", counted(count, noun))
+}
+
+/// Capitalises the first letter; a leading symbol is unchanged ("α of the gains").
+pub(super) fn capital(words: &str) -> String {
+    let mut capital = words.to_owned();
+    if let Some(first) = capital.get_mut(..1) {
+        first.make_ascii_uppercase();
+    }
+    capital
 }
 
 /// Maximum distance \[pt\] between a simplified line in a figure and its original points: less than
@@ -158,7 +185,7 @@ impl Page {
         self.body.push_str("</tbody>\n</table>\n");
         if table.rows.len() > ROWS {
             let more = table.rows.len() - ROWS;
-            self.paragraph(&format!("{more} more rows are omitted here."));
+            self.paragraph(&format!("{} omitted here.", counted_are(more, "more row")));
         }
     }
 

@@ -189,7 +189,7 @@ fn model_drafts(
         let place = condition.model(kind, index + 1, &model.name);
         for key in model.misplaced_keys(kind) {
             cautions.push(format!(
-                "{}the key \"{key}\" is not known and not used",
+                "{}the key \"{key}\" has no meaning here and is not used",
                 place.before()
             ));
         }

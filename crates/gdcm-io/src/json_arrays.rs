@@ -49,36 +49,37 @@ impl Nested<2> {
 
 impl<'de, const DEPTH: usize> Deserialize<'de> for Nested<DEPTH> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let mut filling = Filling {
+        let mut array = ArrayBuilder {
             lengths: [None; DEPTH],
             values: Vec::new(),
         };
-        List {
-            filling: &mut filling,
+        ListReader {
+            array: &mut array,
             depth: 0,
         }
         .deserialize(deserializer)?;
         Ok(Self {
-            shape: filling.lengths.map(Option::unwrap_or_default),
-            values: filling.values,
+            shape: array.lengths.map(Option::unwrap_or_default),
+            values: array.values,
         })
     }
 }
 
-/// Array under construction while its nested lists are read.
-struct Filling<const DEPTH: usize> {
+/// Array under construction while its nested lists are read: serde calls [`ListReader::visit_seq`] for
+/// each list, from the outside in.
+struct ArrayBuilder<const DEPTH: usize> {
     /// List length at each depth; `None` until the first list at this depth has ended.
     lengths: [Option<usize>; DEPTH],
     values: Vec<f64>,
 }
 
 /// Reader for a list at `depth`, 0 being the outermost.
-struct List<'f, const DEPTH: usize> {
-    filling: &'f mut Filling<DEPTH>,
+struct ListReader<'f, const DEPTH: usize> {
+    array: &'f mut ArrayBuilder<DEPTH>,
     depth: usize,
 }
 
-impl<'de, const DEPTH: usize> DeserializeSeed<'de> for List<'_, DEPTH> {
+impl<'de, const DEPTH: usize> DeserializeSeed<'de> for ListReader<'_, DEPTH> {
     type Value = ();
 
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
@@ -86,7 +87,7 @@ impl<'de, const DEPTH: usize> DeserializeSeed<'de> for List<'_, DEPTH> {
     }
 }
 
-impl<'de, const DEPTH: usize> Visitor<'de> for List<'_, DEPTH> {
+impl<'de, const DEPTH: usize> Visitor<'de> for ListReader<'_, DEPTH> {
     type Value = ();
 
     fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -105,10 +106,10 @@ impl<'de, const DEPTH: usize> Visitor<'de> for List<'_, DEPTH> {
                 let Some(value) = entries.next_element::<f64>()? else {
                     break;
                 };
-                self.filling.values.push(value);
+                self.array.values.push(value);
             } else if entries
-                .next_element_seed(List {
-                    filling: &mut *self.filling,
+                .next_element_seed(ListReader {
+                    array: &mut *self.array,
                     depth,
                 })?
                 .is_none()
@@ -120,7 +121,7 @@ impl<'de, const DEPTH: usize> Visitor<'de> for List<'_, DEPTH> {
                 return Err(too_long(length - 1));
             }
         }
-        let expected = *self.filling.lengths[self.depth].get_or_insert(length);
+        let expected = *self.array.lengths[self.depth].get_or_insert(length);
         if length != expected {
             return Err(A::Error::custom(format!(
                 "expected {expected} entries, as in the first of these lists, found {length}"
@@ -132,7 +133,7 @@ impl<'de, const DEPTH: usize> Visitor<'de> for List<'_, DEPTH> {
 
 impl<const DEPTH: usize> Serialize for Nested<DEPTH> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        Part {
+        ListWriter {
             shape: &self.shape,
             values: &self.values,
         }
@@ -141,12 +142,12 @@ impl<const DEPTH: usize> Serialize for Nested<DEPTH> {
 }
 
 /// Writer for a list within an array.
-struct Part<'v> {
+struct ListWriter<'v> {
     shape: &'v [usize],
     values: &'v [f64],
 }
 
-impl Serialize for Part<'_> {
+impl Serialize for ListWriter<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self.shape {
             [] | [_] => self.values.serialize(serializer),
@@ -154,7 +155,7 @@ impl Serialize for Part<'_> {
                 let size: usize = shape.iter().product();
                 let mut list = serializer.serialize_seq(Some(*length))?;
                 for part in 0..*length {
-                    list.serialize_element(&Part {
+                    list.serialize_element(&ListWriter {
                         shape,
                         values: &self.values[part * size..(part + 1) * size],
                     })?;

@@ -130,6 +130,14 @@ pub(super) fn fixed_digits(value: Option<f64>, digits: usize) -> String {
     format!("{rounded:.digits$}")
 }
 
+/// Formats a number with `digits` decimals; a dash for `None`.
+pub(super) fn decimals_or_dash(value: Option<f64>, digits: usize) -> String {
+    match value {
+        Some(value) => format!("{value:.digits$}"),
+        None => "-".to_owned(),
+    }
+}
+
 /// Returns a count with its noun: "1 model", "3 models".
 pub(super) fn counted(count: usize, noun: &str) -> String {
     if count == 1 {

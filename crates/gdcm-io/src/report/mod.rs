@@ -2,6 +2,7 @@
 //! paper. The bytes depend only on the study.
 
 mod assessment;
+mod condition_plots;
 mod conditions;
 mod couplings;
 mod left_out;
@@ -9,6 +10,7 @@ mod page;
 mod provenance;
 mod requirements;
 mod schedule;
+mod shown_models;
 mod study;
 mod uncertainty;
 

@@ -1,6 +1,7 @@
 //! Dataset files, `*.json` and `*.json.gz`.
 
 mod conversion;
+mod model_conversion;
 mod text;
 
 use std::fmt;

@@ -79,7 +79,7 @@ impl<'p> ReadingBudget<'p> {
     }
 
     /// Counts `count` elements that are about to be read for `variable`, each with `size` bytes and
-    /// one work step.
+    /// one work step. `variable` is named in the error; it is empty if none was begun.
     ///
     /// # Errors
     /// A limit would be exceeded, or the reader was cancelled.
@@ -109,7 +109,8 @@ impl<'p> ReadingBudget<'p> {
         Ok(())
     }
 
-    /// Counts work steps that are about to be taken for `variable`.
+    /// Counts work steps that are about to be taken for `variable`, which is named in the error. With
+    /// 0 steps, only checks for cancellation.
     pub fn work(&self, steps: u64, variable: &str) -> Result<(), VariableFault> {
         if self.stop.load(Ordering::Relaxed) {
             return Err(VariableFault::Stopped);

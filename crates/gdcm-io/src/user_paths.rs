@@ -32,7 +32,7 @@ pub struct FileStamp {
 
 impl FileStamp {
     /// Reads the metadata; `None` if there is no file at `path`.
-    pub fn of(path: &Path) -> Option<Self> {
+    pub fn read(path: &Path) -> Option<Self> {
         let metadata = fs::metadata(path).ok().filter(fs::Metadata::is_file)?;
         Some(Self {
             modified: metadata.modified().ok(),

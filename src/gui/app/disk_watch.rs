@@ -69,7 +69,7 @@ impl Known {
         }
         // A missing file may be about to be replaced; the open dataset remains until the file
         // reappears.
-        let stamp = FileStamp::of(path)?;
+        let stamp = FileStamp::read(path)?;
         let is_unchanged = self.stamp == Some(stamp);
         self.stamp = Some(stamp);
         if !is_unchanged || self.read == Some(stamp) {
@@ -77,7 +77,7 @@ impl Known {
         }
         let sha256 = file_sha256(path).ok()?;
         // The file was written again in the meantime: wait for the next check.
-        if FileStamp::of(path) != Some(stamp) {
+        if FileStamp::read(path) != Some(stamp) {
             return None;
         }
         self.read = Some(stamp);

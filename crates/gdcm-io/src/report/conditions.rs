@@ -18,8 +18,9 @@ use gdcm_words::remark::RemarkKind;
 
 use super::CancellationOnly;
 use super::condition_plots::add_condition_plots;
-use super::page::{CONDITIONS_DRAWN, MISSING, PAIRS_LISTED, Page, counted, names};
+use super::page::{CONDITIONS_DRAWN, PAIRS_LISTED, Page};
 use super::shown_models::models_shown;
+use super::wording::{MISSING, counted, names};
 
 /// Adds a subsection for each condition: representatives, gains and delays with their basis, and
 /// plots.

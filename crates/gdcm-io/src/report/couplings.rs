@@ -11,7 +11,8 @@ use gdcm_words::couplings::{
 };
 
 use super::CancellationOnly;
-use super::page::{Page, capital};
+use super::page::Page;
+use super::wording::capital;
 
 /// Maximum number of matrix columns that fit on a page.
 const MATRIX_COLUMNS: usize = 8;

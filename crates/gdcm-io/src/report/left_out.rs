@@ -8,7 +8,8 @@ use gdcm_study::results::caution::Caution;
 use gdcm_words::Table;
 use gdcm_words::caution::caution_text;
 
-use super::page::{MISSING, NAMES_SHOWN, Page, counted_are, names};
+use super::page::Page;
+use super::wording::{MISSING, NAMES_SHOWN, counted_are, names};
 
 /// Adds the section on excluded models: rejected ones with the analyst's reasons, those excluded by
 /// the analysis, and suspected ones.

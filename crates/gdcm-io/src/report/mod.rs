@@ -13,6 +13,7 @@ mod schedule;
 mod shown_models;
 mod study;
 mod uncertainty;
+mod wording;
 
 use std::path::Path;
 

@@ -8,7 +8,8 @@ use gdcm_model::dataset::{BundleKind, Channel};
 use gdcm_study::Study;
 use gdcm_words::Table;
 
-use super::page::{Page, counted, names};
+use super::page::Page;
+use super::wording::{counted, names};
 use super::{PROGRAM, ReportSource};
 
 /// Adds the section on the files of the study and the dataset.

@@ -13,8 +13,9 @@ use gdcm_study::{Analysis, Study};
 use gdcm_words::Table;
 use gdcm_words::schedule::delayed_channel_text;
 
-use super::page::{PAIRS_DRAWN, Page, names};
+use super::page::{PAIRS_DRAWN, Page};
 use super::study::schedule_words;
+use super::wording::names;
 
 /// Maximum number of channels in a figure, in two rows.
 const CHANNELS_IN_A_FIGURE: usize = 12;

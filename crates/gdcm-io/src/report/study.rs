@@ -13,7 +13,8 @@ use gdcm_words::assessment::summary_text;
 use gdcm_words::caution::failure_text;
 
 use super::conditions::proof_word;
-use super::page::{MISSING, Page, capital, counted_are, names};
+use super::page::Page;
+use super::wording::{MISSING, capital, counted_are, names};
 
 /// Adds the summary of the results.
 pub(super) fn add_summary(page: &mut Page, analysis: &Analysis) {

@@ -7,6 +7,8 @@ use gdcm_plot::figure::{ColumnWidth, Figure};
 use gdcm_plot::paper::{escaped, inline_svg};
 use gdcm_words::Table;
 
+use super::wording::counted_are;
+
 /// Maximum number of conditions with figures; the tables list all conditions.
 pub(super) const CONDITIONS_DRAWN: usize = 60;
 /// Maximum number of responses with figures, for on-axis and for off-axis responses each.

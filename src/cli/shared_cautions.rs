@@ -13,7 +13,8 @@ use super::condition_messages::{ConditionMessage, shared_messages};
 use super::terminal::keep_caution;
 use super::text::{indented, line};
 
-/// Remarks on a condition that typically recur in other conditions.
+/// Remarks on a condition of the kinds that a table lists ([`Repeated`]), because they usually recur in
+/// other conditions.
 struct RemarkRow {
     condition: ConditionId,
     remarks: Vec<Remark>,

@@ -9,10 +9,12 @@ use gdcm_words::condition_remarks::remarks;
 use gdcm_words::leads::lead_limit_words;
 use gdcm_words::remark::{Remark, RemarkKind, Repeated};
 
+use super::condition_messages::{ConditionMessage, shared_messages};
 use super::terminal::keep_caution;
-use super::text::{ConditionMessage, indented, line, shared_messages};
+use super::text::{indented, line};
 
-/// Remarks on a condition that typically recur in other conditions.
+/// Remarks on a condition of the kinds that a table lists ([`Repeated`]), because they usually recur in
+/// other conditions.
 struct RemarkRow {
     condition: ConditionId,
     remarks: Vec<Remark>,

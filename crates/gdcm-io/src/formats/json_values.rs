@@ -12,7 +12,7 @@ use crate::formats::variables::{
     Array, CellArray, ElementKind, StructArray, TextArray, Value, Variable,
 };
 use crate::formats::{Contents, Importer, importer_of};
-use crate::location::Outline;
+use crate::json_outline::Outline;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::source::{GZIP_MAGIC, Source, text_of, without_mark};
 
@@ -49,7 +49,7 @@ fn read_json(bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Co
     match format.as_deref() {
         Some("\"gdcm-dataset\"") => {
             // Pass on the compressed bytes: `Source::of` decompresses them again.
-            let source = Source::of(bytes, path, budget)?;
+            let source = Source::from_bytes(bytes, path, budget)?;
             let loaded = dataset_from(&source, DatasetOrigin::File(path.to_owned()), budget)?;
             let dataset = loaded.dataset.as_ref().clone();
             return Ok(Contents::Dataset(Box::new(dataset), loaded.cautions));

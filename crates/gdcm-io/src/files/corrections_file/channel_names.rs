@@ -1,4 +1,4 @@
-//! JSON values by channel and by response, which contain the channel names of a dataset.
+//! JSON values by channel and by response, labelled with the channel names of a dataset.
 
 use serde_json::{Map, Value, json};
 

@@ -68,7 +68,8 @@ impl Header {
         let Some(shape) = parse_sides(shape) else {
             return Err(damaged(name, "the shape is not a tuple of integers"));
         };
-        let element = Element::parse(descr).map_err(|fault| fault.of(|| name.to_owned()))?;
+        let element =
+            Element::parse(descr).map_err(|fault| fault.in_variable(|| name.to_owned()))?;
         Ok(Self {
             element,
             column_major,

@@ -179,7 +179,7 @@ impl<'t> Reading<'t, '_> {
         let before = self.scanner.clone();
         match self.read_assigned_value(begin) {
             Ok(value) => return self.workspace.set(path, value, self.budget),
-            Err(ValueError::Fault(fault)) => return Err(fault.of(|| path.join("."))),
+            Err(ValueError::Fault(fault)) => return Err(fault.in_variable(|| path.join("."))),
             Err(ValueError::NotUnderstood { what, at }) => {
                 self.scanner = before;
                 self.set_unread(path, at, &what)?;
@@ -187,7 +187,7 @@ impl<'t> Reading<'t, '_> {
         }
         self.scanner
             .pass_statement(self.budget)
-            .map_err(|fault| fault.of(|| path.join(".")))
+            .map_err(|fault| fault.in_variable(|| path.join(".")))
     }
 
     /// Reads the value after the equals sign of an assignment.

@@ -16,6 +16,7 @@ mod components;
 pub mod conflict;
 mod conflict_search;
 mod conflict_text;
+mod connected_pieces;
 pub mod corrected_model;
 pub mod delta;
 mod interior_point;

@@ -6,9 +6,9 @@ use nalgebra::{DMatrix, DVector};
 use gdcm_model::dataset::Pair;
 use gdcm_model::units::number;
 
-use super::branch_and_bound::objective::connected_pieces;
 use super::branch_and_bound::search::ProofBudget;
 use super::channels::{Channel, pair_name};
+use super::connected_pieces::connected_pieces;
 use super::problem::{Entry, Problem, ProblemError};
 use super::quantity::Quantity;
 use super::solution::{Outcome, Solution};

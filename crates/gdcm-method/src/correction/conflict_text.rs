@@ -162,9 +162,8 @@ impl ConflictText<'_> {
     }
 
     /// Describes a net value above its maximum: twice the upper bound, or its square for gains.
-    fn above_upper(&self, channels: (Channel, Channel), asked: f64, upper: f64) -> String {
-        let first = self.symbol(channels.0);
-        let second = self.symbol(channels.1);
+    fn above_upper(&self, channels: [Channel; 2], asked: f64, upper: f64) -> String {
+        let [first, second] = channels.map(|channel| self.symbol(channel));
         let bound = self.conflict.bounds.upper;
         if self.conflict.quantity.is_gain() {
             let (most, asked) = told_apart(bound.powi(2), asked, 3);
@@ -186,9 +185,8 @@ impl ConflictText<'_> {
     }
 
     /// Describes a net value below its minimum: twice the lower bound, or its square for gains.
-    fn below_lower(&self, channels: (Channel, Channel), asked: f64, lower: Option<f64>) -> String {
-        let first = self.symbol(channels.0);
-        let second = self.symbol(channels.1);
+    fn below_lower(&self, channels: [Channel; 2], asked: f64, lower: Option<f64>) -> String {
+        let [first, second] = channels.map(|channel| self.symbol(channel));
         let bound = self.conflict.bounds.lower;
         match self.conflict.quantity {
             Quantity::Gain(_) => {

@@ -5,7 +5,7 @@
 //! minimum. The signed delays of M15 are the solution of a convex program in the form of eq. (11);
 //! [`LeadDesign`](leads::LeadDesign) converts negative delays to filters. `solve` also explains
 //! infeasible constraints and finds remedies; [`sensitivities`](sensitivity::sensitivities) and
-//! [`toggles`](sensitivity::toggles) compute the cost of each constrained entry. Tables are
+//! [`toggles`](toggles::toggles) compute the cost of each constrained entry. Tables are
 //! `[output, input]`, gains are ratios, delays are in seconds.
 
 pub mod branch_and_bound;
@@ -17,6 +17,7 @@ pub mod conflict;
 mod conflict_search;
 mod conflict_text;
 mod connected_pieces;
+mod constraints;
 pub mod corrected_model;
 pub mod delta;
 mod interior_point;
@@ -26,12 +27,14 @@ pub mod leads;
 pub mod pade;
 pub mod problem;
 pub mod quantity;
+mod reachable_targets;
 pub mod remedy;
 mod rounding;
 mod scaled_objective;
 pub mod sensitivity;
 pub mod solution;
 pub mod solve;
+pub mod toggles;
 
 pub use branch_and_bound::search::ProofBudget;
 pub use channel_correction::ChannelCorrection;

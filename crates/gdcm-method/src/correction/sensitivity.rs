@@ -131,7 +131,7 @@ pub fn sensitivities(problem: &Problem, solution: &Solution) -> Vec<Sensitivity>
         let held = ActiveConstraint::Held(*pair);
         sensitivities.push(sensitivity(problem, solution, held, slope));
     }
-    let channels = Channel::all(minimum.inputs, solution.outputs.len());
+    let channels = Channel::inputs_then_outputs(minimum.inputs, solution.outputs.len());
     for (channel, &slope) in channels.zip(&multipliers.channels) {
         // The objective decreases if an upper bound is raised (negative slope) or a lower bound is
         // lowered.

@@ -52,7 +52,7 @@ impl Constraints {
                 .constrained_entries()
                 .map(|entry| ConstrainedSum {
                     pair: entry.pair,
-                    sum: coordinate.from_value(entry.delta),
+                    sum: coordinate.transform(entry.delta),
                 })
                 .collect(),
             range: problem.range(),

@@ -7,6 +7,17 @@
 //! infeasible constraints and finds remedies; [`sensitivities`](sensitivity::sensitivities) and
 //! [`toggles`](toggles::toggles) compute the cost of each constrained entry. Tables are
 //! `[output, input]`, gains are ratios, delays are in seconds.
+//!
+//! ```text
+//! delta                                            G and D from two models, and the bounds
+//! problem, solve, solution                         eq. (7) and (11): problem, entry point, result
+//!     constraints, components, reachable_targets       stage 1
+//!     scaled_objective, branch_and_bound               stage 2 and the proof
+//!     conflict_search, conflict, remedy                explanation of infeasible entries
+//! sensitivity, toggles                             cost of each constrained entry
+//! leads, lead_price                                lead filters for negative delays
+//! channel_correction, corrected_model, pade        the correction of a response, and of a model as matrices
+//! ```
 
 pub mod branch_and_bound;
 pub mod channel_correction;

@@ -360,8 +360,8 @@ impl Problem {
     /// Returns the permitted range of the coordinate, the same for every channel.
     pub(crate) fn range(&self) -> Interval {
         let coordinate = self.coordinate();
-        let low = coordinate.from_value(self.bounds.lower);
-        let high = coordinate.from_value(self.bounds.upper);
+        let low = coordinate.transform(self.bounds.lower);
+        let high = coordinate.transform(self.bounds.upper);
         match coordinate {
             Coordinate::Logarithm => Interval { low, high },
             // Limit the range: along a path of constrained entries, a channel differs by at most

@@ -149,7 +149,7 @@ pub(crate) enum Coordinate {
 
 impl Coordinate {
     /// Converts a gain, or a delay in seconds, to its coordinate.
-    pub(crate) fn from_value(self, value: f64) -> f64 {
+    pub(crate) fn transform(self, value: f64) -> f64 {
         match self {
             Coordinate::Logarithm => value.ln(),
             Coordinate::Time { unit_s } => value / unit_s,

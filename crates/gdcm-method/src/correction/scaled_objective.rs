@@ -107,7 +107,7 @@ fn in_coordinate(entries: &[SquareEntry], coordinate: Coordinate, factor: f64) -
         .iter()
         .map(|entry| SquareEntry {
             weight: factor * entry.weight,
-            delta: coordinate.from_value(entry.delta),
+            delta: coordinate.transform(entry.delta),
             ..*entry
         })
         .collect()
@@ -167,6 +167,6 @@ fn uncorrected_square(quantity: Quantity, coordinate: Coordinate, delta: f64) ->
     match quantity {
         Quantity::Gain(GainObjective::Ratio) => delta * delta,
         Quantity::Gain(GainObjective::Decibel) => SQUARED_DECIBEL * (delta.ln().powi(2) + 1.0),
-        Quantity::Delay | Quantity::SignedDelay => coordinate.from_value(delta).powi(2),
+        Quantity::Delay | Quantity::SignedDelay => coordinate.transform(delta).powi(2),
     }
 }

@@ -224,8 +224,8 @@ fn local_minimum(problem: &Problem, components: &Components, scales: &[f64]) -> 
 fn channel_values(problem: &Problem, coordinates: &[f64]) -> Vec<f64> {
     let bounds = problem.bounds;
     let coordinate = problem.coordinate();
-    let low = coordinate.from_value(bounds.lower);
-    let high = coordinate.from_value(bounds.upper);
+    let low = coordinate.transform(bounds.lower);
+    let high = coordinate.transform(bounds.upper);
     // Tolerance: a few roundings at the magnitude of the range.
     let rounding = 16.0 * f64::EPSILON * (1.0 + low.abs().max(high.abs()));
     let mut values = Vec::with_capacity(coordinates.len());

@@ -15,8 +15,8 @@ use super::rounded::Rounded;
 use super::term::{Function, Term};
 use crate::correction::interval::Interval;
 
-/// Lines in the convex envelopes of a term's two exponentials (see [`Line`]); `None` for an exponential that is
-/// convex over the node.
+/// Lines in the convex envelopes of a term's two exponentials (see [`Line`]); `None` for an
+/// exponential that is convex over the node.
 #[derive(Clone, Copy, Debug)]
 struct EnvelopeLines {
     forward: Option<Line>,

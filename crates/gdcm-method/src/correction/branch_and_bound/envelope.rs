@@ -29,8 +29,8 @@ impl Line {
         if function.is_zero() || over.low >= function.inflection() {
             return None;
         }
-        let start = function.at(over.low, over.low.exp());
-        let end = function.at(over.high, over.high.exp());
+        let start = function.evaluate(over.low, over.low.exp());
+        let end = function.evaluate(over.high, over.high.exp());
         if over.high <= function.inflection() || overshoot(over.low, &start, over.high, &end) >= 0.0
         {
             return Some(Self::chord(over, start.value, end.value));
@@ -60,7 +60,7 @@ impl Line {
             } else {
                 0.5 * (left + right)
             };
-            let at = function.at(next, next.exp());
+            let at = function.evaluate(next, next.exp());
             if overshoot(low, start, next, &at) > 0.0 {
                 left = next;
             } else {
@@ -134,6 +134,6 @@ pub(super) fn enveloped(function: &Exponential, line: Option<&Line>, v: f64) -> 
     match line {
         Some(line) if v < line.until => line.evaluate(v),
         _ if function.is_zero() => Derivatives::default(),
-        _ => function.at(v, v.exp()),
+        _ => function.evaluate(v, v.exp()),
     }
 }

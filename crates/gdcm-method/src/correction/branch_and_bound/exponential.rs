@@ -125,7 +125,7 @@ impl Exponential {
     }
 
     /// Evaluates the function at `v`, given `z = e^v`.
-    pub(crate) fn at(&self, v: f64, z: f64) -> Derivatives {
+    pub(crate) fn evaluate(&self, v: f64, z: f64) -> Derivatives {
         let away = z - self.centre;
         let relative = self.relative_error(v);
         let error = relative * (z + self.centre);

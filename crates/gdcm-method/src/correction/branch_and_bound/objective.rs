@@ -136,7 +136,7 @@ impl Objective {
         let sum: f64 = self
             .terms
             .iter()
-            .map(|term| term.function.at(term.difference(scales)).value.value)
+            .map(|term| term.function.evaluate(term.difference(scales)).value.value)
             .sum();
         self.constant.value + sum
     }
@@ -180,7 +180,7 @@ impl Differentiable for Objective {
     fn expand(&self, scales: &[f64], curvature: Curvature, into: &mut Expansion) {
         into.clear(self.constant);
         for term in &self.terms {
-            let at = term.function.at(term.difference(scales));
+            let at = term.function.evaluate(term.difference(scales));
             into.value.add(at.value);
             let bend = match curvature {
                 Curvature::True => at.curvature,

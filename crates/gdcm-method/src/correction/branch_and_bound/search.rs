@@ -316,7 +316,7 @@ impl<'a> Search<'a> {
             let there = term.difference(found);
             let change = (there - here).abs();
             longest = longest.max(change);
-            rise += 0.5 * term.function.at(here).curvature.abs() * change * change;
+            rise += 0.5 * term.function.evaluate(here).curvature.abs() * change * change;
         }
         longest <= SAME_MINIMUM || rise <= AIM * self.denominator()
     }

@@ -68,7 +68,7 @@ impl Function {
     }
 
     /// Evaluates the function at `u`.
-    pub(crate) fn at(&self, u: f64) -> Derivatives {
+    pub(crate) fn evaluate(&self, u: f64) -> Derivatives {
         match self {
             Function::Quadratic {
                 weight,
@@ -91,11 +91,11 @@ impl Function {
                 forward, backward, ..
             } => {
                 let z = u.exp();
-                let ahead = forward.at(u, z);
+                let ahead = forward.evaluate(u, z);
                 if backward.is_zero() {
                     ahead
                 } else {
-                    ahead.plus_mirrored(backward.at(-u, 1.0 / z))
+                    ahead.plus_mirrored(backward.evaluate(-u, 1.0 / z))
                 }
             }
         }
@@ -140,8 +140,8 @@ impl Function {
     pub(crate) fn slopes(&self, over: Interval) -> Range {
         match self {
             Function::Quadratic { .. } => {
-                let down = self.at(over.low).slope;
-                let up = self.at(over.high).slope;
+                let down = self.evaluate(over.low).slope;
+                let up = self.evaluate(over.high).slope;
                 let size = down.value.abs().max(up.value.abs());
                 Range {
                     least: down.value - down.error,

@@ -73,7 +73,7 @@ impl TermUnderestimator {
                 lines.backward.as_ref(),
                 -u,
             )),
-            _ => function.at(u),
+            _ => function.evaluate(u),
         }
     }
 }
@@ -151,7 +151,7 @@ impl<'a> Underestimator<'a> {
     pub(crate) fn widest_gap(&self, scales: &[f64], least_gap: f64) -> Option<&'a Term> {
         let gaps = self.nonconvex().map(|(term, underestimator)| {
             let u = underestimator.difference(term, scales);
-            let above = term.function.at(u).value;
+            let above = term.function.evaluate(u).value;
             let below = underestimator.inside(&term.function, u).value;
             RankedTerm {
                 term,
@@ -203,7 +203,12 @@ impl<'a> Underestimator<'a> {
     /// Evaluates the underestimator of a term. Outside its range, at the distance `x` from the
     /// nearer end, the value is `e + e' x + outer_curvature x^2 / 2`, with the value `e` and the
     /// slope `e'` at that end.
-    fn at(&self, term: &Term, underestimator: &TermUnderestimator, scales: &[f64]) -> Derivatives {
+    fn evaluate(
+        &self,
+        term: &Term,
+        underestimator: &TermUnderestimator,
+        scales: &[f64],
+    ) -> Derivatives {
         let u = term.difference(scales);
         let end = underestimator.range.nearest(u);
         let mut at = underestimator.inside(&term.function, end);
@@ -231,7 +236,7 @@ impl Differentiable for Underestimator<'_> {
     fn expand(&self, scales: &[f64], _curvature: Curvature, into: &mut Expansion) {
         into.clear(self.objective.constant);
         for (term, underestimator) in self.objective.terms.iter().zip(&self.per_term) {
-            let at = self.at(term, underestimator, scales);
+            let at = self.evaluate(term, underestimator, scales);
             into.value.add(at.value);
             // `max(0.0)`: the curvature is negative only by the rounding of the interval's ends.
             into.add_derivatives(term, at.slope, at.curvature.max(0.0));
@@ -377,7 +382,7 @@ mod tests {
             at in -3.0..3.0_f64,
         ) {
             let convex = function.is_convex_over(Interval { low: at, high: at });
-            let curvature = function.at(at).curvature;
+            let curvature = function.evaluate(at).curvature;
             // The interval is widened by 1e-11, so that the curvature at its ends is 1e-11 times
             // its slope there.
             prop_assert!(convex == (curvature > 0.0) || curvature.abs() <= 1e-6, "{} {}", convex, curvature);
@@ -391,7 +396,7 @@ mod tests {
             share in 0.0..1.0_f64,
         ) {
             let range = Interval { low, high: low + width };
-            let at = function.at(low + share * width);
+            let at = function.evaluate(low + share * width);
             let slopes = function.slopes(range);
             let curvatures = function.curvatures(range);
             prop_assert!(slopes.least <= at.slope.value + at.slope.error && at.slope.value - at.slope.error <= slopes.most);

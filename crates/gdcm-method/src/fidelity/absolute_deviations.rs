@@ -16,7 +16,7 @@ use gdcm_numerics::{CscMatrix, DefaultSettings, convex_program};
 const ZERO: f64 = 1e-11;
 /// Relative change in the summed deviations below which an edge counts as flat.
 const FLAT: f64 = 1e-10;
-/// Smallest singular value of independent constraints, whose coefficients are scaled to at most 1.
+/// Smallest singular value of independent constraints, whose coefficients are of order 1.
 const INDEPENDENT: f64 = 1e-6;
 
 /// Reasons why a fit is unavailable.

@@ -5,10 +5,10 @@
 //! value of a node = offset + s,      s: the scale of its component
 //! ```
 //!
-//! The *components* are the connected components of the graph whose nodes are the channels and whose
-//! edges are the constrained entries ([`super::constraints`]). A constrained entry prescribes a
-//! difference of two nodes in one component, which does not depend on `s`: the constraints leave the
-//! scales free, within the box.
+//! The *components* are the connected components of the graph whose nodes are the channels and
+//! whose edges are the constrained entries ([`super::constraints`]). A constrained entry prescribes
+//! a difference of two nodes in one component, which does not depend on `s`: the constraints leave
+//! the scales free, within the box.
 
 use gdcm_model::dataset::Pair;
 
@@ -119,8 +119,8 @@ impl Components {
         }
     }
 
-    /// Step 3: shifts the offsets so that scale 0 is the middle of each component's interval, and no
-    /// channel is far outside the box there. Leaves the intervals unchanged.
+    /// Step 3: shifts the offsets so that scale 0 is the middle of each component's interval, and
+    /// no channel is far outside the box there. Leaves the intervals unchanged.
     fn centre_offsets(&mut self, range: Interval) {
         // A scale at its end has two rounding errors: the end of the range, and the subtraction of
         // the offset.
@@ -134,8 +134,8 @@ impl Components {
         }
     }
 
-    /// Steps 2 and 3: sets the interval of every scale. An empty interval is replaced by its midpoint
-    /// and recorded as infeasibility.
+    /// Steps 2 and 3: sets the interval of every scale. An empty interval is replaced by its
+    /// midpoint and recorded as infeasibility.
     fn set_intervals(&mut self, constraints: &Constraints) {
         self.lower.fill(f64::NEG_INFINITY);
         self.upper.fill(f64::INFINITY);
@@ -157,7 +157,8 @@ impl Components {
         }
     }
 
-    /// Step 4: raises the infeasibility of every component to the largest inconsistency of its loops.
+    /// Step 4: raises the infeasibility of every component to the largest inconsistency of its
+    /// loops.
     fn check_loops(&mut self, constraints: &Constraints) {
         for entry in &constraints.entries {
             let miss = (self.sum(entry.pair) - entry.sum).abs();

@@ -185,8 +185,8 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// Steps 1 to 4: returns the smaller conflict: the shortest loop through `pull`, or the shortest
-    /// path through it from bound to bound; each bound counts as one entry.
+    /// Steps 1 to 4: returns the smaller conflict: the shortest loop through `pull`, or the
+    /// shortest path through it from bound to bound; each bound counts as one entry.
     fn smallest_through(&self, pull: &Pull) -> Option<Conflict> {
         let around = self.shortest_walk(pull.to, Direction::Along, |node| node == pull.from);
         let path = self.path_through(pull);
@@ -232,9 +232,9 @@ impl<'a> Flow<'a> {
         self.conflict(entries, ConflictKind::Loop { mismatch })
     }
 
-    /// Step 4: returns the conflict in the shortest proper part of a sequence that the bounds at its
-    /// two ends do not permit; `None` if there is none. In a loop, a part may continue from the last
-    /// pull to the first.
+    /// Step 4: returns the conflict in the shortest proper part of a sequence that the bounds at
+    /// its two ends do not permit; `None` if there is none. In a loop, a part may continue from the
+    /// last pull to the first.
     fn smallest_part(&self, pulls: &[Pull], shape: Shape) -> Option<Conflict> {
         let count = pulls.len();
         for length in 1..count {
@@ -279,8 +279,8 @@ impl<'a> Flow<'a> {
         let start = self.constraints.channel(start);
         let end = self.constraints.channel(end);
         // The value of an output node is minus its coordinate: at the minimum of the node, the
-        // output is at its upper bound. From an output to an input, `needed` is therefore the sum of
-        // both coordinates, from an input to an output minus the sum; a bound of half the sum on
+        // output is at its upper bound. From an output to an input, `needed` is therefore the sum
+        // of both coordinates, from an input to an output minus the sum; a bound of half the sum on
         // both channels suffices.
         let kind = match (start, end) {
             (Channel::Output(_), Channel::Input(_)) => ConflictKind::AboveUpper {

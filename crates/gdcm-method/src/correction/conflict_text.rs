@@ -98,8 +98,8 @@ impl ConflictText<'_> {
     /// Remedies for insufficient lead other than a change of the bounds.
     const MORE_LEAD: &'static str = "increase R_max or reduce n";
 
-    /// Composes the sentence "ENTRIES cannot be held: LIMIT; CHANGE or RELEASE." LIMIT is the limit of
-    /// the bounds that the entries exceed, CHANGE a change of the bounds that is sufficient.
+    /// Composes the sentence "ENTRIES cannot be held: LIMIT; CHANGE or RELEASE." LIMIT is the limit
+    /// of the bounds that the entries exceed, CHANGE a change of the bounds that is sufficient.
     fn sentence(&self) -> String {
         let conflict = self.conflict;
         let entries = pair_names(&conflict.entries, self.inputs, self.outputs);
@@ -162,8 +162,8 @@ impl ConflictText<'_> {
         format!("{entries} {cannot}: {limit_and_change} {release}.")
     }
 
-    /// Describes a net value above its maximum: twice the upper bound, or its square for gains; ends
-    /// with a sufficient change of the bounds and "or".
+    /// Describes a net value above its maximum: twice the upper bound, or its square for gains;
+    /// ends with a sufficient change of the bounds and "or".
     fn maximum_and_change(&self, channels: [Channel; 2], asked: f64, upper: f64) -> String {
         let [first, second] = channels.map(|channel| self.symbol(channel));
         let bound = self.conflict.bounds.upper;
@@ -186,8 +186,8 @@ impl ConflictText<'_> {
         )
     }
 
-    /// Describes a net value below its minimum: twice the lower bound, or its square for gains; ends
-    /// with a sufficient change of the bounds, if there is one, and "or".
+    /// Describes a net value below its minimum: twice the lower bound, or its square for gains;
+    /// ends with a sufficient change of the bounds, if there is one, and "or".
     fn minimum_and_change(&self, channels: [Channel; 2], asked: f64, lower: Option<f64>) -> String {
         let [first, second] = channels.map(|channel| self.symbol(channel));
         let bound = self.conflict.bounds.lower;

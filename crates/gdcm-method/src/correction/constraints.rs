@@ -6,8 +6,8 @@
 //! low <= x, y <= high
 //! ```
 //!
-//! The channels are the *nodes* of a graph, the inputs first, then the outputs. The value of an input
-//! node is `x_i`, that of an output node `-y_o`, so that a constrained entry prescribes the
+//! The channels are the *nodes* of a graph, the inputs first, then the outputs. The value of an
+//! input node is `x_i`, that of an output node `-y_o`, so that a constrained entry prescribes the
 //! difference between two nodes.
 
 use gdcm_model::dataset::Pair;

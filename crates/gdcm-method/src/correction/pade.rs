@@ -48,7 +48,8 @@ impl Pade {
 
     /// Creates the state-space model of the approximant for a positive delay \[s\].
     ///
-    /// The ladder is `t = e_1' (L/z + S)^-1 e_1` with `L = diag(1, 3, 5, ...)`, `S` with 1 above and
+    /// The ladder is `t = e_1' (L/z + S)^-1 e_1` with `L = diag(1, 3, 5, ...)`, `S` with 1 above
+    /// and
     /// -1 below the diagonal, and the first unit vector `e_1`. Then
     /// `(1 - t) / (1 + t) = 1 - 2 e_1' (L/z + R)^-1 e_1` with `R = S + e_1 e_1'`. With
     /// `K = L^(-1/2) R L^(-1/2)` and `z = tau s / 2`, this is the state-space model
@@ -79,8 +80,8 @@ impl Pade {
     /// Returns an entry of `R^-1`, which is 1, 0 or -1.
     ///
     /// `R x = b` has the rows `x_1 + x_2 = b_1`, `x_(k+1) - x_(k-1) = b_k` and `-x_(N-1) = b_N`
-    /// (counted from 1; `x_1 = b_1` for N = 1). Solved from the last row, for `k` with the parity of
-    /// N and then upwards from the first row:
+    /// (counted from 1; `x_1 = b_1` for N = 1). Solved from the last row, for `k` with the parity
+    /// of N and then upwards from the first row:
     ///
     /// ```text
     /// x_(k-1) = -(b_k + b_(k+2) + ... + b_N)
@@ -98,8 +99,8 @@ impl Pade {
         }
     }
 
-    /// Returns whether an index, given counted from 0, has the parity of the order when it is counted
-    /// from 1.
+    /// Returns whether an index, given counted from 0, has the parity of the order when it is
+    /// counted from 1.
     fn has_parity_of_order(self, index: usize) -> bool {
         (index + 1) % 2 == self.order % 2
     }
@@ -109,8 +110,8 @@ impl Pade {
     ///
     /// The approximant is `theta_N(-z) / theta_N(z)` with the reverse Bessel polynomials
     /// `theta_n = (2n - 1) theta_(n-1) + z^2 theta_(n-2)`. The ratio `theta_n / theta_(n-1)` lies
-    /// above the real axis, so that the sum of the angles of these ratios is `arg theta_N`, continuous
-    /// without extra turns.
+    /// above the real axis, so that the sum of the angles of these ratios is `arg theta_N`,
+    /// continuous without extra turns.
     pub fn phase_error(self, angle: f64) -> f64 {
         let z = Complex::new(0.0, 0.5 * angle);
         let mut ratio = 1.0 + z;

@@ -87,8 +87,8 @@ impl Quantity {
         }
     }
 
-    /// Computes the residual of an entry with the target `delta` (G or D), whose square is summed in
-    /// the objective: a difference of ratios, dB or seconds.
+    /// Computes the residual of an entry with the target `delta` (G or D), whose square is summed
+    /// in the objective: a difference of ratios, dB or seconds.
     pub(crate) fn residual(self, delta: f64, output: f64, input: f64) -> f64 {
         match self {
             Quantity::Gain(GainObjective::Ratio) => delta - output * input,

@@ -15,8 +15,8 @@ use super::constraints::{ConstrainedSum, Constraints};
 /// Result of stage 1.
 #[derive(Clone, Debug)]
 pub(crate) struct Reached {
-    /// The constrained entries with their targets, the feasible sums nearest to the prescribed sums,
-    /// in the order of [`Constraints::entries`].
+    /// The constrained entries with their targets, the feasible sums nearest to the prescribed
+    /// sums, in the order of [`Constraints::entries`].
     pub(crate) targets: Vec<ConstrainedSum>,
     /// Components for the constrained entries at their targets.
     pub(crate) components: Components,

@@ -7,7 +7,8 @@
 //! ```
 //!
 //! `s_input` and `s_output` are the scales of the components ([`super::components`]) of the entry's
-//! input and output. The deviation of a channel from neutral is an entry too: its other scale is the
+//! input and output. The deviation of a channel from neutral is an entry too: its other scale is
+//! the
 //! *ground*, a last scale that is always 0.
 
 use super::branch_and_bound::exponential::{CombinedEntries, ProductEntry};
@@ -71,8 +72,8 @@ fn fit_entries(problem: &Problem, components: &Components) -> Vec<SquareEntry> {
     entries
 }
 
-/// Lists the regularised deviations of the channels from their neutral value, each as an entry whose
-/// other scale is the ground.
+/// Lists the regularised deviations of the channels from their neutral value, each as an entry
+/// whose other scale is the ground.
 fn departures(problem: &Problem, components: &Components) -> Vec<SquareEntry> {
     let ground = components.count();
     let delta = problem.quantity.neutral();

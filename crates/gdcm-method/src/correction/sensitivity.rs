@@ -1,15 +1,15 @@
 //! Cost of each constrained entry and each active bound at the solution, from its multiplier.
 //!
-//! With the objective `F` as a function of the channels `x` (logarithms of the gains, or delays), the
-//! solution satisfies the Karush-Kuhn-Tucker conditions
+//! With the objective `F` as a function of the channels `x` (logarithms of the gains, or delays),
+//! the solution satisfies the Karush-Kuhn-Tucker conditions
 //!
 //! ```text
 //! dF/dx_c = mu_c + sum of lambda_e over the constrained entries e of channel c
 //! ```
 //!
-//! The multiplier `lambda_e` is the derivative of the minimum with respect to the entry's constrained
-//! sum of two channels, `mu_c` that with respect to the active bound of channel `c`: at most 0 for an
-//! upper bound, at least 0 for a lower bound, and 0 without an active bound.
+//! The multiplier `lambda_e` is the derivative of the minimum with respect to the entry's
+//! constrained sum of two channels, `mu_c` that with respect to the active bound of channel `c`: at
+//! most 0 for an upper bound, at least 0 for a lower bound, and 0 without an active bound.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -328,8 +328,8 @@ impl Multipliers {
     }
 }
 
-/// Solves for the multipliers `lambda_e` of the constrained entries, given the multipliers `mu_c` of
-/// the bounds.
+/// Solves for the multipliers `lambda_e` of the constrained entries, given the multipliers `mu_c`
+/// of the bounds.
 fn entry_multipliers(minimum: &ConstrainedMinimum, bounds: &[f64]) -> Vec<f64> {
     if minimum.constrained.is_empty() {
         return Vec::new();

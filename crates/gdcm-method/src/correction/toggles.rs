@@ -1,5 +1,5 @@
-//! Change of the objective if a single entry is toggled: constrained if it is free, released if it is
-//! constrained. The problem is solved again for each entry.
+//! Change of the objective if a single entry is toggled: constrained if it is free, released if it
+//! is constrained. The problem is solved again for each entry.
 
 use gdcm_model::dataset::Pair;
 

@@ -2,9 +2,9 @@
 //! `w >= 0`, by a search over the vertices of the fit and the edges between them.
 //!
 //! With `n` unknowns `w_k`, the *constraints* are `x_i w = y_i` (the rows) and `w_k = 0`. `n`
-//! independent constraints, a *basis*, meet in a *vertex*; some vertex attains the minimum. An *edge*
-//! leaves a vertex in the direction in which all constraints of its basis but one remain satisfied;
-//! the sum is convex and piecewise linear along it.
+//! independent constraints, a *basis*, meet in a *vertex*; some vertex attains the minimum. An
+//! *edge* leaves a vertex in the direction in which all constraints of its basis but one remain
+//! satisfied; the sum is convex and piecewise linear along it.
 
 use std::cmp::Ordering;
 
@@ -180,8 +180,8 @@ impl Triplets {
     }
 }
 
-/// The constraints of a fit: `x_i w = y_i` (the rows), then `w_k = 0` (the weights), counted in this
-/// order.
+/// The constraints of a fit: `x_i w = y_i` (the rows), then `w_k = 0` (the weights), counted in
+/// this order.
 struct Fit<'a> {
     /// The rows `x_i`, row-major.
     x: Vec<f64>,
@@ -474,8 +474,8 @@ impl Vertex {
 
     /// Returns the vertex along an edge at which the summed deviations stop falling.
     ///
-    /// Each row whose deviation changes sign along the edge raises the slope of the sum by twice its
-    /// rate of change; the sum stops falling where the slope is no longer negative.
+    /// Each row whose deviation changes sign along the edge raises the slope of the sum by twice
+    /// its rate of change; the sum stops falling where the slope is no longer negative.
     fn end_of_edge(&self, fit: &Fit<'_>, edge: &Edge, deviations: &[f64]) -> Option<Self> {
         let mut crossings = Vec::new();
         for (constraint, deviation) in deviations.iter().enumerate() {

@@ -1,5 +1,5 @@
-//! Frequency weights from a measured reference's coherence (M4a): a frequency with a coherence below
-//! a threshold is left out, the others are weighted by `W` ([`coherence_weight`]).
+//! Frequency weights from a measured reference's coherence (M4a): a frequency with a coherence
+//! below a threshold is left out, the others are weighted by `W` ([`coherence_weight`]).
 
 use gdcm_model::dataset::{Dynamics, Pair, PairTable};
 use gdcm_model::response::curve_values::coherence_at;

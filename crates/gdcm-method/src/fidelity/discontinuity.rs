@@ -1,5 +1,5 @@
-//! Models beyond a discontinuity of the physics bundle: models that are further from the others than
-//! their perturbation of the trim explains (M5).
+//! Models beyond a discontinuity of the physics bundle: models that are further from the others
+//! than their perturbation of the trim explains (M5).
 
 use std::collections::BTreeMap;
 

@@ -100,7 +100,8 @@ impl BundleDistance {
         if low == high {
             return Some(0.0);
         }
-        // Row `low` follows the rows 0 to `low - 1`, which hold count - 1, count - 2, ... distances.
+        // Row `low` follows the rows 0 to `low - 1`, which hold count - 1, count - 2, ...
+        // distances.
         let row_start = low * (2 * self.count - low - 1) / 2;
         self.distances.get(row_start + high - low - 1).copied()
     }
@@ -120,8 +121,8 @@ pub struct ComparedModel<'a> {
 }
 
 impl ComparedModel<'_> {
-    /// Computes J of `a` against `b`, as the mean over frequency, with the coherence weights of this
-    /// model; over all frequencies, equally weighted, if none has a weight.
+    /// Computes J of `a` against `b`, as the mean over frequency, with the coherence weights of
+    /// this model; over all frequencies, equally weighted, if none has a weight.
     fn weighted_cost(&self, a: &PolarCurve, b: &PolarCurve, pair: Pair) -> f64 {
         let Some(weights) = self.coherence_weights else {
             return mean_cost(a, b);
@@ -139,8 +140,8 @@ impl ComparedModel<'_> {
     }
 }
 
-/// Computes the distances from model `a` to each later model, `d(a, a + 1), d(a, a + 2), ...`; for a
-/// large bundle, the calls are independent tasks.
+/// Computes the distances from model `a` to each later model, `d(a, a + 1), d(a, a + 2), ...`; for
+/// a large bundle, the calls are independent tasks.
 ///
 /// J is weighted by the reference model's coherence (M4a), and in a bundle either model can be the
 /// reference: if either has coherence, J is the mean over both directions, so that a distance does

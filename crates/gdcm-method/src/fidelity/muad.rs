@@ -109,8 +109,8 @@ fn distance_outside(envelope: [f64; 2], error: f64) -> f64 {
     (least - error).max(error - most)
 }
 
-/// Returns the ranges of `omega` \[rad/s\], start and end, in which a mismatch, model over reference,
-/// is outside an envelope: ascending and disjoint.
+/// Returns the ranges of `omega` \[rad/s\], start and end, in which a mismatch, model over
+/// reference, is outside an envelope: ascending and disjoint.
 ///
 /// The errors \[dB\] and \[deg\] are given at the ascending frequencies `omega`; the phase error is
 /// its value near zero. Between two frequencies the distance from the envelope is linear in `ln

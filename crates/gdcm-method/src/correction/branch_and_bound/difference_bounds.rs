@@ -3,8 +3,8 @@
 
 use crate::correction::interval::Interval;
 
-/// Bounds on the differences of scales: `s_to - s_from <= bound(from, to)` for every two scales, the
-/// ground included.
+/// Bounds on the differences of scales: `s_to - s_from <= bound(from, to)` for every two scales,
+/// the ground included.
 ///
 /// As the lengths of edges of a graph, the bounds are shortest paths ("difference bound matrices"):
 /// each is the tightest bound implied by the others.

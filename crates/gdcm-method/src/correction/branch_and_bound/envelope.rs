@@ -1,5 +1,5 @@
-//! Convex envelope of an exponential `g(v) = R (e^v - c)^2` over an interval `low <= v <= high`: a line
-//! on the left, where `g` is concave, the exponential itself on the right (McCormick 1976).
+//! Convex envelope of an exponential `g(v) = R (e^v - c)^2` over an interval `low <= v <= high`: a
+//! line on the left, where `g` is concave, the exponential itself on the right (McCormick 1976).
 //!
 //! ```text
 //! tangent  through (low, g(low)), touching g at a point beyond the inflection
@@ -38,9 +38,9 @@ impl Line {
         Some(Self::tangent(function, over, &start, end))
     }
 
-    /// Finds the tangent through the left end by Newton's method within a bracket. `start` and `end`
-    /// are the function at both ends of the interval. The iterate approaches from the right, where
-    /// every tangent lies below the function, so that an approximate tangent is sufficient.
+    /// Finds the tangent through the left end by Newton's method within a bracket. `start` and
+    /// `end` are the function at both ends of the interval. The iterate approaches from the right,
+    /// where every tangent lies below the function, so that an approximate tangent is sufficient.
     fn tangent(
         function: &Exponential,
         over: Interval,

@@ -5,8 +5,8 @@
 //! sum w (G - A e^v)^2 = R (e^v - c)^2 + least,     R = sum w A^2,   c = sum w G A / R
 //! ```
 //!
-//! The sum is over the entries with the delta gain `G`, the weight `w` and the product `A e^v` of the
-//! two channel gains. `v` is the difference of the scales of the input and the output.
+//! The sum is over the entries with the delta gain `G`, the weight `w` and the product `A e^v` of
+//! the two channel gains. `v` is the difference of the scales of the input and the output.
 
 use super::derivatives::{Derivatives, Range};
 use super::rounded::Rounded;

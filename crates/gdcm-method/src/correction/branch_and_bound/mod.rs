@@ -2,8 +2,9 @@
 //! proof.
 //!
 //! Constraining `k_o k_i` fixes the logarithms of the gains in a connected component of channels up
-//! to a common offset, the *scale* `s_i` of component `i` (M8, proof). With the ground, a last scale
-//! that is always 0, the objective is a sum of functions, each of a single difference of scales:
+//! to a common offset, the *scale* `s_i` of component `i` (M8, proof). With the ground, a last
+//! scale that is always 0, the objective is a sum of functions, each of a single difference of
+//! scales:
 //!
 //! ```text
 //! F(s) = constant + sum over terms f(u),   u = s_j - s_i,   i < j

@@ -161,8 +161,8 @@ impl<'a> NodeExclusion<'a> {
         quadratic_bound(at, &reach, WITHIN, |scale| pressures[scale] > 0.0)
     }
 
-    /// Returns the magnitude of the slope that certainly presses the scale against its active bound;
-    /// 0 without an active bound or a certain sign.
+    /// Returns the magnitude of the slope that certainly presses the scale against its active
+    /// bound; 0 without an active bound or a certain sign.
     fn pressure(&self, minimum: &[f64], at: &Expansion, scale: usize) -> f64 {
         let slope = at.gradient[scale];
         let is_stopped = if slope > 0.0 {

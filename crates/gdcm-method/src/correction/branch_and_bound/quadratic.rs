@@ -5,8 +5,8 @@
 //! sum w (u_e - u)^2 = W (u - c)^2 + sum w (u_e - c)^2,     W = sum w,   c = sum w u_e / W
 //! ```
 //!
-//! The sum is over the entries with the weight `w` and the *target difference* `u_e`, the difference
-//! of scales at which the entry meets its delta.
+//! The sum is over the entries with the weight `w` and the *target difference* `u_e`, the
+//! difference of scales at which the entry meets its delta.
 
 use super::rounded::Rounded;
 use super::term::{Function, Term, TermSum};

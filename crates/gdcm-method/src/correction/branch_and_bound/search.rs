@@ -235,8 +235,8 @@ impl<'a> Search<'a> {
         self.closed = self.closed.min(bound);
     }
 
-    /// Line 5: returns the largest lower bound found by Newton's method on the underestimator. Moves
-    /// `start` to the last point, near the minimum of the underestimator.
+    /// Line 5: returns the largest lower bound found by Newton's method on the underestimator.
+    /// Moves `start` to the last point, near the minimum of the underestimator.
     ///
     /// `goal` is the bound above which the node need not be branched.
     fn lower_bound(
@@ -271,8 +271,8 @@ impl<'a> Search<'a> {
         best
     }
 
-    /// Line 6: minimises the objective from `start` over the whole box, and stores the minimum if it
-    /// is new.
+    /// Line 6: minimises the objective from `start` over the whole box, and stores the minimum if
+    /// it is new.
     fn descend(&mut self, start: &[f64]) {
         let mut scales = start.to_vec();
         self.newton.minimise(

@@ -36,7 +36,7 @@ use super::job_pool::{JobPool, LaneClass};
 use super::job_queue::JobQueue;
 use super::threads::ReplySender;
 use crate::executor::Pool;
-use crate::gui::state::results::Background;
+use crate::gui::state::background::Background;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::views::need::Need;
@@ -222,7 +222,7 @@ fn add_long_kinds(kinds: &mut JobKinds<'_>, engines: &Engines) {
         |app| uncertainty_job(&app.state).into_iter().collect(),
         |app, job, uncertainty| app.state.results.uncertainty = Some((job, uncertainty)),
     )
-    .with_report(|queue, background| background.bars = queue.progress());
+    .with_report(|queue, background| background.error_bars = queue.progress());
     kinds.add(LaneClass::Long, engines.sharing(), bars);
     let identifications = JobKind::new(
         |app| app.state.records.by_urgency(app.state.condition().id()),

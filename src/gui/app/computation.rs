@@ -16,7 +16,7 @@ use super::analysis_job::{AnalysisJob, Proof};
 use super::background_jobs::BackgroundJobs;
 use super::report_job::ReportJob;
 use super::threads::{Fault, Reply, ReplySender};
-use crate::gui::state::notices::Bar;
+use crate::gui::state::notices::MessageBar;
 use crate::gui::views::need::Need;
 
 /// Requested and received results of the computation.
@@ -95,8 +95,8 @@ impl GdcmApp {
     pub(super) fn compute_again(&mut self) {
         self.work.requested = None;
         self.state
-            .bars
-            .retain(|bar| !matches!(bar, Bar::Fault { .. }));
+            .message_bars
+            .retain(|bar| !matches!(bar, MessageBar::Fault { .. }));
         self.work.jobs.resume();
     }
 
@@ -173,9 +173,9 @@ impl GdcmApp {
             fault.words(),
         );
         self.state
-            .bars
-            .retain(|bar| !matches!(bar, Bar::Fault { .. }));
-        self.state.bars.push(Bar::Fault { sentence });
+            .message_bars
+            .retain(|bar| !matches!(bar, MessageBar::Fault { .. }));
+        self.state.message_bars.push(MessageBar::Fault { sentence });
     }
 }
 

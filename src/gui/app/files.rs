@@ -21,7 +21,7 @@ use crate::gui::commands::command::Command;
 use crate::gui::commands::file::FileCommand;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::state::forms::{FormKind, RequirementTable};
-use crate::gui::state::notices::Bar;
+use crate::gui::state::notices::MessageBar;
 use crate::gui::state::preferences::Preferences;
 use crate::gui::state::window_state::{RecentFile, State};
 
@@ -61,8 +61,10 @@ impl GdcmApp {
         state.recent = std::mem::take(&mut self.state.recent);
         Preferences::from_display(&self.state.display).apply(&mut state.display);
         // Keep the offers to restore lost decisions; the other bars concern the previous study.
-        state.bars = std::mem::take(&mut self.state.bars);
-        state.bars.retain(|bar| matches!(bar, Bar::Recovery { .. }));
+        state.message_bars = std::mem::take(&mut self.state.message_bars);
+        state
+            .message_bars
+            .retain(|bar| matches!(bar, MessageBar::Recovery { .. }));
         self.state = state;
         self.readers.record_reader.give_up();
         // Request numbers continue, so that late replies about the old dataset can be recognised.

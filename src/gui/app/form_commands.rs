@@ -23,7 +23,7 @@ impl GdcmApp {
             }
             FormCommand::Refuse(why) => self.notify_error(why),
             FormCommand::DismissNotice => self.state.notice = None,
-            FormCommand::CloseBar(bar) => self.state.bars.retain(|shown| *shown != bar),
+            FormCommand::CloseBar(bar) => self.state.message_bars.retain(|shown| *shown != bar),
             FormCommand::Overwrite => self.overwrite(),
             FormCommand::SaveAndGoOn => self.save_and_go_on(),
             FormCommand::DiscardAndGoOn => {

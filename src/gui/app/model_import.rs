@@ -63,11 +63,11 @@ impl ReadingReport {
 }
 
 impl FolderProgress for ReadingReport {
-    fn reading(&self, number: usize, of: usize, name: &str) {
+    fn reading(&self, number: usize, total: usize, name: &str) {
         self.reported.set(0);
         let reading = Reading {
             number,
-            of,
+            total,
             name: name.to_owned(),
             taken: 0,
         };

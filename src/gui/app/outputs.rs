@@ -100,7 +100,7 @@ impl GdcmApp {
     /// bars computed so far. Reports an error if it is incomplete.
     fn complete_results(&mut self) -> Option<Arc<Analysis>> {
         let analysis = self.unless_error(self.analysis_to_write("export"))?;
-        match self.state.analysis_with_bars() {
+        match self.state.analysis_with_error_bars() {
             Some(with_bars) if with_bars.study == analysis.study => Some(Arc::new(with_bars)),
             _ => Some(analysis),
         }
@@ -110,7 +110,7 @@ impl GdcmApp {
     fn absent_bars(&self, are_present: bool) -> &'static str {
         let background = &self.state.results.background;
         // If the error bars are still being computed, only other work was stopped.
-        let were_stopped = background.stopped && background.bars.is_none();
+        let were_stopped = background.stopped && background.error_bars.is_none();
         if are_present {
             ""
         } else if were_stopped {

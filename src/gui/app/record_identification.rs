@@ -27,7 +27,7 @@ impl GdcmApp {
     /// Requests identification in these conditions; replaces a waiting job for the same condition.
     pub(super) fn identify_conditions(&mut self, conditions: &[ConditionId]) {
         if self.state.records.running.is_empty() {
-            self.state.records.asked = 0;
+            self.state.records.requested_count = 0;
         }
         let mut refusal = None;
         for id in conditions {
@@ -54,7 +54,7 @@ impl GdcmApp {
     /// Stops running and waiting identification jobs; they can be started again.
     pub(super) fn stop_identifying(&mut self) {
         let unfinished = std::mem::take(&mut self.state.records.running).len();
-        let requested = self.state.records.asked;
+        let requested = self.state.records.requested_count;
         if requested > 1 && unfinished > 0 {
             self.done(format!(
                 "stopped identifying after {} of {requested} conditions",
@@ -73,7 +73,7 @@ impl GdcmApp {
             return;
         }
         self.state.records.running.retain(|other| *other != job);
-        let requested = self.state.records.asked;
+        let requested = self.state.records.requested_count;
         if self.state.records.running.is_empty() && requested > 1 {
             self.done(format!(
                 "finished: models of {requested} conditions identified"

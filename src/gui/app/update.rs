@@ -43,7 +43,7 @@ impl GdcmApp {
         Pointed {
             model: display.selection.hovered.take(),
             condition: display.selection.hovered_condition.take(),
-            description: display.selection.told.take(),
+            description: display.selection.pointed_words.take(),
             cursor: display.curves.cursor.take(),
         }
     }
@@ -53,7 +53,7 @@ impl GdcmApp {
         let selection = &self.state.display.selection;
         selection.hovered == before.model
             && selection.hovered_condition == before.condition
-            && selection.told == before.description
+            && selection.pointed_words == before.description
             && self.state.display.curves.cursor == before.cursor
     }
 

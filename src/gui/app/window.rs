@@ -190,11 +190,11 @@ impl GdcmApp {
         state.display.layout.is_wide = ui.ctx().content_rect().width() >= WIDE;
         let top = Panel::top("menu bar").frame(bar).exact_size(36.0);
         top.show(ui, |ui| bars::menu_bar_ui(ui, state, palette, commands));
-        if !state.bars.is_empty() {
+        if !state.message_bars.is_empty() {
             let frame = bar.inner_margin(Margin::symmetric(12, 4));
-            Panel::top("bars")
-                .frame(frame)
-                .show(ui, |ui| bars::bars_ui(ui, &state.bars, palette, commands));
+            Panel::top("bars").frame(frame).show(ui, |ui| {
+                bars::bars_ui(ui, &state.message_bars, palette, commands)
+            });
         }
         let status = Panel::bottom("status bar").frame(bar).exact_size(24.0);
         status.show(ui, |ui| {
@@ -309,7 +309,7 @@ fn steady_ui(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
 
 /// Draws the open sheet, if any, over the views.
 fn sheets_ui(ui: &Ui, centre: Rect, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    let sheet = if state.display.selection.asked.is_some() {
+    let sheet = if state.display.selection.explained.is_some() {
         Sheet::Derivation
     } else if let Some(sheet) = state.display.layout.sheet {
         sheet

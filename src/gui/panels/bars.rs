@@ -16,7 +16,7 @@ use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::commands::output::OutputCommand;
 use crate::gui::commands::study::StudyCommand;
 use crate::gui::state::forms::FormKind;
-use crate::gui::state::notices::Bar;
+use crate::gui::state::notices::MessageBar;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::{
     Asks, button_ui, elided, in_line_ui, named, painted_text, text_width,
@@ -220,7 +220,7 @@ fn title_ui(ui: &mut Ui, bar: Rect, room: Rect, state: &State, palette: &Palette
 }
 
 /// Draws every message bar, oldest first.
-pub fn bars_ui(ui: &mut Ui, bars: &[Bar], palette: &Palette, commands: &mut Vec<Command>) {
+pub fn bars_ui(ui: &mut Ui, bars: &[MessageBar], palette: &Palette, commands: &mut Vec<Command>) {
     for bar in bars {
         let frame = Frame::new()
             .fill(palette.raised)
@@ -231,28 +231,28 @@ pub fn bars_ui(ui: &mut Ui, bars: &[Bar], palette: &Palette, commands: &mut Vec<
     }
 }
 
-fn bar_ui(ui: &mut Ui, bar: &Bar, palette: &Palette, commands: &mut Vec<Command>) {
+fn bar_ui(ui: &mut Ui, bar: &MessageBar, palette: &Palette, commands: &mut Vec<Command>) {
     row_ui(ui, &bar_sentence(bar), bar_buttons(bar), palette, commands);
-    if let Bar::Differences { sentences, .. } = bar {
+    if let MessageBar::Differences { sentences, .. } = bar {
         list_ui(ui, sentences);
     }
 }
 
-fn bar_sentence(bar: &Bar) -> String {
+fn bar_sentence(bar: &MessageBar) -> String {
     match bar {
-        Bar::Fault { sentence } | Bar::Recovery { sentence, .. } => sentence.clone(),
-        Bar::Changed { name } => format!("{name} has changed on disk."),
-        Bar::Differences { name, sentences } => {
+        MessageBar::Fault { sentence } | MessageBar::Recovery { sentence, .. } => sentence.clone(),
+        MessageBar::Changed { name } => format!("{name} has changed on disk."),
+        MessageBar::Differences { name, sentences } => {
             let number = counted(sentences.len(), "difference");
             format!("{name} was reloaded: {number}.")
         }
     }
 }
 
-fn bar_buttons(bar: &Bar) -> Vec<(&'static str, Command)> {
+fn bar_buttons(bar: &MessageBar) -> Vec<(&'static str, Command)> {
     let close = Command::Form(FormCommand::CloseBar(bar.clone()));
     match bar {
-        Bar::Fault { sentence } => vec![
+        MessageBar::Fault { sentence } => vec![
             (
                 "Compute again",
                 Command::Computing(ComputingCommand::Compute),
@@ -263,7 +263,7 @@ fn bar_buttons(bar: &Bar) -> Vec<(&'static str, Command)> {
             ),
             ("Close message", close),
         ],
-        Bar::Recovery { offer, .. } => vec![
+        MessageBar::Recovery { offer, .. } => vec![
             (
                 "Restore",
                 Command::File(FileCommand::RestoreRecovery(*offer)),
@@ -274,14 +274,14 @@ fn bar_buttons(bar: &Bar) -> Vec<(&'static str, Command)> {
             ),
             ("Later", close),
         ],
-        Bar::Changed { .. } => vec![
+        MessageBar::Changed { .. } => vec![
             ("Reload", Command::File(FileCommand::Reload)),
             (
                 "Keep the open dataset",
                 Command::File(FileCommand::KeepOpen),
             ),
         ],
-        Bar::Differences { .. } => vec![("Close list", close)],
+        MessageBar::Differences { .. } => vec![("Close list", close)],
     }
 }
 

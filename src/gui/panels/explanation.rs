@@ -31,9 +31,8 @@ pub fn sheet_ui(
     palette: &Palette,
     add: impl FnOnce(&mut Ui),
 ) -> bool {
-    let (is_right, width) = sheet.place();
-    let width = width.min(centre.width());
-    let place = if is_right {
+    let width = sheet.width().min(centre.width());
+    let place = if sheet.is_on_right() {
         centre.with_min_x(centre.right() - width)
     } else {
         centre.with_max_x(centre.left() + width)
@@ -90,11 +89,11 @@ pub fn derivation_sheet_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let Some(asked) = &state.display.selection.asked else {
+    let Some(asked) = &state.display.selection.explained else {
         return;
     };
     let found = state
-        .analysis_with_bars()
+        .analysis_with_error_bars()
         .and_then(|analysis| derivation(&analysis, asked));
     match &found {
         Some(found) => {

@@ -21,8 +21,8 @@ use super::response_card::{card_grid_ui, is_not_reduced};
 use super::table_menu::table_menu_ui;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::selection::SelectionCommand;
-use crate::gui::state::results::Sureness;
 use crate::gui::state::tables::TableKind;
+use crate::gui::state::value_uncertainty::ValueUncertainty;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::check_ui;
 use crate::gui::widgets::controls::{entries_ui, named_switch, painted_text};
@@ -204,7 +204,7 @@ struct Cell<'a> {
     in_conflict: bool,
     shown: Option<&'a ConditionAnalysis>,
     state: &'a State,
-    sureness: Sureness<'a>,
+    value_uncertainty: ValueUncertainty<'a>,
 }
 
 impl<'a> Cell<'a> {
@@ -218,7 +218,7 @@ impl<'a> Cell<'a> {
             in_conflict,
             shown: state.shown(),
             state,
-            sureness: state.sureness(),
+            value_uncertainty: state.value_uncertainty(),
         }
     }
 
@@ -348,8 +348,10 @@ impl<'a> Cell<'a> {
             return;
         };
         let change = shown.cost[self.pair];
-        let gain_half = self.sureness.half(Scalar::Gain(self.pair));
-        let delay_half = self.sureness.half(shown.wanted_delay(self.pair));
+        let gain_half = self.value_uncertainty.half_width(Scalar::Gain(self.pair));
+        let delay_half = self
+            .value_uncertainty
+            .half_width(shown.wanted_delay(self.pair));
         let middle = rect.top() + 0.5 * rect.height();
         let upper = CellValue {
             half: rect.with_max_y(middle),

@@ -202,8 +202,8 @@ impl Side<'_> {
             color: self.palette.text,
             half: self
                 .state
-                .sureness()
-                .half(scalar)
+                .value_uncertainty()
+                .half_width(scalar)
                 .map(|half| format!("±{:.0}", 100.0 * half)),
             name: format!("Gain of {name}"),
             exact: gains[index].to_string(),
@@ -223,7 +223,7 @@ impl Side<'_> {
         let is_delayed = delay_ms != 0.0;
         let scalar = Scalar::ChannelDelay(channel);
         let half = if is_delayed {
-            self.state.sureness().half(scalar)
+            self.state.value_uncertainty().half_width(scalar)
         } else {
             None
         };
@@ -287,7 +287,7 @@ impl Side<'_> {
             format!("{name}: {text} {}", half.unwrap_or_default()).trim_end(),
         );
         let mut hint = exact;
-        if let Some((bar, level)) = self.state.sureness().bar(scalar) {
+        if let Some((bar, level)) = self.state.value_uncertainty().error_bar(scalar) {
             hint.push_str(&format!("\n{}", bar_words(bar, scalar, level)));
         }
         hint.push_str(&format!("\nclick: {QUESTION}"));

@@ -9,9 +9,9 @@ use super::bars::counted;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::computing::ComputingCommand;
 use crate::gui::commands::form::FormCommand;
+use crate::gui::state::background::{Background, error_bar_progress};
 use crate::gui::state::notices::{Notice, NoticeKind};
 use crate::gui::state::records::RecordsState;
-use crate::gui::state::results::{Background, bar_words};
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::button_ui;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
@@ -22,7 +22,7 @@ pub fn status_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
     ui.horizontal_centered(|ui| {
         computation_ui(ui, state, palette, commands);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            if let Some(pointed) = &state.display.selection.told {
+            if let Some(pointed) = &state.display.selection.pointed_words {
                 let text = RichText::new(pointed).size(SMALL_SIZE);
                 ui.add(Label::new(text).truncate());
             } else if let Some(notice) = &state.notice {
@@ -137,7 +137,7 @@ fn words_beside(state: &State, now: f64) -> Option<String> {
     if background.stopped {
         return Some("background work stopped".to_owned());
     }
-    if state.results.is_background_told(now) {
+    if state.results.shows_background(now) {
         return Some(background_words(background, &state.records));
     }
     None
@@ -172,8 +172,8 @@ fn background_words(background: &Background, records: &RecordsState) -> String {
         Some((done, total)) => return format!("curves, {} % …", percent(done, total)),
         None => {}
     }
-    if let Some(progress) = background.bars {
-        return bar_words(progress);
+    if let Some(progress) = background.error_bars {
+        return error_bar_progress(progress);
     }
     if let Some((done, total)) = background.time_histories {
         return format!("responses to flight records, {} % …", percent(done, total));

@@ -3,7 +3,7 @@
 
 /// Message about the program or its files, shown until it is closed.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Bar {
+pub enum MessageBar {
     /// A computation panicked.
     Fault {
         /// Names the interrupted work, states that the decisions are kept, and gives the details to

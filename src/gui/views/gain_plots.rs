@@ -18,7 +18,7 @@ use crate::gui::plot::questions::NamedFigure;
 use crate::gui::plot::{FigureEvent, FigureScene, FigureWords};
 use crate::gui::state::pair_set::PairSet;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::choices::toggle_ui;
+use crate::gui::widgets::choices::Toggle;
 
 /// Minimum plot size \[pt\].
 pub const LEAST_PLOT: Vec2 = vec2(122.0, 120.0);
@@ -225,7 +225,12 @@ pub fn bars_switch_ui(ui: &mut Ui, state: &State, name: &str, commands: &mut Vec
         physics model. Thin: with the unknown trim of the flight. Bands: confidence of the \
         schedule, and prediction for another condition"
     );
-    if toggle_ui(ui, ("bars", name), shown, &hint) {
+    let toggle = Toggle {
+        text: "bars",
+        name,
+        hint: &hint,
+    };
+    if toggle.ui(ui, shown) {
         commands.push(DisplayCommand::ShowBars(!shown).into());
     }
 }

@@ -35,7 +35,7 @@ use crate::gui::state::forms::RequirementTable;
 use crate::gui::state::requirements_page::RequirementsPage;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::choices::{check_ui, page_tab_ui};
+use crate::gui::widgets::choices::{PageWords, check_ui, page_tab_ui};
 use crate::gui::widgets::controls::{button_ui, restore_panel_size};
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::tables::{TableClick, TableLook, table_grid_ui};
@@ -75,7 +75,12 @@ pub fn requirements_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Com
         ),
     ];
     for (page, name, purpose) in pages {
-        let (_, is_clicked) = page_tab_ui(ui, page == shown, name, (name, purpose));
+        let words = PageWords {
+            name,
+            short_name: name,
+            purpose,
+        };
+        let (_, is_clicked) = page_tab_ui(ui, page == shown, words);
         if is_clicked {
             commands.push(DisplayCommand::ShowRequirements(page).into());
         }

@@ -290,7 +290,7 @@ fn a_long_computation_can_be_stopped_and_taken_up_again() {
 #[test]
 fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
     fn counts(window: &Window) -> Option<(usize, usize)> {
-        state(window).results.background.bars
+        state(window).results.background.error_bars
     }
 
     fn bundles(of: &Condition) -> usize {

@@ -35,7 +35,7 @@ pub(super) fn outcome_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command
         )));
         remedies_ui(ui, vec![study_band_remedy()], commands);
     }
-    if let Some(job) = state.records.running(state.condition().id()) {
+    if let Some(job) = state.records.job_of(state.condition().id()) {
         progress_ui(ui, page, job);
         return;
     }

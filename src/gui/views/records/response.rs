@@ -59,7 +59,7 @@ pub(super) fn response_ui(ui: &mut Ui, page: Page<'_>) {
 fn drawn_response(ui: &Ui, page: Page<'_>) -> Option<Arc<DrawnResponse>> {
     let Page { state, records, .. } = page;
     let pair = state.display.selection.pair;
-    if let Some(job) = state.records.running(state.condition().id())
+    if let Some(job) = state.records.job_of(state.condition().id())
         && let Some(model) = job.news().first_model
     {
         let band = job.request.options.band;

@@ -59,7 +59,7 @@ impl GdcmApp {
         self.state.forms.existing.clear();
         if let Some(command) = self.dialogs.overwriting.take() {
             self.dialogs.existing = Existing::Replace;
-            self.carry_out_one(command);
+            self.carry_out_command(command);
             self.dialogs.existing = Existing::Keep;
         }
     }

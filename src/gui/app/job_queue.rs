@@ -1,6 +1,11 @@
 //! Queue of a kind of job: a lane in the job pool, whose jobs run in sequence. Jobs that compare
 //! equal are treated as the same job; this is how running, finished and stopped jobs are
 //! recognised.
+//!
+//! The window calls [`JobQueue::want`] after each frame with the jobs that it needs now. A free
+//! thread of the pool takes the first of them that is unfinished ([`Lane::begin`]), runs it and
+//! delivers its ending ([`Lane::run`]). A running job that is no longer
+//! wanted is cancelled, unless it serves a wanted one ([`Job::serves`]).
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -9,8 +14,8 @@ use std::time::{Duration, Instant};
 use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_study::jobs::job::Job;
 
+use super::faults::{Fault, caught};
 use super::job_pool::{JobPool, Lane, LaneClass, Waker};
-use super::threads::{Fault, caught};
 
 /// A job's output, or the fault that ended it; a cancelled job has no ending.
 pub(super) type Ending<J> = Result<<J as Job>::Output, Fault>;
@@ -22,9 +27,13 @@ const CANCEL_GRACE: Duration = Duration::from_millis(60);
 #[derive(Debug)]
 struct Run {
     started: Instant,
+    /// Whether the job is no longer requested.
     outdated: AtomicBool,
+    /// Whether the job was stopped.
     stopped: AtomicBool,
+    /// Completed steps.
     done: AtomicUsize,
+    /// All steps; 0 until the job reports them.
     total: AtomicUsize,
 }
 
@@ -68,6 +77,7 @@ struct Running<J> {
     run: Arc<Run>,
 }
 
+/// Requested jobs and their states.
 struct Orders<J> {
     /// Requested jobs, the most urgent first.
     wanted: Vec<J>,
@@ -78,6 +88,7 @@ struct Orders<J> {
     done: Vec<J>,
     /// Requested jobs that were stopped, by hand or by a fault.
     stopped: Vec<J>,
+    /// Whether the queue was dropped: no further job starts.
     closed: bool,
 }
 

@@ -1,4 +1,5 @@
-//! Threads that read files; a newer reading may replace an older one.
+//! Readings of files in threads: a newer reading may replace an older one, whose result is then
+//! ignored, and the engineer may stop it.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

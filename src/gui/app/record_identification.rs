@@ -11,6 +11,7 @@ use gdcm_sysid::identification::{Identification, IdentificationError};
 
 use super::GdcmApp;
 use crate::gui::state::records_page::RecordsPage;
+use crate::gui::widgets::counts::counted;
 
 impl GdcmApp {
     /// Returns the identification band \[rad/s\] of a condition: its own band if one is set,
@@ -56,7 +57,7 @@ impl GdcmApp {
         let unfinished = std::mem::take(&mut self.state.records.running).len();
         let requested = self.state.records.requested_count;
         if requested > 1 && unfinished > 0 {
-            self.done(format!(
+            self.notify_done(format!(
                 "stopped identifying after {} of {requested} conditions",
                 requested.saturating_sub(unfinished)
             ));
@@ -75,7 +76,7 @@ impl GdcmApp {
         self.state.records.running.retain(|other| *other != job);
         let requested = self.state.records.requested_count;
         if self.state.records.running.is_empty() && requested > 1 {
-            self.done(format!(
+            self.notify_done(format!(
                 "finished: models of {requested} conditions identified"
             ));
             self.state.records.page = RecordsPage::Conditions;
@@ -100,13 +101,14 @@ impl GdcmApp {
         let before = self.state.study.clone();
         self.decide(&Edit::TakeModels(adopted));
         if self.state.study != before {
+            let models = counted(models, "model");
             let conditions = if names.len() == 1 {
                 "condition"
             } else {
                 "conditions"
             };
             let names = names.join(", ");
-            self.done(format!("adopted {models} models in {conditions} {names}"));
+            self.notify_done(format!("adopted {models} in {conditions} {names}"));
         }
     }
 

@@ -14,8 +14,7 @@ use gdcm_model::message_text::{sanitized, sanitized_path};
 
 use super::GdcmApp;
 use super::autosave::{Autosave, Kept, Remains, Task, Unsaved};
-use super::document_files::ReadFor;
-use super::files::study_name;
+use super::document_files::{ReadFor, study_name};
 use crate::gui::state::notices::MessageBar;
 
 /// Maximum time that a closing window waits for the disk to store the latest decisions.
@@ -99,7 +98,7 @@ impl GdcmApp {
         self.close_offer(offer);
         self.look_for_recent();
         self.study_changed();
-        self.done(message);
+        self.notify_done(message);
     }
 
     /// Discards lost decisions and their recovery file.

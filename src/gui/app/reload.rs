@@ -7,7 +7,7 @@ use gdcm_io::{LoadedDataset, Opened};
 use gdcm_words::decisions::dataset_difference_text;
 
 use super::GdcmApp;
-use super::disk_watch::Seen;
+use super::disk_watch::ChangedFile;
 use super::document_files::ReadFor;
 use crate::gui::state::notices::MessageBar;
 
@@ -17,12 +17,12 @@ impl GdcmApp {
     }
 
     /// Offers to reload the dataset if the content of its file has changed.
-    pub(super) fn file_seen(&mut self, seen: &Seen) {
-        if self.files.loaded.path() != Some(&seen.path) {
+    pub(super) fn file_changed(&mut self, changed: &ChangedFile) {
+        if self.files.loaded.path() != Some(&changed.path) {
             return;
         }
         self.keep_open();
-        if seen.sha256 != self.files.loaded.sha256 {
+        if changed.sha256 != self.files.loaded.sha256 {
             self.state.message_bars.push(MessageBar::Changed {
                 name: self.files.loaded.file_name(),
             });
@@ -67,7 +67,7 @@ impl GdcmApp {
         self.study_changed();
         let sentences: Vec<String> = differences.iter().map(dataset_difference_text).collect();
         if sentences.is_empty() {
-            self.done(format!("reloaded {name}: every decision still applies"));
+            self.notify_done(format!("reloaded {name}: every decision still applies"));
         } else {
             self.state
                 .message_bars

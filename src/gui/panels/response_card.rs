@@ -9,7 +9,7 @@ use gdcm_model::units::s_to_ms;
 use gdcm_study::ConditionAnalysis;
 
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::painted_text;
+use crate::gui::widgets::controls::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
 
 /// Card height \[pt\].
@@ -112,7 +112,7 @@ pub fn card_ui(ui: &mut Ui, state: &State, palette: &Palette) {
     // Distances of the text ends from the right edge; negative, because the text is aligned to the
     // right.
     let ends = [inner.width() * 0.54, inner.width() * 0.78, inner.width()]
-        .map(|end| end - inner.width() - 0.01);
+        .map(|end| end - inner.width() + AT_RIGHT_END);
     let level = state
         .value_uncertainty()
         .level()

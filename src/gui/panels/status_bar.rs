@@ -5,7 +5,6 @@ use egui::{Align, Button, Color32, Label, Layout, RichText, Ui};
 use gdcm_model::dataset::BundleKind;
 use gdcm_words::assessment::not_assessed_text;
 
-use super::bars::counted;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::computing::ComputingCommand;
 use crate::gui::commands::form::FormCommand;
@@ -14,6 +13,7 @@ use crate::gui::state::notices::{Notice, NoticeKind};
 use crate::gui::state::records::RecordsState;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::button_ui;
+use crate::gui::widgets::counts::counted;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 /// Draws the computation status on the left. On the right: the description of the element under the
@@ -234,6 +234,6 @@ mod tests {
         };
         assert!(background.is_busy());
         let words = background_words(&background, &RecordsState::default());
-        assert_eq!(words, "couplings without each condition, 30 % …");
+        assert_eq!(words, "couplings with each condition left out, 30 % …");
     }
 }

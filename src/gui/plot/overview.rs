@@ -18,7 +18,8 @@ use super::drawn_curves::{BodeCurve, CurveId, PANES, Pane};
 use super::panel_text::{caption_font, message_ui};
 use super::picking::{Hit, nearest};
 use super::sketch::{Sketch, range_text};
-use crate::gui::widgets::controls::{elided, row_text};
+use crate::gui::widgets::controls::row_text;
+use crate::gui::widgets::elision::elided;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 /// Width of the row names and height of the column names \[pt\].

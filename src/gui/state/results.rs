@@ -36,7 +36,7 @@ const BACKGROUND_AFTER_S: f64 = 0.5;
 #[derive(Clone, Debug)]
 pub struct FirstResult {
     /// Number of the request that produced the result.
-    pub generation: u64,
+    pub request: u64,
     /// Dataset to which the result belongs.
     pub dataset: Arc<Dataset>,
     pub condition: ConditionId,
@@ -129,7 +129,7 @@ impl Results {
     /// of all conditions.
     pub fn first_is_ahead(&self) -> bool {
         match &self.first {
-            Some(first) => self.analysis.is_some() && first.generation > self.received,
+            Some(first) => self.analysis.is_some() && first.request > self.received,
             None => false,
         }
     }

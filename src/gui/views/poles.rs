@@ -224,7 +224,9 @@ impl FigureWords for PoleWords<'_> {
 
 /// Draws the mode table; a click isolates the first model whose pole is an outlier of the mode.
 fn modes_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
-    let CachedModes { table, outliers, .. } = &state.display.poles.modes;
+    let CachedModes {
+        table, outliers, ..
+    } = &state.display.poles.modes;
     let look = TableLook {
         color: &|row, _| match outliers.get(row) {
             Some(Some(_)) => Some(palette.warning),

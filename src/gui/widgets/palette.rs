@@ -201,11 +201,13 @@ impl Palette {
     /// Returns the colour of a value of J in a heat map; constant beyond the last of
     /// [`HEAT_COSTS`].
     pub fn heat_of(&self, cost: f64) -> Color32 {
-        let cost = (cost as f32).clamp(HEAT_COSTS[0], HEAT_COSTS[4]);
+        const LAST: usize = HEAT_COSTS.len() - 1;
+        let cost = (cost as f32).clamp(HEAT_COSTS[0], HEAT_COSTS[LAST]);
+        // Index of the upper end of the interval that contains the cost, from 1 to `LAST`.
         let above = HEAT_COSTS
             .iter()
             .position(|end| cost < *end)
-            .unwrap_or(4)
+            .unwrap_or(LAST)
             .max(1);
         let part = (cost - HEAT_COSTS[above - 1]) / (HEAT_COSTS[above] - HEAT_COSTS[above - 1]);
         self.heat[above - 1].lerp_to_gamma(self.heat[above], part)

@@ -9,7 +9,8 @@ use super::page::Page;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::widgets::choices::DropDown;
-use crate::gui::widgets::controls::{Asks, elided_among, named, named_switch};
+use crate::gui::widgets::controls::{Asks, named, named_switch};
+use crate::gui::widgets::elision::elided_among;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 
 /// Width of all columns except the names \[pt\].

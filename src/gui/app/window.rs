@@ -198,7 +198,9 @@ impl eframe::App for GdcmApp {
     }
 
     fn clear_color(&self, visuals: &Visuals) -> [f32; 4] {
-        Palette::of(visuals).background.to_normalized_gamma_f32()
+        Palette::from_visuals(visuals)
+            .background
+            .to_normalized_gamma_f32()
     }
 
     fn logic(&mut self, _: &Context, _frame: &mut eframe::Frame) {
@@ -210,7 +212,8 @@ impl eframe::App for GdcmApp {
 
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
-        let palette = Palette::of(ui.visuals()).with_looks(self.state.display.curves.looks);
+        let palette =
+            Palette::from_visuals(ui.visuals()).with_looks(self.state.display.curves.looks);
         self.move_focus();
         let mut commands = keyboard::pressed(&ctx, &self.state);
         self.take_dropped_files(&mut commands);

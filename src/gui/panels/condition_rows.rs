@@ -294,7 +294,7 @@ fn paint_cost(ui: &Ui, cell: Rect, cost: Cost, palette: &Palette) {
     ];
     for (half, cost) in halves {
         ui.painter()
-            .rect_filled(half, CornerRadius::same(2), palette.heat_of(cost));
+            .rect_filled(half, CornerRadius::same(2), palette.heat_color(cost));
     }
 }
 

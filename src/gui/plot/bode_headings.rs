@@ -127,7 +127,7 @@ impl BodeHeadings<'_> {
                 labels.push(EndLabel {
                     y: height_beside(frame, at.y),
                     text: role.name().to_owned(),
-                    color: palette.name_of(color),
+                    color: palette.label_color(color),
                 });
             }
         }

@@ -65,7 +65,7 @@ impl<'a> PaneLines<'a> {
             labels.push(EndLabel {
                 y: end.y,
                 text: line.label.clone(),
-                color: palette.name_of(color),
+                color: palette.label_color(color),
             });
             let note = line.note.trim_start_matches([',', ':', ' ']);
             if !note.is_empty() {

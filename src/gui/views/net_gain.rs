@@ -63,7 +63,7 @@ pub fn net_gain_header_ui(
     bars_switch_ui(ui, state, "error bars", commands);
     if let Some((variant, _)) = overlaid_analysis(state) {
         let button = ui.small_button(
-            RichText::new(format!("□ {variant} ×")).color(palette.name_of(palette.corrected)),
+            RichText::new(format!("□ {variant} ×")).color(palette.label_color(palette.corrected)),
         );
         let name = format!("Overlaid variant {variant}");
         let hint = "Hollow squares: net gains of this variant. Click: remove them";

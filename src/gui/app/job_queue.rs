@@ -16,6 +16,7 @@ use gdcm_study::jobs::job::Job;
 
 use super::faults::{Fault, caught};
 use super::job_pool::{JobPool, Lane, LaneClass, Waker};
+use crate::gui::state::background::Steps;
 
 /// A job's output, or the fault that ended it; a cancelled job has no ending.
 pub(super) type Ending<J> = Result<<J as Job>::Output, Fault>;
@@ -49,11 +50,11 @@ impl Run {
     }
 
     /// Returns completed and total steps.
-    fn steps(&self) -> (usize, usize) {
-        (
-            self.done.load(Ordering::Relaxed),
-            self.total.load(Ordering::Relaxed),
-        )
+    fn steps(&self) -> Steps {
+        Steps {
+            done: self.done.load(Ordering::Relaxed),
+            total: self.total.load(Ordering::Relaxed),
+        }
     }
 }
 
@@ -251,10 +252,10 @@ impl<J: Job> JobQueue<J> {
             orders.done.retain(|job| jobs.contains(job));
             orders.stopped.retain(|job| jobs.contains(job));
             if let Some(Running { job, run }) = &orders.running {
-                let (done, total) = run.steps();
+                let steps = run.steps();
                 let is_wanted = jobs
                     .iter()
-                    .any(|wanted| wanted == job || job.serves(wanted, done, total));
+                    .any(|wanted| wanted == job || job.serves(wanted, steps.done, steps.total));
                 run.outdated.store(!is_wanted, Ordering::Release);
             }
             orders.wanted = jobs;
@@ -286,12 +287,12 @@ impl<J: Job> JobQueue<J> {
     }
 
     /// Returns completed and total steps while a requested job is incomplete.
-    pub(super) fn progress(&self) -> Option<(usize, usize)> {
+    pub(super) fn progress(&self) -> Option<Steps> {
         let orders = self.lane.orders();
         orders.unfinished().next()?;
         let steps = match &orders.running {
             Some(running) => running.run.steps(),
-            None => (0, 0),
+            None => Steps::default(),
         };
         Some(steps)
     }

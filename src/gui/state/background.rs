@@ -4,36 +4,50 @@ use std::sync::Arc;
 
 use gdcm_method::correction::Problem;
 
+/// Progress of a job. The total is 0 until the job reports it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Steps {
+    pub done: usize,
+    pub total: usize,
+}
+
+impl Steps {
+    /// Returns the completed share as a whole percentage; 0 without a total.
+    pub fn percent(self) -> usize {
+        100 * self.done / self.total.max(1)
+    }
+}
+
 /// Background work in progress, including the analysis of the current settings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Background {
-    /// Progress of the analysis of the current settings: steps done, total.
-    pub analysis: Option<(usize, usize)>,
+    /// Progress of the analysis of the current settings.
+    pub analysis: Option<Steps>,
     /// Problems whose optimality proof is running or waiting.
     pub proofs: Vec<Arc<Problem>>,
     /// Whether the costs of constraining and releasing responses are being computed.
     pub toggles: bool,
-    /// Progress of the response curves: models done, total.
-    pub curves: Option<(usize, usize)>,
-    /// Progress of the error bars: steps done, total. Each model contributes its response, and the
+    /// Progress of the response curves, by model.
+    pub curves: Option<Steps>,
+    /// Progress of the error bars. Each model contributes its response, and the
     /// analysis with this model as the representative.
-    pub error_bars: Option<(usize, usize)>,
-    /// Progress of the responses to all records: steps done, total.
-    pub time_histories: Option<(usize, usize)>,
-    /// Progress of the couplings: steps done, total.
-    pub couplings: Option<(usize, usize)>,
+    pub error_bars: Option<Steps>,
+    /// Progress of the responses to all records.
+    pub time_histories: Option<Steps>,
+    /// Progress of the couplings.
+    pub couplings: Option<Steps>,
     /// Number of jobs that the visible views wait for.
     pub views: usize,
-    /// Progress of the report: conditions done, total.
-    pub report: Option<(usize, usize)>,
-    /// Progress of the identification: parts done, total.
-    pub identification: Option<(usize, usize)>,
+    /// Progress of the report, by condition.
+    pub report: Option<Steps>,
+    /// Progress of the identification.
+    pub identification: Option<Steps>,
     /// Whether some work was stopped, by the engineer or by a fault.
     pub stopped: bool,
 }
 
 impl Background {
-    /// Returns whether anything is in progress.
+    /// Returns whether any work other than the live analysis is in progress.
     pub fn is_busy(&self) -> bool {
         !self.proofs.is_empty()
             || self.toggles
@@ -47,12 +61,11 @@ impl Background {
     }
 }
 
-/// Describes the progress of the error bars: completed steps, total.
-pub fn error_bar_progress(progress: (usize, usize)) -> String {
-    let (done, total) = progress;
-    if total == 0 {
+/// Describes the progress of the error bars.
+pub fn error_bar_progress(steps: Steps) -> String {
+    if steps.total == 0 {
         "error bars …".to_owned()
     } else {
-        format!("error bars, {done} of {total} steps …")
+        format!("error bars, {} of {} steps …", steps.done, steps.total)
     }
 }

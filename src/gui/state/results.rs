@@ -112,7 +112,7 @@ impl Results {
     /// Returns the message that explains missing error bars.
     pub fn absence_of_error_bars(&self) -> String {
         match self.background.error_bars {
-            Some(progress) if !self.is_behind() => error_bar_progress(progress),
+            Some(steps) if !self.is_behind() => error_bar_progress(steps),
             None if self.background.stopped => {
                 "Error bars: stopped. Choose Compute, below, to continue".to_owned()
             }

@@ -291,7 +291,8 @@ fn a_long_computation_can_be_stopped_and_taken_up_again() {
 #[test]
 fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
     fn counts(window: &Window) -> Option<(usize, usize)> {
-        state(window).results.background.error_bars
+        let steps = state(window).results.background.error_bars?;
+        Some((steps.done, steps.total))
     }
 
     fn bundles(of: &Condition) -> usize {
@@ -361,7 +362,8 @@ fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
 #[test]
 fn couplings_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
     fn steps(window: &Window) -> Option<(usize, usize)> {
-        state(window).results.background.couplings
+        let steps = state(window).results.background.couplings?;
+        Some((steps.done, steps.total))
     }
 
     let trap = Trap::default();

@@ -9,7 +9,9 @@ use gdcm_io::FolderProgress;
 /// The newest reading for a purpose; several threads may take part in it.
 #[derive(Default)]
 pub(super) struct Reader {
+    /// Number of the newest reading.
     newest: u64,
+    /// Stop flag shared with the threads of that reading.
     stop: Arc<AtomicBool>,
 }
 

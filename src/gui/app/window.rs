@@ -35,7 +35,7 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::{focus, palette};
 
-/// Interval after which waiting or working results are drawn again.
+/// Time after which the window is drawn again while results are being computed.
 const REPAINT_AFTER: Duration = Duration::from_millis(160);
 /// Key of the preferences in eframe's storage.
 pub(super) const PREFERENCES: &str = "preferences";
@@ -214,6 +214,7 @@ impl eframe::App for GdcmApp {
         let ctx = ui.ctx().clone();
         let palette =
             Palette::from_visuals(ui.visuals()).with_looks(self.state.display.curves.looks);
+        // 1. Keys, dropped files, panels and forms push commands.
         self.move_focus();
         let mut commands = keyboard::pressed(&ctx, &self.state);
         self.take_dropped_files(&mut commands);
@@ -224,8 +225,10 @@ impl eframe::App for GdcmApp {
         self.recovery
             .drawn
             .get_or_init(|| self.recovery.autosave.clone());
+        // 2. The commands change the state.
         self.carry_out(commands);
         self.name_window();
+        // 3. The changed state requests new results; `logic` receives them before a later frame.
         self.request_results();
         self.want_jobs();
         // Jobs that wait until the first results are on the screen start in the next frame.

@@ -1,7 +1,7 @@
 //! Menu bar: menus, undo and redo, the document title, the search field and the theme switch.
 
 use egui::{
-    Button, Key, KeyboardShortcut, Label, MenuBar, Modifiers, Rect, RichText, Role, Sense, Stroke,
+    Button, Key, KeyboardShortcut, MenuBar, Modifiers, Rect, RichText, Role, Sense, Stroke,
     StrokeKind, ThemePreference, Ui, pos2, vec2,
 };
 

@@ -13,7 +13,7 @@ use crate::gui::commands::output::OutputCommand;
 use crate::gui::state::notices::MessageBar;
 use crate::gui::widgets::controls::button_ui;
 use crate::gui::widgets::counts::counted;
-use crate::gui::widgets::palette::{Palette, SMALL_SIZE, small};
+use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 /// Draws every message bar, oldest first.
 pub fn message_bars_ui(

@@ -1,7 +1,7 @@
 //! Bar above the views: groups at the left, views of the front group, tools at the right.
 
 use egui::containers::menu::MenuButton;
-use egui::{Button, Layout, Rect, RichText, Role, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
+use egui::{Button, Rect, RichText, Role, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 
 use super::view_frame::PADDING;
 use crate::gui::commands::command::Command;

@@ -115,20 +115,20 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("data.json");
         let mut last = LastCheck::default();
-        assert_eq!(known.check(&path), None, "there is none");
+        assert_eq!(last.check(&path), None, "there is none");
         std::fs::write(&path, "one").unwrap();
-        assert_eq!(known.check(&path), None, "it may be being written");
-        let first = known.check(&path).expect("it rests");
-        assert_eq!(known.check(&path), None, "reported already");
+        assert_eq!(last.check(&path), None, "it may be being written");
+        let first = last.check(&path).expect("it rests");
+        assert_eq!(last.check(&path), None, "reported already");
         std::fs::write(&path, "one, and more").unwrap();
-        assert_eq!(known.check(&path), None);
-        assert_ne!(known.check(&path).expect("it rests").sha256, first.sha256);
+        assert_eq!(last.check(&path), None);
+        assert_ne!(last.check(&path).expect("it rests").sha256, first.sha256);
         // The file is rewritten with the same bytes: another modification time, but the same hash.
         std::fs::remove_file(&path).unwrap();
         std::thread::sleep(Duration::from_millis(20));
         std::fs::write(&path, "one, and more").unwrap();
         assert_eq!(
-            [known.check(&path), known.check(&path), known.check(&path)],
+            [last.check(&path), last.check(&path), last.check(&path)],
             [None, None, None]
         );
     }

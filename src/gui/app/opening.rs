@@ -141,7 +141,7 @@ impl GdcmApp {
         }
     }
 
-    fn show_read(&mut self, purpose: ReadFor, opened: Opened) {
+    pub(super) fn show_read(&mut self, purpose: ReadFor, opened: Opened) {
         match purpose {
             ReadFor::Opening => {
                 self.show(opened);

@@ -2,7 +2,7 @@
 //! instead of a raw trace.
 //!
 //! Only the panic hook knows the place, only the code that catches the panic can report it: the hook
-//! records each panic ([`record_panic`]), and [`caught`] looks it up by its message.
+//! records each panic ([`record_panic`]), and `caught` looks it up by its message.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};

@@ -36,7 +36,7 @@ fn ask(window: &mut Window, entry: &str, expected: f64) {
     let asked = state(window)
         .display
         .selection
-        .asked
+        .explained
         .clone()
         .expect("a figure is explained");
     let found = derivation(state(window).analysis().unwrap(), &asked).expect("it has a derivation");

@@ -75,7 +75,7 @@ fn pointing_at_a_curve_or_a_dot_opens_nothing_and_is_told_in_the_status_line() {
         state(&window)
             .display
             .selection
-            .told
+            .pointed_words
             .as_ref()
             .unwrap()
             .starts_with("condition 3, 45 kt · ")

@@ -13,7 +13,8 @@ use gdcm_words::derivation::ExplainTarget;
 use gdcm_words::leads::lead_words;
 use gdcm_words::remark::{Remark, RemarkKind};
 
-use super::explanation::{turn_entry, value_label_ui};
+use super::explanation::value_label_ui;
+use super::sign_reversal::sign_reversal_entry;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::view::View;
@@ -157,7 +158,7 @@ fn remarks_ui(
                 .asks(Edit::Fit(pair, false), commands);
         }
         if let Some((channel, role)) = remark.turn {
-            let (label, turn) = turn_entry(state, channel, role);
+            let (label, turn) = sign_reversal_entry(state, channel, role);
             let button = Button::new(label).small();
             button_ui(ui, button, EVERYWHERE, turn, commands);
         }

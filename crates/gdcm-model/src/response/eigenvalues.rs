@@ -15,7 +15,7 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::hessenberg_form::balance;
+use super::balancing::balance;
 use super::large_entry::LargeEntry;
 use super::s_plane::SPlane;
 use super::schur_form::SchurForm;

@@ -1,6 +1,7 @@
 //! Frequency responses: grid, evaluation of a model, magnitude and phase (M2, M3); poles and zeros
 //! of a model.
 
+mod balancing;
 mod complex_lanes;
 pub mod connection;
 pub mod curve_values;
@@ -8,6 +9,7 @@ pub mod eigenvalues;
 pub mod elimination;
 pub mod frequency_response;
 mod hessenberg_form;
+mod householder_reduction;
 pub mod large_entry;
 pub mod lead_filter;
 pub mod pole_estimate;

@@ -17,8 +17,8 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
+use super::balancing::balance;
 use super::connection::connecting_states;
-use super::hessenberg_form::balance;
 use super::large_entry::LargeEntry;
 use super::s_plane::SPlane;
 use super::schur_form::SchurForm;

@@ -306,8 +306,12 @@ impl BodeView {
             Some(invalid) => invalid.up_to,
             None => scene.band.1,
         };
+        let band = Range {
+            min: scene.band.0,
+            max: upper,
+        };
         for pane in PANES {
-            if let Some(values) = fitted_values(scene.curves, pane, (scene.band.0, upper)) {
+            if let Some(values) = fitted_values(scene.curves, pane, band) {
                 let least = scene.quantity.least_height(pane);
                 self.values[pane as usize].fit(values.with_margin(FIT_MARGIN, least));
             }

@@ -9,7 +9,7 @@ use egui::{
 use gdcm_plot::figure::Figure;
 use gdcm_plot::figure::drawing::{Area, Shape as Drawn, Stroke as Line, Text};
 use gdcm_plot::figure::legend::Sample;
-use gdcm_plot::figure::paint::dot_shapes;
+use gdcm_plot::figure::paint::DotStyle;
 
 use crate::gui::widgets::palette::Palette;
 
@@ -203,7 +203,13 @@ fn paint_sample(ui: &Ui, place: Rect, sample: Sample, palette: &Palette) {
                 origin: place.center(),
                 palette,
             };
-            canvas.paint(&dot_shapes([0.0, 0.0], (shape, 1.0), color, filled));
+            let style = DotStyle {
+                shape,
+                size: 1.0,
+                color,
+                filled,
+            };
+            canvas.paint(&style.shapes([0.0, 0.0]));
         }
         Sample::Line(stroke) => {
             let path = vec![place.left_center(), place.right_center()];

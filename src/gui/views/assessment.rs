@@ -3,8 +3,8 @@
 use egui::{Align, Layout, Rect, RichText, Sense, Ui, Vec2, vec2};
 
 use gdcm_method::fidelity::CostAverage;
-use gdcm_model::dataset::{ConditionId, Pair};
-use gdcm_plot::figure::assessment::change_table;
+use gdcm_model::dataset::Pair;
+use gdcm_plot::figure::assessment::{ChangeColumn, ChangeTable};
 use gdcm_plot::figure::figure::Plot;
 use gdcm_plot::figure::{Figure, MarkId};
 use gdcm_study::results::assessment_table::AssessedModel;
@@ -286,20 +286,25 @@ pub fn assessed_pairs(state: &State) -> Vec<Pair> {
 /// signed change of J.
 pub fn assessment_text_table(state: &State, table: &AssessmentTable) -> Table {
     let part = state.display.judging.assessed.part;
-    let conditions: Vec<(ConditionId, String)> = state
+    let columns: Vec<ChangeColumn> = state
         .dataset()
-        .conditions()
-        .iter()
-        .map(|condition| (condition.id(), condition.id().to_string()))
+        .ids()
+        .map(|condition| ChangeColumn {
+            condition,
+            heading: condition.to_string(),
+        })
         .collect();
-    let title = format!("{} of each response in each condition", part.symbol());
-    change_table(
-        title,
-        (state.dataset(), table),
-        &assessed_pairs(state),
-        &conditions,
-        part.of(),
-    )
+    let contents = ChangeTable {
+        dataset: state.dataset(),
+        assessment: table,
+        pairs: &assessed_pairs(state),
+        columns: &columns,
+        part: part.of(),
+    };
+    contents.table(format!(
+        "{} of each response in each condition",
+        part.symbol()
+    ))
 }
 
 /// Summarises the assessment in sentences: improved responses, the verdict on the conditions held

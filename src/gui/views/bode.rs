@@ -8,7 +8,7 @@ use gdcm_model::number_format::decimals;
 use gdcm_model::units::{number, ratio_to_db, s_to_ms};
 use gdcm_plot::figure::ConditionSource;
 use gdcm_plot::figure::error::{muad_about, noticed};
-use gdcm_plot::figure::responses::{airspeed_curves, uncertainty_bands};
+use gdcm_plot::figure::responses::{AirspeedResponse, uncertainty_bands};
 use gdcm_study::AcrossRole;
 use gdcm_study::jobs::curve_jobs::AcrossJob;
 use gdcm_study::results::caution::Undefined;
@@ -434,11 +434,15 @@ pub fn across_curves(state: &mut State) -> Vec<BodeCurve> {
     let Some(curves) = state.across().cloned() else {
         return Vec::new();
     };
-    let pair = state.display.selection.pair;
     let mut cached = std::mem::take(&mut state.display.frequency.across_shapes);
-    let sources = (state.dataset(), state.analysis());
-    let role = state.display.frequency.across_role;
-    let mut drawn = airspeed_curves(sources, role, pair, &curves, &mut cached);
+    let response = AirspeedResponse {
+        dataset: state.dataset(),
+        analysis: state.analysis(),
+        role: state.display.frequency.across_role,
+        pair: state.display.selection.pair,
+        responses: &curves,
+    };
+    let mut drawn = response.curves(&mut cached);
     for curve in &mut drawn {
         curve.highlighted =
             matches!(&curve.id, CurveId::Model(id) if id.condition == state.condition().id());

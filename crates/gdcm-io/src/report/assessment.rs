@@ -5,12 +5,12 @@ use std::sync::Arc;
 
 use gdcm_method::fidelity::ACCEPTABLE;
 use gdcm_method::schedule::CostChange;
-use gdcm_model::dataset::{ConditionId, Pair, PairTable};
+use gdcm_model::dataset::{Pair, PairTable};
 use gdcm_model::number_format::decimals;
 use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_model::units::signed;
 use gdcm_plot::figure::assessment::{
-    assessment_figure, average_word, change_table, evidence_figure, usual_choice,
+    ChangeColumn, ChangeTable, assessment_figure, average_word, evidence_figure, usual_choice,
 };
 use gdcm_plot::figure::axis::FrequencyUnit;
 use gdcm_plot::figure::poles::couplings_figure;
@@ -204,18 +204,21 @@ fn add_tables(
 ) {
     let dataset = &*analysis.study.dataset;
     let shown = &assessment.conditions[..assessment.conditions.len().min(CONDITIONS_DRAWN)];
-    let mut conditions: Vec<(ConditionId, String)> = Vec::with_capacity(shown.len());
+    let mut columns: Vec<ChangeColumn> = Vec::with_capacity(shown.len());
     for assessed in shown {
-        conditions.push((assessed.condition, format!("cond. {}", assessed.condition)));
+        columns.push(ChangeColumn {
+            condition: assessed.condition,
+            heading: format!("cond. {}", assessed.condition),
+        });
     }
-    let table = change_table(
-        format!("ΔJ of {name}"),
-        (dataset, assessment),
+    let contents = ChangeTable {
+        dataset,
+        assessment,
         pairs,
-        &conditions,
-        CostChange::total,
-    );
-    page.wide_table(&table, CONDITIONS);
+        columns: &columns,
+        part: CostChange::total,
+    };
+    page.wide_table(&contents.table(format!("ΔJ of {name}")), CONDITIONS);
     let more = assessment.conditions.len() - shown.len();
     if more > 0 {
         page.paragraph(&format!(

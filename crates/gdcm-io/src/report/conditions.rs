@@ -12,7 +12,7 @@ use gdcm_plot::figure::bode::{BodeOptions, bode_figure, overview_figure};
 use gdcm_plot::figure::condition_source::condition_words;
 use gdcm_plot::figure::error::error_figure;
 use gdcm_plot::figure::gains::class_names;
-use gdcm_plot::figure::poles::poles_figure;
+use gdcm_plot::figure::poles::{PoleContents, poles_figure};
 use gdcm_plot::figure::{ConditionSource, Figure, Mark, Role, all_channels};
 use gdcm_study::jobs::curve_jobs::ConditionModes;
 use gdcm_study::stages::condition_curves::{CURVE_POINTS, curves_band};
@@ -496,9 +496,14 @@ fn add_poles(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOption
         Some(result) => result.pole_shifts(),
         None => Default::default(),
     };
+    let contents = PoleContents {
+        modes: &modes,
+        zeros_of: &|_| Vec::new(),
+        shifts: &shifts,
+    };
     let id = source.curves.condition.id();
     page.figure(
-        &poles_figure(source, &modes, options, (&|_| Vec::new(), &shifts)),
+        &poles_figure(source, contents, options),
         &format!("Condition {id}, poles of its models"),
         "Physics models ×, identified models +; rays of equal damping ratio. Corrections of \
         channels do not move poles; couplings do.",

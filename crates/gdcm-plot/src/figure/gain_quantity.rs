@@ -78,6 +78,13 @@ pub enum Across {
     Conditions,
 }
 
+/// Quantities on the vertical and the horizontal axis of a figure of channels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GainAxes {
+    pub measure: Measure,
+    pub across: Across,
+}
+
 /// A quantity defined by the correction of each condition and by the schedule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GainQuantity {

@@ -47,6 +47,7 @@ use gdcm_study::results::condition_answers::{RecordHistory, TestAnswers};
 use gdcm_study::results::couplings_assessment::CouplingsAssessment;
 use gdcm_study::results::requirements::Requirements;
 
+mod airspeed_response;
 mod arrow;
 pub mod assessment;
 pub mod axis;
@@ -95,6 +96,7 @@ pub mod tables;
 pub mod thinning;
 mod ticks;
 mod time_histories;
+mod uncertainty_band;
 
 pub use axis::Range;
 pub use condition_source::ConditionSource;
@@ -108,9 +110,9 @@ pub use role::Role;
 use assessment::{assessment_figure, evidence_figure, usual_choice};
 use bode::{BodeOptions, airspeeds_figure, bode_figure, overview_figure};
 use error::error_figure;
-use gains::{Across, Measure, channels_figure, net_gain_figure};
+use gains::{Across, GainAxes, Measure, channels_figure, net_gain_figure};
 use leads::leads_figure;
-use poles::{couplings_figure, poles_figure, zeros_of_model};
+use poles::{PoleContents, couplings_figure, poles_figure, zeros_of_model};
 use requirements::{record_history_figure, requirements_figure, test_answers_figure};
 
 /// Kinds of figure.
@@ -279,7 +281,10 @@ impl FigureRequest {
             analysis,
             analysis.uncertainty.as_deref(),
             &self.channels,
-            (self.measure, self.across),
+            GainAxes {
+                measure: self.measure,
+                across: self.across,
+            },
         ))
     }
 
@@ -294,7 +299,12 @@ impl FigureRequest {
             Some(analysis) => analysis.pole_shifts(),
             None => Vec::new(),
         };
-        Some(poles_figure(source, &modes, &self.bode, (&zeros, &shifts)))
+        let contents = PoleContents {
+            modes: &modes,
+            zeros_of: &zeros,
+            shifts: &shifts,
+        };
+        Some(poles_figure(source, contents, &self.bode))
     }
 
     /// Plots model responses over time if requested, otherwise bandwidths.

@@ -15,24 +15,37 @@ const LEADER: Stroke = Stroke::solid(Color::DIM.tint(60), 0.4);
 /// Height of digits, which have no descenders, relative to the font size.
 const DIGIT_HEIGHT: f64 = 0.74;
 
+/// Corners and line ends, relative to the radius; y runs downwards.
 const DIAMOND: [[f64; 2]; 4] = [[0.0, -1.3], [1.3, 0.0], [0.0, 1.3], [-1.3, 0.0]];
 const SQUARE: [[f64; 2]; 4] = [[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]];
 const TRIANGLE: [[f64; 2]; 3] = [[0.0, -1.3], [1.2, 0.9], [-1.2, 0.9]];
 const CROSS: [[[f64; 2]; 2]; 2] = [[[-1.0, -1.0], [1.0, 1.0]], [[-1.0, 1.0], [1.0, -1.0]]];
 const PLUS: [[[f64; 2]; 2]; 2] = [[[-1.3, 0.0], [1.3, 0.0]], [[0.0, -1.3], [0.0, 1.3]]];
 
-#[derive(Clone, Copy)]
-pub(super) struct DotStyle {
-    pub(super) shape: DotShape,
+/// Appearance of a dot.
+#[derive(Clone, Copy, Debug)]
+pub struct DotStyle {
+    pub shape: DotShape,
     /// Size relative to the usual dot.
-    pub(super) size: f64,
-    pub(super) color: Color,
-    pub(super) filled: bool,
+    pub size: f64,
+    pub color: Color,
+    /// Whether the dot is filled; otherwise it is an outline.
+    pub filled: bool,
 }
 
 impl DotStyle {
+    /// Returns the style of the dots in a group.
+    pub fn of_group(group: &Dots) -> Self {
+        Self {
+            shape: group.shape,
+            size: group.size,
+            color: group.color,
+            filled: group.filled,
+        }
+    }
+
     /// Paints a dot; all shapes have about the same area.
-    pub(super) fn shapes(self, center: [f64; 2]) -> Vec<Shape> {
+    pub fn shapes(self, center: [f64; 2]) -> Vec<Shape> {
         match self.shape {
             DotShape::Circle => {
                 let pen = self.pen();
@@ -115,22 +128,6 @@ fn moved([x, y]: [f64; 2], [dx, dy]: [f64; 2], radius: f64) -> [f64; 2] {
     [x + radius * dx, y + radius * dy]
 }
 
-/// Paints a dot; `size` is relative to the usual dot.
-pub fn dot_shapes(
-    center: [f64; 2],
-    (shape, size): (DotShape, f64),
-    color: Color,
-    filled: bool,
-) -> Vec<Shape> {
-    let style = DotStyle {
-        shape,
-        size,
-        color,
-        filled,
-    };
-    style.shapes(center)
-}
-
 /// Painted dots and labels.
 pub(super) struct PaintedDots {
     pub(super) shapes: Vec<Shape>,
@@ -187,12 +184,7 @@ fn add_dots<'m>(
     shapes: &mut Vec<Shape>,
     labels: &mut Vec<Label<'m>>,
 ) {
-    let style = DotStyle {
-        shape: group.shape,
-        size: group.size,
-        color: group.color,
-        filled: group.filled,
-    };
+    let style = DotStyle::of_group(group);
     for dot in &group.dots {
         if let Some(center) = placed.at([dot.x, dot.y])
             && placed.shows(center)

@@ -170,7 +170,7 @@ pub enum ChannelSide {
 
 impl ChannelSide {
     /// Returns `inputs` or `outputs`, whichever belongs to this side.
-    pub fn of<T>(self, inputs: T, outputs: T) -> T {
+    pub fn pick<T>(self, inputs: T, outputs: T) -> T {
         match self {
             Self::Input => inputs,
             Self::Output => outputs,
@@ -180,7 +180,7 @@ impl ChannelSide {
 
 impl std::fmt::Display for ChannelSide {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(self.of("input", "output"))
+        f.write_str(self.pick("input", "output"))
     }
 }
 

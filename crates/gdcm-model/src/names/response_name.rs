@@ -191,7 +191,7 @@ impl Sides {
     }
 
     fn has(self, side: ChannelSide) -> bool {
-        side.of(self.input, self.output)
+        side.pick(self.input, self.output)
     }
 }
 
@@ -315,7 +315,7 @@ fn only_channel(
         return Ok(Some((*first).to_owned()));
     }
     Err(ResponseNameError::Several {
-        side: side.of("input", "output"),
+        side: side.pick("input", "output"),
         found: names.join(", "),
     })
 }

@@ -193,7 +193,7 @@ impl<'a> Map<'a> {
         let pitch = (room / columns.len().max(1) as f32).min(MAP[1]);
         Self {
             state,
-            classes: Classes::of(state.dataset()),
+            classes: Classes::from_dataset(state.dataset()),
             columns,
             left,
             pitch,

@@ -75,7 +75,7 @@ pub(super) struct SelectionBox {
 
 /// Returns the range of `log10 omega` from the first to the last frequency.
 fn log_omega_of(curves: &[BodeCurve]) -> Option<Range> {
-    Range::of(
+    Range::spanning(
         curves
             .iter()
             .flat_map(|curve| curve.omega.iter())

@@ -107,7 +107,7 @@ impl FigureWords for GainPlots<'_> {
             words.push(bar_words(bar, quantity.scalar(), uncertainty.level));
         }
         if let Some(schedule) = measure.schedule_of(analysis, self.across) {
-            let scheduled = quantity.of(&schedule.at(airspeed_kt));
+            let scheduled = quantity.value_in(&schedule.at(airspeed_kt));
             words.push(format!("scheduled {}", measure.text(scheduled)));
         }
         if let Some(result) = analysis.condition(*id)

@@ -30,11 +30,11 @@ use super::responses::{
 use super::role::Role;
 
 /// Background of the band of comparison.
-const BAND: Color = Color::of(Hue::Accent).tint(8);
+const BAND: Color = Color::new(Hue::Accent).tint(8);
 /// Background of the frequencies above the band at which a model with leads is invalid.
-const INVALID: Color = Color::of(Hue::Warning).tint(10);
+const INVALID: Color = Color::new(Hue::Warning).tint(10);
 /// Line at a frequency at which a bandwidth is read.
-const CROSSING: Stroke = Stroke::dashed(Color::of(Hue::Text), 0.8, Dash::Short);
+const CROSSING: Stroke = Stroke::dashed(Color::new(Hue::Text), 0.8, Dash::Short);
 /// Height of the magnitude panel; the phase panel has height 1.
 const MAGNITUDE_WEIGHT: f64 = 1.35;
 /// Margin above and below the curves, relative to their height.

@@ -14,12 +14,12 @@ use super::figure::{Figure, Panel, Plot};
 use super::marks::{Band, Curve, DotShape, Dots, Mark, Rule};
 use super::role::Role;
 
-const OTHERS: Stroke = Stroke::solid(Color::of(Hue::Perturbed).tint(60), 0.7);
-const SHOWN: Stroke = Stroke::solid(Color::of(Hue::Corrected), 1.6);
+const OTHERS: Stroke = Stroke::solid(Color::new(Hue::Perturbed).tint(60), 0.7);
+const SHOWN: Stroke = Stroke::solid(Color::new(Hue::Corrected), 1.6);
 /// Arrow from a pole to its new position.
-const SHIFT: Stroke = Stroke::solid(Color::of(Hue::Corrected), 1.0);
-const RINGING: Stroke = Stroke::dashed(Color::of(Hue::Warning), 1.0, Dash::Short);
-const BAND: Color = Color::of(Hue::Accent).tint(12);
+const SHIFT: Stroke = Stroke::solid(Color::new(Hue::Corrected), 1.0);
+const RINGING: Stroke = Stroke::dashed(Color::new(Hue::Warning), 1.0, Dash::Short);
+const BAND: Color = Color::new(Hue::Accent).tint(12);
 pub(super) const AXIS: Stroke = Stroke::solid(Color::DIM, 0.6);
 /// Maximum magnitude of the displayed poles, relative to the upper end of the band.
 const SHOWN_POLES: f64 = 1.5;

@@ -290,16 +290,16 @@ pub struct Color {
 
 impl Color {
     /// Background colour of paper.
-    pub const WHITE: Self = Self::of(Hue::Background);
+    pub const WHITE: Self = Self::new(Hue::Background);
     /// Colour of titles and primary text.
-    pub const INK: Self = Self::of(Hue::Text);
+    pub const INK: Self = Self::new(Hue::Text);
     /// Colour of labels, frames and secondary text.
-    pub const DIM: Self = Self::of(Hue::DimText);
+    pub const DIM: Self = Self::new(Hue::DimText);
     /// Colour of grid lines.
-    pub const GRID: Self = Self::of(Hue::Grid);
+    pub const GRID: Self = Self::new(Hue::Grid);
 
     /// Creates a colour at full strength.
-    pub const fn of(hue: Hue) -> Self {
+    pub const fn new(hue: Hue) -> Self {
         Self { hue, percent: 100 }
     }
 
@@ -435,7 +435,7 @@ mod tests {
 
     #[test]
     fn a_tint_lies_between_the_colour_and_white() {
-        let color = Color::of(Hue::Nominal);
+        let color = Color::new(Hue::Nominal);
         assert_eq!(color.rgb(), [0xc6, 0x2f, 0x2f]);
         assert_eq!(color.tint(0).rgb(), [255, 255, 255]);
         assert_eq!(color.tint(50).rgb(), [227, 151, 151]);

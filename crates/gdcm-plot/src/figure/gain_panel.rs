@@ -21,18 +21,18 @@ use super::role::Role;
 /// Line at the value without correction.
 const NULL: Stroke = Stroke::dashed(Color::DIM, 0.6, Dash::Short);
 /// Lines of an error bar, and of its part due to identification alone.
-const BAR: Stroke = Stroke::solid(Color::of(Hue::Perturbed), 0.6);
-const INNER_BAR: Stroke = Stroke::solid(Color::of(Hue::Perturbed).tint(50), 2.4);
+const BAR: Stroke = Stroke::solid(Color::new(Hue::Perturbed), 0.6);
+const INNER_BAR: Stroke = Stroke::solid(Color::new(Hue::Perturbed).tint(50), 2.4);
 /// Maximum extension of the axis to show error bars, relative to the range of the dots.
 const BARS_EXTENSION: f64 = 0.5;
 /// Brackets between net gains at the same airspeed.
-const SIGNIFICANT_BRACKET: Stroke = Stroke::solid(Color::of(Hue::Warning), 0.7);
+const SIGNIFICANT_BRACKET: Stroke = Stroke::solid(Color::new(Hue::Warning), 0.7);
 const OTHER_BRACKET: Stroke = Stroke::solid(Color::DIM, 0.4);
 /// Names of both kinds of bracket, in the legend and in the tables.
 pub(super) const SIGNIFICANT: &str = "significant difference, × expected";
 const NOT_SIGNIFICANT: &str = "difference, not significant";
 /// Background that marks the bounds.
-const BOUNDS: Color = Color::of(Hue::Accent).tint(16);
+const BOUNDS: Color = Color::new(Hue::Accent).tint(16);
 /// Width of the background on an airspeed axis \[kt\].
 const BOUNDS_WIDTH_KT: f64 = 3.0;
 /// Width of the background on an axis of conditions.
@@ -91,8 +91,8 @@ impl GainPanel<'_> {
         let values = self
             .results()
             .into_iter()
-            .map(|placed| self.quantity.of(&placed.result.correction));
-        let Some(range) = Range::of(values) else {
+            .map(|placed| self.quantity.value_in(&placed.result.correction));
+        let Some(range) = Range::spanning(values) else {
             return axis;
         };
         let spare = BARS_EXTENSION * range.width();
@@ -207,8 +207,8 @@ impl GainPanel<'_> {
         Some(Bracket {
             x: found.airspeed_kt,
             ends: [
-                self.quantity.of(&first.correction),
-                self.quantity.of(&second.correction),
+                self.quantity.value_in(&first.correction),
+                self.quantity.value_in(&second.correction),
             ],
             label,
         })
@@ -272,7 +272,7 @@ impl GainPanel<'_> {
     /// Returns a group of dots for each condition class; conditions outside the schedule have
     /// separate groups.
     fn dots(&self) -> Vec<Dots> {
-        let classes = Classes::of(&self.analysis.study.dataset);
+        let classes = Classes::from_dataset(&self.analysis.study.dataset);
         let mut groups: Vec<Dots> = Vec::new();
         for placed in self.results() {
             let name = class_words(placed.state, self.analysis.study.choice(placed.state.id));
@@ -300,7 +300,7 @@ impl GainPanel<'_> {
         };
         Dot {
             x: placed.x,
-            y: self.quantity.of(&placed.result.correction),
+            y: self.quantity.value_in(&placed.result.correction),
             label,
             id: Some(MarkId::Condition(id)),
         }
@@ -319,7 +319,7 @@ impl GainPanel<'_> {
         } else {
             Hue::Rejected
         };
-        Dots::new(name, shape, Color::of(hue))
+        Dots::new(name, shape, Color::new(hue))
             .filled(classes.is_first_weight(placed.state) && !choice.held_out)
             .key(name)
     }

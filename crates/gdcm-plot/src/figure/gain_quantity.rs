@@ -112,7 +112,7 @@ impl GainQuantity {
     }
 
     /// Returns the value of the quantity in a correction, in the unit of the measure.
-    pub fn of(self, correction: &ChannelCorrection) -> f64 {
+    pub fn value_in(self, correction: &ChannelCorrection) -> f64 {
         match self {
             Self::NetGain(pair) => correction.net_gain(pair),
             Self::Gain(channel) => correction.gain(channel),
@@ -150,7 +150,7 @@ impl GainQuantity {
         let mut samples = Vec::new();
         for sample in 0..=SAMPLES {
             let airspeed_kt = from + (to - from) * sample as f64 / SAMPLES as f64;
-            samples.push([airspeed_kt, self.of(&schedule.at(airspeed_kt))]);
+            samples.push([airspeed_kt, self.value_in(&schedule.at(airspeed_kt))]);
         }
         samples
     }

@@ -151,7 +151,7 @@ fn variant_marks(quantity: GainQuantity, analysis: &Analysis, name: &str) -> Vec
         .key(&key);
     dots.size = VARIANT_DOT;
     for placed in placed_results(analysis, across) {
-        let y = quantity.of(&placed.result.correction);
+        let y = quantity.value_in(&placed.result.correction);
         dots = dots.dot(placed.x, y, "");
     }
     marks.push(Mark::Dots(dots));

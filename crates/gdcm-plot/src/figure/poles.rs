@@ -101,8 +101,8 @@ fn plane_plot(title: &str, [real, imaginary]: [Range; 2], marks: Vec<Mark>) -> P
 fn whole_plane(poles: &[Dots]) -> [Range; 2] {
     let dots: Vec<&Dot> = poles.iter().flat_map(|group| &group.dots).collect();
     let empty = Range::new(-1.0, 1.0);
-    let real = Range::of(dots.iter().map(|dot| dot.x)).unwrap_or(empty);
-    let imaginary = Range::of(dots.iter().map(|dot| dot.y)).unwrap_or(empty);
+    let real = Range::spanning(dots.iter().map(|dot| dot.x)).unwrap_or(empty);
+    let imaginary = Range::spanning(dots.iter().map(|dot| dot.y)).unwrap_or(empty);
     let reach = imaginary.max.abs().max(imaginary.min.abs());
     [
         real.including(0.0).with_margin(MARGINS[0], LEAST),

@@ -20,7 +20,7 @@ use super::marks::{Curve, Dot, DotShape, Dots, Envelope, Intervals, Mark, MarkId
 /// Arrow from the physics model to the corrected model of a condition.
 const ARROW: Stroke = Stroke::solid(Color::DIM.tint(70), 0.7);
 const INTERVAL: Stroke = Stroke::solid(Color::DIM, 0.7);
-const LEVEL: Stroke = Stroke::dashed(Color::of(Hue::Warning), 1.0, Dash::Short);
+const LEVEL: Stroke = Stroke::dashed(Color::new(Hue::Warning), 1.0, Dash::Short);
 /// Upper end of shaded areas \[ms\], above every drawn phase delay.
 const BEYOND_MS: f64 = 1e4;
 /// Strength \[%\] of the widest shaded area, by which each narrower area is stronger, and the
@@ -109,7 +109,7 @@ fn area_beyond(boundary: &LevelBoundary, tint: u8) -> Envelope {
     edge.extend(&boundary.points);
     Envelope {
         name: format!("beyond {}", boundary.name),
-        color: Color::of(Hue::Warning).tint(tint),
+        color: Color::new(Hue::Warning).tint(tint),
         edge: None,
         points: edge
             .into_iter()
@@ -257,10 +257,10 @@ impl<'a> PairFindings<'a> {
 
 fn dot_style(role: RequirementRole) -> (DotShape, Color) {
     match role {
-        RequirementRole::Physics => (DotShape::Circle, Color::of(Hue::Perturbed)),
-        RequirementRole::Corrected => (DotShape::Square, Color::of(Hue::Corrected)),
-        RequirementRole::Scheduled => (DotShape::Triangle, Color::of(Hue::Corrected)),
-        RequirementRole::Identified => (DotShape::Diamond, Color::of(Hue::Identified)),
+        RequirementRole::Physics => (DotShape::Circle, Color::new(Hue::Perturbed)),
+        RequirementRole::Corrected => (DotShape::Square, Color::new(Hue::Corrected)),
+        RequirementRole::Scheduled => (DotShape::Triangle, Color::new(Hue::Corrected)),
+        RequirementRole::Identified => (DotShape::Diamond, Color::new(Hue::Identified)),
     }
 }
 

@@ -220,8 +220,8 @@ pub fn fitted_values(curves: &[BodeCurve], pane: Pane, band: Range) -> Option<Ra
             }
         }
     }
-    let everywhere = Range::of(everywhere)?;
-    let Some(inside) = Range::of(inside) else {
+    let everywhere = Range::spanning(everywhere)?;
+    let Some(inside) = Range::spanning(inside) else {
         return Some(everywhere);
     };
     let room = inside.with_margin(OUTSIDE_PART, 0.0);

@@ -453,7 +453,7 @@ mod tests {
         let grid = FrequencyGrid::logarithmic(Band::new(1.0, 9.0).unwrap(), 100);
         let responses: Vec<PolarResponse> = models
             .iter()
-            .map(|model| PolarResponse::new(&FrequencyResponse::of(model, &grid)))
+            .map(|model| PolarResponse::new(&FrequencyResponse::from_dynamics(model, &grid)))
             .collect();
         let coherence_weights: Vec<_> = models
             .iter()

@@ -55,7 +55,7 @@ impl AttitudeOutput {
     /// # Errors
     /// [`AttitudeResponseError::NotAnAttitude`] for any other unit.
     pub fn of(output: &Channel) -> Result<Self, AttitudeResponseError> {
-        match PhysicalUnit::of(&output.unit).map(|unit| unit.name) {
+        match PhysicalUnit::parse(&output.unit).map(|unit| unit.name) {
             Some("deg/s" | "rad/s") => Ok(Self::Rate),
             Some("deg" | "rad") => Ok(Self::Attitude),
             _ => Err(AttitudeResponseError::NotAnAttitude {
@@ -266,7 +266,7 @@ pub struct SampledModel {
 impl SampledModel {
     /// Samples a model for a search in and around `band`.
     pub fn of(dynamics: &Dynamics, band: Band) -> Self {
-        let prepared = PreparedModel::of(dynamics);
+        let prepared = PreparedModel::new(dynamics);
         let mut omega = search_frequencies(band);
         let searched = omega.len();
         let highest = omega[omega.len() - 1];

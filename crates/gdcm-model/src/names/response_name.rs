@@ -390,7 +390,7 @@ fn longest_channel<'t>(
 fn is_filler(word: &str) -> bool {
     let word = word.to_lowercase();
     let plain = word.trim_matches(|letter: char| letter.is_ascii_digit());
-    let is_unit = PhysicalUnit::of(plain).is_some_and(|unit| {
+    let is_unit = PhysicalUnit::parse(plain).is_some_and(|unit| {
         matches!(
             unit.dimension,
             Dimension::Speed | Dimension::Length | Dimension::Level | Dimension::Frequency

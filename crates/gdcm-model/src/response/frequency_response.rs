@@ -289,7 +289,7 @@ impl PolarResponse {
     /// than 120 dB (factor 1e-6) below the largest peak for the same output, and also below the
     /// largest peak for the same input. Numerical differentiation produces such values instead of
     /// exact zeros.
-    pub fn numerically_nothing(&self) -> PairTable<bool> {
+    pub fn numerically_zero(&self) -> PairTable<bool> {
         const LEAST_DB: f64 = -120.0;
         let peaks = self.curves.map(|_, curve| match curve {
             Some(curve) => largest(curve.magnitude_db.iter()),
@@ -375,7 +375,7 @@ mod tests {
             vec![Complex::from(values[pair.output][pair.input]); 3]
         });
         let mut polar = PolarResponse::new(&FrequencyResponse::new(curves));
-        let nothing = polar.numerically_nothing();
+        let nothing = polar.numerically_zero();
         assert_eq!(nothing.marked().collect::<Vec<_>>(), [Pair::new(1, 1)]);
         polar.clear(&nothing);
         assert!(
@@ -389,7 +389,7 @@ mod tests {
             vec![Complex::from([1.0, 1e-20][pair.output]); 3]
         });
         let polar = PolarResponse::new(&FrequencyResponse::new(curves));
-        assert_eq!(polar.numerically_nothing().marked().count(), 0);
+        assert_eq!(polar.numerically_zero().marked().count(), 0);
     }
 
     #[test]

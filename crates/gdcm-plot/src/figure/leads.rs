@@ -160,7 +160,7 @@ fn dynamics(correction: &ChannelCorrection, channels: &[Channel]) -> GainDelay {
         .sum();
     let first = channels.first();
     let second = channels.get(1);
-    GainDelay::new(1.0, delay_s).led([
+    GainDelay::new(1.0, delay_s).with_leads([
         first.and_then(|channel| correction.lead(*channel)),
         second.and_then(|channel| correction.lead(*channel)),
     ])

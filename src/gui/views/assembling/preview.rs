@@ -168,7 +168,7 @@ fn model_response(found: &FoundModel, pair: Pair, band: (f64, f64)) -> Option<Pa
         .ok()?;
     let wide = Band::new(band.0 / BEYOND, band.1 * BEYOND).ok()?;
     let grid = FrequencyGrid::logarithmic(wide, POINTS);
-    let response = PreparedModel::of(&Dynamics::StateSpace(model)).response(&grid);
+    let response = PreparedModel::new(&Dynamics::StateSpace(model)).response(&grid);
     Some(PairResponse {
         omega: grid.omega().to_vec(),
         values: response.curve(pair).to_vec(),

@@ -195,7 +195,7 @@ impl Frequencies {
             .get(UNITS)
             .and_then(first_text_of)
             .unwrap_or_default();
-        let unit = PhysicalUnit::of(&unit_text);
+        let unit = PhysicalUnit::parse(&unit_text);
         let multiple_of_hertz = unit.filter(|unit| unit.dimension == Dimension::Frequency);
         let angular_rate = unit.filter(|unit| unit.name.starts_with("rad/"));
         // Without a unit, MATLAB and python-control use rad/s.

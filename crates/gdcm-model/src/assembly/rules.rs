@@ -185,12 +185,12 @@ impl Rules {
         let known = self
             .declarations
             .iter()
-            .position(|declared| declared.of == scope);
+            .position(|declared| declared.scope == scope);
         let index = match known {
             Some(index) => index,
             None => {
                 self.declarations.push(ScopedDeclarations {
-                    of: scope,
+                    scope,
                     channels: ChannelDeclarations::default(),
                 });
                 self.declarations.len() - 1
@@ -202,7 +202,7 @@ impl Rules {
 
 fn signs_in_scope(scope: FileScope, signs: &Signs) -> ScopedDeclarations {
     ScopedDeclarations {
-        of: scope,
+        scope,
         channels: ChannelDeclarations {
             signs: signs.clone(),
             ..ChannelDeclarations::default()

@@ -16,6 +16,7 @@ use super::unchecked_dataset::{
     BandsDraft, ConditionDraft, DatasetDraft, DraftError, DraftFault, ModelDraft, ResponseArray,
     ResponseDraft, Warning,
 };
+use crate::number_format::counted;
 
 /// Maximum number of collected faults; a file of the wrong kind has a fault in every model.
 const MOST_FAULTS: usize = 1000;
@@ -289,8 +290,8 @@ impl Checker {
             && model.order() != *order
         {
             let words = format!(
-                "the stated order is {order}, but the matrices have {} states",
-                model.order()
+                "the stated order is {order}, but the matrices have {}",
+                counted(model.order(), "state")
             );
             self.warnings.push(Warning {
                 place: place.clone(),
@@ -315,8 +316,9 @@ impl Checker {
         }
         if order > 0 && !names.is_empty() {
             let words = format!(
-                "{} state names for {order} states; the names are ignored",
-                names.len()
+                "{} for {}; the names are ignored",
+                counted(names.len(), "state name"),
+                counted(order, "state")
             );
             self.warnings.push(Warning { place, words });
         }

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use gdcm_model::dataset::{Pair, PairTable};
 use gdcm_model::response::PolarResponse;
-use gdcm_model::response::frequency_response::PolarCurve;
+use gdcm_model::response::polar_response::PolarCurve;
 use gdcm_model::statistics::median;
 
 use super::absolute_deviations::{FitError, least_absolute_deviations};

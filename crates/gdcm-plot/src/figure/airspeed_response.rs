@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use gdcm_model::dataset::{Dataset, ModelId, Pair};
 use gdcm_model::response::GainDelay;
-use gdcm_model::response::frequency_response::ResponseShape;
+use gdcm_model::response::response_shape::ResponseShape;
 use gdcm_study::jobs::curve_jobs::AcrossCurves;
 use gdcm_study::{AcrossRole, Analysis};
 

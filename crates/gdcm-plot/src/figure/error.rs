@@ -5,7 +5,7 @@ use std::sync::Arc;
 use gdcm_method::fidelity::{CoherenceWeights, Mismatch};
 use gdcm_model::dataset::{BundleKind, Pair};
 use gdcm_model::number_format::with_minus_sign;
-use gdcm_model::response::frequency_response::PolarCurve;
+use gdcm_model::response::polar_response::PolarCurve;
 use gdcm_model::response::{FrequencyResponse, GainDelay};
 use gdcm_model::statistics::quantile;
 use gdcm_model::units::{ratio_to_db, s_to_ms};

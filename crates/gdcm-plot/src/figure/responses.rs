@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use gdcm_model::dataset::{Band as BandOfComparison, BundleKind, ConditionId, Pair};
 use gdcm_model::response::FrequencyResponse;
-use gdcm_model::response::frequency_response::{ResponseShape, wrapped_deg};
+use gdcm_model::response::response_shape::{ResponseShape, wrapped_deg};
 use gdcm_model::units::signed;
 use gdcm_study::stages::condition_curves::{ConditionCurves, display_band};
 
@@ -174,7 +174,7 @@ impl ResponseCache {
         self.identified = self
             .aligned_shapes(&source, BundleKind::Identified)
             .into_iter()
-            .map(|shape| shape.first(points))
+            .map(|shape| shape.first_points(points))
             .collect();
         self.omega = curves.grid.omega().into();
         self.source = Some(source);

@@ -7,7 +7,7 @@ use nalgebra::Complex;
 
 use gdcm_model::assembly::{ChannelLabel, FoundModel};
 use gdcm_model::dataset::{Band, BundleKind, ConditionId, Dynamics, ModelId, Pair, StateSpace};
-use gdcm_model::response::frequency_response::ResponseShape;
+use gdcm_model::response::response_shape::ResponseShape;
 use gdcm_model::response::{FrequencyGrid, PreparedModel};
 use gdcm_plot::figure::axis::FrequencyUnit;
 

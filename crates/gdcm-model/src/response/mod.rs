@@ -18,6 +18,7 @@ pub mod prepared_model;
 pub mod response_shape;
 mod s_plane;
 pub mod schur_form;
+mod single_response;
 mod subdiagonal;
 pub mod zeros;
 

@@ -8,11 +8,12 @@ use super::connection::connecting_states;
 use super::s_plane::SPlane;
 use crate::dataset::{Pair, StateSpace};
 
-/// A single-input, single-output model.
+/// A single-input, single-output model: `x' = a x + b u`, `y = c x + d u`.
 #[derive(Clone, Debug)]
 pub(super) struct SingleResponse {
     pub(super) a: DMatrix<f64>,
     pub(super) b: DVector<f64>,
+    /// Output row, as a column.
     pub(super) c: DVector<f64>,
     pub(super) d: f64,
 }
@@ -21,7 +22,8 @@ pub(super) struct SingleResponse {
 const NEGLIGIBLE: f64 = 1e-12;
 
 impl SingleResponse {
-    /// Extracts the model between an input and an output, and balances it (step 1).
+    /// Extracts the model between an input and an output, and balances it (step 1 in
+    /// `zeros.rs`).
     pub(super) fn new(model: &StateSpace, plane: SPlane, pair: Pair) -> Self {
         let states = connecting_states(model, pair);
         let mut a = plane.matrix(&model.a().select_rows(&states).select_columns(&states));

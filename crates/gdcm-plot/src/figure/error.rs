@@ -340,8 +340,8 @@ fn gain_rule(kind: ReferenceKind, label: String, gain: f64) -> ReferenceLine {
     ReferenceLine::new(Pane::Magnitude, kind, label, level)
 }
 
-/// Formats a value with one decimal and a typographic minus sign.
-fn signed(value: f64) -> String {
+/// Formats a value with one decimal and a true minus sign.
+fn one_decimal(value: f64) -> String {
     with_minus_sign(&format!("{value:.1}"))
 }
 
@@ -353,13 +353,13 @@ fn delta_rules(
 ) -> Vec<ReferenceLine> {
     let mut lines = Vec::new();
     if let Some(gain) = analysis.wanted_gain(pair) {
-        let label = format!("G {gain:.3} ({} dB)", signed(ratio_to_db(gain)));
+        let label = format!("G {gain:.3} ({} dB)", one_decimal(ratio_to_db(gain)));
         let mut line = gain_rule(ReferenceKind::Delta, label, gain);
         line.note = ", median over the band".to_owned();
         lines.push(line);
     }
     if let Some(delay_s) = analysis.wanted_delay_s(pair) {
-        let label = format!("D {} ms", signed(s_to_ms(delay_s)));
+        let label = format!("D {} ms", one_decimal(s_to_ms(delay_s)));
         let mut line = delay_rule(ReferenceKind::Delta, label, delay_s, unit);
         if delay_s < 0.0 {
             line.note = ": lead is needed".to_owned();
@@ -375,7 +375,7 @@ fn bound_rules(analysis: &ConditionAnalysis, unit: PhaseErrorUnit) -> Vec<Refere
     let delay_s = analysis.delay_upper_s();
     let lower = format!("LB {:.3}", bounds.lower);
     let upper = format!("UB {:.3}", bounds.upper);
-    let latest = format!("UB {} ms", signed(s_to_ms(delay_s)));
+    let latest = format!("UB {} ms", one_decimal(s_to_ms(delay_s)));
     vec![
         gain_rule(ReferenceKind::Bound, lower, bounds.lower),
         gain_rule(ReferenceKind::Bound, upper, bounds.upper),

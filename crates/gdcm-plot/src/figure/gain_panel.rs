@@ -19,7 +19,7 @@ use super::marks::{
 use super::role::Role;
 
 /// Line at the value without correction.
-const NULL: Stroke = Stroke::dashed(Color::DIM, 0.6, Dash::Short);
+const UNCORRECTED: Stroke = Stroke::dashed(Color::DIM, 0.6, Dash::Short);
 /// Lines of an error bar, and of its part due to identification alone.
 const BAR: Stroke = Stroke::solid(Color::new(Hue::Perturbed), 0.6);
 const INNER_BAR: Stroke = Stroke::solid(Color::new(Hue::Perturbed).tint(50), 2.4);
@@ -54,7 +54,7 @@ impl GainPanel<'_> {
         let y = self.value_axis(&bars, label);
         let mut panel = Panel::new(self.horizontal_axis(), y)
             .with_all(self.bounds())
-            .with(Rule::horizontal(measure.null(), NULL));
+            .with(Rule::horizontal(measure.uncorrected(), UNCORRECTED));
         if let Some(schedule) = measure.schedule_of(self.analysis, self.across) {
             let samples = self.quantity.samples(schedule);
             let line = Role::Scheduled.stroke(false);
@@ -86,7 +86,7 @@ impl GainPanel<'_> {
     fn value_axis(&self, bars: &[Intervals], label: &str) -> Axis {
         let measure = self.quantity.measure();
         let mut axis = Axis::linear(label)
-            .including(measure.null())
+            .including(measure.uncorrected())
             .at_least(measure.least_height());
         let values = self
             .results()
@@ -215,7 +215,7 @@ impl GainPanel<'_> {
     }
 
     /// Returns the confidence band and the scatter band about samples `[airspeed, value]` of the
-    /// schedule; empty without an uncertainty.
+    /// schedule; empty without an uncertainty, and for a delay, which has no bands.
     fn bands(&self, schedule: &Schedule, samples: &[[f64; 2]]) -> Vec<Envelope> {
         let Some(bands) = self.uncertainty.and_then(|found| found.bands.as_ref()) else {
             return Vec::new();

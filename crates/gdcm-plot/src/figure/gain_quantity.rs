@@ -32,7 +32,7 @@ impl Measure {
     }
 
     /// Returns the value that means no correction: 1 for a gain, 0 for a delay.
-    pub fn null(self) -> f64 {
+    pub fn uncorrected(self) -> f64 {
         match self {
             Self::Gain => 1.0,
             Self::Delay => 0.0,

@@ -28,7 +28,7 @@ const BEYOND_MS: f64 = 1e4;
 const BEYOND_TINT: usize = 12;
 const MOST_BEYOND_TINT: usize = 48;
 /// Strength \[%\] of a dot whose bandwidth or phase delay depends on the model above the band.
-const RESTS_TINT: u8 = 45;
+const DEPENDENT_TINT: u8 = 45;
 
 /// Names of bandwidth and phase delay in a finding.
 const BANDWIDTH: &str = "omega_bw_rad_s";
@@ -157,8 +157,8 @@ impl<'a> PairFindings<'a> {
         marks.extend(self.delay_intervals().map(Mark::from));
         marks.extend(self.bandwidth_intervals().into_iter().map(Mark::from));
         for role in RequirementRole::ALL {
-            for rests_beyond_band in [false, true] {
-                let dots = self.dots(role, rests_beyond_band);
+            for depends_beyond_band in [false, true] {
+                let dots = self.dots(role, depends_beyond_band);
                 if !dots.dots.is_empty() {
                     marks.push(dots.into());
                 }
@@ -222,18 +222,18 @@ impl<'a> PairFindings<'a> {
         lines
     }
 
-    /// Draws the models in a role: either the models whose bandwidth or phase delay depends on the
-    /// model above the band, or the others.
-    fn dots(&self, role: RequirementRole, rests_beyond_band: bool) -> Dots {
+    /// Draws the models in a role: with `depends_beyond_band`, those whose bandwidth or phase delay
+    /// depends on the model above the band, otherwise the others.
+    fn dots(&self, role: RequirementRole, depends_beyond_band: bool) -> Dots {
         let (shape, color) = dot_style(role);
-        let mut dots = if rests_beyond_band {
-            Dots::new(role.name(), shape, color.tint(RESTS_TINT)).filled(false)
+        let mut dots = if depends_beyond_band {
+            Dots::new(role.name(), shape, color.tint(DEPENDENT_TINT)).filled(false)
         } else {
             Dots::new(role.name(), shape, color).key(role.name())
         };
         for finding in self.with_role(role) {
-            let rests = finding.rests_above(BANDWIDTH) || finding.rests_above(PHASE_DELAY);
-            if rests == rests_beyond_band
+            let depends = finding.rests_above(BANDWIDTH) || finding.rests_above(PHASE_DELAY);
+            if depends == depends_beyond_band
                 && let Some([x, y]) = bandwidth_place(finding)
             {
                 // To avoid clutter, only the dot of the corrected model shows the condition's

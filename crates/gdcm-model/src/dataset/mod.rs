@@ -2,6 +2,7 @@
 
 pub mod channel;
 pub mod condition;
+mod condition_record;
 #[expect(
     clippy::module_inception,
     reason = "the file holds the type after which the folder is named"

@@ -111,6 +111,7 @@ impl Axis {
             Scale::Logarithmic if range.min < range.max => range,
             Scale::Logarithmic => Range::new(range.min / 2.0, range.max * 2.0),
             Scale::Linear | Scale::Degrees => {
+                // By default, equal values are shown in a range of a thousandth of their size.
                 let least = if self.least > 0.0 {
                     self.least
                 } else {

@@ -1,6 +1,6 @@
 //! Frequency response of a state-space model: its states are eliminated from the system matrix.
 //!
-//! The model is `x' = A x + B u`, `y = C x + D u` with `n` states, and H its response at a
+//! The model is `dx/dt = A x + B u`, `y = C x + D u` with `n` states, and H its response at a
 //! frequency. Step 1 is in `hessenberg_form.rs`, which explains the matrices; the other steps are
 //! in `eliminate_group`.
 //!
@@ -202,9 +202,10 @@ fn append_group<S: Simd>(
 /// for the last, and is not needed until all other columns are clear: the active row occupies its
 /// place, so that rows and responses are numbered alike.
 struct ComplexRows<S: Simd> {
-    /// `s / alpha`.
+    /// `s / alpha`, called s in the steps.
     shift: ComplexLanes<S>,
-    /// Entries, row by row.
+    /// Entries, row by row: the active row, then the rows `w`; [`HessenbergForm::width`] entries
+    /// each.
     entries: Vec<ComplexLanes<S>>,
 }
 
@@ -616,9 +617,9 @@ mod tests {
         ] {
             let model = model(order, outputs, inputs);
             let omega = wide(61);
-            let all = on_vectors(&model, &omega);
+            let results = on_vectors(&model, &omega);
             assert!(
-                all.windows(2).all(|pair| pair[0] == pair[1]),
+                results.windows(2).all(|pair| pair[0] == pair[1]),
                 "order {order}"
             );
         }
@@ -647,9 +648,9 @@ mod tests {
         let omega: Vec<f64> = (0..29)
             .map(|k| if k % 2 == 0 { 1e-4 } else { 1e4 } * (1.0 + f64::from(k)))
             .collect();
-        let mut all = on_vectors(&model, &omega);
-        all.push(on(Scalar::new(), &model, &omega));
-        for values in all {
+        let mut results = on_vectors(&model, &omega);
+        results.push(on(Scalar::new(), &model, &omega));
+        for values in results {
             for (k, omega) in omega.iter().enumerate() {
                 let expected = dense(&model, *omega);
                 let largest = expected
@@ -681,10 +682,11 @@ mod tests {
             for (a, omega) in [(DMatrix::zeros(order, order), 0.0), (turning, 2.0)] {
                 let model = StateSpace::new(a, b.clone(), c.clone(), DMatrix::zeros(3, 2)).unwrap();
                 for frequencies in [vec![omega], vec![1.0, omega, 3.0]] {
-                    let mut all = on_vectors(&model, &frequencies);
-                    all.push(on(Scalar::new(), &model, &frequencies));
+                    let mut results = on_vectors(&model, &frequencies);
+                    results.push(on(Scalar::new(), &model, &frequencies));
                     let finite = |k: usize| {
-                        all.iter()
+                        results
+                            .iter()
                             .all(|values| values.iter().all(|(_, curve)| curve[k].is_finite()))
                     };
                     assert!(
@@ -713,9 +715,9 @@ mod tests {
             DMatrix::zeros(8, 8),
         )
         .unwrap();
-        let mut all = on_vectors(&model, &[0.5, 1.0, 2.0]);
-        all.push(on(Scalar::new(), &model, &[0.5, 1.0, 2.0]));
-        for values in all {
+        let mut results = on_vectors(&model, &[0.5, 1.0, 2.0]);
+        results.push(on(Scalar::new(), &model, &[0.5, 1.0, 2.0]));
+        for values in results {
             for (pair, values) in values.iter() {
                 let lag = Complex::new(0.5, -0.5);
                 let expected = match pair.output.abs_diff(pair.input) {

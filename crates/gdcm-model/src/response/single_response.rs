@@ -8,7 +8,7 @@ use super::connection::connecting_states;
 use super::s_plane::SPlane;
 use crate::dataset::{Pair, StateSpace};
 
-/// A single-input, single-output model: `x' = a x + b u`, `y = c x + d u`.
+/// A single-input, single-output model: `dx/dt = a x + b u`, `y = c x + d u`.
 #[derive(Clone, Debug)]
 pub(super) struct SingleResponse {
     pub(super) a: DMatrix<f64>,

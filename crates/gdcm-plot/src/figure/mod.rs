@@ -35,18 +35,6 @@
 //! assert_eq!(figure.drawing(ColumnWidth::Single).size[0].round(), 238.0);
 //! ```
 
-use std::sync::Arc;
-
-use gdcm_method::correction::Channel;
-use gdcm_model::dataset::{ModelId, Pair};
-use gdcm_model::progress::Unobserved;
-use gdcm_study::jobs::curve_jobs::{AcrossRole, ConditionModes};
-use gdcm_study::results::analysis::Analysis;
-use gdcm_study::results::assessment_table::AssessmentChoice;
-use gdcm_study::results::condition_answers::{RecordHistory, TestAnswers};
-use gdcm_study::results::couplings_assessment::CouplingsAssessment;
-use gdcm_study::results::requirements::Requirements;
-
 mod airspeed_response;
 mod arrow;
 pub mod assessment;
@@ -106,6 +94,18 @@ pub use figure_format::{ColumnWidth, FigureFormat};
 pub use gains::all_channels;
 pub use marks::{Mark, MarkId};
 pub use role::Role;
+
+use std::sync::Arc;
+
+use gdcm_method::correction::Channel;
+use gdcm_model::dataset::{ModelId, Pair};
+use gdcm_model::progress::Unobserved;
+use gdcm_study::jobs::curve_jobs::{AcrossRole, ConditionModes};
+use gdcm_study::results::analysis::Analysis;
+use gdcm_study::results::assessment_table::AssessmentChoice;
+use gdcm_study::results::condition_answers::{RecordHistory, TestAnswers};
+use gdcm_study::results::couplings_assessment::CouplingsAssessment;
+use gdcm_study::results::requirements::Requirements;
 
 use assessment::{assessment_figure, evidence_figure, usual_choice};
 use bode::{BodeOptions, airspeeds_figure, bode_figure, overview_figure};

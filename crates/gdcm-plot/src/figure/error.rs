@@ -1,4 +1,12 @@
 //! Deviation of a response from its reference at each frequency, as used by the fit (M6).
+//!
+//! ```text
+//! magnitude  20 log10 |H_ref| / |H_sim|  [dB]
+//! phase      Delta phi  [deg], or Delta phi / omega  [ms]: phase of H_sim minus phase of H_ref
+//! ```
+//!
+//! H_sim is the response of a physics model, H_ref of the identified reference. Both deviations are
+//! zero for a perfect model; G and D are the gain and the delay that the model lacks.
 
 use std::sync::Arc;
 

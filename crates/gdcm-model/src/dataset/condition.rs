@@ -2,8 +2,8 @@
 
 pub use super::condition_record::{ChannelRemedy, ConditionRecord, RecordKind};
 
-use super::channel::{BundleKind, ConditionId};
 use super::model::Model;
+use super::model_id::{BundleKind, ConditionId};
 use crate::units::number;
 
 /// Identification and flight state of a condition: name, airspeed, altitude, weight.

@@ -4,13 +4,16 @@ use std::sync::Arc;
 
 use nalgebra::DMatrix;
 
-use super::channel::{BundleKind, Channel, Pair, PairTable};
+use super::band::Band;
+use super::channel::Channel;
 use super::condition::Condition;
-use super::dataset::{Band, Dataset, DatasetHeader};
+use super::dataset::{Dataset, DatasetHeader};
 use super::limits::{MOST_CHANNELS, MOST_CONDITIONS, MOST_MODELS, MOST_RECORDS};
 use super::location::Location;
 use super::measured_response::MeasuredResponse;
 use super::model::{Dynamics, Model, ModelBands, Origin};
+use super::model_id::BundleKind;
+use super::pair_table::{Pair, PairTable};
 use super::state_space::{StateSpace, Timing};
 use super::unchecked_dataset::{
     BandsDraft, ConditionDraft, DatasetDraft, DraftError, DraftFault, ModelDraft, ResponseArray,

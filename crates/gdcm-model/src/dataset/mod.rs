@@ -1,5 +1,6 @@
 //! The engineer's data: channels, models and flight conditions, checked once at construction (M1).
 
+pub mod band;
 pub mod channel;
 pub mod condition;
 mod condition_record;
@@ -12,13 +13,18 @@ mod draft_checks;
 pub mod location;
 pub mod measured_response;
 pub mod model;
+mod model_id;
+mod pair_table;
 pub mod state_space;
 pub mod unchecked_dataset;
 
-pub use channel::{BundleKind, Channel, ConditionId, ModelId, Pair, PairTable};
+pub use band::Band;
+pub use channel::Channel;
 pub use condition::Condition;
-pub use dataset::{Band, Dataset};
+pub use dataset::Dataset;
 pub use model::{Dynamics, Model};
+pub use model_id::{BundleKind, ConditionId, ModelId};
+pub use pair_table::{Pair, PairTable};
 pub use state_space::StateSpace;
 
 /// Upper limits on file contents: they bound the memory and time that a faulty or hostile file can

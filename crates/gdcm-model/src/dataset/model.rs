@@ -5,10 +5,11 @@ use std::sync::Arc;
 
 use sha2::{Digest, Sha256};
 
-use super::channel::{ChannelSide, PairTable};
+use super::channel::ChannelSide;
 use super::measured_response::{
     MeasuredResponse, MeasuredResponseError, check_frequencies, check_values,
 };
+use super::pair_table::PairTable;
 use super::state_space::{StateSpace, Timing};
 
 /// Dynamics of a model: matrices or measured data.
@@ -345,7 +346,7 @@ mod tests {
         let bands =
             |sd_deg: &[f64]| ModelBands::new(vec![1.0, 2.0], table(&[0.0, 0.5]), table(sd_deg));
         assert_eq!(
-            bands(&[1.0, 2.0]).unwrap().sd_deg()[super::super::channel::Pair::new(0, 0)],
+            bands(&[1.0, 2.0]).unwrap().sd_deg()[super::super::pair_table::Pair::new(0, 0)],
             [1.0, 2.0]
         );
         assert!(matches!(

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use super::band::Band;
 use super::channel::Channel;
 use super::condition::Condition;
-use super::model::{Dynamics, Model};
+use super::dynamics::Dynamics;
+use super::model::Model;
 use super::model_id::{BundleKind, ConditionId, ModelId};
 use super::pair_table::{Pair, PairTable};
 

@@ -7,9 +7,10 @@ use super::band::BandError;
 use super::channel::Channel;
 use super::condition::{ConditionError, ConditionRecord, FlightState};
 use super::dataset::DatasetError;
+use super::dynamics::Dynamics;
 use super::location::Location;
 use super::measured_response::{Estimate, MeasuredResponse, MeasuredResponseError};
-use super::model::{Dynamics, Model, Origin, Provenance};
+use super::model::{Model, Origin, Provenance};
 use super::pair_table::PairTable;
 use super::state_space::{StateSpaceError, Timing};
 

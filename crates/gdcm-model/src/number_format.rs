@@ -102,12 +102,11 @@ pub fn signed(change: f64, decimals: usize) -> String {
 
 /// Formats a value with up to six significant digits and a true minus sign, without trailing zeros.
 pub fn compact(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return if value == 0.0 {
-            "0".to_owned()
-        } else {
-            value.to_string()
-        };
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    if !value.is_finite() {
+        return value.to_string();
     }
     let decimals = (5 - value.abs().log10().floor() as i64).clamp(0, 12) as usize;
     let text = format!("{value:.decimals$}");

@@ -5,7 +5,7 @@
 use nalgebra::{Complex, DMatrix};
 
 use gdcm_model::dataset::{ConditionId, Pair, PairTable, StateSpace};
-use gdcm_model::response::eigenvalues::ModesError;
+use gdcm_model::response::mode::ModesError;
 use gdcm_model::response::{FrequencyResponse, modes};
 use gdcm_model::units::ratio_to_db;
 

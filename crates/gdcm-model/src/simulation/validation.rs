@@ -7,7 +7,7 @@ use super::flight_record::{Segment, centred};
 use super::low_pass::LowPass;
 use crate::dataset::StateSpace;
 use crate::executor::{Executor, each};
-use crate::response::eigenvalues::poles;
+use crate::response::mode::poles;
 
 /// Maximum window length for an unstable model, in time constants of its fastest diverging mode
 /// (M14, section 6).

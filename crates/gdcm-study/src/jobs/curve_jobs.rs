@@ -7,7 +7,7 @@ use gdcm_model::dataset::{
     Band, BundleKind, Condition, ConditionId, Dataset, Model, ModelId, Pair,
 };
 use gdcm_model::progress::{Cancelled, Progress};
-use gdcm_model::response::eigenvalues::{ModesError, modes_of};
+use gdcm_model::response::mode::{ModesError, modes_of};
 use gdcm_model::response::{FrequencyGrid, FrequencyResponse, GainDelay, Mode, PreparedModel};
 
 use super::job::Job;

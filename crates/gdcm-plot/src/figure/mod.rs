@@ -9,9 +9,11 @@
 //! |---|---|
 //! | [`figure`], [`marks`], [`legend`] | describe a figure |
 //! | [`axis`], `range`, `ticks`, `display_units` | axes, their ticks and units |
-//! | [`role`], [`drawing`] | line styles and colours by meaning |
+//! | [`role`], `color`, `stroke` | line styles and colours by meaning |
+//! | [`drawing`], `area` | shapes and texts on paper |
 //! | [`bode`], [`error`], [`gains`], [`assessment`], [`poles`], [`leads`], [`requirements`] | a figure for each view |
 //! | [`condition_source`], [`responses`] | curves for a condition, from models and corrections |
+//! | `airspeed_response`, `uncertainty_band`, `reference_line`, `error_references` | curves over all conditions, bands and lines about them |
 //! | [`layout`], [`letters`], [`label_places`] | places for panels, letters and labels |
 //! | [`paint`], `paint_axes`, `paint_marks`, `paint_dots`, `paint_words` | shapes at their places |
 //! | [`thinning`], [`tables`] | omission of invisible points; values of a figure |
@@ -36,6 +38,7 @@
 //! ```
 
 mod airspeed_response;
+mod area;
 mod arrow;
 pub mod assessment;
 pub mod axis;
@@ -43,6 +46,7 @@ pub mod bode;
 mod bode_curve;
 mod bode_options;
 mod coherence;
+mod color;
 mod condition_classes;
 pub mod condition_source;
 mod couplings;
@@ -50,6 +54,7 @@ mod damping_grid;
 mod display_units;
 pub mod drawing;
 pub mod error;
+mod error_references;
 mod evidence;
 #[expect(
     clippy::module_inception,
@@ -80,6 +85,7 @@ mod reference_line;
 pub mod requirements;
 pub mod responses;
 pub mod role;
+mod stroke;
 pub mod tables;
 pub mod thinning;
 mod ticks;

@@ -15,7 +15,7 @@
 //! | [`condition_source`], [`responses`] | curves for a condition, from models and corrections |
 //! | `airspeed_response`, `uncertainty_band`, `reference_line`, `error_references` | curves over all conditions, bands and lines about them |
 //! | [`layout`], [`letters`], [`label_places`] | places for panels, letters and labels |
-//! | [`paint`], `paint_axes`, `paint_marks`, `paint_dots`, `paint_words` | shapes at their places |
+//! | [`paint`], `paint_axes`, `paint_marks`, `paint_dots`, `dot_style`, `paint_words` | shapes at their places |
 //! | [`thinning`], [`tables`] | omission of invisible points; values of a figure |
 //!
 //! Every view in the window has a function here that describes its figure, and the command `gdcm
@@ -52,6 +52,7 @@ pub mod condition_source;
 mod couplings;
 mod damping_grid;
 mod display_units;
+mod dot_style;
 pub mod drawing;
 pub mod error;
 mod error_references;

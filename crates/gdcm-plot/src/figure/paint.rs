@@ -1,7 +1,7 @@
 //! Paints a whole figure on paper, or a single panel on any canvas: shapes and texts at their
 //! positions.
 
-pub use super::paint_dots::DotStyle;
+pub use super::dot_style::DotStyle;
 
 use super::axis::Range;
 use super::drawing::{Anchor, Area, Color, Drawing, PT_PER_MM, Shape, Stroke, Text};

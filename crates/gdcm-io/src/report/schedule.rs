@@ -76,7 +76,10 @@ fn add_airspeed(page: &mut Page, analysis: &Analysis, schedule: &Schedule, chann
     }
     for (measure, quantity) in measures {
         let title = format!("Channel {quantity} over airspeed, and their schedule");
-        let axes = (measure, Across::Airspeed);
+        let axes = GainAxes {
+            measure,
+            across: Across::Airspeed,
+        };
         add_channels(page, analysis, channels, axes, &title);
     }
     for pairs in shown_pairs(&analysis.study).chunks(PAIRS_IN_A_FIGURE) {

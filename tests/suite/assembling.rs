@@ -813,7 +813,7 @@ fn names_are_said_for_the_channels_of_one_model_and_a_wrong_number_of_them_is_to
     );
     let wrong_count = ProblemKind::Names {
         side: ChannelSide::Output,
-        said: 2,
+        given: 2,
         found: 1,
     };
     let two_names = kinds(&["Q", "P"]);

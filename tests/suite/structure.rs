@@ -20,9 +20,15 @@ const CRATES: &[(&str, ModuleTable)] = &[
             ("executor", &[]),
             ("whole_number", &[]),
             ("statistics", &[]),
-            ("dataset", &["units", "message_text", "whole_number"]),
+            (
+                "dataset",
+                &["number_format", "units", "message_text", "whole_number"],
+            ),
             ("progress", &["dataset"]),
-            ("assembly", &["units", "whole_number", "dataset", "names"]),
+            (
+                "assembly",
+                &["number_format", "units", "whole_number", "dataset", "names"],
+            ),
             ("names", &["units", "message_text", "dataset"]),
             ("response", &["units", "dataset", "statistics"]),
             ("simulation", &["executor", "dataset", "response"]),

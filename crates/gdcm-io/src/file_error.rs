@@ -4,7 +4,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use gdcm_method::requirements::tolerance::ToleranceError;
-use gdcm_model::dataset::dataset::BandError;
+use gdcm_model::dataset::band::BandError;
 use gdcm_model::dataset::location::Location;
 use gdcm_model::dataset::unchecked_dataset::{DraftError, DraftFault};
 use gdcm_model::message_text::{quoted, sanitized, sanitized_path};

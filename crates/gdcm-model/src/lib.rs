@@ -19,7 +19,7 @@
 //!
 //! ```
 //! use gdcm_model::dataset::{Pair, StateSpace};
-//! use gdcm_model::response::eigenvalues::poles;
+//! use gdcm_model::response::mode::poles;
 //! use nalgebra::dmatrix;
 //!
 //! // q = 1 / (s + 2) times the stick

@@ -43,6 +43,7 @@ pub fn shortened_message(text: &str) -> String {
     /// Maximum length \[characters\]: longer than any message of the program with sixty column
     /// names.
     const LONGEST: usize = 2000;
+    /// Length of what remains at each end \[characters\].
     const KEPT: usize = 900;
     let words: Vec<String> = text.split(' ').map(shortened_name).collect();
     without_middle(&words.join(" "), LONGEST, KEPT)
@@ -52,6 +53,7 @@ pub fn shortened_message(text: &str) -> String {
 pub fn shortened_name(text: &str) -> String {
     /// Maximum length \[characters\]: longer than most file paths.
     const LONGEST: usize = 400;
+    /// Length of what remains at each end \[characters\].
     const KEPT: usize = 40;
     without_middle(text, LONGEST, KEPT)
 }

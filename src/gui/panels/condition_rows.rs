@@ -84,7 +84,7 @@ impl<'a> ConditionRows<'a> {
         let pitch = (room / columns.len().max(1) as f32).min(MOST_PITCH);
         Self {
             state,
-            classes: Classes::of(state.dataset()),
+            classes: Classes::from_dataset(state.dataset()),
             columns,
             pitch,
             layout,
@@ -102,7 +102,7 @@ impl<'a> ConditionRows<'a> {
         }];
         Self {
             state,
-            classes: Classes::of(state.dataset()),
+            classes: Classes::from_dataset(state.dataset()),
             columns,
             pitch: MOST_PITCH,
             layout: RAIL,

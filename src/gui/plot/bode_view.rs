@@ -75,7 +75,7 @@ pub(super) struct SelectionBox {
 
 /// Returns the range of `log10 omega` from the first to the last frequency.
 fn log_omega_of(curves: &[BodeCurve]) -> Option<Range> {
-    Range::of(
+    Range::spanning(
         curves
             .iter()
             .flat_map(|curve| curve.omega.iter())
@@ -306,8 +306,12 @@ impl BodeView {
             Some(invalid) => invalid.up_to,
             None => scene.band.1,
         };
+        let band = Range {
+            min: scene.band.0,
+            max: upper,
+        };
         for pane in PANES {
-            if let Some(values) = fitted_values(scene.curves, pane, (scene.band.0, upper)) {
+            if let Some(values) = fitted_values(scene.curves, pane, band) {
                 let least = scene.quantity.least_height(pane);
                 self.values[pane as usize].fit(values.with_margin(FIT_MARGIN, least));
             }

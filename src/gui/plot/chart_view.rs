@@ -182,7 +182,7 @@ fn zoom_limits(chart: &Chart<'_>) -> [Range; 2] {
         ChartAxis::Linear => widths,
     };
     [
-        Range::of(places).map_or(Range::ALL, |data| limit_across.range(data)),
-        Range::of(values).map_or(Range::ALL, |data| widths.range(data)),
+        Range::spanning(places).map_or(Range::ALL, |data| limit_across.range(data)),
+        Range::spanning(values).map_or(Range::ALL, |data| widths.range(data)),
     ]
 }

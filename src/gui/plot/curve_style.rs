@@ -196,7 +196,7 @@ mod tests {
             Hue::Warning,
             Hue::Good,
         ]) {
-            let [red, green, blue, _] = light.color(Color::of(hue)).to_array();
+            let [red, green, blue, _] = light.color(Color::new(hue)).to_array();
             assert_eq!([red, green, blue], hue.on_paper(), "{hue:?}");
         }
     }

@@ -4,7 +4,7 @@ use egui::{Rect, Sense, Ui, Vec2, vec2};
 
 use gdcm_plot::figure::Figure;
 use gdcm_plot::figure::legend::Sample;
-use gdcm_plot::figure::paint::dot_shapes;
+use gdcm_plot::figure::paint::DotStyle;
 
 use super::canvas::Canvas;
 use crate::gui::widgets::palette::Palette;
@@ -37,7 +37,13 @@ fn paint_sample(ui: &Ui, place: Rect, sample: Sample, palette: &Palette) {
                 origin: place.center(),
                 palette,
             };
-            canvas.paint(&dot_shapes([0.0, 0.0], (shape, 1.0), color, filled));
+            let style = DotStyle {
+                shape,
+                size: 1.0,
+                color,
+                filled,
+            };
+            canvas.paint(&style.shapes([0.0, 0.0]));
         }
         Sample::Line(stroke) => {
             let path = vec![place.left_center(), place.right_center()];

@@ -6,7 +6,7 @@ use egui_plot::{PlotPoint, PlotTransform};
 use gdcm_plot::figure::axis::Scale;
 use gdcm_plot::figure::drawing::{Area, Shape};
 use gdcm_plot::figure::figure::{Dot, Dots};
-use gdcm_plot::figure::paint::dot_shapes;
+use gdcm_plot::figure::paint::DotStyle;
 use gdcm_plot::figure::{Mark, MarkId, Panel, Range};
 
 use super::canvas::{Canvas, LETTERS_PT, area};
@@ -51,12 +51,12 @@ impl DrawnMarks {
             drawn.area == area && drawn.ranges == ranges && drawn.panel == *panel
         });
         if !is_same {
-            let (shapes, _) = panel.shapes(area, ranges, LETTERS_PT);
+            let painted = panel.shapes(area, ranges, LETTERS_PT);
             self.drawn = Some(DrawnPanel {
                 panel: panel.clone(),
                 area,
                 ranges,
-                shapes,
+                shapes: painted.shapes,
             });
         }
         match &self.drawn {
@@ -133,8 +133,11 @@ impl MarkScene<'_> {
         for dot in dots.dots.iter().filter(|dot| dot.id.is_some()) {
             if dot.id.as_ref() == self.emphasized {
                 let at = canvas.paper_place(self.position(dot));
-                let look = (dots.shape, EMPHASIZED * dots.size.max(LEAST_EMPHASIZED));
-                canvas.paint(&dot_shapes(at, look, dots.color, dots.filled));
+                let style = DotStyle {
+                    size: EMPHASIZED * dots.size.max(LEAST_EMPHASIZED),
+                    ..DotStyle::of_group(dots)
+                };
+                canvas.paint(&style.shapes(at));
             }
             if dot.id.as_ref() == self.selected {
                 let at = PlotPoint::new(dot.x, dot.y);

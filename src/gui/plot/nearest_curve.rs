@@ -4,6 +4,8 @@
 use egui::{Pos2, Rect, pos2, vec2};
 use egui_plot::{PlotPoint, PlotTransform};
 
+use gdcm_plot::figure::Range;
+
 use super::drawn_curves::{BodeCurve, CurveId, LogFrequencies, Pane};
 use super::thinning::is_finite;
 
@@ -32,10 +34,10 @@ pub(super) fn nearest_curve(
     // The best hit so far, and the layer of its curve.
     let mut best: Option<(Hit, usize)> = None;
     let mut axis = LogFrequencies::default();
-    let [low, high] = [-PICK_RADIUS, PICK_RADIUS]
+    let [min, max] = [-PICK_RADIUS, PICK_RADIUS]
         .map(|dx| transform.value_from_position(pointer + vec2(dx, 0.0)).x);
     for (index, curve) in curves.iter().enumerate() {
-        let points = curve.points_between(&mut axis, pane, (low, high));
+        let points = curve.points_between(&mut axis, pane, Range { min, max });
         let Some(closest) = closest_point(points, pointer, transform) else {
             continue;
         };
@@ -68,11 +70,11 @@ pub(super) fn curves_in(
     transform: &PlotTransform,
 ) -> Vec<CurveId> {
     let mut axis = LogFrequencies::default();
-    let [low, high] =
+    let [min, max] =
         [area.left(), area.right()].map(|x| transform.value_from_position(pos2(x, area.top())).x);
     let mut found = Vec::new();
     for curve in curves {
-        let points = curve.points_between(&mut axis, pane, (low, high));
+        let points = curve.points_between(&mut axis, pane, Range { min, max });
         if runs_through(points, area, transform) {
             found.push(curve.id.clone());
         }

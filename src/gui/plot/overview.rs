@@ -63,7 +63,7 @@ fn log_omega_of(cells: &[OverviewCell<'_>]) -> Option<Range> {
             ends.extend([first.log10(), last.log10()]);
         }
     }
-    Range::of(ends)
+    Range::spanning(ends)
 }
 
 /// Returns "LON → Q: J 75".

@@ -56,7 +56,7 @@ impl Sketch<'_> {
     /// Returns the transform that shows all values; `None` without values.
     fn transform(&self) -> Option<PlotTransform> {
         let values = self.curves.iter().flat_map(|curve| curve.values(self.pane));
-        let values = Range::of(values.copied())?.with_margin(MARGIN, LEAST_HEIGHT);
+        let values = Range::spanning(values.copied())?.with_margin(MARGIN, LEAST_HEIGHT);
         let bounds = bounds_of([self.log_omega, values]);
         Some(PlotTransform::new(self.rect, bounds, false))
     }

@@ -3,7 +3,7 @@
 
 use egui::{Align2, Pos2, Rect, Ui, vec2};
 
-use gdcm_plot::figure::responses::airspeed_curves;
+use gdcm_plot::figure::responses::AirspeedResponse;
 use gdcm_study::AcrossRole;
 use gdcm_study::jobs::curve_jobs::AcrossJob;
 use gdcm_study::stages::condition_curves::display_band;
@@ -141,11 +141,15 @@ pub fn across_curves(state: &mut State) -> Vec<BodeCurve> {
     let Some(curves) = state.across().cloned() else {
         return Vec::new();
     };
-    let pair = state.display.selection.pair;
     let mut cached = std::mem::take(&mut state.display.frequency.across_shapes);
-    let sources = (state.dataset(), state.analysis());
-    let role = state.display.frequency.across_role;
-    let mut drawn = airspeed_curves(sources, role, pair, &curves, &mut cached);
+    let response = AirspeedResponse {
+        dataset: state.dataset(),
+        analysis: state.analysis(),
+        role: state.display.frequency.across_role,
+        pair: state.display.selection.pair,
+        responses: &curves,
+    };
+    let mut drawn = response.curves(&mut cached);
     for curve in &mut drawn {
         curve.highlighted =
             matches!(&curve.id, CurveId::Model(id) if id.condition == state.condition().id());

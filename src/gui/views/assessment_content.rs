@@ -1,7 +1,7 @@
 //! Content of the assessment apart from its bars: assessed responses, table of changes, summary.
 
-use gdcm_model::dataset::{ConditionId, Pair};
-use gdcm_plot::figure::assessment::change_table;
+use gdcm_model::dataset::Pair;
+use gdcm_plot::figure::assessment::{ChangeColumn, ChangeTable};
 use gdcm_study::AssessmentTable;
 use gdcm_words::Table;
 use gdcm_words::assessment::{held_out_verdict, not_assessed_text, summary_text};
@@ -31,20 +31,24 @@ pub fn assessed_pairs(state: &State) -> Vec<Pair> {
 /// signed change of J.
 pub fn assessment_text_table(state: &State, table: &AssessmentTable) -> Table {
     let part = state.display.judging.assessed.part;
-    let conditions: Vec<(ConditionId, String)> = state
+    let columns: Vec<ChangeColumn> = state
         .dataset()
         .conditions()
         .iter()
-        .map(|condition| (condition.id(), condition.id().to_string()))
+        .map(|condition| ChangeColumn {
+            condition: condition.id(),
+            heading: condition.id().to_string(),
+        })
         .collect();
     let title = format!("{} of each response in each condition", part.symbol());
-    change_table(
-        title,
-        (state.dataset(), table),
-        &assessed_pairs(state),
-        &conditions,
-        part.extractor(),
-    )
+    let contents = ChangeTable {
+        dataset: state.dataset(),
+        assessment: table,
+        pairs: &assessed_pairs(state),
+        columns: &columns,
+        part: part.extractor(),
+    };
+    contents.table(title)
 }
 
 /// Summarises the assessment in sentences: improved responses, the verdict on the conditions held

@@ -154,7 +154,7 @@ impl AssessmentPlots<'_> {
 }
 
 fn visible_range(found: &[PlacedChange]) -> Range {
-    Range::of(found.iter().flat_map(PlacedChange::ends))
+    Range::spanning(found.iter().flat_map(PlacedChange::ends))
         .unwrap_or(Range::new(-1.0, 1.0))
         .with_margin(MARGIN, 1.0)
 }
@@ -187,7 +187,7 @@ fn bars_of_hue(found: &[PlacedChange], part: BarPart, hue: Hue) -> Bars {
     };
     Bars {
         name: String::new(),
-        color: Color::of(hue).tint(strength),
+        color: Color::new(hue).tint(strength),
         width: BAR,
         bars,
         feet,
@@ -211,7 +211,7 @@ fn total_lines(found: &[PlacedChange]) -> Curve {
 fn left_out_ground(left_out: &[f64], range: Range) -> Spans {
     Spans {
         name: String::new(),
-        color: Color::of(Hue::Rejected).tint(13),
+        color: Color::new(Hue::Rejected).tint(13),
         width: 0.7,
         spans: left_out
             .iter()

@@ -2,7 +2,7 @@
 
 use egui::{Align2, FontId, Rect, Ui, pos2, vec2};
 
-use gdcm_plot::figure::gains::{Across, GainQuantity, Measure, channels_figure, quieten};
+use gdcm_plot::figure::gains::{Across, GainAxes, GainQuantity, Measure, channels_figure, quieten};
 use gdcm_plot::figure::{Figure, MarkId, all_channels};
 
 use super::error_bars::{error_bars_switch_ui, shown_uncertainty};
@@ -153,7 +153,8 @@ pub fn channel_plots(state: &State) -> GainPlots<'_> {
     if let Some(analysis) = state.analysis() {
         let channels = all_channels(state.dataset());
         let uncertainty = shown_uncertainty(state);
-        figure = channels_figure(analysis, uncertainty, &channels, (measure, across));
+        let axes = GainAxes { measure, across };
+        figure = channels_figure(analysis, uncertainty, &channels, axes);
         for channel in channels {
             quantities.push(GainQuantity::of_channel(channel, measure));
         }

@@ -157,7 +157,7 @@ impl PointedDot<'_> {
     fn scheduled_words(&self, across: Across) -> Option<String> {
         let measure = self.quantity.measure();
         let schedule = measure.schedule_of(self.analysis, across)?;
-        let scheduled = self.quantity.of(&schedule.at(self.airspeed_kt));
+        let scheduled = self.quantity.value_in(&schedule.at(self.airspeed_kt));
         Some(format!("scheduled {}", measure.text(scheduled)))
     }
 

@@ -4,7 +4,7 @@ use egui::{Panel, Ui, Vec2, vec2};
 
 use gdcm_model::dataset::ModelId;
 use gdcm_plot::figure::figure::Along;
-use gdcm_plot::figure::poles::{damping_grid, poles_figure};
+use gdcm_plot::figure::poles::{PoleContents, damping_grid, poles_figure};
 use gdcm_plot::figure::{Figure, Mark, MarkId, Range, Role};
 use gdcm_study::Edit;
 
@@ -128,12 +128,13 @@ pub fn poles(state: &State) -> Option<Figure> {
         Some((_, zeros)) => zeros.clone(),
         None => Vec::new(),
     };
-    let figure = poles_figure(
-        &condition_source(state)?,
-        state.modes()?,
-        &bode_options(state),
-        (&zeros_of_model, shifts),
-    );
+    let source = condition_source(state)?;
+    let contents = PoleContents {
+        modes: state.modes()?,
+        zeros_of: &zeros_of_model,
+        shifts,
+    };
+    let figure = poles_figure(&source, contents, &bode_options(state));
     figure.plots[0].panels[0].dots().next()?;
     Some(figure)
 }

@@ -194,7 +194,7 @@ impl RequirementsView<'_> {
                     let look = TableLook {
                         color: &|row, column| {
                             let hue = page.hue(row, column)?;
-                            Some(self.palette.color(Color::of(hue)))
+                            Some(self.palette.color(Color::new(hue)))
                         },
                         selected: &|row| {
                             table.columns[0] == "condition"

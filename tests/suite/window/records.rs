@@ -1085,7 +1085,7 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
         .clone();
     // Reference values from independent numpy code (M14.13): 35.9, 30.8 and 22.6 dB at 5, 8 and 20
     // rad/s.
-    let model = PreparedModel::of(&found.refined.dynamics);
+    let model = PreparedModel::new(&found.refined.dynamics);
     for ends in [[(5.0, 35.9), (20.0, 22.6)], [(8.0, 30.8), (20.0, 22.6)]] {
         let grid = FrequencyGrid::logarithmic(Band::new(ends[0].0, ends[1].0).unwrap(), 2);
         let response = model.response(&grid);
@@ -1155,7 +1155,7 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
         .clone();
     let grid = FrequencyGrid::logarithmic(Band::new(8.0, 20.0).unwrap(), 2);
     let at_8_db = 20.0
-        * PreparedModel::of(&found.refined.dynamics)
+        * PreparedModel::new(&found.refined.dynamics)
             .response(&grid)
             .curve(Pair::new(0, 0))[0]
             .norm()

@@ -391,10 +391,13 @@ mod tests {
             );
             let result = analysis.condition(model.condition).unwrap();
             let bundle = result.condition.bundle(BundleKind::Physics);
-            let physics =
-                FrequencyResponse::of(&bundle[result.condition.nominal()].dynamics, &grid);
+            let physics = FrequencyResponse::from_dynamics(
+                &bundle[result.condition.nominal()].dynamics,
+                &grid,
+            );
             let coupled = result.coupled_response(&physics);
-            let found = FrequencyResponse::of(&Dynamics::StateSpace(model.model.clone()), &grid);
+            let found =
+                FrequencyResponse::from_dynamics(&Dynamics::StateSpace(model.model.clone()), &grid);
             for (pair, curve) in coupled.curves().iter() {
                 let gain = result.correction.net_gain(pair);
                 let largest = curve.iter().map(|value| value.norm()).fold(0.0, f64::max) * gain;

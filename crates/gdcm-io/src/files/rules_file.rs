@@ -149,8 +149,8 @@ impl RulesText {
             headings: self.headings,
             rows: self.models,
         };
-        for ScopedDeclarations { of, channels } in self.declarations {
-            rules.declare(of, &channels);
+        for ScopedDeclarations { scope, channels } in self.declarations {
+            rules.declare(scope, &channels);
         }
         Ok(rules)
     }
@@ -173,7 +173,7 @@ impl RulesText {
     /// Rejects invalid declarations for roles, folders, files and single models.
     fn check_declarations(&self) -> Result<(), ContentError> {
         for scoped in &self.declarations {
-            check_declarations(&format!("declarations, {}", scoped.of), &scoped.channels)?;
+            check_declarations(&format!("declarations, {}", scoped.scope), &scoped.channels)?;
         }
         for (key, row) in &self.models {
             check_declarations(&format!("models, {key}"), &row.declarations())?;

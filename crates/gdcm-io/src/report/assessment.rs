@@ -2,10 +2,12 @@
 
 use gdcm_method::fidelity::ACCEPTABLE;
 use gdcm_method::schedule::CostChange;
-use gdcm_model::dataset::{ConditionId, Pair, PairTable};
+use gdcm_model::dataset::{Pair, PairTable};
 use gdcm_model::number_format::decimals;
 use gdcm_model::units::signed;
-use gdcm_plot::figure::assessment::{assessment_figure, average_word, change_table, usual_choice};
+use gdcm_plot::figure::assessment::{
+    ChangeColumn, ChangeTable, assessment_figure, average_word, usual_choice,
+};
 use gdcm_study::results::analysis::Analysis;
 use gdcm_study::results::assessment_table::AssessmentTable;
 use gdcm_words::assessment::{missing_cost_text, not_assessed_text, summary_text};
@@ -109,18 +111,24 @@ fn add_tables(
 ) {
     let dataset = &*analysis.study.dataset;
     let shown = &assessment.conditions[..assessment.conditions.len().min(CONDITIONS_DRAWN)];
-    let mut conditions: Vec<(ConditionId, String)> = Vec::with_capacity(shown.len());
+    let mut columns: Vec<ChangeColumn> = Vec::with_capacity(shown.len());
     for assessed in shown {
-        conditions.push((assessed.condition, format!("cond. {}", assessed.condition)));
+        columns.push(ChangeColumn {
+            condition: assessed.condition,
+            heading: format!("cond. {}", assessed.condition),
+        });
     }
-    let table = change_table(
-        format!("ΔJ of {name}"),
-        (dataset, assessment),
+    let contents = ChangeTable {
+        dataset,
+        assessment,
         pairs,
-        &conditions,
-        CostChange::total,
+        columns: &columns,
+        part: CostChange::total,
+    };
+    page.wide_table(
+        &contents.table(format!("ΔJ of {name}")),
+        CONDITIONS_SIDE_BY_SIDE,
     );
-    page.wide_table(&table, CONDITIONS_SIDE_BY_SIDE);
     let more = assessment.conditions.len() - shown.len();
     if more > 0 {
         page.paragraph(&format!(

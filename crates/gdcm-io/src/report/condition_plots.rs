@@ -6,7 +6,7 @@ use gdcm_model::dataset::Pair;
 use gdcm_model::progress::{Cancelled, Progress, Unobserved};
 use gdcm_plot::figure::bode::{BodeOptions, bode_figure, overview_figure};
 use gdcm_plot::figure::error::error_figure;
-use gdcm_plot::figure::poles::poles_figure;
+use gdcm_plot::figure::poles::{PoleContents, poles_figure};
 use gdcm_plot::figure::{ConditionSource, Figure, Mark, Role};
 use gdcm_study::jobs::curve_jobs::ConditionModes;
 use gdcm_study::stages::condition_curves::{CURVE_POINTS, curves_band};
@@ -108,9 +108,14 @@ fn add_poles(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOption
         Some(result) => result.pole_shifts(),
         None => Default::default(),
     };
+    let contents = PoleContents {
+        modes: &modes,
+        zeros_of: &|_| Vec::new(),
+        shifts: &shifts,
+    };
     let id = source.curves.condition.id();
     page.figure(
-        &poles_figure(source, &modes, options, (&|_| Vec::new(), &shifts)),
+        &poles_figure(source, contents, options),
         &format!("Condition {id}, poles of its models"),
         "Physics models ×, identified models +; rays of equal damping ratio. Corrections of \
         channels do not move poles; couplings do.",

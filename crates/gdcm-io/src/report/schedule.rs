@@ -8,7 +8,7 @@ use gdcm_model::number_format::{compact, decimals};
 use gdcm_model::units::{number, s_to_ms};
 use gdcm_plot::figure::all_channels;
 use gdcm_plot::figure::condition_source::quantity_symbol;
-use gdcm_plot::figure::gains::{Across, Measure, channels_figure, net_gain_figure};
+use gdcm_plot::figure::gains::{Across, GainAxes, Measure, channels_figure, net_gain_figure};
 use gdcm_study::{Analysis, Study};
 use gdcm_words::Table;
 use gdcm_words::schedule::delayed_channel_text;
@@ -34,7 +34,10 @@ pub(super) fn add_schedule(page: &mut Page, analysis: &Analysis) {
     for (measure, quantity) in [(Measure::Gain, "Gains"), (Measure::Delay, "Delays")] {
         for (side, channels) in [("inputs", &inputs), ("outputs", &outputs)] {
             let title = format!("{quantity} of the {side} over conditions");
-            let axes = (measure, Across::Conditions);
+            let axes = GainAxes {
+                measure,
+                across: Across::Conditions,
+            };
             add_channels(page, analysis, channels, axes, &title);
         }
     }
@@ -45,13 +48,12 @@ pub(super) fn add_schedule(page: &mut Page, analysis: &Analysis) {
     }
 }
 
-/// Adds figures of the channels; `axes` are the plotted quantity and the quantity on the horizontal
-/// axis.
+/// Adds figures of the channels.
 fn add_channels(
     page: &mut Page,
     analysis: &Analysis,
     channels: &[Channel],
-    axes: (Measure, Across),
+    axes: GainAxes,
     title: &str,
 ) {
     for channels in channels.chunks(CHANNELS_IN_A_FIGURE) {
@@ -75,7 +77,10 @@ fn add_airspeed(page: &mut Page, analysis: &Analysis, schedule: &Schedule, chann
     }
     for (measure, quantity) in measures {
         let title = format!("Channel {quantity} over airspeed, and their schedule");
-        let axes = (measure, Across::Airspeed);
+        let axes = GainAxes {
+            measure,
+            across: Across::Airspeed,
+        };
         add_channels(page, analysis, channels, axes, &title);
     }
     for pairs in shown_pairs(&analysis.study).chunks(PAIRS_IN_A_FIGURE) {

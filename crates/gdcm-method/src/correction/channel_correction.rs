@@ -107,7 +107,7 @@ impl ChannelCorrection {
     /// is possible if `k` itself is scheduled.
     pub fn on(&self, pair: Pair) -> Option<GainDelay> {
         let leads = Channel::of_pair(pair).map(|channel| self.lead(channel));
-        Some(self.without_leads_on(pair)?.led(leads))
+        Some(self.without_leads_on(pair)?.with_leads(leads))
     }
 
     /// Returns the factor as [`ChannelCorrection::on`], but without the lead filters; used for a

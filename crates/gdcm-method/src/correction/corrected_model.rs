@@ -420,7 +420,7 @@ mod tests {
     ) {
         let grid = FrequencyGrid::logarithmic(Band::new(0.5, 12.0).unwrap(), 12);
         let [found, plain] = [&corrected.model, plant]
-            .map(|model| PreparedModel::of(&Dynamics::StateSpace(model.clone())).response(&grid));
+            .map(|model| PreparedModel::new(&Dynamics::StateSpace(model.clone())).response(&grid));
         let correction = correction();
         for pair in [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(output, input)| Pair { output, input }) {
             let found = found.curve(pair);
@@ -571,7 +571,7 @@ mod tests {
             );
             let grid = FrequencyGrid::logarithmic(Band::new(0.5, 12.0).unwrap(), 12);
             let [found, plain] = [&corrected.model, &plant()].map(|model| {
-                PreparedModel::of(&Dynamics::StateSpace(model.clone())).response(&grid)
+                PreparedModel::new(&Dynamics::StateSpace(model.clone())).response(&grid)
             });
             for pair in
                 [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(output, input)| Pair { output, input })

@@ -3,7 +3,7 @@
 use nalgebra::Complex;
 
 use gdcm_model::dataset::StateSpace;
-use gdcm_model::response::eigenvalues::ModesError;
+use gdcm_model::response::mode::ModesError;
 use gdcm_model::response::modes;
 
 use super::coupling_matrices::{CoupledModelError, CouplingMatrices};

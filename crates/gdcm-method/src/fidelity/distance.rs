@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 
 use gdcm_model::dataset::{Pair, PairTable};
 use gdcm_model::response::PolarResponse;
-use gdcm_model::response::frequency_response::PolarCurve;
+use gdcm_model::response::polar_response::PolarCurve;
 
 use super::coherence_weights::CoherenceWeights;
 use super::cost::{Cost, CostAverage, mean_cost};
@@ -239,7 +239,7 @@ mod tests {
         let grid = FrequencyGrid::logarithmic(Band::new(1.0, 9.0).unwrap(), 100);
         let responses: Vec<PolarResponse> = models
             .iter()
-            .map(|model| PolarResponse::new(&FrequencyResponse::of(model, &grid)))
+            .map(|model| PolarResponse::new(&FrequencyResponse::from_dynamics(model, &grid)))
             .collect();
         let coherence_weights: Vec<_> = models
             .iter()

@@ -65,7 +65,7 @@ impl AttitudeOutput {
     /// # Errors
     /// [`AttitudeResponseError::NotAnAttitude`] for any other unit.
     pub fn classify(output: &Channel) -> Result<Self, AttitudeResponseError> {
-        match PhysicalUnit::of(&output.unit).map(|unit| unit.name) {
+        match PhysicalUnit::parse(&output.unit).map(|unit| unit.name) {
             Some("deg/s" | "rad/s") => Ok(Self::Rate),
             Some("deg" | "rad") => Ok(Self::Attitude),
             _ => Err(AttitudeResponseError::NotAnAttitude {

@@ -26,7 +26,7 @@ pub struct SampledModel {
 impl SampledModel {
     /// Samples a model for a search in and around `band`.
     pub fn new(dynamics: &Dynamics, band: Band) -> Self {
-        let prepared = PreparedModel::of(dynamics);
+        let prepared = PreparedModel::new(dynamics);
         let mut omega = search_frequencies(band);
         let searched = omega.len();
         let highest = omega[omega.len() - 1];

@@ -109,7 +109,7 @@ struct WeightedOutput {
 
 /// Returns the factor from a unit to deg, deg/s, ft/s or ft/s^2; `None` for any other unit.
 fn unit_factor(unit: &str) -> Option<f64> {
-    let counted = match PhysicalUnit::of(unit)?.dimension {
+    let counted = match PhysicalUnit::parse(unit)?.dimension {
         Dimension::Angle => "deg",
         Dimension::AngularRate => "deg/s",
         Dimension::Speed => "ft/s",

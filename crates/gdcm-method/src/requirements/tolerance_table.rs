@@ -215,13 +215,13 @@ impl Tolerance {
 
 /// Returns the unit of an angular rate's time integral; `None` for any other unit.
 fn integral_unit(rate: &str) -> Option<&'static str> {
-    let rate = PhysicalUnit::of(rate)?;
+    let rate = PhysicalUnit::parse(rate)?;
     if rate.dimension != Dimension::AngularRate {
         return None;
     }
     ["deg", "rad"]
         .into_iter()
-        .find(|angle| PhysicalUnit::of(angle).is_some_and(|angle| angle.size == rate.size))
+        .find(|angle| PhysicalUnit::parse(angle).is_some_and(|angle| angle.size == rate.size))
 }
 
 impl ToleranceTable {

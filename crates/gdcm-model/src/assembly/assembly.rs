@@ -204,7 +204,7 @@ impl Assembly {
         }
         let mut sides: Vec<String> = Vec::new();
         for side in &caution.sides {
-            let channels = side.of(&self.rules.inputs, &self.rules.outputs);
+            let channels = side.pick(&self.rules.inputs, &self.rules.outputs);
             let names: Vec<&str> = channels
                 .iter()
                 .map(|channel| channel.name.as_str())

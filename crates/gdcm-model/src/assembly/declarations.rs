@@ -68,7 +68,8 @@ pub(super) fn rename_key<T>(map: &mut BTreeMap<String, T>, old: &str, new: &str)
 /// Declarations and the models to which they apply.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct ScopedDeclarations {
-    pub of: FileScope,
+    #[serde(rename = "of")]
+    pub scope: FileScope,
     #[serde(flatten)]
     pub channels: ChannelDeclarations,
 }
@@ -83,9 +84,9 @@ pub(super) fn applicable_declarations<'d>(
 ) -> Vec<&'d ScopedDeclarations> {
     let mut applicable: Vec<&ScopedDeclarations> = declarations
         .iter()
-        .filter(|declared| declared.of.holds(found, role))
+        .filter(|declared| declared.scope.holds(found, role))
         .collect();
-    applicable.sort_by_key(|declared| declared.of.rank(found));
+    applicable.sort_by_key(|declared| declared.scope.rank(found));
     applicable
 }
 

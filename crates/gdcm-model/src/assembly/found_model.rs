@@ -6,6 +6,7 @@ use crate::dataset::condition::ConditionRecord;
 use crate::dataset::unchecked_dataset::{ModelDraft, ResponseDraft};
 use crate::names::response_name::ResponseNameError;
 use crate::names::{KnownChannels, ResponseName};
+use crate::number_format::counted;
 
 /// Name and unit of a channel in a file; `None` if the file does not give them.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -135,7 +136,7 @@ impl FoundModel {
         let Some(a) = &self.draft.matrices[0] else {
             return channels;
         };
-        let mut words = format!("{} states, {channels}", a.nrows());
+        let mut words = format!("{}, {channels}", counted(a.nrows(), "state"));
         let timing = self.draft.timing.words();
         if !timing.is_empty() {
             words.push_str(", ");

@@ -33,6 +33,8 @@ fn join_response(joined: &mut ResponseDraft, response: &ResponseDraft) {
     let count = joined.omega.len();
     let new_bands = bands_or_full_range(response);
     let mut bands = bands_or_full_range(joined);
+    // `place` numbers the responses row by row: output times input count plus input. Each has two
+    // ends of a band, and `count` values.
     for place in 0..joined.re.shape[0] * joined.re.shape[1] {
         let band = 2 * place..2 * place + 2;
         let is_new = new_bands.values[band.clone()] != NOT_MEASURED;
@@ -82,6 +84,7 @@ pub(super) fn note_unmeasured(model: &mut ModelDraft, rules: &Rules) {
     }
     let input_count = rules.inputs.len().max(1);
     let mut unmeasured = Vec::new();
+    // `place` numbers the responses row by row, as in `join_response`.
     for (place, band) in bands.values.chunks(2).enumerate() {
         if band == NOT_MEASURED
             && let Some(output) = rules.outputs.get(place / input_count)

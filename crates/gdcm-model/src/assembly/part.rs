@@ -118,7 +118,7 @@ fn name_count_problem(
     }
     Some(ProblemKind::Names {
         side: matcher.side,
-        said: names.len(),
+        given: names.len(),
         found: matcher.labels.len(),
     })
 }

@@ -7,6 +7,7 @@ use crate::dataset::channel::ChannelSide;
 use crate::dataset::unchecked_dataset::ResponseDraft;
 use crate::names::RowRole;
 use crate::names::response_name::ResponseNameError;
+use crate::number_format::counted;
 use crate::units::number;
 
 /// A missing or contradictory fact about a model, a condition or the dataset.
@@ -73,8 +74,9 @@ pub enum ProblemKind {
     },
     /// Channels without names whose count differs from the dataset's.
     #[error(
-        "the model has {found} {side}s without names, but the dataset has {expected}; name \
-        them under \"models\" in the rules"
+        "the model has {} without names, but the dataset has {expected}; name them under \
+        \"models\" in the rules",
+        counted(*found, &side.to_string())
     )]
     Unnamed {
         side: ChannelSide,
@@ -119,11 +121,14 @@ pub enum ProblemKind {
     },
     /// Declared channel names whose count differs from the model's channel count.
     #[error(
-        "{said} names are given for {found} {side}s of the model; give one for each, in the file's order"
+        "{} given for {} of the model; give one name for each, in the file's order",
+        counted(*given, "name"), counted(*found, &side.to_string())
     )]
     Names {
         side: ChannelSide,
-        said: usize,
+        /// Number of names in the rules.
+        given: usize,
+        /// Number of channels of the model.
         found: usize,
     },
     #[error("choose its condition")]

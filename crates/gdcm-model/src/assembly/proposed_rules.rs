@@ -59,7 +59,7 @@ impl<'m> LabelledModel<'m> {
 
     fn labels(&self, side: ChannelSide) -> &[ChannelLabel] {
         let [inputs, outputs] = &self.labels;
-        side.of(inputs, outputs)
+        side.pick(inputs, outputs)
     }
 
     fn named_count(&self, side: ChannelSide) -> usize {
@@ -71,7 +71,7 @@ impl<'m> LabelledModel<'m> {
 
     /// Returns whether the file, rather than its name, names a channel on this side.
     fn names_itself(&self, side: ChannelSide) -> bool {
-        side.of(&self.found.inputs, &self.found.outputs)
+        side.pick(&self.found.inputs, &self.found.outputs)
             .iter()
             .any(|label| label.name.is_some())
     }

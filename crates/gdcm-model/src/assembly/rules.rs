@@ -73,7 +73,7 @@ impl Default for Rules {
 impl Rules {
     /// Returns the dataset's inputs or outputs.
     pub fn channels_mut(&mut self, side: ChannelSide) -> &mut Vec<ChannelRule> {
-        side.of(&mut self.inputs, &mut self.outputs)
+        side.pick(&mut self.inputs, &mut self.outputs)
     }
 
     /// Renames a dataset channel.
@@ -94,7 +94,7 @@ impl Rules {
             channel.aliases.push(old.clone());
         }
         for (output, input) in &mut self.on_axis {
-            let on_side = side.of(input, output);
+            let on_side = side.pick(input, output);
             if *on_side == old {
                 on_side.clone_from(&name);
             }
@@ -119,7 +119,7 @@ impl Rules {
 
     /// Marks the responses of a channel that are on-axis by convention.
     fn mark_standard_on_axis(&mut self, side: ChannelSide, name: &str) {
-        for other in side.of(&self.outputs, &self.inputs) {
+        for other in side.pick(&self.outputs, &self.inputs) {
             let [output, input] = match side {
                 ChannelSide::Input => [&other.name, name],
                 ChannelSide::Output => [name, &other.name],
@@ -185,12 +185,12 @@ impl Rules {
         let known = self
             .declarations
             .iter()
-            .position(|declared| declared.of == scope);
+            .position(|declared| declared.scope == scope);
         let index = match known {
             Some(index) => index,
             None => {
                 self.declarations.push(ScopedDeclarations {
-                    of: scope,
+                    scope,
                     channels: ChannelDeclarations::default(),
                 });
                 self.declarations.len() - 1
@@ -202,7 +202,7 @@ impl Rules {
 
 fn signs_in_scope(scope: FileScope, signs: &Signs) -> ScopedDeclarations {
     ScopedDeclarations {
-        of: scope,
+        scope,
         channels: ChannelDeclarations {
             signs: signs.clone(),
             ..ChannelDeclarations::default()

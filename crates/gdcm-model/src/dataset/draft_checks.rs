@@ -4,18 +4,23 @@ use std::sync::Arc;
 
 use nalgebra::DMatrix;
 
-use super::channel::{BundleKind, Channel, Pair, PairTable};
+use super::band::Band;
+use super::channel::Channel;
 use super::condition::Condition;
-use super::dataset::{Band, Dataset, DatasetHeader};
+use super::dataset::{Dataset, DatasetHeader};
+use super::dynamics::Dynamics;
 use super::limits::{MOST_CHANNELS, MOST_CONDITIONS, MOST_MODELS, MOST_RECORDS};
 use super::location::Location;
 use super::measured_response::MeasuredResponse;
-use super::model::{Dynamics, Model, ModelBands, Origin};
+use super::model::{Model, ModelBands, Origin};
+use super::model_id::BundleKind;
+use super::pair_table::{Pair, PairTable};
 use super::state_space::{StateSpace, Timing};
 use super::unchecked_dataset::{
     BandsDraft, ConditionDraft, DatasetDraft, DraftError, DraftFault, ModelDraft, ResponseArray,
     ResponseDraft, Warning,
 };
+use crate::number_format::counted;
 
 /// Maximum number of collected faults; a file of the wrong kind has a fault in every model.
 const MOST_FAULTS: usize = 1000;
@@ -289,8 +294,8 @@ impl Checker {
             && model.order() != *order
         {
             let words = format!(
-                "the stated order is {order}, but the matrices have {} states",
-                model.order()
+                "the stated order is {order}, but the matrices have {}",
+                counted(model.order(), "state")
             );
             self.warnings.push(Warning {
                 place: place.clone(),
@@ -315,8 +320,9 @@ impl Checker {
         }
         if order > 0 && !names.is_empty() {
             let words = format!(
-                "{} state names for {order} states; the names are ignored",
-                names.len()
+                "{} for {}; the names are ignored",
+                counted(names.len(), "state name"),
+                counted(order, "state")
             );
             self.warnings.push(Warning { place, words });
         }

@@ -2,8 +2,8 @@
 
 use nalgebra::Complex;
 
-use super::channel::{Pair, PairTable};
 use super::limits::{AVERAGES, WINDOW_S};
+use super::pair_table::{Pair, PairTable};
 use crate::units::number;
 
 /// A frequency response measured (or exported) at `N` frequencies, given instead of a state-space

@@ -1,23 +1,34 @@
 //! The engineer's data: channels, models and flight conditions, checked once at construction (M1).
 
+pub mod band;
 pub mod channel;
 pub mod condition;
+mod condition_record;
+mod content_hash;
 #[expect(
     clippy::module_inception,
     reason = "the file holds the type after which the folder is named"
 )]
 pub mod dataset;
 mod draft_checks;
+mod dynamics;
 pub mod location;
 pub mod measured_response;
 pub mod model;
+mod model_bands;
+mod model_id;
+mod pair_table;
 pub mod state_space;
 pub mod unchecked_dataset;
 
-pub use channel::{BundleKind, Channel, ConditionId, ModelId, Pair, PairTable};
+pub use band::Band;
+pub use channel::Channel;
 pub use condition::Condition;
-pub use dataset::{Band, Dataset};
-pub use model::{Dynamics, Model};
+pub use dataset::Dataset;
+pub use dynamics::Dynamics;
+pub use model::Model;
+pub use model_id::{BundleKind, ConditionId, ModelId};
+pub use pair_table::{Pair, PairTable};
 pub use state_space::StateSpace;
 
 /// Upper limits on file contents: they bound the memory and time that a faulty or hostile file can

@@ -3,6 +3,7 @@
 
 use nalgebra::DMatrix;
 
+use crate::number_format::counted;
 use crate::units::number;
 
 /// A linear model `x' = A x + B u`, `y = C x + D u`, with `n` states, `m` inputs and `p` outputs;
@@ -173,7 +174,7 @@ pub enum TimingError {
     #[error("sample_time_s: expected a positive number of seconds (omit it for continuous time), \
         found {}", number(*.0))]
     SampleTime(f64),
-    #[error("{list}: expected {expected} delays, one for each channel, found {found}")]
+    #[error("{list}: expected {}, one for each channel, found {found}", counted(*expected, "delay"))]
     Count {
         /// `input_delays_s` or `output_delays_s`.
         list: &'static str,

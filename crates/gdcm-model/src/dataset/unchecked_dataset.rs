@@ -3,12 +3,15 @@
 
 use nalgebra::{Complex, DMatrix};
 
-use super::channel::{Channel, PairTable};
+use super::band::BandError;
+use super::channel::Channel;
 use super::condition::{ConditionError, ConditionRecord, FlightState};
-use super::dataset::{BandError, DatasetError};
+use super::dataset::DatasetError;
+use super::dynamics::Dynamics;
 use super::location::Location;
 use super::measured_response::{Estimate, MeasuredResponse, MeasuredResponseError};
-use super::model::{Dynamics, Model, Origin, Provenance};
+use super::model::{Model, Origin, Provenance};
+use super::pair_table::PairTable;
 use super::state_space::{StateSpaceError, Timing};
 
 /// A value for each response and frequency, `[output][input][frequency]`; the last index runs

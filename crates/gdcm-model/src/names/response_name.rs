@@ -191,7 +191,7 @@ impl Sides {
     }
 
     fn has(self, side: ChannelSide) -> bool {
-        side.of(self.input, self.output)
+        side.pick(self.input, self.output)
     }
 }
 
@@ -315,7 +315,7 @@ fn only_channel(
         return Ok(Some((*first).to_owned()));
     }
     Err(ResponseNameError::Several {
-        side: side.of("input", "output"),
+        side: side.pick("input", "output"),
         found: names.join(", "),
     })
 }
@@ -390,7 +390,7 @@ fn longest_channel<'t>(
 fn is_filler(word: &str) -> bool {
     let word = word.to_lowercase();
     let plain = word.trim_matches(|letter: char| letter.is_ascii_digit());
-    let is_unit = PhysicalUnit::of(plain).is_some_and(|unit| {
+    let is_unit = PhysicalUnit::parse(plain).is_some_and(|unit| {
         matches!(
             unit.dimension,
             Dimension::Speed | Dimension::Length | Dimension::Level | Dimension::Frequency

@@ -35,7 +35,7 @@ pub fn time_name_rank(name: &str) -> Option<u8> {
 }
 
 fn is_time_unit(word: &str) -> bool {
-    PhysicalUnit::of(word).is_some_and(|unit| unit.dimension == Dimension::Time)
+    PhysicalUnit::parse(word).is_some_and(|unit| unit.dimension == Dimension::Time)
 }
 
 #[cfg(test)]

@@ -171,7 +171,7 @@ impl GainDelay {
     }
 
     /// Returns the correction with its lead filters (of output and input) replaced.
-    pub fn led(self, leads: [Option<LeadFilter>; 2]) -> Self {
+    pub fn with_leads(self, leads: [Option<LeadFilter>; 2]) -> Self {
         Self { leads, ..self }
     }
 
@@ -268,7 +268,7 @@ mod tests {
     #[test]
     fn the_filters_of_both_channels_add_up() {
         let filter = |lead_s: f64| LeadFilter::new(LeadOrder::Second, lead_s, 0.03);
-        let both = GainDelay::NONE.led([Some(filter(0.02)), Some(filter(0.05))]);
+        let both = GainDelay::NONE.with_leads([Some(filter(0.02)), Some(filter(0.05))]);
         let expected = filter(0.02).phase(9.0) + filter(0.05).phase(9.0);
         assert_eq!(both.phases(&[0.0], &[9.0]).collect::<Vec<_>>(), [expected]);
     }

@@ -53,7 +53,7 @@ struct PreparedStateSpace {
 
 impl PreparedModel {
     /// Prepares a model, at the cost of a Hessenberg reduction for a state-space model.
-    pub fn of(dynamics: &Dynamics) -> Self {
+    pub fn new(dynamics: &Dynamics) -> Self {
         match dynamics {
             Dynamics::StateSpace(model) => {
                 let source = if LargeEntry::find(model).is_some() {
@@ -118,8 +118,8 @@ impl PreparedModel {
 impl FrequencyResponse {
     /// Computes the response of a model on a single grid. For several grids, use a
     /// [`PreparedModel`].
-    pub fn of(dynamics: &Dynamics, grid: &FrequencyGrid) -> Self {
-        PreparedModel::of(dynamics).response(grid)
+    pub fn from_dynamics(dynamics: &Dynamics, grid: &FrequencyGrid) -> Self {
+        PreparedModel::new(dynamics).response(grid)
     }
 }
 
@@ -207,7 +207,7 @@ mod tests {
     }
 
     fn curve(model: StateSpace) -> Vec<Complex<f64>> {
-        PreparedModel::of(&Dynamics::StateSpace(model))
+        PreparedModel::new(&Dynamics::StateSpace(model))
             .response(&grid())
             .curve(Pair::new(0, 0))
             .to_vec()

@@ -40,7 +40,7 @@ impl FlightRecord {
     pub fn channel(&self, signal: &Signal) -> DVectorView<'_, f64> {
         signal
             .role
-            .of(&self.inputs, &self.outputs)
+            .pick(&self.inputs, &self.outputs)
             .column(signal.index)
     }
 }
@@ -51,7 +51,7 @@ impl Segment {
     pub fn channel(&self, signal: &Signal) -> DVectorView<'_, f64> {
         signal
             .role
-            .of(&self.inputs, &self.outputs)
+            .pick(&self.inputs, &self.outputs)
             .column(signal.index)
     }
 }

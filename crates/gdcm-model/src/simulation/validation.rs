@@ -7,13 +7,15 @@ use super::flight_record::{Segment, centred};
 use super::low_pass::LowPass;
 use crate::dataset::StateSpace;
 use crate::executor::{Executor, each};
-use crate::response::eigenvalues::poles;
+use crate::response::mode::poles;
 
 /// Maximum window length for an unstable model, in time constants of its fastest diverging mode
 /// (M14, section 6).
 const TIME_CONSTANTS: f64 = 3.0;
 /// Minimum ratio of output samples to unknowns (initial state and offsets) in a window.
-const OVER_UNKNOWNS: usize = 3;
+const SAMPLES_PER_UNKNOWN: usize = 3;
+/// Excess of a segment over a whole number of windows that is attributed to rounding, in windows.
+const WINDOW_SLACK: f64 = 1e-6;
 /// Relative singular value below which a combination of unknowns is not estimated.
 const RANK_TOLERANCE: f64 = 1e-9;
 
@@ -200,11 +202,10 @@ fn window_s(model: &StateSpace, longest_s: f64) -> Option<f64> {
 /// estimate of an initial state.
 fn window_count(model: &StateSpace, segment: &Segment, window_s: f64) -> Option<usize> {
     let (samples, outputs) = segment.outputs.shape();
-    // `- 1e-6`: an excess of up to a millionth of a window is attributed to rounding.
-    let count = (samples as f64 * segment.sample_time_s / window_s - 1e-6)
+    let count = (samples as f64 * segment.sample_time_s / window_s - WINDOW_SLACK)
         .ceil()
         .clamp(1.0, samples.max(1) as f64) as usize;
-    if (samples / count) * outputs >= OVER_UNKNOWNS * (model.order() + outputs) {
+    if (samples / count) * outputs >= SAMPLES_PER_UNKNOWN * (model.order() + outputs) {
         Some(count)
     } else {
         None
@@ -219,21 +220,21 @@ fn windows(
     window_s: f64,
     std: &[f64],
 ) -> Result<Vec<ValidationWindow>, ValidationError> {
-    let held =
+    let discretised =
         FirstOrderHold::new(model, segment.sample_time_s).ok_or(ValidationError::NotSimulated)?;
     let Some(count) = window_count(model, segment, window_s) else {
         return Ok(Vec::new());
     };
     let samples = segment.outputs.nrows();
     let longest = samples.div_ceil(count);
-    let free = held.free_responses(longest);
+    let free = discretised.free_responses(longest);
     let mut windows = Vec::with_capacity(count);
     for k in 0..count {
         let from = window_start(k, count, samples);
         let length = window_start(k + 1, count, samples) - from;
         let measured = segment.outputs.rows(from, length).into_owned();
         let inputs = segment.inputs.rows(from, length).into_owned();
-        let simulated = best_simulation(&held, &free, inputs, &measured, std)
+        let simulated = best_simulation(&discretised, &free, inputs, &measured, std)
             .ok_or(ValidationError::NotFinite)?;
         windows.push(ValidationWindow {
             record: segment.record,
@@ -253,9 +254,12 @@ fn window_start(k: usize, count: usize, samples: usize) -> usize {
 }
 
 /// Simulates `inputs` with the initial state and offsets that minimise the squared difference
-/// between the outputs and `measured`; `None` if the outputs are not finite.
+/// between the outputs and `measured`, each output divided by its standard deviation in `std`;
+/// `None` if the outputs are not finite.
+///
+/// `free` holds [`FirstOrderHold::free_responses`] for at least as many samples.
 fn best_simulation(
-    held: &FirstOrderHold,
+    discretised: &FirstOrderHold,
     free: &DMatrix<f64>,
     inputs: DMatrix<f64>,
     measured: &DMatrix<f64>,
@@ -263,10 +267,10 @@ fn best_simulation(
 ) -> Option<DMatrix<f64>> {
     let (samples, outputs) = measured.shape();
     let states = free.ncols();
-    let forced = held.simulate(&DVector::zeros(states), &centred(inputs));
+    let forced = discretised.simulate(&DVector::zeros(states), &centred(inputs));
 
-    // Rows: one per sample and output, divided by the output's standard deviation. Columns: initial
-    // states, offsets, right-hand side.
+    // Rows: one per sample n and output o, divided by the output's standard deviation. Columns:
+    // initial states, offsets, right-hand side.
     let mut rows = DMatrix::zeros(samples * outputs, states + outputs + 1);
     for n in 0..samples {
         for (o, std) in std.iter().enumerate() {
@@ -343,7 +347,7 @@ fn means<'a>(parts: impl Iterator<Item = &'a DMatrix<f64>> + Clone) -> Vec<f64> 
         .collect()
 }
 
-/// Sums `term(column, value)` over all samples, for each column.
+/// Sums `term(column, value)` over all samples of all `parts`, for each column.
 fn sums<'a>(
     parts: impl Iterator<Item = &'a DMatrix<f64>>,
     term: impl Fn(usize, f64) -> f64,

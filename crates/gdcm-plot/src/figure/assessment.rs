@@ -136,28 +136,42 @@ fn left_out_note(x: f64) -> Note {
     }
 }
 
-/// Tabulates the signed ΔJ, or a `part` of ΔJ, of each pair in each condition.
-pub fn change_table(
-    title: impl Into<String>,
-    (dataset, found): (&Dataset, &AssessmentTable),
-    pairs: &[Pair],
-    conditions: &[(ConditionId, String)],
-    part: fn(CostChange) -> f64,
-) -> Table {
-    let mut columns = vec!["response".to_owned()];
-    columns.extend(conditions.iter().map(|(_, heading)| heading.clone()));
-    let mut table = Table::new(title, columns);
-    for &pair in pairs {
-        let mut cells = vec![dataset.pair_name(pair)];
-        for (id, _) in conditions {
-            cells.push(match found.change(*id, pair) {
-                Some(change) => signed(part(change), 1),
-                None => "–".to_owned(),
-            });
+/// Contents of a table of ΔJ: a row for each pair, a column for each condition.
+#[derive(Clone, Copy, Debug)]
+pub struct ChangeTable<'a> {
+    pub dataset: &'a Dataset,
+    pub assessment: &'a AssessmentTable,
+    pub pairs: &'a [Pair],
+    pub columns: &'a [ChangeColumn],
+    /// Part of ΔJ to be tabulated, or the whole.
+    pub part: fn(CostChange) -> f64,
+}
+
+/// A column of a [`ChangeTable`].
+#[derive(Clone, Debug)]
+pub struct ChangeColumn {
+    pub condition: ConditionId,
+    pub heading: String,
+}
+
+impl ChangeTable<'_> {
+    /// Tabulates the signed values, with a dash for an unavailable ΔJ.
+    pub fn table(&self, title: impl Into<String>) -> Table {
+        let mut headings = vec!["response".to_owned()];
+        headings.extend(self.columns.iter().map(|column| column.heading.clone()));
+        let mut table = Table::new(title, headings);
+        for &pair in self.pairs {
+            let mut cells = vec![self.dataset.pair_name(pair)];
+            for column in self.columns {
+                cells.push(match self.assessment.change(column.condition, pair) {
+                    Some(change) => signed((self.part)(change), 1),
+                    None => "–".to_owned(),
+                });
+            }
+            table.row(cells);
         }
-        table.row(cells);
+        table
     }
-    table
 }
 
 /// Returns `the median` or `the mean`.

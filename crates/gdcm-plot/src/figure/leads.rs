@@ -16,12 +16,12 @@ use super::role::Role;
 
 /// Number of points of a curve.
 const POINTS: usize = 240;
-const OTHERS: Stroke = Stroke::solid(Color::of(Hue::Perturbed).tint(60), 0.8);
-const OUTPUT: Stroke = Stroke::dashed(Color::of(Hue::Accent), 1.6, Dash::Long);
-const INPUT: Stroke = Stroke::dashed(Color::of(Hue::Perturbed), 1.6, Dash::DashDot);
+const OTHERS: Stroke = Stroke::solid(Color::new(Hue::Perturbed).tint(60), 0.8);
+const OUTPUT: Stroke = Stroke::dashed(Color::new(Hue::Accent), 1.6, Dash::Long);
+const INPUT: Stroke = Stroke::dashed(Color::new(Hue::Perturbed), 1.6, Dash::DashDot);
 /// Line and background at the validity limit.
-const LIMIT: Stroke = Stroke::solid(Color::of(Hue::Warning), 1.2);
-const BEYOND: Color = Color::of(Hue::Warning).tint(14);
+const LIMIT: Stroke = Stroke::solid(Color::new(Hue::Warning), 1.2);
+const BEYOND: Color = Color::new(Hue::Warning).tint(14);
 
 /// Plots gain and phase of the delay or lead in each channel, without the channel gains k, up to
 /// ten times the upper end of the band: a row of two plots for each of `pairs`. The two channels of
@@ -160,7 +160,7 @@ fn dynamics(correction: &ChannelCorrection, channels: &[Channel]) -> GainDelay {
         .sum();
     let first = channels.first();
     let second = channels.get(1);
-    GainDelay::new(1.0, delay_s).led([
+    GainDelay::new(1.0, delay_s).with_leads([
         first.and_then(|channel| correction.lead(*channel)),
         second.and_then(|channel| correction.lead(*channel)),
     ])

@@ -14,10 +14,10 @@ use super::figure::{Figure, Panel, Plot};
 use super::marks::{Curve, Envelope, Mark};
 use super::role::Role;
 
-const INPUT: Stroke = Stroke::solid(Color::of(Hue::Text), 1.2);
+const INPUT: Stroke = Stroke::solid(Color::new(Hue::Text), 1.2);
 /// Styles of the flight data and of the corridor about them.
-const FLOWN: Stroke = Stroke::solid(Color::of(Hue::Text), 1.0);
-const CORRIDOR: Color = Color::of(Hue::Text).tint(14);
+const FLOWN: Stroke = Stroke::solid(Color::new(Hue::Text), 1.0);
+const CORRIDOR: Color = Color::new(Hue::Text).tint(14);
 /// Height of the panel with the difference from flight; the panel with the record has height 1.
 const DIFFERENCE_WEIGHT: f64 = 0.55;
 /// Additional width of a curve where it is outside the corridor \[pt\].

@@ -6,7 +6,7 @@ use gdcm_method::correction::delta::GainSource;
 use gdcm_method::correction::{GainBounds, GainObjective};
 use gdcm_method::fidelity::CostAverage;
 use gdcm_method::schedule::{DelayScheduling, ScheduleKind, ScheduledQuantity, SecondVariable};
-use gdcm_model::dataset::dataset::{GREATEST_OMEGA, LEAST_OMEGA};
+use gdcm_model::dataset::band::{GREATEST_OMEGA, LEAST_OMEGA};
 use gdcm_model::dataset::{Band, limits};
 use gdcm_model::response::LeadOrder;
 

@@ -93,7 +93,7 @@ impl Example {
         let delays_s = self.mean_delays_s();
         let condition = |result: &ConditionAnalysis| {
             let of = |kind| representative(result, kind);
-            let response = |kind| FrequencyResponse::of(&of(kind).dynamics, &grid);
+            let response = |kind| FrequencyResponse::from_dynamics(&of(kind).dynamics, &grid);
             let leads = result.correction.leads.as_ref().unwrap();
             let flight = response(BundleKind::Identified);
             let bands = of(BundleKind::Identified).bands.as_ref();
@@ -157,8 +157,8 @@ impl Example {
     fn least_margin(&self, matrices: &CouplingMatrices, (low, high): (f64, f64)) -> LoopMargin {
         let grid = FrequencyGrid::logarithmic(Band::beyond(low, high).unwrap(), 60);
         let margin = |model: &Model| {
-            let singular =
-                matrices.least_singular_values(&FrequencyResponse::of(&model.dynamics, &grid));
+            let singular = matrices
+                .least_singular_values(&FrequencyResponse::from_dynamics(&model.dynamics, &grid));
             LoopMargin::find(&singular, grid.omega()).unwrap()
         };
         let models =

@@ -7,7 +7,7 @@ use gdcm_model::dataset::{
     Band, BundleKind, Condition, ConditionId, Dataset, Model, ModelId, Pair,
 };
 use gdcm_model::progress::{Cancelled, Progress};
-use gdcm_model::response::eigenvalues::{ModesError, modes_of};
+use gdcm_model::response::mode::{ModesError, modes_of};
 use gdcm_model::response::{FrequencyGrid, FrequencyResponse, GainDelay, Mode, PreparedModel};
 
 use super::job::Job;
@@ -108,7 +108,7 @@ impl Job for AcrossJob {
         let responses = in_turn(&self.models, progress, |id| {
             let condition = self.dataset.condition(id.condition)?;
             let model = condition.model(id.bundle, &id.name)?;
-            let mut response = PreparedModel::of(&model.dynamics).response(&grid);
+            let mut response = PreparedModel::new(&model.dynamics).response(&grid);
             if let Some(fitted) = &self.couplings {
                 let airspeed_kt = condition.flight_state().airspeed_kt;
                 response = fitted.matrices().response(&response, airspeed_kt);

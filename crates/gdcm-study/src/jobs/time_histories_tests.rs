@@ -229,8 +229,8 @@ fn a_corrected_model_answers_with_the_couplings_of_the_study() {
     let model = analysis
         .role_model(result, RequirementRole::Corrected)
         .unwrap();
-    let answered = FrequencyResponse::of(&Dynamics::StateSpace(model), &grid);
-    let plain = FrequencyResponse::of(&physics.dynamics, &grid);
+    let answered = FrequencyResponse::from_dynamics(&Dynamics::StateSpace(model), &grid);
+    let plain = FrequencyResponse::from_dynamics(&physics.dynamics, &grid);
     let coupled = result.coupled_response(&plain);
     let pair = Pair::new(1, 0);
     let correction = result.correction.on(pair).unwrap();
@@ -246,7 +246,7 @@ fn a_corrected_model_answers_with_the_couplings_of_the_study() {
     let as_it_is = analysis
         .role_model(result, RequirementRole::Physics)
         .unwrap();
-    let as_it_is = FrequencyResponse::of(&Dynamics::StateSpace(as_it_is), &grid);
+    let as_it_is = FrequencyResponse::from_dynamics(&Dynamics::StateSpace(as_it_is), &grid);
     assert!(
         (as_it_is.curve(pair)[0] - plain.curve(pair)[0]).norm()
             < 1e-12 * plain.curve(pair)[0].norm()

@@ -197,7 +197,7 @@ fn response_lags(
     if !is_same_grid {
         return None;
     }
-    let physics = FrequencyResponse::of(physics, &grid);
+    let physics = FrequencyResponse::from_dynamics(physics, &grid);
     let (outputs, inputs) = first.response.shape();
     let mut lags = Vec::new();
     for output in 0..outputs {

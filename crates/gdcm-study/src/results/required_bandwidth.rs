@@ -263,7 +263,7 @@ impl PairCorrection {
         let delay_s = taus_s.iter().map(|tau_s| tau_s.max(0.0)).sum();
         let has_leads = filters.iter().any(Option::is_some);
         Some(Self {
-            multiplier: GainDelay::new(gain, delay_s).led(filters),
+            multiplier: GainDelay::new(gain, delay_s).with_leads(filters),
             has_leads,
         })
     }

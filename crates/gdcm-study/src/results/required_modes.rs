@@ -12,7 +12,7 @@ use gdcm_method::requirements::mode_comparison::{
 use gdcm_method::requirements::{ModeName, ModeVerdict, NamedBy};
 use gdcm_model::dataset::{BundleKind, ConditionId, Dynamics, Model};
 use gdcm_model::response::Mode;
-use gdcm_model::response::eigenvalues::modes_of;
+use gdcm_model::response::mode::modes_of;
 use gdcm_model::response::pole_estimate::PoleEstimate;
 
 use super::asked_condition::AskedCondition;

@@ -124,7 +124,7 @@ impl ModelResponses {
     ) -> Arc<FrequencyResponse> {
         let prepared = self
             .prepared
-            .get_or_init(|| PreparedModel::of(&model.dynamics));
+            .get_or_init(|| PreparedModel::new(&model.dynamics));
         self.last(purpose)
             .get(key, |_| Arc::new(prepared.response(grid)))
     }

@@ -269,7 +269,7 @@ fn condition_effect(
         return Err(Cancelled);
     };
     let representative = result.representative_model(BundleKind::Physics);
-    let response = PreparedModel::of(&representative.dynamics).response(grid);
+    let response = PreparedModel::new(&representative.dynamics).response(grid);
     let singular_values = coupled.fitted.matrices().least_singular_values(&response);
     let from_band = grid
         .omega()

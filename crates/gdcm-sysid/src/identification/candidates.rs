@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use gdcm_model::dataset::StateSpace;
 use gdcm_model::executor::{Executor, each};
 use gdcm_model::progress::{Cancelled, Shares};
-use gdcm_model::response::eigenvalues::poles;
+use gdcm_model::response::mode::poles;
 use gdcm_model::simulation::Segment;
 
 use crate::likelihood::blocks::BlockModel;

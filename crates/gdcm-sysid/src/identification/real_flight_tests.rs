@@ -4,7 +4,7 @@
 use nalgebra::{Complex, DMatrix};
 use serde_json::Value;
 
-use gdcm_model::dataset::channel::Pair;
+use gdcm_model::dataset::Pair;
 use gdcm_model::executor::Sequential;
 use gdcm_model::progress::{Shares, Unobserved};
 use gdcm_model::response::frequency_response::log_spaced;

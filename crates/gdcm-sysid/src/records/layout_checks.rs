@@ -224,7 +224,7 @@ fn implausible_magnitude(
         return None;
     }
     let value = column.peak()? * used.gain().abs();
-    let dimension = PhysicalUnit::of(&rule.unit)?.dimension;
+    let dimension = PhysicalUnit::parse(&rule.unit)?.dimension;
     let most = largest_plausible(&rule.unit)?;
     if value <= most {
         return None;

@@ -42,8 +42,8 @@ impl RecordLayout {
     pub(super) fn uses<'r>(&self, channels: &'r RecordChannels) -> Vec<ChannelUse<'r>> {
         let mut found = Vec::new();
         for side in [ChannelSide::Input, ChannelSide::Output] {
-            let uses = side.of(&self.inputs, &self.outputs);
-            let rules = side.of(&channels.inputs, &channels.outputs);
+            let uses = side.pick(&self.inputs, &self.outputs);
+            let rules = side.pick(&channels.inputs, &channels.outputs);
             for (index, rule) in rules.iter().enumerate() {
                 let used = uses.get(index).copied().flatten();
                 found.push(ChannelUse { side, rule, used });
@@ -91,7 +91,7 @@ impl RecordLayout {
 
     /// Returns the column of a channel for editing.
     pub fn channel_mut(&mut self, role: ChannelSide, index: usize) -> Option<&mut ColumnUse> {
-        role.of(&mut self.inputs, &mut self.outputs)
+        role.pick(&mut self.inputs, &mut self.outputs)
             .get_mut(index)?
             .as_mut()
     }
@@ -116,9 +116,9 @@ impl RecordLayout {
             };
         }
         for side in [ChannelSide::Input, ChannelSide::Output] {
-            let uses = side.of(&mut layout.inputs, &mut layout.outputs);
-            let before = side.of(&before.inputs, &before.outputs);
-            let after = side.of(&after.inputs, &after.outputs);
+            let uses = side.pick(&mut layout.inputs, &mut layout.outputs);
+            let before = side.pick(&before.inputs, &before.outputs);
+            let after = side.pick(&after.inputs, &after.outputs);
             for (index, own) in uses.iter_mut().enumerate() {
                 let earlier = before.get(index).copied().flatten();
                 let Some(edited) = after.get(index).copied().flatten() else {
@@ -197,8 +197,8 @@ impl RecordChannels {
     /// records are converted to it.
     pub fn take_units(&mut self, layout: &RecordLayout, table: &RecordTable) {
         for side in [ChannelSide::Input, ChannelSide::Output] {
-            let rules = side.of(&mut self.inputs, &mut self.outputs);
-            let uses = side.of(&layout.inputs, &layout.outputs);
+            let rules = side.pick(&mut self.inputs, &mut self.outputs);
+            let uses = side.pick(&layout.inputs, &layout.outputs);
             for (rule, used) in rules.iter_mut().zip(uses) {
                 if rule.unit.is_empty() {
                     let conversion = self.said.get(&rule.name);

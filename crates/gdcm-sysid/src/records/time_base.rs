@@ -166,7 +166,7 @@ impl StampUnit {
     /// Returns the time unit with this name, in its usual spelling; `None` if the name is not a
     /// time unit.
     fn from_name(name: &str) -> Option<Self> {
-        let unit = PhysicalUnit::of(name)?;
+        let unit = PhysicalUnit::parse(name)?;
         if unit.dimension != Dimension::Time {
             return None;
         }

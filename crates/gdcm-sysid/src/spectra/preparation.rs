@@ -273,8 +273,8 @@ fn check_jitter(
 /// Returns an error for a record whose channels or lengths do not match.
 fn check_shape(record: &FlightRecord, preparation: &Preparation) -> Result<(), PreparationError> {
     for role in [ChannelSide::Input, ChannelSide::Output] {
-        let found = role.of(&record.inputs, &record.outputs).ncols();
-        let named = role.of(&preparation.inputs, &preparation.outputs).len();
+        let found = role.pick(&record.inputs, &record.outputs).ncols();
+        let named = role.pick(&preparation.inputs, &preparation.outputs).len();
         if found != named {
             return Err(PreparationError::ChannelsDiffer {
                 record: record.name.clone(),

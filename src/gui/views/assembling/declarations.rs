@@ -132,7 +132,7 @@ fn declarations(rules: &Rules, scope: &FileScope) -> ChannelDeclarations {
     let declared = rules
         .declarations
         .iter()
-        .find(|declared| declared.of == *scope);
+        .find(|declared| declared.scope == *scope);
     match declared {
         Some(declared) => declared.channels.clone(),
         None => ChannelDeclarations::default(),

@@ -7,7 +7,7 @@ use nalgebra::Complex;
 
 use gdcm_model::assembly::{ChannelLabel, FoundModel};
 use gdcm_model::dataset::{Band, BundleKind, ConditionId, Dynamics, ModelId, Pair, StateSpace};
-use gdcm_model::response::frequency_response::ResponseShape;
+use gdcm_model::response::response_shape::ResponseShape;
 use gdcm_model::response::{FrequencyGrid, PreparedModel};
 use gdcm_plot::figure::axis::FrequencyUnit;
 
@@ -172,7 +172,7 @@ fn model_response(found: &FoundModel, pair: Pair, band: (f64, f64)) -> Option<Pa
         .ok()?;
     let wide = Band::new(band.0 / BEYOND, band.1 * BEYOND).ok()?;
     let grid = FrequencyGrid::logarithmic(wide, POINTS);
-    let response = PreparedModel::of(&Dynamics::StateSpace(model)).response(&grid);
+    let response = PreparedModel::new(&Dynamics::StateSpace(model)).response(&grid);
     Some(PairResponse {
         omega: grid.omega().to_vec(),
         values: response.curve(pair).to_vec(),

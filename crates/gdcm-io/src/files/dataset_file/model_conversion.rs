@@ -280,6 +280,6 @@ impl SideText {
     }
 
     fn from_side(side: ChannelSide) -> Self {
-        side.of(Self::Inputs, Self::Outputs)
+        side.pick(Self::Inputs, Self::Outputs)
     }
 }

@@ -161,7 +161,7 @@ fn known_unit(unit: &str) -> KnownUnit {
         "1/sec" => return KnownUnit::Hertz,
         _ => {}
     }
-    match PhysicalUnit::of(unit).map(|unit| unit.name) {
+    match PhysicalUnit::parse(unit).map(|unit| unit.name) {
         Some("rad/s") => KnownUnit::RadianPerSecond,
         Some("Hz") => KnownUnit::Hertz,
         Some("dB") => KnownUnit::Decibel,

@@ -265,7 +265,7 @@ impl FrequencyUnit {
             .get(UNITS)
             .and_then(first_text_of)
             .unwrap_or_default();
-        let unit = PhysicalUnit::of(&text);
+        let unit = PhysicalUnit::parse(&text);
         Self {
             multiple_of_hertz: unit.filter(|unit| unit.dimension == Dimension::Frequency),
             angular_rate: unit.filter(|unit| unit.name.starts_with("rad/")),

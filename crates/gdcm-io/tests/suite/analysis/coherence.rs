@@ -34,7 +34,7 @@ fn dataset(coherence: Option<&dyn Fn(usize, f64) -> f64>, bands: Option<[f64; 2]
     let dynamics = model_of("compleib_HE2_AH64_130kt.json");
     let (outputs, inputs) = dynamics.shape();
     let grid = FrequencyGrid::logarithmic(Band::new(0.5, 12.0).unwrap(), 200);
-    let flight = FrequencyResponse::of(&dynamics, &grid)
+    let flight = FrequencyResponse::from_dynamics(&dynamics, &grid)
         .curves()
         .map(|pair, values| {
             let turned = |(k, (value, omega)): (usize, (&Complex<f64>, &f64))| {

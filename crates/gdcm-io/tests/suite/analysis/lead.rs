@@ -366,7 +366,7 @@ fn known(entry: &Value, plant: &Value) -> Dataset {
             });
         factor * k
     };
-    let flight = FrequencyResponse::of(&dynamics, &grid)
+    let flight = FrequencyResponse::from_dynamics(&dynamics, &grid)
         .curves()
         .map(|pair, values| {
             let factor =

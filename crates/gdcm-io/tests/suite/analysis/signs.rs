@@ -200,7 +200,7 @@ fn a_unit_that_one_side_has_otherwise_is_named_with_its_factor() {
 fn measured_responses_are_turned_with_their_coherence() {
     let grid = FrequencyGrid::logarithmic(study_of_example().dataset.band(), 60);
     let study = changed(BundleKind::Identified, |model| {
-        let response = FrequencyResponse::of(&model.dynamics, &grid);
+        let response = FrequencyResponse::from_dynamics(&model.dynamics, &grid);
         let part = |of: fn(&Complex<f64>) -> f64| {
             PairTable::from_fn(6, 4, |pair| {
                 response.curve(pair).iter().map(of).collect::<Vec<f64>>()

@@ -31,7 +31,7 @@ fn grid() -> FrequencyGrid {
 }
 
 fn response_of(model: &StateSpace) -> FrequencyResponse {
-    FrequencyResponse::of(&Dynamics::StateSpace(model.clone()), &grid())
+    FrequencyResponse::from_dynamics(&Dynamics::StateSpace(model.clone()), &grid())
 }
 
 fn pade() -> Pade {
@@ -168,7 +168,7 @@ fn a_pole_that_the_loop_makes_unstable_is_marked() {
         .unwrap();
     assert!(shifts[0].is_newly_unstable() && (shifts[0].after.re - 0.5).abs() < 1e-15);
     assert_eq!(shifts[0].distance_rad_s(), Some(1.5));
-    let response = FrequencyResponse::of(&Dynamics::StateSpace(lag), &grid());
+    let response = FrequencyResponse::from_dynamics(&Dynamics::StateSpace(lag), &grid());
     let couplings = constant(&dmatrix![1.0], &dmatrix![0.9]);
     let margin =
         LoopMargin::find(&couplings.least_singular_values(&response), grid().omega()).unwrap();

@@ -15,7 +15,7 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::hessenberg_form::balance;
+use super::balancing::balance;
 use super::large_entry::LargeEntry;
 use super::s_plane::SPlane;
 use super::schur_form::SchurForm;
@@ -115,6 +115,7 @@ pub fn modes(model: &StateSpace) -> Result<Vec<Mode>, ModesError> {
         return Err(ModesError::TooLarge(entry));
     }
     let plane = SPlane::new(model);
+    // Step 1.
     let mut a = plane.matrix(model.a());
     let mut b = model.b().clone();
     let mut c = model.c().clone();
@@ -122,7 +123,7 @@ pub fn modes(model: &StateSpace) -> Result<Vec<Mode>, ModesError> {
     let form = SchurForm::new(&a).ok_or(ModesError::NotConverged)?;
     let rounding = 4.0 * f64::EPSILON * a.nrows() as f64 * a.norm();
     let mut modes: Vec<Mode> = Vec::with_capacity(a.nrows());
-    // The last mode above the real axis, until its conjugate has been added.
+    // The last mode above the real axis, until its conjugate, the next eigenvalue, has been added.
     let mut upper_mode: Option<Mode> = None;
     for (index, eigenvalue) in form.eigenvalues().into_iter().enumerate() {
         if let Some(upper) = upper_mode.take() {
@@ -140,6 +141,7 @@ pub fn modes(model: &StateSpace) -> Result<Vec<Mode>, ModesError> {
         let Some(pole) = plane.value(eigenvalue) else {
             continue;
         };
+        // Steps 2 to 6.
         let vectors = Eigenvectors::new(&form, index);
         let residues = vectors
             .as_ref()
@@ -178,12 +180,15 @@ pub fn modes_of(dynamics: &Dynamics) -> Result<Vec<Mode>, ModesError> {
 
 /// Right and left eigenvectors for an eigenvalue: `A v = lambda v`, `w A = lambda w` and `w v = 1`.
 struct Eigenvectors {
+    /// `v`.
     right: DVector<Complex<f64>>,
+    /// `w`, as a column.
     left: DVector<Complex<f64>>,
 }
 
 impl Eigenvectors {
-    /// Computes the eigenvectors for the eigenvalue at diagonal position `index` of `T`.
+    /// Computes the eigenvectors for the eigenvalue at diagonal position `index` of `T` (steps 2 to
+    /// 4).
     ///
     /// # Errors
     /// [`NearDefective`] if they are dominated by rounding errors.
@@ -201,7 +206,7 @@ impl Eigenvectors {
         })
     }
 
-    /// Returns the state participation (state index, share) in descending order.
+    /// Returns the state participation (state index, share) in descending order (step 5).
     fn participation(&self) -> Vec<(usize, f64)> {
         let products: Vec<f64> = self
             .right
@@ -219,12 +224,12 @@ impl Eigenvectors {
         shares
     }
 
-    /// Returns the residue `(C v)_i |w B|` of each output.
+    /// Returns the residue `(C v)_i |w B|` of each output (step 6).
     fn residues(&self, b: &DMatrix<f64>, c: &DMatrix<f64>) -> Vec<Complex<f64>> {
-        let of_inputs = (b.map(Complex::from).transpose() * &self.left).norm();
+        let input_norm = (b.map(Complex::from).transpose() * &self.left).norm();
         (c.map(Complex::from) * &self.right)
             .iter()
-            .map(|output| output * of_inputs)
+            .map(|output| output * input_norm)
             .collect()
     }
 }

@@ -12,19 +12,20 @@ use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::{BundleKind, Condition, Dataset};
 use gdcm_model::message_text::{sanitized, sanitized_path};
 use gdcm_model::units::{number, s_to_ms, signed, six_digits};
+use gdcm_study::results::condition_remarks::condition_remarks;
 use gdcm_study::results::convention_doubt::ConventionDoubt;
+use gdcm_study::results::coupling_remarks::analysis_coupling_remarks;
+use gdcm_study::results::remark_kind::RemarkKind;
 use gdcm_study::{
     Analysis, AssessedCorrection, AssessmentTable, ConditionAnalysis, PhaseCorrection,
 };
 use gdcm_words::Table;
 use gdcm_words::assessment::{held_out_verdict, not_assessed_text};
 use gdcm_words::caution::failure_text;
-use gdcm_words::condition_remarks::remarks;
 use gdcm_words::convention_doubt::doubt_text;
-use gdcm_words::couplings::{
-    analysis_coupling_remarks, coupling_cost_table, coupling_matrix_tables, couplings_heading,
-};
-use gdcm_words::remark::RemarkKind;
+use gdcm_words::coupling_remark::coupling_remark_text;
+use gdcm_words::couplings::{coupling_cost_table, coupling_matrix_tables, couplings_heading};
+use gdcm_words::remark::remark_text;
 
 use super::schedule_summary::{evidence_section, nominal_choice, schedule_section, shown_pairs};
 use super::shared_cautions::cautions_section;
@@ -154,14 +155,15 @@ fn couplings_section(analysis: &Analysis) -> String {
         }
     }
     for remark in &remarks {
-        let label = match remark.kind {
+        let sentence = coupling_remark_text(remark, &analysis.study.dataset);
+        let label = match remark.kind() {
             RemarkKind::Good => "couplings",
             RemarkKind::Caution | RemarkKind::Trouble => {
-                keep_caution(&[], &remark.text);
+                keep_caution(&[], &sentence);
                 "caution"
             }
         };
-        text += &detail(label, &sanitized(&remark.text));
+        text += &detail(label, &sanitized(&sentence));
     }
     text
 }
@@ -372,12 +374,11 @@ fn trouble_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let mut text = String::new();
     // Unmatched responses come first, followed by the reasons and remedies.
     let mut label = "not matched";
-    // Doubts about signs and units are printed above all conditions; cautions are collected in
-    // their own section.
-    let own_remarks = remarks(&analysis.study, result, None);
-    for remark in own_remarks.iter().skip(result.doubts.len()) {
-        if remark.kind == RemarkKind::Trouble {
-            text += &detail(label, &sanitized(&remark.text));
+    // Cautions are collected in their own section.
+    for remark in condition_remarks(&analysis.study, result, None) {
+        if remark.kind() == RemarkKind::Trouble {
+            let sentence = remark_text(&remark, &analysis.study.dataset);
+            text += &detail(label, &sanitized(&sentence));
             label = "why";
         }
     }

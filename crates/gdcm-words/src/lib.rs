@@ -6,8 +6,8 @@
 //! terminal, the window, the report and the exported files. It computes nothing except the numbers
 //! in its sentences.
 //!
-//! Sentences: [`remark`] and [`condition_remarks`], with [`leads`] and [`missed_targets`], for a
-//! condition; [`caution`], [`convention_doubt`] and [`channel_time_skew`] for suspected faults;
+//! Sentences: [`remark`], [`leads`] and [`solution_details`] for a condition; [`caution`],
+//! [`convention_doubt`] and [`channel_time_skew`] for suspected faults; [`coupling_remark`],
 //! [`couplings`], [`assessment`], [`schedule`], [`uncertainty`] for a study; [`decisions`] for its
 //! decisions. Tables: [`table`], [`requirements`], [`time_histories`]. Explained results:
 //! [`derivation`].
@@ -25,16 +25,16 @@
 pub mod assessment;
 pub mod caution;
 pub mod channel_time_skew;
-pub mod condition_remarks;
 pub mod convention_doubt;
+pub mod coupling_remark;
 pub mod couplings;
 pub mod decisions;
 pub mod derivation;
 pub mod leads;
-pub mod missed_targets;
 pub mod remark;
 pub mod requirements;
 pub mod schedule;
+pub mod solution_details;
 pub mod table;
 pub mod time_histories;
 pub mod uncertainty;

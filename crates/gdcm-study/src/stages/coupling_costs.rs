@@ -33,7 +33,7 @@ use crate::results::assessment_table::{
 };
 use crate::results::couplings_assessment::{
     AssessedCouplings, AxisCost, ConditionCouplings, CouplingCost, CouplingCosts,
-    CouplingsAssessment, UnstablePole,
+    CouplingsAssessment, NoPoles, RefusedModel, UnstablePole,
 };
 use crate::results::fitted_couplings::{CoupledCondition, FittedCouplings};
 
@@ -298,12 +298,11 @@ fn condition_effect(
 /// Poles of a condition's kept physics models, without and with couplings.
 struct ConditionPoles {
     /// Poles of the representative, or why they are unavailable.
-    representative: Result<Vec<PoleShift>, String>,
+    representative: Result<Vec<PoleShift>, NoPoles>,
     /// Newly unstable poles of every kept model.
     unstable: Vec<UnstablePole>,
-    /// Names of the other kept models with matrices for which the feedback loop cannot be closed,
-    /// each with the reason.
-    refused: Vec<(String, String)>,
+    /// The other kept models with matrices for which the feedback loop cannot be closed.
+    refused: Vec<RefusedModel>,
 }
 
 /// Computes the poles of the kept physics models.
@@ -317,7 +316,7 @@ fn condition_poles(
     let band = study.settings.band;
     let rejected = &study.choice(id).physics.rejected;
     let mut poles = ConditionPoles {
-        representative: Err(String::new()),
+        representative: Ok(Vec::new()),
         unstable: Vec::new(),
         refused: Vec::new(),
     };
@@ -347,7 +346,10 @@ fn condition_poles(
         } else if let Err(why) = shifts
             && model.state_space().is_some()
         {
-            poles.refused.push((model.name.clone(), why));
+            poles.refused.push(RefusedModel {
+                model: model.name.clone(),
+                why,
+            });
         }
     }
     Ok(poles)
@@ -358,16 +360,14 @@ fn pole_shifts(
     result: &ConditionAnalysis,
     coupled: &CoupledCondition,
     model: &Model,
-) -> Result<Vec<PoleShift>, String> {
-    let matrices = model
-        .state_space()
-        .ok_or("the physics representative is a measured response: it has no poles")?;
+) -> Result<Vec<PoleShift>, NoPoles> {
+    let matrices = model.state_space().ok_or(NoPoles::Measured)?;
     let airspeed_kt = result.condition.flight_state().airspeed_kt;
     coupled
         .fitted
         .matrices()
         .pole_shifts(matrices, airspeed_kt, Pade::default())
-        .map_err(|error| error.to_string())
+        .map_err(NoPoles::Failed)
 }
 
 /// Sum of J over responses.

@@ -15,8 +15,9 @@ use gdcm_model::dataset::{Band, Channel, Condition, Dataset, Model, ModelId};
 use gdcm_model::response::LeadOrder;
 use gdcm_study::decisions::settings::DelayFrom;
 use gdcm_study::results::assessment_table::{AssessedModel, AssessmentChoice};
+use gdcm_study::results::condition_remarks::condition_remarks;
+use gdcm_study::results::remark::Remark;
 use gdcm_study::{AssessedCorrection, AssessmentTable, PhaseCorrection};
-use gdcm_words::condition_remarks::remarks;
 use gdcm_words::leads::lead_words;
 
 use super::*;
@@ -267,22 +268,13 @@ fn delays_of_the_band_are_fitted_to_the_line_through_the_phase() {
 fn what_leads_do_and_cost_is_told_and_what_to_check_first() {
     let result = EXAMPLE_WITH_LEADS.condition(ConditionId(1)).unwrap();
     let study = &EXAMPLE_WITH_LEADS.study;
-    let said: Vec<String> = remarks(study, result, None)
-        .into_iter()
-        .map(|remark| remark.text)
-        .collect();
-    let first = said
-        .iter()
-        .find(|text| text.contains("First check the time alignment of the records"))
-        .unwrap();
+    let said = condition_remarks(study, result, None);
     assert!(
-        first.starts_with("All held responses need about"),
-        "{first}"
-    );
-    assert!(
-        said.contains(&"All 5 held responses get the delay or lead that they need.".to_owned()),
+        said.iter()
+            .any(|remark| matches!(remark, Remark::CommonLead { lead_s } if *lead_s > 0.0)),
         "{said:?}"
     );
+    assert!(said.contains(&Remark::LeadsMatched { held: 5 }), "{said:?}");
     let words = lead_words(study, result, None);
     // Reference values: P from LAT requires a lead of 65.4 ms, of which 24.1 ms on P and 41.2 ms on
     // LAT.
@@ -323,11 +315,12 @@ fn where_all_held_responses_want_lead_the_result_offers_it_with_what_it_buys() {
         (offer.with - taken).abs() < 0.1 * offer.without,
         "{offer:?}, {taken}"
     );
-    let offered = remarks(&study, result, None)
+    let offered = condition_remarks(&study, result, None)
         .into_iter()
-        .find(|remark| remark.phase.is_some())
+        .find(|remark| remark.suggested_phase().is_some())
         .unwrap();
-    assert_eq!(offered.phase, Some(PhaseCorrection::Lead));
+    assert_eq!(offered, Remark::LeadsOffered(offer));
+    assert_eq!(offered.suggested_phase(), Some(PhaseCorrection::Lead));
     assert!(
         EXAMPLE_WITH_LEADS
             .condition(ConditionId(1))

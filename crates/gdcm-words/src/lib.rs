@@ -8,7 +8,7 @@
 //!
 //! Sentences: [`remark`], [`leads`] and [`solution_details`] for a condition; [`caution`],
 //! [`convention_doubt`] and [`channel_time_skew`] for suspected faults; [`coupling_remark`],
-//! [`couplings`], [`assessment`], [`schedule`], [`uncertainty`] for a study; [`decisions`] for its
+//! [`couplings`], [`assessment`], [`schedule`], [`uncertainty`] for a study; [`missing_results`]; [`decisions`] for its
 //! decisions. Tables: [`table`], [`requirements`], [`time_histories`]. Explained results:
 //! [`derivation`].
 //!
@@ -31,6 +31,7 @@ pub mod couplings;
 pub mod decisions;
 pub mod derivation;
 pub mod leads;
+pub mod missing_results;
 pub mod remark;
 pub mod requirements;
 pub mod schedule;

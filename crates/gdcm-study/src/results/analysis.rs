@@ -81,11 +81,12 @@ impl Analysis {
         self.conditions.get(&id)?.as_ref().ok()
     }
 
-    /// Returns a condition's result, or the reason in words why there is none.
-    pub(crate) fn result(&self, id: ConditionId) -> Result<&ConditionAnalysis, String> {
+    /// Returns a condition's result, or why there is none.
+    pub(crate) fn result(&self, id: ConditionId) -> Result<&ConditionAnalysis, NoResult> {
         match self.conditions.get(&id) {
-            Some(outcome) => outcome.as_ref().map_err(ToString::to_string),
-            None => Err("it was not analysed".to_owned()),
+            Some(Ok(result)) => Ok(result),
+            Some(Err(failure)) => Err(NoResult::Failed(failure.clone())),
+            None => Err(NoResult::NotAnalysed),
         }
     }
 
@@ -254,6 +255,23 @@ impl ConditionAnalysis {
     pub fn discontinuity_ratio(&self, name: &str) -> Option<f64> {
         let ratios = &self.figures.discontinuity.as_ref().ok()?.ratios;
         ratios[self.condition.position(BundleKind::Physics, name)?]
+    }
+}
+
+/// Why an analysis contains no result of a condition.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NoResult {
+    NotAnalysed,
+    Failed(ConditionFailure),
+}
+
+impl NoResult {
+    /// Returns the stable code, for programs and tests.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NotAnalysed => "not-analysed",
+            Self::Failed(failure) => failure.code(),
+        }
     }
 }
 

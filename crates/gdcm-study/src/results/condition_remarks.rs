@@ -1,6 +1,5 @@
 //! Finds the remarks on the result of a condition.
 
-use gdcm_method::correction::Solution;
 use gdcm_method::correction::remedy::Remedy;
 use gdcm_method::schedule::Schedule;
 
@@ -80,7 +79,7 @@ fn gain_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
             tolerance_db,
         }];
     }
-    let mut remarks: Vec<Remark> = missed_targets(study, &result.gains)
+    let mut remarks: Vec<Remark> = MissedTargets::find(&result.gains, study.settings.band)
         .into_iter()
         .map(Remark::GainsMissed)
         .collect();
@@ -90,23 +89,6 @@ fn gain_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
         remarks.push(Remark::GainsRemedy(Remedy::clone(remedy)));
     }
     remarks
-}
-
-/// Returns the constrained responses that miss their targets, then each conflict among the
-/// constraints that causes this.
-pub(super) fn missed_targets(study: &Study, solution: &Solution) -> Vec<MissedTargets> {
-    let mut missed = vec![MissedTargets::Responses {
-        misses: solution.unmatched.clone(),
-        band_top_rad_s: study.settings.band.max(),
-    }];
-    missed.extend(
-        solution
-            .conflicts
-            .iter()
-            .cloned()
-            .map(MissedTargets::Conflict),
-    );
-    missed
 }
 
 /// Returns the loops of gains and of delays that agree within the tolerance.

@@ -5,8 +5,7 @@ use gdcm_model::statistics::median;
 use gdcm_model::units::ratio_to_db;
 
 use super::analysis::ConditionAnalysis;
-use super::condition_remarks::missed_targets;
-use super::remark::{DelaysApart, Remark};
+use super::remark::{DelaysApart, MissedTargets, Remark};
 use crate::decisions::settings::PhaseCorrection;
 use crate::decisions::study::Study;
 
@@ -69,7 +68,7 @@ fn achieved(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
             held: result.held().marked().count(),
         }];
     }
-    missed_targets(study, delays)
+    MissedTargets::find(delays, study.settings.band)
         .into_iter()
         .map(Remark::LeadsMissed)
         .collect()

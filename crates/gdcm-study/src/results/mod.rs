@@ -17,6 +17,7 @@ pub mod couplings_assessment;
 pub mod fitted_couplings;
 pub mod lead_compensation;
 pub mod lead_remarks;
+pub mod missing_finding;
 pub mod model_swap;
 pub mod record_comparison;
 pub mod remark;

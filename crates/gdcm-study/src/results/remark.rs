@@ -4,9 +4,9 @@
 use gdcm_method::correction::Channel;
 use gdcm_method::correction::conflict::Conflict;
 use gdcm_method::correction::remedy::Remedy;
-use gdcm_method::correction::solution::Unmatched;
+use gdcm_method::correction::solution::{Solution, Unmatched};
 use gdcm_method::schedule::{CostChange, ScheduleCaution};
-use gdcm_model::dataset::Pair;
+use gdcm_model::dataset::{Band, Pair};
 
 use super::caution::Caution;
 use super::convention_doubt::ConventionDoubt;
@@ -92,6 +92,19 @@ pub enum MissedTargets {
         band_top_rad_s: f64,
     },
     Conflict(Conflict),
+}
+
+impl MissedTargets {
+    /// Returns the constrained responses of a solution that miss their targets, then each conflict
+    /// among the constraints that causes this.
+    pub(super) fn find(solution: &Solution, band: Band) -> Vec<Self> {
+        let mut missed = vec![Self::Responses {
+            misses: solution.unmatched.clone(),
+            band_top_rad_s: band.max(),
+        }];
+        missed.extend(solution.conflicts.iter().cloned().map(Self::Conflict));
+        missed
+    }
 }
 
 /// A response with the lead \[s\] that it needs.

@@ -7,7 +7,7 @@ use gdcm_method::correction::Channel;
 use gdcm_model::dataset::{BundleKind, ConditionId, PairTable};
 use gdcm_study::Study;
 use gdcm_study::decisions::choices::BundleChoice;
-use gdcm_study::decisions::differences::Difference;
+use gdcm_study::decisions::differences::{Difference, NotApplied};
 use gdcm_study::decisions::setting::SETTINGS;
 
 /// A decision that differs between two studies.
@@ -223,7 +223,20 @@ pub fn dataset_difference_text(difference: &Difference) -> String {
         Difference::ModelRemoved(id) => format!("{id} was removed"),
         Difference::ModelChanged(id) => format!("{id} has changed"),
         Difference::NotApplied { decision, why } => {
+            let why = not_applied_text(why);
             format!("a decision no longer applies: {decision}: {why}")
         }
+    }
+}
+
+/// Returns why a decision does not apply to a dataset.
+fn not_applied_text(why: &NotApplied) -> String {
+    match why {
+        NotApplied::Refused(refusal) => refusal.to_string(),
+        NotApplied::KeptForAnotherDataset => {
+            "kept in the study for use with another dataset".to_owned()
+        }
+        NotApplied::NoResponse => "the dataset has no such response".to_owned(),
+        NotApplied::NoChannel => "the dataset has no such channel".to_owned(),
     }
 }

@@ -26,6 +26,7 @@ use gdcm_words::convention_doubt::doubt_text;
 use gdcm_words::coupling_remark::coupling_remark_text;
 use gdcm_words::couplings::{coupling_cost_table, coupling_matrix_tables, couplings_heading};
 use gdcm_words::remark::remark_text;
+use gdcm_words::solution_details::proof_text;
 
 use super::schedule_summary::{evidence_section, nominal_choice, schedule_section, shown_pairs};
 use super::shared_cautions::cautions_section;
@@ -384,7 +385,7 @@ fn trouble_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     }
     let outcome = &result.gains.proof.outcome;
     if matches!(outcome, Outcome::NotProven { .. }) {
-        text += &detail("not proven", &sanitized(&outcome.words()));
+        text += &detail("not proven", &sanitized(&proof_text(*outcome)));
     }
     text
 }

@@ -12,6 +12,7 @@ use gdcm_study::results::remark::{
 use crate::caution::caution_text;
 use crate::convention_doubt::doubt_text;
 use crate::coupling_remark::coupling_remark_text;
+use crate::schedule::schedule_caution_text;
 
 /// Returns a remark in one or two sentences.
 pub fn remark_text(remark: &Remark, dataset: &Dataset) -> String {
@@ -88,7 +89,10 @@ pub fn remark_text(remark: &Remark, dataset: &Dataset) -> String {
         Remark::Caution(caution) => caution_text(caution, |pair| dataset.pair_name(pair)),
         Remark::Schedule(caution) => {
             let (inputs, outputs) = dataset.names_of_channels();
-            format!("Schedule: {}.", caution.words(&inputs, &outputs))
+            format!(
+                "Schedule: {}.",
+                schedule_caution_text(caution, &inputs, &outputs)
+            )
         }
         Remark::Coupling(remark) => coupling_remark_text(remark, dataset),
     }

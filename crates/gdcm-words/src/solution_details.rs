@@ -1,5 +1,7 @@
 //! Details of the solution of a condition, as sentences.
 
+use gdcm_method::correction::Outcome;
+use gdcm_method::correction::branch_and_bound::search::Limit;
 use gdcm_method::correction::sensitivity::{kkt_residual, sensitivities};
 use gdcm_study::{ConditionAnalysis, PhaseCorrection, Study};
 
@@ -9,7 +11,7 @@ pub fn details(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
     /// Maximum relative sensitivity of the objective that is not listed.
     const NOTABLE: f64 = 1e-3;
     let (inputs, outputs) = study.dataset.names_of_channels();
-    let mut details = vec![result.gains.proof.outcome.words()];
+    let mut details = vec![proof_text(result.gains.proof.outcome)];
     for minimum in result.gains.proof.local_minima.iter().skip(1) {
         let worse = 100.0 * (minimum.objective / result.gains.objective - 1.0);
         let of_inputs = named_gains(&inputs, &minimum.inputs);
@@ -40,6 +42,27 @@ pub fn details(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
         }
     }
     details
+}
+
+/// Describes in a sentence whether a solution is proven to be optimal.
+pub fn proof_text(outcome: Outcome) -> String {
+    match outcome {
+        Outcome::Proven { .. } => {
+            "Proven: no gains within the bounds that satisfy the held responses are better."
+                .to_owned()
+        }
+        Outcome::NotProven { gap, limit } => {
+            let ended = match limit {
+                Limit::Work => "because its work budget was exhausted",
+                Limit::Memory => "because its memory budget was exhausted",
+                Limit::Rounding => "because of rounding errors",
+            };
+            let percent = 100.0 * gap;
+            format!(
+                "Not proven: gains that are up to {percent:.2} % better may exist; the search ended {ended}."
+            )
+        }
+    }
 }
 
 /// Lists gains with their channels: "LON 1.012, LAT 0.987".

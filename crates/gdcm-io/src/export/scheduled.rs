@@ -7,6 +7,7 @@ use gdcm_method::schedule::{Regression, Schedule, ScheduledQuantity};
 use gdcm_model::dataset::Dataset;
 use gdcm_model::message_text::shortened;
 use gdcm_plot::figure::all_channels;
+use gdcm_words::schedule::schedule_caution_text;
 
 use super::ExportSource;
 use super::program_text::{comment, number};
@@ -151,7 +152,7 @@ impl Scheduled<'_> {
             notes.push(price.words(&inputs, &outputs));
         }
         for caution in &self.schedule.cautions {
-            notes.push(caution.words(&inputs, &outputs));
+            notes.push(schedule_caution_text(caution, &inputs, &outputs));
         }
         notes
     }

@@ -36,24 +36,11 @@ impl Outcome {
         }
     }
 
-    /// Describes the outcome in a sentence.
-    pub fn words(self) -> String {
+    /// Returns the stable code, for programs and tests.
+    pub fn code(self) -> &'static str {
         match self {
-            Outcome::Proven { .. } => {
-                "Proven: no gains within the bounds that satisfy the held responses are better."
-                    .to_owned()
-            }
-            Outcome::NotProven { gap, limit } => {
-                let ended = match limit {
-                    Limit::Work => "because its work budget was exhausted",
-                    Limit::Memory => "because its memory budget was exhausted",
-                    Limit::Rounding => "because of rounding errors",
-                };
-                let percent = 100.0 * gap;
-                format!(
-                    "Not proven: gains that are up to {percent:.2} % better may exist; the search ended {ended}."
-                )
-            }
+            Outcome::Proven { .. } => "proven",
+            Outcome::NotProven { .. } => "not-proven",
         }
     }
 }

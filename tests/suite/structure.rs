@@ -91,6 +91,7 @@ const CRATES: &[(&str, ModuleTable)] = &[
             ("channel_time_skew", &[]),
             ("missing_results", &[]),
             ("decisions", &[]),
+            ("setting_words", &[]),
             ("schedule", &[]),
             ("solution_details", &[]),
             ("coupling_remark", &[]),

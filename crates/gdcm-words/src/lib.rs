@@ -9,7 +9,7 @@
 //! Sentences: [`remark`], [`leads`] and [`solution_details`] for a condition; [`caution`],
 //! [`convention_doubt`] and [`channel_time_skew`] for suspected faults; [`coupling_remark`],
 //! [`couplings`], [`assessment`], [`schedule`], [`uncertainty`] for a study; [`missing_results`]; [`decisions`] for its
-//! decisions. Tables: [`table`], [`requirements`], [`time_histories`]. Explained results:
+//! decisions. Settings: [`setting_words`]. Tables: [`table`], [`requirements`], [`time_histories`]. Explained results:
 //! [`derivation`].
 //!
 //! # Example
@@ -35,6 +35,7 @@ pub mod missing_results;
 pub mod remark;
 pub mod requirements;
 pub mod schedule;
+pub mod setting_words;
 pub mod solution_details;
 pub mod table;
 pub mod time_histories;

@@ -7,9 +7,10 @@
 //! in its sentences.
 //!
 //! Sentences: [`remark`], [`leads`] and [`solution_details`] for a condition; [`caution`],
-//! [`convention_doubt`] and [`channel_time_skew`] for suspected faults; [`coupling_remark`],
-//! [`couplings`], [`assessment`], [`schedule`], [`uncertainty`] for a study; [`missing_results`]; [`decisions`] for its
-//! decisions. Settings: [`setting_words`]. Tables: [`table`], [`requirements`], [`time_histories`]. Explained results:
+//! [`convention_doubt`] and [`channel_time_skew`] for suspected faults; [`missing_results`] for
+//! results that do not exist; [`coupling_remark`], [`couplings`], [`assessment`], [`schedule`],
+//! [`uncertainty`] for a study; [`decision_differences`] and [`dataset_differences`]. Settings:
+//! [`setting_words`]. Tables: [`table`], [`requirements`], [`time_histories`]. Explained results:
 //! [`derivation`].
 //!
 //! # Example
@@ -28,7 +29,8 @@ pub mod channel_time_skew;
 pub mod convention_doubt;
 pub mod coupling_remark;
 pub mod couplings;
-pub mod decisions;
+pub mod dataset_differences;
+pub mod decision_differences;
 pub mod derivation;
 pub mod leads;
 pub mod missing_results;

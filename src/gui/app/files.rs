@@ -10,7 +10,7 @@ use gdcm_io::reading_budget::ReadingBudget;
 use gdcm_io::source::file_exists;
 use gdcm_io::{Existing, FileError, LoadedDataset, Opened, embedded_example, load_any, save_study};
 use gdcm_model::message_text::{sanitized, sanitized_path};
-use gdcm_study::decisions::differences::Difference;
+use gdcm_study::decisions::dataset_differences::Difference;
 
 use super::GdcmApp;
 use super::dialogs::{DialogPurpose, PendingAction};

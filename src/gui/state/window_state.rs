@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use gdcm_model::dataset::{BundleKind, Condition, Dataset, ModelId};
-use gdcm_study::decisions::differences::Difference;
+use gdcm_study::decisions::dataset_differences::Difference;
 use gdcm_study::decisions::history::History;
 use gdcm_study::jobs::analysis_jobs::Toggles;
 use gdcm_study::jobs::curve_jobs::{AcrossCurves, ConditionModes};

@@ -8,7 +8,7 @@ use gdcm_study::decisions::study::Variant;
 use gdcm_study::jobs::analysis_jobs::VariantJob;
 use gdcm_study::{Analysis, Edit};
 use gdcm_words::Table;
-use gdcm_words::decisions::decision_differences;
+use gdcm_words::decision_differences::decision_differences;
 
 use super::gain_plots::net_gain_pairs;
 use crate::gui::commands::command::Command;

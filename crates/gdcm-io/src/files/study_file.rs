@@ -15,7 +15,7 @@ use gdcm_model::whole_number::whole;
 use gdcm_study::Study;
 use gdcm_study::decisions::adopted_models::AdoptedModels;
 use gdcm_study::decisions::choices::{BundleChoice, ConditionChoice};
-use gdcm_study::decisions::differences::{Difference, Inventory};
+use gdcm_study::decisions::dataset_differences::{Difference, Inventory};
 use gdcm_study::decisions::named_decisions::Decisions;
 use gdcm_study::decisions::requirement_settings::RequirementSettings;
 use gdcm_study::decisions::settings::{ResponseNames, Settings};

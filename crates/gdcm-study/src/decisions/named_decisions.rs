@@ -8,7 +8,7 @@ use gdcm_model::dataset::{BundleKind, ConditionId, Dataset, ModelId, PairTable};
 
 use super::adopted_models::AdoptedModels;
 use super::choices::{BundleChoice, ConditionChoice};
-use super::differences::{Difference, Inventory, NotApplied};
+use super::dataset_differences::{Difference, Inventory, NotApplied};
 use super::edit::Edit;
 use super::requirement_settings::RequirementSettings;
 use super::settings::{ResponseNames, Settings};

@@ -14,7 +14,7 @@ use gdcm_study::results::convention_doubt::Convention;
 use gdcm_study::results::remark::{Remark, SuggestedSign};
 use gdcm_study::stages::convention_check::doubts_of_models;
 use gdcm_words::convention_doubt::doubt_text;
-use gdcm_words::decisions::dataset_difference_text;
+use gdcm_words::dataset_differences::dataset_difference_text;
 
 use super::*;
 

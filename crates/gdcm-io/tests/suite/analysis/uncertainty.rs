@@ -17,7 +17,7 @@ use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_study::PhaseCorrection;
 use gdcm_study::results::uncertainty::{AirspeedDifference, PairScatter, Uncertainty};
 use gdcm_words::ExplainTarget;
-use gdcm_words::decisions::dataset_difference_text;
+use gdcm_words::dataset_differences::dataset_difference_text;
 use gdcm_words::derivation::derivation;
 
 use super::*;

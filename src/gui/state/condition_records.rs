@@ -346,7 +346,9 @@ impl ConditionRecords {
         for ((_, row), record_use) in self.used_rows().zip(&found.record_uses) {
             entries.push(row.entry(record_use, channels));
         }
-        Some(Arc::new(AdoptedModels::of(found, offered, entries)))
+        Some(Arc::new(AdoptedModels::from_identification(
+            found, offered, entries,
+        )))
     }
 
     /// Returns the latest identification job.

@@ -245,7 +245,7 @@ fn present_decisions(
     dataset: &Dataset,
 ) -> Result<Decisions, ContentError> {
     settings.complete_delay_scheduling();
-    let start = Settings::of(dataset);
+    let start = Settings::for_dataset(dataset);
     settings
         .with_responses(|_, _| start.ignored.clone())
         .check()
@@ -347,7 +347,7 @@ fn save(
     path_text: impl FnOnce(&Path) -> Result<String, FileError>,
 ) -> Result<(), FileError> {
     let sha256 = loaded.sha256.clone();
-    let holds = Some(Inventory::of(study.file_dataset()));
+    let holds = Some(Inventory::from_dataset(study.file_dataset()));
     let reference = match &loaded.origin {
         DatasetOrigin::EmbeddedExample => DatasetReference {
             path: None,

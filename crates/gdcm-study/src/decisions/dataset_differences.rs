@@ -72,7 +72,7 @@ pub struct Inventory(pub Vec<ConditionInventory>);
 
 impl Inventory {
     /// Creates the inventory of a dataset, with a fingerprint of every model.
-    pub fn of(dataset: &Dataset) -> Self {
+    pub fn from_dataset(dataset: &Dataset) -> Self {
         let conditions = dataset.conditions().iter();
         Self(
             conditions
@@ -91,7 +91,7 @@ impl Inventory {
 
     /// Lists the differences between the dataset of this inventory and `dataset`.
     pub fn differences(&self, dataset: &Dataset) -> Vec<Difference> {
-        let inventory_now = Inventory::of(dataset);
+        let inventory_now = Inventory::from_dataset(dataset);
         let before = self.by_id();
         let now = inventory_now.by_id();
         let ids: BTreeSet<ConditionId> = before.keys().chain(now.keys()).copied().collect();

@@ -32,11 +32,11 @@ pub struct Decisions {
 
 impl Decisions {
     /// Collects the decisions of a study, with channels, conditions and models by name.
-    pub fn of(study: &Study) -> Self {
+    pub fn from_study(study: &Study) -> Self {
         let mut variants = Vec::new();
         for variant in &study.variants {
             if let Some(study) = study.of_variant(&variant.name) {
-                variants.push((variant.name.clone(), Self::of(&study)));
+                variants.push((variant.name.clone(), Self::from_study(&study)));
             }
         }
         Self {
@@ -193,8 +193,8 @@ impl Study {
     /// Returns this study for a changed version of its dataset, with every decision that still
     /// applies; and all differences.
     pub fn reconciled(&self, dataset: Arc<Dataset>) -> (Study, Vec<Difference>) {
-        let mut differences = Inventory::of(self.file_dataset()).differences(&dataset);
-        let (study, not_applied) = Decisions::of(self).applied_to(dataset);
+        let mut differences = Inventory::from_dataset(self.file_dataset()).differences(&dataset);
+        let (study, not_applied) = Decisions::from_study(self).applied_to(dataset);
         differences.extend(not_applied);
         (study, differences)
     }

@@ -193,7 +193,9 @@ fn condition_requirements(
     let asked = AskedCondition {
         analysis,
         result,
-        scheduled: AssessedCorrection::Scheduled.of(analysis, result).ok(),
+        scheduled: AssessedCorrection::Scheduled
+            .correction(analysis, result)
+            .ok(),
     };
     found.bandwidth = bandwidth_findings(&asked);
     match mode_findings(&asked, known) {

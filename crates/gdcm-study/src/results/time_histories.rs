@@ -57,7 +57,7 @@ pub struct HistoryRecords {
 
 impl HistoryRecords {
     /// Collects those `records` of a condition that are in use, with their preparation.
-    pub fn of<'r>(
+    pub fn from_used<'r>(
         condition: ConditionId,
         records: impl IntoIterator<Item = &'r LaidOutRecord>,
         preparation: Preparation,

@@ -39,6 +39,12 @@ use crate::results::fitted_couplings::{CoupledCondition, FittedCouplings};
 
 /// Name of the step in progress reports.
 const LEAVING_OUT: &str = "couplings without each condition";
+/// Shares of the work in progress reports; together 1. Each of the two analyses.
+const ANALYSIS_SHARE: f64 = 0.1;
+/// Fits without each condition in turn.
+const LEFT_OUT_SHARE: f64 = 0.6;
+/// Effects on the conditions.
+const EFFECTS_SHARE: f64 = 0.2;
 
 /// Numbers of frequencies of the singular values: below the band, and from its lower end to ten
 /// times its upper end (2 % apart for the band of the example).
@@ -56,10 +62,10 @@ impl Engine {
         progress: &dyn Progress,
     ) -> Result<Option<AssessedCouplings>, Cancelled> {
         let shares = Shares::new(progress);
-        let portion = Portion::new(&shares, 0.1, LEAVING_OUT);
+        let portion = Portion::new(&shares, ANALYSIS_SHARE, LEAVING_OUT);
         let without = self.analyze(&with_couplings(study, CouplingCorrection::None), &portion)?;
         portion.finish()?;
-        let portion = Portion::new(&shares, 0.1, LEAVING_OUT);
+        let portion = Portion::new(&shares, ANALYSIS_SHARE, LEAVING_OUT);
         let with = self.analyze(&with_couplings(study, couplings), &portion)?;
         portion.finish()?;
         let fitted = match &with.couplings {
@@ -70,7 +76,7 @@ impl Engine {
         let left_out = self.leave_out_each(&without, &with, &fitted, &shares)?;
         let grid = margin_grid(study.settings.band);
         let results: Vec<&ConditionAnalysis> = with.conditions.values().flatten().collect();
-        let share = 0.2 / results.len().max(1) as f64;
+        let share = EFFECTS_SHARE / results.len().max(1) as f64;
         let effects = each(self.executor(), &results, |result| {
             let effect = condition_effect(&with.study, result, &grid, progress)?;
             shares.advance(share, LEAVING_OUT)?;
@@ -126,7 +132,7 @@ impl Engine {
         if ids.len() < LEAST_CONDITIONS {
             return Ok(Vec::new());
         }
-        let share = 0.6 / ids.len() as f64;
+        let share = LEFT_OUT_SHARE / ids.len() as f64;
         let found = each(self.executor(), ids, |condition| {
             let held_out = Edit::SetHeldOut {
                 condition,

@@ -231,7 +231,7 @@ fn equal_coherence_gives_the_medians_of_no_coherence_to_the_last_digit() {
 #[test]
 fn a_dataset_without_coherence_gives_the_same_whether_it_is_on_or_off() {
     let plain = dataset(None, None);
-    assert_eq!(Settings::of(&plain).coherence_threshold, None);
+    assert_eq!(Settings::for_dataset(&plain).coherence_threshold, None);
     let off = with(&plain, &[]);
     let on = with(&plain, &[setting::COHERENCE.to(Some(0.9))]);
     assert_eq!(

@@ -256,7 +256,7 @@ fn measured_responses_are_turned_with_their_coherence() {
 fn signs_go_with_the_decisions_by_the_names_of_channels() {
     let mut study = study_of_example();
     turn(&mut study, NZ, Some(SignRole::All));
-    let decisions = Decisions::of(&study);
+    let decisions = Decisions::from_study(&study);
     assert_eq!(decisions.signs[0].channel, "NZ");
     let (again, not_applied) = decisions.applied_to(study_of_example().dataset);
     assert!(again == study && not_applied.is_empty(), "{not_applied:?}");

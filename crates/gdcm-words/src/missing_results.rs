@@ -1,6 +1,7 @@
 //! Sentences about missing results: why a condition, a model, a record or a value has none.
 
 use gdcm_model::dataset::Dataset;
+use gdcm_study::jobs::identification_jobs::SimulationFailure;
 use gdcm_study::results::analysis::NoResult;
 use gdcm_study::results::condition_answers::{NoRecordHistory, NoTestAnswer, NotInHistory};
 use gdcm_study::results::missing_finding::{MissingReason, NoModes, NoRoleModel, NotCompared};
@@ -91,6 +92,14 @@ pub fn no_test_answer_text(why: &NoTestAnswer) -> String {
     match why {
         NoTestAnswer::NoModel(error) => error.to_string(),
         NoTestAnswer::NotSimulated(error) => error.to_string(),
+    }
+}
+
+/// Returns why a model is not simulated with a record.
+pub fn simulation_failure_text(why: &SimulationFailure) -> String {
+    match why {
+        SimulationFailure::NotPrepared(error) => error.to_string(),
+        SimulationFailure::NotSimulated(error) => error.to_string(),
     }
 }
 

@@ -10,7 +10,7 @@ use gdcm_study::jobs::analysis_jobs::{
     AssessmentJob, CouplingsJob, Toggles, TogglesJob, UncertaintyJob, VariantJob,
 };
 use gdcm_study::jobs::curve_jobs::{AcrossCurves, AcrossJob, ConditionModes, CurvesJob, ModesJob};
-use gdcm_study::jobs::identification_jobs::SimulationJob;
+use gdcm_study::jobs::identification_jobs::{SimulationFailure, SimulationJob};
 use gdcm_study::jobs::requirement_jobs::{
     RecordHistoryJob, RequirementsJob, TestAnswersJob, TimeHistoriesJob,
 };
@@ -138,7 +138,7 @@ pub struct Results {
     pub time_histories: Option<(TimeHistoriesJob, Arc<TimeHistories>)>,
     pub variants: Vec<(VariantJob, Arc<Analysis>)>,
     /// Comparisons of models with a record in the time domain, or the reasons for their absence.
-    pub simulations: Vec<(SimulationJob, Result<Arc<Validation>, String>)>,
+    pub simulations: Vec<(SimulationJob, Result<Arc<Validation>, SimulationFailure>)>,
     pub background: Background,
     /// Start time of the background work \[s, window clock\].
     pub background_since: Option<f64>,

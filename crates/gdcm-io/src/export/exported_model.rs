@@ -60,7 +60,9 @@ pub(super) fn exported_models(
     let dataset = &analysis.study.dataset;
     analysis
         .asked_couplings()
-        .map_err(|why| ExportFault::NoCouplings { why })?;
+        .map_err(|error| ExportFault::NoCouplings {
+            why: error.words(&dataset.names_of_channels().0),
+        })?;
     let Some(id) = request.condition else {
         return dataset
             .conditions()

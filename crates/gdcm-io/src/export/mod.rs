@@ -154,7 +154,9 @@ impl<'e> Export<'e> {
         };
         let couplings = analysis
             .asked_couplings()
-            .map_err(|why| ExportFault::NoCouplings { why })?;
+            .map_err(|error| ExportFault::NoCouplings {
+                why: error.words(&analysis.study.dataset.names_of_channels().0),
+            })?;
         Ok(Scheduled {
             schedule,
             dataset: &analysis.study.dataset,

@@ -105,16 +105,13 @@ impl Analysis {
     /// Returns the couplings that the study requests; `None` where it requests none.
     ///
     /// # Errors
-    /// The reason, naming the channels, why the requested couplings are unavailable: an export
-    /// without them would not match the request.
-    pub fn asked_couplings(&self) -> Result<Option<&Arc<FittedCouplings>>, String> {
+    /// [`CouplingError`] if the requested couplings are unavailable: an export without them would
+    /// not match the request.
+    pub fn asked_couplings(&self) -> Result<Option<&Arc<FittedCouplings>>, &CouplingError> {
         match &self.couplings {
             None => Ok(None),
             Some(Ok(fitted)) => Ok(Some(fitted)),
-            Some(Err(error)) => {
-                let (inputs, _) = self.study.dataset.names_of_channels();
-                Err(error.words(&inputs))
-            }
+            Some(Err(error)) => Err(error),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Requirement files (M17): `requirements.json` and `requirements.csv`, which hold the same values.
 
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -107,10 +108,8 @@ fn with_sentences(
 ) -> io::Result<Value> {
     let mut value = serde_json::to_value(document)?;
     for (index, finding) in results.requirements.bandwidth.iter().enumerate() {
-        let absent = &mut value["bandwidth"][index]["absent"];
-        for (name, why) in &finding.absent {
-            absent[*name] = no_bandwidth_text(why).into();
-        }
+        let entry = &mut value["bandwidth"][index];
+        replace_absent(entry, &finding.absent, no_bandwidth_text);
     }
     for (index, finding) in results.requirements.modes.iter().enumerate() {
         let models = [
@@ -119,18 +118,15 @@ fn with_sentences(
             ("corrected", finding.corrected.as_ref()),
         ];
         for (role, numbers) in models {
-            let Some(numbers) = numbers else { continue };
-            let absent = &mut value["modes"][index][role]["absent"];
-            for (name, why) in &numbers.absent {
-                absent[*name] = no_mode_value_text(*why).into();
+            if let Some(numbers) = numbers {
+                let entry = &mut value["modes"][index][role];
+                replace_absent(entry, &numbers.absent, |why| no_mode_value_text(*why));
             }
         }
     }
     for (index, finding) in results.requirements.summary.iter().enumerate() {
-        let absent = &mut value["summary"][index]["absent"];
-        for (name, why) in &finding.absent {
-            absent[*name] = no_summary_text(*why).into();
-        }
+        let entry = &mut value["summary"][index];
+        replace_absent(entry, &finding.absent, |why| no_summary_text(*why));
     }
     for (index, missing) in results.requirements.missing.iter().enumerate() {
         value["missing"][index]["why"] = missing_reason_text(&missing.why).into();
@@ -143,6 +139,17 @@ fn with_sentences(
         value["time_histories"]["missing"][index]["why"] = why.into();
     }
     Ok(value)
+}
+
+/// Replaces the codes of the missing values of a finding by sentences.
+fn replace_absent<T, S: Into<Value>>(
+    entry: &mut Value,
+    absent: &BTreeMap<&'static str, T>,
+    text: impl Fn(&T) -> S,
+) {
+    for (name, why) in absent {
+        entry["absent"][*name] = text(why).into();
+    }
 }
 
 /// Column names of the CSV file, separated by blanks.

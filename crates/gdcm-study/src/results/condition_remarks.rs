@@ -1,6 +1,5 @@
 //! Finds the remarks on the result of a condition.
 
-use gdcm_method::correction::remedy::Remedy;
 use gdcm_method::schedule::Schedule;
 
 use super::analysis::ConditionAnalysis;
@@ -86,7 +85,7 @@ fn gain_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     if let Some(remedy) = &result.gains.remedy
         && !remedy.is_empty()
     {
-        remarks.push(Remark::GainsRemedy(Remedy::clone(remedy)));
+        remarks.push(Remark::GainsRemedy(remedy.clone()));
     }
     remarks
 }

@@ -109,7 +109,10 @@ const CRATES: &[(&str, ModuleTable)] = &[
                 "requirements",
                 &["missing_results", "table", "time_histories"],
             ),
-            ("derivation", &["assessment", "leads", "solution_details"]),
+            (
+                "derivation",
+                &["assessment", "uncertainty", "leads", "solution_details"],
+            ),
         ],
     ),
     ("gdcm-plot", &[("figure", &[]), ("paper", &["figure"])]),

@@ -10,6 +10,7 @@ use gdcm_plot::figure::{Figure, MarkId};
 use gdcm_study::Edit;
 use gdcm_study::results::uncertainty::Uncertainty;
 use gdcm_words::derivation::ExplainTarget;
+use gdcm_words::uncertainty::bar_remark_texts;
 
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
@@ -192,7 +193,7 @@ pub fn gain_command(state: &State, event: FigureEvent) -> Option<Command> {
 
 /// Describes an error bar: "± 3.3 % (90 %): trim 78 %, identification 22 % of the variance".
 pub fn bar_words(bar: &Bar, scalar: Scalar, level: f64) -> String {
-    let remarks = bar.remarks().join(", ");
+    let remarks = bar_remark_texts(bar).join(", ");
     let Some(half) = bar.half_width(level) else {
         return format!("no error bar: {remarks}");
     };

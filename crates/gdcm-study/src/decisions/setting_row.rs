@@ -392,8 +392,8 @@ impl Setting {
     ///
     /// # Errors
     /// The expected values and the text found.
-    pub fn read(&self, said: &[&str]) -> Result<Value, String> {
-        match (self.kind, said) {
+    pub fn read(&self, arguments: &[&str]) -> Result<Value, String> {
+        match (self.kind, arguments) {
             (Kind::Flag { .. }, _) => Ok(Value::Flag(true)),
             (Kind::Number { range, whole, .. }, [text]) => {
                 let number = if whole {
@@ -416,7 +416,7 @@ impl Setting {
             _ => Err(format!(
                 "expected {}, found {}",
                 self.syntax(),
-                said.join(" ")
+                arguments.join(" ")
             )),
         }
     }

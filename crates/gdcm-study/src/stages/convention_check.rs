@@ -5,7 +5,8 @@
 //! G    ratio of their gains (M6)
 //!
 //! sign  the weighted majority of frequencies has |phi| within 20 deg of half a turn. Attributed to
-//!       the channel of the response of which more responses have sum W cos phi < 0
+//!       the channel of the response with the larger share of responses with
+//!       sum W cos phi < 0
 //! unit  |ln G| > ln 5. Attributed to the channel of the response with the nearer median of ln G;
 //!       all such responses of the channel agree within a factor of 2 of their median
 //! ```

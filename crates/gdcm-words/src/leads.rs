@@ -9,7 +9,7 @@ use gdcm_model::units::{number, s_to_ms, signed, telling};
 use gdcm_study::results::lead_remarks::lead_remarks;
 use gdcm_study::results::remark_kind::RemarkKind;
 use gdcm_study::results::uncertainty::Uncertainty;
-use gdcm_study::{ConditionAnalysis, PhaseCorrection, Study};
+use gdcm_study::{ConditionAnalysis, Study};
 
 use crate::remark::remark_text;
 

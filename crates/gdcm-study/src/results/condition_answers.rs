@@ -70,6 +70,17 @@ pub enum NotInHistory {
     ToleranceNotApplied(ToleranceError),
 }
 
+impl NotInHistory {
+    /// Returns the stable code, for programs and tests.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NoRoleModel(_) => "no-role-model",
+            Self::NotSimulated { .. } => "not-simulated",
+            Self::ToleranceNotApplied(_) => "tolerance-not-applied",
+        }
+    }
+}
+
 /// Why a record is not compared with the models of a condition.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoRecordHistory {
@@ -92,6 +103,16 @@ impl NoRecordHistory {
 pub enum NoTestAnswer {
     NoModel(RoleModelError),
     NotSimulated(TestInputError),
+}
+
+impl NoTestAnswer {
+    /// Returns the stable code, for programs and tests.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NoModel(_) => "no-role-model",
+            Self::NotSimulated(_) => "not-simulated",
+        }
+    }
 }
 
 /// A record to compare with a condition's models.

@@ -62,6 +62,17 @@ pub enum NoModeValue {
     PoleAtZero,
 }
 
+impl NoModeValue {
+    /// Returns the stable code, for programs and tests.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::NotOscillating => "not-oscillating",
+            Self::NoDecay => "no-decay",
+            Self::PoleAtZero => "pole-at-zero",
+        }
+    }
+}
+
 impl ModeNumbers {
     fn new(mode: &ComparedMode, model: &str) -> Self {
         let values = mode.values;

@@ -63,6 +63,16 @@ pub enum NoSummary {
     NoResponse,
 }
 
+impl NoSummary {
+    /// Returns the stable code, for programs and tests.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::NoOnAxisResponse => "no-on-axis-response",
+            Self::NoResponse => "no-response",
+        }
+    }
+}
+
 /// A response of a condition whose phase at the lowest frequency of the band suggests a reversed
 /// channel in the models of these roles.
 #[derive(Clone, Debug, PartialEq, Eq)]

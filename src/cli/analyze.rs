@@ -6,7 +6,8 @@ use gdcm_io::output_set::make_directory;
 use super::failure::Failure;
 use super::result_arguments::AnalyzeArguments;
 use super::schedule_summary::leave_one_out_section;
-use super::study_options::{CommandStudy, ErrorBars, StudyAnalysis, analyze_study};
+use super::study_analysis::{ErrorBars, StudyAnalysis, analyze_study};
+use super::study_options::CommandStudy;
 use super::summary::summary;
 use super::terminal::print;
 

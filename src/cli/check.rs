@@ -6,7 +6,8 @@ use std::path::Path;
 use gdcm_io::file_error::ContentFault;
 use gdcm_io::files::beginning::check_beginning;
 use gdcm_io::files::dataset_file::dataset_faults;
-use gdcm_io::files::study_file::{OpenedStudy, holds_models};
+use gdcm_io::files::opened_file::holds_models;
+use gdcm_io::files::study_file::OpenedStudy;
 use gdcm_io::{FileError, LoadedDataset, Opened};
 use gdcm_model::dataset::condition::{ConditionRecord, RecordKind};
 use gdcm_model::dataset::{BundleKind, Channel, Dataset, Dynamics, Model};
@@ -21,13 +22,14 @@ use gdcm_words::Table;
 use gdcm_words::caution::caution_text;
 
 use super::channel_values::ChannelSign;
+use super::condition_messages::{ConditionMessage, shared_messages, with_conditions};
 use super::failure::Failure;
 use super::open;
 use super::study_arguments::OpeningArguments;
 use super::study_options::apply_signs;
 use super::summary::doubt_words;
 use super::terminal::{error, print};
-use super::text::{ConditionMessage, indented, line, shared_messages, with_conditions};
+use super::text::{indented, line};
 
 /// Prints the contents of a dataset or study.
 pub(super) fn check(

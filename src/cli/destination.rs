@@ -12,11 +12,11 @@ use gdcm_model::dataset::{ConditionId, Dataset};
 use gdcm_study::decisions::adopted_models::AdoptedModels;
 use gdcm_sysid::records::LaidOutRecord;
 
+use super::condition_messages::listed_conditions;
 use super::failure::Failure;
 use super::identify_arguments::IdentifyArguments;
 use super::study_options::{condition_ids, condition_of};
 use super::terminal::{caution, note};
-use super::text::listed_conditions;
 
 /// Records from which models are identified jointly.
 pub(super) struct RecordGroup {

@@ -10,8 +10,9 @@ use gdcm_study::Study;
 
 use super::failure::Failure;
 use super::result_arguments::ExportArguments;
+use super::study_analysis::{ErrorBars, StudyAnalysis, analyze_study};
 use super::study_arguments::StudyArguments;
-use super::study_options::{CommandStudy, ErrorBars, StudyAnalysis, analyze_study, condition_of};
+use super::study_options::{CommandStudy, condition_of};
 use super::terminal::print;
 
 /// Analyses a study, writes the requested export, and prints its notes and cautions.

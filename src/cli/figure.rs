@@ -21,10 +21,8 @@ use super::failure::Failure;
 use super::option_values::PairChoice;
 use super::progress::TerminalProgress;
 use super::result_arguments::FigureArguments;
-use super::study_options::{
-    CommandStudy, ErrorBars, StudyAnalysis, analyze_study, channel_names, condition_ids,
-    condition_of, pairs_of,
-};
+use super::study_analysis::{ErrorBars, StudyAnalysis, analyze_study};
+use super::study_options::{CommandStudy, channel_names, condition_ids, condition_of, pairs_of};
 use super::terminal::print;
 
 /// Writes a figure to a file, and prints its path.

@@ -17,11 +17,9 @@ use gdcm_words::Table;
 
 use super::failure::Failure;
 use super::identify_arguments::IdentifyArguments;
-use super::option_values::{RecordPart, record_part};
+use super::option_values::RecordPart;
 use super::progress::ReadingProgress;
-use super::record_parts::{
-    CutRecords, WholeRecord, cut_parts, is_called, is_part, part_without_samples,
-};
+use super::record_parts::{CutRecords, WholeRecord, cut_parts, is_part, part_without_samples};
 use super::terminal::{caution, error, note};
 use super::text::indented;
 
@@ -83,7 +81,7 @@ pub(super) fn laid_out_records(
         }
     } else {
         cut_parts(&tables, &arguments.part, |table| {
-            layouts.lay_out(table.clone(), channels).0
+            layouts.lay_out(table.clone(), channels).0.span_s()
         })?
     };
     let mut records = layouts.lay_out_all(tables, channels);
@@ -259,45 +257,6 @@ fn check_parts(
             .any(|record| is_part(&record.table, part, wholes))
         {
             return Err(part_without_samples(part, wholes));
-        }
-    }
-    Ok(())
-}
-
-/// Holds out the requested records or parts; `wholes` are the records from which parts were cut.
-/// Without a request, the records whose names mark them as validation are held out.
-pub(super) fn hold_out(
-    names: &[String],
-    records: &mut [LaidOutRecord],
-    wholes: &[WholeRecord],
-) -> Result<(), Failure> {
-    if !names.is_empty() {
-        for record in records.iter_mut() {
-            record.guess.held_out = false;
-        }
-    }
-    for name in names {
-        let part = record_part(name).ok();
-        let mut is_found = false;
-        for record in records.iter_mut() {
-            let table = &record.table;
-            let is_held_part = match &part {
-                Some(part) => table.part_s.is_some() && is_part(table, part, wholes),
-                None => false,
-            };
-            if is_held_part || is_called(table, name) {
-                record.guess.held_out = true;
-                is_found = true;
-            }
-        }
-        if !is_found {
-            let reason =
-                format!("no record is called \"{name}\"; give its file among the records too");
-            return Err(Failure::coded_option(
-                "--hold-out",
-                "unknown-record",
-                reason,
-            ));
         }
     }
     Ok(())

@@ -61,8 +61,9 @@ pub(super) fn read_histories(
         SaidConversion::Unit,
         &mut channels,
     )?;
-    let mut ids: Vec<ConditionId> = Vec::new();
+    // The records, and at the same index the condition of each.
     let mut records: Vec<LaidOutRecord> = Vec::new();
+    let mut ids: Vec<ConditionId> = Vec::new();
     for table in with_topics_joined(tables, &channels, &TimeWish::default()) {
         let laid_out = laid_out_record(table, dataset, &channels);
         report_record(&laid_out);

@@ -1,6 +1,5 @@
 //! `gdcm identify`: models from flight records, optionally added to a dataset.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use gdcm_io::files::dataset_file::add_dataset;
@@ -8,7 +7,7 @@ use gdcm_io::files::identified_models::{IdentifiedModels, add_identified};
 use gdcm_io::import::record_files::relative_entry;
 use gdcm_io::output_set::{OutputSet, make_directory};
 use gdcm_model::dataset::Band;
-use gdcm_model::dataset::condition::{ChannelRemedy, ConditionRecord};
+use gdcm_model::dataset::condition::ConditionRecord;
 use gdcm_model::message_text::sanitized_path;
 use gdcm_study::decisions::adopted_models::AdoptedModels;
 use gdcm_sysid::identification::{
@@ -19,19 +18,18 @@ use gdcm_sysid::records::topics::is_held;
 use gdcm_sysid::records::{LaidOutRecord, RecordChannels};
 use gdcm_sysid::spectra::preparation::RecordUse;
 
-use super::channel_values::RecordChannel;
+use super::condition_messages::{ConditionMessage, shared_messages};
 use super::destination::{Destination, RecordGroup, named_conditions};
 use super::existing;
 use super::failure::Failure;
-use super::flight_records::{Duplicate, ReadRecords, hold_out, laid_out_records};
+use super::flight_records::{Duplicate, ReadRecords, laid_out_records};
+use super::held_out_records::hold_out;
 use super::identification_task::{IDENTIFIED_FILE, IdentificationTask};
 use super::identify_arguments::IdentifyArguments;
-use super::record_parts::is_called;
-use super::requested_channels::{
-    has_channel, requested_band, requested_channels, requested_preparation, unknown_channel,
-};
+use super::record_remedies::apply_record_remedies;
+use super::requested_channels::{requested_band, requested_channels, requested_preparation};
 use super::terminal::{caution, caution_for, note, print};
-use super::text::{ConditionMessage, counted, listed_paths, shared_messages};
+use super::text::{counted, listed_paths};
 
 /// Identifies models from flight records and writes them; with `--into`, also a copy of the dataset
 /// that contains them.
@@ -162,92 +160,6 @@ fn set_holds(preparation: &mut Preparation, records: &[LaidOutRecord], channels:
             _ => Hold::Acts,
         };
     }
-}
-
-/// Delay or factor that an option gives for a channel in a single record.
-struct RecordRemedy<'a> {
-    option: &'static str,
-    record: &'a str,
-    channel: &'a str,
-    remedy: ChannelRemedy,
-}
-
-/// Returns the options that give a delay or a factor for a channel in a single record.
-fn record_remedies(arguments: &IdentifyArguments) -> Vec<RecordRemedy<'_>> {
-    let mut remedies = Vec::new();
-    for delay in &arguments.delay {
-        if let Some(RecordChannel { record, channel }) = RecordChannel::parse(&delay.channel) {
-            remedies.push(RecordRemedy {
-                option: "--delay",
-                record,
-                channel,
-                remedy: ChannelRemedy {
-                    delay_s: delay.value,
-                    ..ChannelRemedy::NONE
-                },
-            });
-        }
-    }
-    for factor in &arguments.factor {
-        if let Some(RecordChannel { record, channel }) = RecordChannel::parse(&factor.channel) {
-            remedies.push(RecordRemedy {
-                option: "--factor",
-                record,
-                channel,
-                remedy: ChannelRemedy {
-                    factor: factor.value,
-                    ..ChannelRemedy::NONE
-                },
-            });
-        }
-    }
-    remedies
-}
-
-/// Applies the delays and factors given for single records.
-///
-/// # Errors
-/// The channel or the record is unknown, or a value is given twice.
-fn apply_record_remedies(
-    arguments: &IdentifyArguments,
-    records: &mut [LaidOutRecord],
-    channels: &RecordChannels,
-) -> Result<(), Failure> {
-    let mut applied: Vec<(&str, String, &str)> = Vec::new();
-    for RecordRemedy {
-        option,
-        record: name,
-        channel,
-        remedy,
-    } in record_remedies(arguments)
-    {
-        if !has_channel(channels, channel) {
-            return Err(unknown_channel(option, channel));
-        }
-        let mut is_found = false;
-        for record in records.iter_mut() {
-            if !is_called(&record.table, name) {
-                continue;
-            }
-            is_found = true;
-            let key = (option, record.table.name.clone(), channel);
-            if applied.contains(&key) {
-                let subject = format!("{channel} of {name}");
-                return Err(Failure::given_twice(option, &subject));
-            }
-            applied.push(key);
-            let mut layout = record.layout.clone();
-            layout.put_right(&BTreeMap::from([(channel.to_owned(), remedy)]), channels);
-            *record = record.laid_out(layout, channels);
-            if let Some(problem) = record.problems.first() {
-                return Err(Failure::option(option, format!("{name}: {problem}")));
-            }
-        }
-        if !is_found {
-            return Err(Failure::unknown_record(option, name));
-        }
-    }
-    Ok(())
 }
 
 /// Results of the identifications so far, and the output files.

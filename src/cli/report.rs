@@ -10,7 +10,8 @@ use super::failure::Failure;
 use super::histories::{read_histories, simulated_histories};
 use super::progress::TerminalProgress;
 use super::result_arguments::ReportArguments;
-use super::study_options::{CommandStudy, ErrorBars, StudyAnalysis, analyze_study};
+use super::study_analysis::{ErrorBars, StudyAnalysis, analyze_study};
+use super::study_options::CommandStudy;
 use super::terminal::print;
 use super::text::counted;
 
@@ -38,7 +39,7 @@ pub(super) fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     if study_file == loaded.path() {
         study_file = None;
     }
-    let source = ReportSource::of(&loaded, study_file);
+    let source = ReportSource::from_files(&loaded, study_file);
     let progress = TerminalProgress::new("drawing");
     let known = KnownPoles::default();
     let subject = ReportSubject {

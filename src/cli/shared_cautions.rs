@@ -11,10 +11,12 @@ use gdcm_words::Table;
 use gdcm_words::leads::lead_limit_words;
 use gdcm_words::remark::{lead_ms_text, lead_offer_texts, raised_gain_text, remark_text};
 
+use super::condition_messages::{ConditionMessage, shared_messages};
 use super::terminal::keep_caution;
-use super::text::{ConditionMessage, indented, line, shared_messages};
+use super::text::{indented, line};
 
-/// Remarks on a condition that typically recur in other conditions.
+/// Remarks on a condition of the kinds that a table lists ([`Repeated`]), because they usually recur in
+/// other conditions.
 struct RemarkRow {
     condition: ConditionId,
     remarks: Vec<Remark>,

@@ -11,8 +11,8 @@ use gdcm_io::json_text::write_pretty;
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::message_text::{sanitized, shortened_message};
 
+use super::condition_messages::with_conditions;
 use super::failure::Failure;
-use super::text::with_conditions;
 
 /// Output format of a command.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

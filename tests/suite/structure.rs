@@ -121,13 +121,19 @@ const CRATES: &[(&str, ModuleTable)] = &[
 /// Modules of gdcm-io, the only crate that accesses files. Each may name only the modules listed
 /// before it.
 const FILE_MODULES: &[&str] = &[
+    "variable_fault",
     "reading_budget",
     "export_fault",
+    "json_path",
+    "json_outline",
     "location",
     "file_error",
     "json_lists",
+    "json_arrays",
     "json_errors",
+    "unknown_keys",
     "json_text",
+    "user_paths",
     "source",
     "output_set",
     "csv_text",

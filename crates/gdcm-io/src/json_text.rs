@@ -9,11 +9,15 @@ use gdcm_model::dataset::location::Location;
 use gdcm_model::message_text::is_unprintable;
 
 use crate::file_error::{ContentError, ContentFault, FileError};
-use crate::location::{Outline, Step, UnknownKeys, location_of};
+use crate::json_outline::Outline;
+use crate::json_path::Step;
+use crate::location::location_of;
 use crate::reading_budget::ReadingBudget;
+use crate::unknown_keys::UnknownKeys;
 
+pub(super) use crate::json_arrays::Nested;
 pub(super) use crate::json_errors::json_error;
-pub(super) use crate::json_lists::{Limited, Nested, Numbers, list, list_while};
+pub(super) use crate::json_lists::{Limited, Numbers, list, list_while};
 
 /// Maximum memory per byte of a JSON file \[bytes\]: a number takes at least two bytes in the file
 /// (a digit and a comma) and eight in memory, in a list with up to twice the necessary capacity.

@@ -19,14 +19,20 @@ pub mod file_error;
 pub mod files;
 pub mod formats;
 pub mod import;
+mod json_arrays;
 mod json_errors;
 mod json_lists;
+mod json_outline;
+mod json_path;
 pub mod json_text;
 mod location;
 pub mod output_set;
 pub mod reading_budget;
 pub mod report;
 pub mod source;
+mod unknown_keys;
+pub mod user_paths;
+mod variable_fault;
 
 pub use gdcm_model::dataset::limits::LARGEST_TEXT;
 
@@ -34,7 +40,8 @@ pub use crate::file_error::FileError;
 pub use crate::files::dataset_file::{
     DatasetOrigin, LoadedDataset, embedded_example, load_dataset, load_dataset_bytes,
 };
-pub use crate::files::study_file::{Opened, load_any, save_study};
+pub use crate::files::opened_file::{Opened, load_any};
+pub use crate::files::study_file::save_study;
 pub use crate::formats::FolderProgress;
 pub use crate::formats::mat::write as write_mat;
 pub use crate::import::model_files::read_models;

@@ -4,8 +4,7 @@ use std::borrow::Cow;
 use std::fs;
 use std::fs::{File, FileType};
 use std::io::{BufRead, BufReader, ErrorKind, Read};
-use std::path::{Path, PathBuf};
-use std::time::SystemTime;
+use std::path::Path;
 
 use flate2::bufread::{GzDecoder, MultiGzDecoder};
 use sha2::{Digest, Sha256};
@@ -49,7 +48,7 @@ impl Source<'static> {
 
 impl<'b> Source<'b> {
     /// Creates a source from bytes in memory; errors name it by `path`.
-    pub(super) fn of(
+    pub(super) fn from_bytes(
         bytes: &'b [u8],
         path: &Path,
         budget: &ReadingBudget<'_>,
@@ -233,24 +232,6 @@ pub(super) fn sha256(
     Ok(digest.iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
-/// Metadata that change when a file is written. Querying them is cheap, even on a network drive.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct FileStamp {
-    modified: Option<SystemTime>,
-    length: u64,
-}
-
-impl FileStamp {
-    /// Reads the metadata; `None` if there is no file at `path`.
-    pub fn of(path: &Path) -> Option<Self> {
-        let metadata = fs::metadata(path).ok().filter(fs::Metadata::is_file)?;
-        Some(Self {
-            modified: metadata.modified().ok(),
-            length: metadata.len(),
-        })
-    }
-}
-
 /// Computes the SHA-256 of the stored bytes in a file, in lower-case hexadecimal.
 ///
 /// # Errors
@@ -259,26 +240,8 @@ pub fn file_sha256(path: &Path) -> Result<String, FileError> {
     Ok(Source::read(path, &ReadingBudget::default())?.sha256)
 }
 
-/// Returns whether there is a file at `path`; false for a directory.
-pub fn file_exists(path: &Path) -> bool {
-    path.is_file()
-}
-
-/// Replaces a leading `~` by the home directory, as a shell does. Other paths, and all paths if the
-/// home directory is unknown, are unchanged.
-pub fn at_home(path: &Path, home: Option<&Path>) -> PathBuf {
-    let Some(home) = home else {
-        return path.to_owned();
-    };
-    match path.strip_prefix("~") {
-        Ok(rest) if rest.as_os_str().is_empty() => home.to_owned(),
-        Ok(rest) => home.join(rest),
-        Err(_) => path.to_owned(),
-    }
-}
-
 #[cfg(test)]
-mod source_tests {
+mod tests {
     use super::*;
 
     #[test]
@@ -301,7 +264,7 @@ mod source_tests {
             encoder.finish().unwrap()
         };
         let packed = [member(b"{"), member(b""), member(b"}"), vec![0; 700]].concat();
-        let source = |bytes| Source::of(bytes, Path::new("x"), &ReadingBudget::default());
+        let source = |bytes| Source::from_bytes(bytes, Path::new("x"), &ReadingBudget::default());
         assert_eq!(source(&packed).unwrap().text(), b"{}");
         let strange = [member(b"{}"), b"\0\0something else".to_vec()].concat();
         assert!(matches!(source(&strange), Err(FileError::Gzip { .. })));
@@ -312,32 +275,8 @@ mod source_tests {
     #[test]
     fn a_byte_order_mark_is_no_part_of_the_text() {
         let source =
-            Source::of(b"\xef\xbb\xbf{}", Path::new("x"), &ReadingBudget::default()).unwrap();
+            Source::from_bytes(b"\xef\xbb\xbf{}", Path::new("x"), &ReadingBudget::default())
+                .unwrap();
         assert_eq!(source.text(), b"{}");
-    }
-}
-
-#[cfg(test)]
-mod home_tests {
-    use super::*;
-
-    #[test]
-    fn a_tilde_means_home_as_in_a_shell() {
-        let home = Path::new("/home/ada");
-        for (typed, meant) in [
-            ("~", "/home/ada"),
-            ("~/", "/home/ada"),
-            ("~/x/data.json", "/home/ada/x/data.json"),
-            ("~bob/x", "~bob/x"),
-            ("x/~/y", "x/~/y"),
-            ("/data/x", "/data/x"),
-        ] {
-            assert_eq!(
-                at_home(Path::new(typed), Some(home)),
-                Path::new(meant),
-                "{typed}"
-            );
-            assert_eq!(at_home(Path::new(typed), None), Path::new(typed));
-        }
     }
 }

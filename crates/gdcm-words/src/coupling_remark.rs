@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use nalgebra::Complex;
 
 use gdcm_method::couplings::Unknown;
-use gdcm_method::couplings::coupling_effects::{FeedbackShare, MixingShare};
+use gdcm_method::couplings::coupling_shares::{FeedbackShare, MixingShare};
 use gdcm_model::dataset::{ConditionId, Dataset};
 use gdcm_model::number_format::with_minus_sign;
 use gdcm_model::units::{number, signed, telling};

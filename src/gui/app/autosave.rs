@@ -5,7 +5,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant, SystemTime};
 
-use gdcm_io::files::user_state::{LostStudy, RecoveryFile, lost_studies};
+use gdcm_io::files::recovery_file::{LostStudy, RecoveryFile, lost_studies};
 use gdcm_io::{FileError, LoadedDataset};
 use gdcm_study::Study;
 

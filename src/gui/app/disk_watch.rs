@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
-use gdcm_io::source::{FileStamp, file_sha256};
+use gdcm_io::source::file_sha256;
+use gdcm_io::user_paths::FileStamp;
 
 use super::threads::ReplySender;
 
@@ -68,7 +69,7 @@ impl Known {
         }
         // A missing file may be about to be replaced; the open dataset remains until the file
         // reappears.
-        let stamp = FileStamp::of(path)?;
+        let stamp = FileStamp::read(path)?;
         let is_unchanged = self.stamp == Some(stamp);
         self.stamp = Some(stamp);
         if !is_unchanged || self.read == Some(stamp) {
@@ -76,7 +77,7 @@ impl Known {
         }
         let sha256 = file_sha256(path).ok()?;
         // The file was written again in the meantime: wait for the next check.
-        if FileStamp::of(path) != Some(stamp) {
+        if FileStamp::read(path) != Some(stamp) {
             return None;
         }
         self.read = Some(stamp);

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use gdcm_io::LoadedDataset;
 use gdcm_io::files::study_file::STUDY_EXTENSION;
-use gdcm_io::source::at_home;
+use gdcm_io::user_paths::at_home;
 use gdcm_study::Study;
 use gdcm_sysid::records::RecordChannels;
 

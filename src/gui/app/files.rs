@@ -3,11 +3,12 @@
 
 use std::path::{Path, PathBuf};
 
-use gdcm_io::files::study_file::{STUDY_EXTENSION, holds_models, open_study_of};
-use gdcm_io::files::user_state::{add_recent_file, recent_files};
+use gdcm_io::files::opened_file::holds_models;
+use gdcm_io::files::recent_files::{add_recent_file, recent_files};
+use gdcm_io::files::study_file::{STUDY_EXTENSION, open_study_of};
 use gdcm_io::output_set::OutputSet;
 use gdcm_io::reading_budget::ReadingBudget;
-use gdcm_io::source::file_exists;
+use gdcm_io::user_paths::file_exists;
 use gdcm_io::{Existing, FileError, LoadedDataset, Opened, embedded_example, load_any, save_study};
 use gdcm_model::message_text::{sanitized, sanitized_path};
 use gdcm_study::decisions::dataset_differences::Difference;

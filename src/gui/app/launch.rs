@@ -11,10 +11,10 @@ use std::time::Duration;
 use eframe::NativeOptions;
 use egui::ViewportBuilder;
 
-use gdcm_io::files::study_file::holds_models;
-use gdcm_io::files::user_state::recent_files;
+use gdcm_io::files::opened_file::holds_models;
+use gdcm_io::files::recent_files::recent_files;
 use gdcm_io::reading_budget::ReadingBudget;
-use gdcm_io::source::file_exists;
+use gdcm_io::user_paths::file_exists;
 use gdcm_io::{FileError, Opened, embedded_example, load_any};
 use gdcm_model::message_text::{sanitized, sanitized_path, shortened_message};
 use gdcm_study::Engine;

@@ -8,7 +8,7 @@ use std::time::{Duration, SystemTime};
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
 
-use gdcm_io::files::user_state::LostStudy;
+use gdcm_io::files::recovery_file::LostStudy;
 use gdcm_io::{Opened, load_any};
 use gdcm_model::message_text::{sanitized, sanitized_path};
 

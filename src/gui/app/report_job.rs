@@ -51,7 +51,7 @@ impl GdcmApp {
             analysis: Arc::new(analysis.asked_with(&self.state.study.requirements)),
             records: self.state.records.history_records(),
             known: self.state.records.known_poles(),
-            source: ReportSource::of(&self.files.loaded, self.files.saved.path.as_deref()),
+            source: ReportSource::from_files(&self.files.loaded, self.files.saved.path.as_deref()),
             path,
             existing: self.dialogs.existing,
             inputs: self.files.inputs(),

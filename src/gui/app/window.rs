@@ -9,8 +9,8 @@ use egui::{
 };
 
 use gdcm_io::Opened;
-use gdcm_io::files::study_file::holds_models;
-use gdcm_io::files::user_state::is_first_start;
+use gdcm_io::files::first_start::is_first_start;
+use gdcm_io::files::opened_file::holds_models;
 use gdcm_model::dataset::BundleKind;
 
 use super::autosave::Autosave;

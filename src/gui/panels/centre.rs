@@ -360,11 +360,11 @@ fn title_ui(ui: &mut Ui, state: &State, title: ViewTitle, palette: &Palette) {
     let flight_state = &condition.flight_state().name;
     let response = state.dataset().pair_name(state.display.selection.pair);
     match title {
-        ViewTitle::Response => {
+        ViewTitle::ResponseAndCondition => {
             heading_ui(ui, &response);
             dim_ui(ui, palette, format!("condition {id}: {flight_state}"));
         }
-        ViewTitle::Focus => heading_ui(ui, &response),
+        ViewTitle::ResponseOnly => heading_ui(ui, &response),
         ViewTitle::Condition => {
             heading_ui(ui, &format!("Condition {id}"));
             dim_ui(ui, palette, flight_state.clone());

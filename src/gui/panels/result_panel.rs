@@ -18,7 +18,7 @@ use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::state::sheet::Sheet;
 use crate::gui::state::tables::TableKind;
 use crate::gui::state::window_state::State;
-use crate::gui::views::gain_plots::bar_words;
+use crate::gui::views::error_bars::error_bar_words;
 use crate::gui::widgets::controls::{Asks, QUESTION, named, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
 
@@ -289,7 +289,7 @@ impl Side<'_> {
         );
         let mut hint = exact;
         if let Some((bar, level)) = self.state.sureness().bar(scalar) {
-            hint.push_str(&format!("\n{}", bar_words(bar, scalar, level)));
+            hint.push_str(&format!("\n{}", error_bar_words(bar, scalar, level)));
         }
         hint.push_str(&format!("\nclick: {QUESTION}"));
         let response = response

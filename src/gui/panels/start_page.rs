@@ -16,7 +16,7 @@ use crate::gui::commands::file::FileCommand;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::state::window_state::State;
-use crate::gui::views::frequency::bode_curves;
+use crate::gui::views::frequency_curves::bode_curves;
 use crate::gui::widgets::controls::{Asks, button_ui, elided, named, painted_text};
 use crate::gui::widgets::palette::{
     BODY_SIZE, DISPLAY_SIZE, Palette, SMALL_SIZE, TITLE_SIZE, body, medium, small,

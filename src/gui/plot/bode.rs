@@ -1,7 +1,9 @@
 //! Bode plot: magnitude above phase of every model of a condition for one response, or the ratio
 //! and phase difference between the identified and the other models.
 
-use egui::{CursorIcon, Pos2, Response, Ui, UiBuilder, Vec2, vec2};
+use std::borrow::Cow;
+
+use egui::{CursorIcon, Pos2, Rect, Response, Ui, UiBuilder, Vec2, vec2};
 use egui_plot::PlotTransform;
 
 use super::band_handles::band_handles_ui;
@@ -11,16 +13,16 @@ use super::bode_layout::BodeLayout;
 use super::bode_pane::pane_ui;
 use super::bode_scene::BodeScene;
 use super::bode_view::{BodeView, MenuSubject};
+use super::chips::{Chips, role_chips};
 use super::curve_command::CurveCommand;
 use super::curve_layer::CurveLooks;
 use super::curve_menu::menu_ui;
 use super::drawn_curves::{BodeCurve, CurveId, PANES, Pane};
-use super::legend::{Chips, role_chips};
 use super::navigation::pressed_digit;
+use super::nearest_curve::{Hit, curves_in, nearest_curve};
 use super::painter::use_frame_colors;
 use super::pane_scene::PaneScene;
 use super::panel_text::message_ui;
-use super::picking::{Hit, nearest, touched};
 use super::reference_lines::PaneLines;
 use super::thinning::is_finite;
 use crate::gui::widgets::palette::Palette;
@@ -44,19 +46,21 @@ pub fn bode_ui(
         return events;
     }
     if !has_data(scene.curves) {
-        let message = scene.message.unwrap_or("Nothing to draw");
-        message_ui(ui, rect, message, palette);
+        message_ui(
+            ui,
+            rect,
+            scene.message.unwrap_or("Nothing to draw"),
+            palette,
+        );
         set_hovered(view, None, &mut events);
         view.pointed_omega = None;
         return events;
     }
-    let drawn: Vec<BodeCurve>;
-    let mut visible = *scene;
-    if scene.curves.iter().any(|curve| curve.hidden) {
-        let shown = scene.curves.iter().filter(|curve| !curve.hidden);
-        drawn = shown.cloned().collect();
-        visible.curves = &drawn;
-    }
+    let curves = visible_curves(scene.curves);
+    let visible = BodeScene {
+        curves: &curves,
+        ..*scene
+    };
     // While a band end is dragged, the view must not move under the pointer.
     if scene.omega_range.is_none() && !ui.input(|input| input.pointer.any_down()) {
         view.follow_curves(scene.curves);
@@ -65,6 +69,34 @@ pub fn bode_ui(
     let builder = UiBuilder::new().id_salt(scene.quantity.salt());
     ui.scope_builder(builder.max_rect(rect), |ui| {
         use_frame_colors(ui, palette);
+        let plot = BodePlot {
+            scene,
+            visible: &visible,
+            palette,
+        };
+        plot.ui(ui, rect, view, &mut events);
+    });
+    ui.advance_cursor_after_rect(rect);
+    events
+}
+
+/// Plot with data.
+struct BodePlot<'a> {
+    /// Scene with all curves, including hidden curves, which still have chips.
+    scene: &'a BodeScene<'a>,
+    /// Scene without hidden curves, which the panes show.
+    visible: &'a BodeScene<'a>,
+    palette: &'a Palette,
+}
+
+impl BodePlot<'_> {
+    /// Draws the chips, the panes below, and the texts around the panes.
+    fn ui(&self, ui: &mut Ui, rect: Rect, view: &mut BodeView, events: &mut Vec<BodeEvent>) {
+        let Self {
+            scene,
+            visible,
+            palette,
+        } = *self;
         let mut chips = plot_chips(scene, view, palette);
         if chips.width(ui) > rect.width() {
             chips.tighten();
@@ -74,7 +106,7 @@ pub fn bode_ui(
         let layout = BodeLayout::new(rect.with_min_y(rect.top() + chips.height), scene);
         let panes = Panes {
             layout: &layout,
-            scene: &visible,
+            scene: visible,
             palette,
         };
         let panes = panes.ui(ui, view);
@@ -85,14 +117,21 @@ pub fn bode_ui(
             events.push(BodeEvent::Display(request));
         }
         let headings = BodeHeadings {
-            scene: &visible,
+            scene: visible,
             view,
             palette,
         };
         headings.ui(ui, &layout);
-    });
-    ui.advance_cursor_after_rect(rect);
-    events
+    }
+}
+
+/// Returns the curves that are not hidden; borrowed if none is hidden.
+fn visible_curves(curves: &[BodeCurve]) -> Cow<'_, [BodeCurve]> {
+    if !curves.iter().any(|curve| curve.hidden) {
+        return Cow::Borrowed(curves);
+    }
+    let visible = curves.iter().filter(|curve| !curve.hidden);
+    Cow::Owned(visible.cloned().collect())
 }
 
 /// Returns the request for a pressed digit, which toggles the role chip with this number.
@@ -188,7 +227,7 @@ impl Panes<'_> {
         if let Some(selection) = view.selection.take()
             && let Some(transform) = view.transform(selection.pane)
         {
-            let curves = touched(scene.curves, selection.pane, selection.area, transform);
+            let curves = curves_in(scene.curves, selection.pane, selection.area, transform);
             events.push(BodeEvent::Boxed(curves));
         }
         PanesResponse { events, has_focus }
@@ -253,7 +292,7 @@ fn curve_at(
     pointer: Pos2,
     transform: &PlotTransform,
 ) -> Option<Hit> {
-    let hit = nearest(scene.curves, pane, pointer, transform)?;
+    let hit = nearest_curve(scene.curves, pane, pointer, transform)?;
     let lines = PaneLines {
         lines: scene.rules,
         pane,
@@ -296,7 +335,7 @@ fn handle_click(
             view.request_fit();
             response.ctx.request_repaint();
         }
-        return before.map(BodeEvent::TakenBack);
+        return before.map(BodeEvent::ClickUndone);
     }
     let id = clicked?;
     if response.ctx.input(|input| input.modifiers.alt) {

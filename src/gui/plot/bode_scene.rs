@@ -8,9 +8,9 @@ use gdcm_plot::figure::axis::FrequencyUnit;
 use gdcm_plot::figure::bode::CoherenceCurve;
 pub use gdcm_plot::figure::responses::{BodeBand, ReferenceLine};
 
+use super::chips::Chip;
 use super::curve_style::Role;
 use super::drawn_curves::{BodeCurve, CurveId};
-use super::legend::Chip;
 use super::quantity::BodeQuantity;
 use super::readout::Readout;
 

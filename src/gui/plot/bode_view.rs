@@ -6,11 +6,11 @@ use egui_plot::{PlotBounds, PlotPoint, PlotTransform};
 use gdcm_plot::figure::Range;
 use gdcm_plot::figure::responses::fitted_values;
 
+use super::bode_axis::BodeAxis;
 use super::bode_scene::BodeScene;
 use super::curve_layer::DrawnPane;
 use super::drawn_curves::{BodeCurve, CurveId, PANES, Pane};
 use super::limits_form::LimitsForm;
-use super::plot_axis::PlotAxis;
 use super::quantity::ValueUnit;
 use super::viewed_range::{ViewedRange, bounds_of};
 
@@ -232,7 +232,7 @@ impl BodeView {
         self.values[pane as usize].choose(values);
     }
 
-    /// Magnifies a pane by `factor`, with the point under `pointer` fixed.
+    /// Magnifies a pane by a factor along each axis, with the point under `pointer` fixed.
     pub(super) fn zoom(
         &mut self,
         pane: Pane,
@@ -249,19 +249,19 @@ impl BodeView {
     }
 
     /// Returns the visible range of an axis with its limits.
-    pub(super) fn axis_mut(&mut self, axis: PlotAxis) -> &mut ViewedRange {
+    pub(super) fn axis_mut(&mut self, axis: BodeAxis) -> &mut ViewedRange {
         match axis {
-            PlotAxis::Frequency => &mut self.log_omega,
-            PlotAxis::Values(pane) => &mut self.values[pane as usize],
+            BodeAxis::Frequency => &mut self.log_omega,
+            BodeAxis::Values(pane) => &mut self.values[pane as usize],
         }
     }
 
     /// Requests that an axis be fitted to all curves in the next frame.
-    pub(super) fn fit_axis(&mut self, axis: PlotAxis) {
+    pub(super) fn fit_axis(&mut self, axis: BodeAxis) {
         self.axis_mut(axis).release();
         match axis {
-            PlotAxis::Frequency => self.must_fit_frequencies = true,
-            PlotAxis::Values(_) => self.must_fit_values = true,
+            BodeAxis::Frequency => self.must_fit_frequencies = true,
+            BodeAxis::Values(_) => self.must_fit_values = true,
         }
     }
 

@@ -114,7 +114,7 @@ fn pixel_count(length: f32) -> Option<u16> {
     }
 }
 
-/// Fills the shapes on a transparent ground.
+/// Returns an image of the shapes on a transparent ground.
 fn filled(shapes: &[Shape], area: &PixelArea) -> ColorImage {
     let [width, height] = area.pixels;
     let mut context = RenderContext::new_with(
@@ -156,7 +156,7 @@ fn fill(context: &mut RenderContext, shape: &Shape) {
             }
         }
         Shape::Circle(circle) => {
-            take_color(context, circle.fill);
+            set_paint_color(context, circle.fill);
             let disc = Circle::new(
                 (f64::from(circle.center.x), f64::from(circle.center.y)),
                 f64::from(circle.radius),
@@ -177,12 +177,12 @@ fn stroke_along(context: &mut RenderContext, points: &[Pos2], stroke: Stroke) {
             path.line_to(at);
         }
     }
-    take_color(context, stroke.color);
+    set_paint_color(context, stroke.color);
     context.set_stroke(PathStroke::new(f64::from(stroke.width)).with_join(Join::Bevel));
     context.stroke_path(&path);
 }
 
-fn take_color(context: &mut RenderContext, color: Color32) {
+fn set_paint_color(context: &mut RenderContext, color: Color32) {
     let [red, green, blue, alpha] = color.to_srgba_unmultiplied();
     context.set_paint(AlphaColor::from_rgba8(red, green, blue, alpha));
 }

@@ -7,11 +7,11 @@ use gdcm_plot::figure::Range;
 
 use super::chart::{Chart, ChartAxis};
 use super::chart_layers::{add_layers, visible_ends};
+use super::dragged_range::store_dragged_range;
 use super::navigation::ZoomGesture;
 use super::painter::{Follow, Gestures, PanelPainter};
 use super::panel_axis::{LABELLED_HEIGHT, PanelAxis, TICKS_HEIGHT};
 use super::panel_text::caption_font;
-use super::stretch::choose_by_dragging;
 use super::ticks::{Ticks, VERTICAL_TICK_GAP};
 use super::viewed_range::{ZoomLimit, ranges_of, zoomed_within};
 use crate::gui::widgets::palette::Palette;
@@ -58,7 +58,7 @@ pub fn chart_ui(ui: &mut Ui, rect: Rect, chart: &Chart<'_>, palette: &Palette) -
         if let Some(group) = chart.group
             && chart.chooses
         {
-            choose_by_dragging(plot, group);
+            store_dragged_range(plot, group);
         }
         visible_ends(plot)
     });

@@ -18,6 +18,11 @@ pub(super) const RING: f32 = 8.0;
 const RING_WIDTH: f32 = 1.4;
 /// Magnification of a highlighted dot.
 const EMPHASIZED: f64 = 1.3;
+/// Minimum size of a dot before it is magnified, relative to the usual size.
+const LEAST_EMPHASIZED: f64 = 0.8;
+/// Opacity of the shade of a column in focus, and of the column under the pointer.
+const SELECTED_COLUMN: f32 = 0.6;
+const POINTED_COLUMN: f32 = 0.35;
 
 /// Shapes as last drawn, cached because placing labels takes longer than drawing them.
 #[derive(Clone, Debug, Default)]
@@ -109,9 +114,9 @@ impl MarkScene<'_> {
         for (column, id) in self.columns.iter().enumerate() {
             let place = column as f64;
             let strength = if self.selected == Some(id) {
-                0.6
+                SELECTED_COLUMN
             } else if self.pointed_at.is_some_and(|at| at[0] == place) {
-                0.35
+                POINTED_COLUMN
             } else {
                 continue;
             };
@@ -128,7 +133,7 @@ impl MarkScene<'_> {
         for dot in dots.dots.iter().filter(|dot| dot.id.is_some()) {
             if dot.id.as_ref() == self.emphasized {
                 let at = canvas.paper_place(self.position(dot));
-                let look = (dots.shape, EMPHASIZED * dots.size.max(0.8));
+                let look = (dots.shape, EMPHASIZED * dots.size.max(LEAST_EMPHASIZED));
                 canvas.paint(&dot_shapes(at, look, dots.color, dots.filled));
             }
             if dot.id.as_ref() == self.selected {

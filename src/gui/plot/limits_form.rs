@@ -2,14 +2,14 @@
 
 use egui::{RichText, Role, TextEdit, Ui, WidgetInfo};
 
+use super::bode_axis::BodeAxis;
 use super::bode_scene::BodeScene;
 use super::drawn_curves::Pane;
-use super::plot_axis::PlotAxis;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct LimitsForm {
-    axis: PlotAxis,
+    axis: BodeAxis,
     /// Pane beside which the form is open.
     pane: Pane,
     texts: [String; 2],
@@ -28,7 +28,7 @@ pub(super) enum FormAnswer {
 
 impl LimitsForm {
     /// Opens the form beside a pane, with the current limits as text.
-    pub(super) fn new(axis: PlotAxis, pane: Pane, texts: [String; 2]) -> Self {
+    pub(super) fn new(axis: BodeAxis, pane: Pane, texts: [String; 2]) -> Self {
         Self {
             axis,
             pane,
@@ -39,7 +39,7 @@ impl LimitsForm {
     }
 
     /// Returns whether the form is open for an axis beside a pane.
-    pub(super) fn is_for(&self, axis: PlotAxis, pane: Pane) -> bool {
+    pub(super) fn is_for(&self, axis: BodeAxis, pane: Pane) -> bool {
         self.axis == axis && self.pane == pane
     }
 

@@ -1,24 +1,27 @@
 //! Plots: each is drawn from a scene and its state of the last frame, and returns the engineer's
 //! actions.
 //!
-//! Every panel with axes is drawn by `painter`. A scene (`bode_scene`, `figure_scene`,
-//! `chart`, `overview`) describes its content; the parts below serve all of them:
+//! Every panel with axes is drawn by `painter`, which also paints the frames of plots without axes
+//! in the overview. A scene (`bode_scene`, `figure_scene`, `chart`, `overview_scene`) describes the
+//! content of plots; the parts below serve all of them:
 //!
 //! ```text
-//! painter           frame, axes, grid and gestures; each scene adds its layers
-//! panel_axis, ticks numbers and grid lines
-//! viewed_range      visible ranges and zoom limits
-//! navigation        wheel, pinching, boxes
-//! picking           curve or dot under the pointer
-//! thinning          visible points, no finer than the pixels; drawn_curves keeps them
-//! curve_layer       order and styles of curves; cached_raster holds the image of many
-//! layers, canvas    areas, lines across a panel; shapes from printed figures
-//! legend, readout   chips above a plot, values at the pointer
+//! painter                     frame, axes, grid and gestures; each scene adds its layers
+//! panel_axis, ticks           numbers and grid lines
+//! viewed_range                visible ranges and zoom limits
+//! navigation                  wheel, pinching, boxes
+//! nearest_curve, nearest_dot  curve or dot under the pointer
+//! pointed_curve_text          status text for the curve under the pointer
+//! thinning                    visible points, no finer than the pixels; drawn_curves keeps them
+//! curve_layer                 order and styles of curves; cached_raster holds the image of many
+//! layers, canvas              areas, lines across a panel; shapes from printed figures
+//! chips, readout              chips above a plot, values at the pointer
 //! ```
 
 mod axis_strip;
 mod band_handles;
 pub mod bode;
+mod bode_axis;
 pub mod bode_event;
 mod bode_headings;
 mod bode_keys;
@@ -27,40 +30,45 @@ mod bode_pane;
 pub mod bode_scene;
 pub mod bode_view;
 mod cached_raster;
-pub mod canvas;
+mod canvas;
 pub mod chart;
 mod chart_layers;
 pub mod chart_view;
+mod chip_row;
+pub mod chips;
 mod coherence_strip;
 pub mod curve_command;
 mod curve_layer;
 mod curve_menu;
 pub mod curve_style;
+pub mod dragged_range;
 pub mod drawn_curves;
 mod end_labels;
+pub mod figure_legend;
 mod figure_marks;
 mod figure_panel;
 pub mod figure_scene;
 pub mod figure_view;
+mod figure_zoom;
 mod invalid_region;
 mod layers;
-pub mod legend;
 mod limits_form;
 mod navigation;
+pub mod nearest_curve;
+mod nearest_dot;
 pub mod overview;
+mod overview_cell;
+pub mod overview_scene;
 mod painter;
 mod pane_scene;
 mod panel_axis;
 mod panel_text;
-pub mod picking;
-mod plot_axis;
-pub mod pointed_curve;
+pub mod pointed_curve_text;
 pub mod quantity;
 pub mod questions;
 pub mod readout;
 mod reference_lines;
 mod sketch;
-pub mod stretch;
 mod thinning;
 mod ticks;
 mod tiles;

@@ -1,7 +1,9 @@
 //! Panel painter: frame, axes and grid, and the layers added by the scene. Draws every plot with
-//! axes.
+//! axes, and the frames of plots without axes.
 
-use egui::{Color32, Id, Rect, Response, Sense, Ui, UiBuilder, Vec2, Vec2b, WidgetInfo};
+use egui::{
+    Color32, Id, Rect, Response, Sense, Stroke, StrokeKind, Ui, UiBuilder, Vec2, Vec2b, WidgetInfo,
+};
 use egui_plot::{Axis, Plot, PlotTransform, PlotUi};
 
 use super::panel_axis::PanelAxis;
@@ -137,6 +139,16 @@ fn following<'p>(plot: Plot<'p>, follow: Follow) -> Plot<'p> {
             .link_cursor(group, Vec2b::new(true, false)),
         None => plot,
     }
+}
+
+/// Corner radius of a frame \[pt\]; egui_plot uses the same for panels with axes.
+const FRAME_RADIUS: f32 = 2.0;
+
+/// Paints the frame of a plot without axes, like the frame that egui_plot paints for a panel with
+/// axes.
+pub(super) fn paint_frame(ui: &Ui, rect: Rect, fill: Color32, outline: Stroke) {
+    ui.painter()
+        .rect(rect, FRAME_RADIUS, fill, outline, StrokeKind::Inside);
 }
 
 /// Sets the frame colours in `ui` from the palette, regardless of the surrounding style.

@@ -17,16 +17,17 @@ pub enum BodeQuantity<'a> {
         phase: PhaseUnit,
         /// "(deg/s)/in".
         ratio_unit: &'a str,
-        place: ResponsePlace,
+        subject: ResponseSubject,
     },
-    /// Ratio and phase difference that enter J: `20 log10 |H_ref| / |H_sim|` above, `Delta
-    /// phi(H_sim, H_ref)` below (M6).
+    /// Ratio and phase difference that enter J: `20 log10(|H_ref| / |H_sim|)` above, phase
+    /// difference between `H_ref` and `H_sim` below (M6). `H_ref` is the identified response,
+    /// `H_sim` the response of a physics model.
     Error { phase: PhaseErrorUnit },
 }
 
 /// Subject of a response plot, which distinguishes its controls from those in other plots.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ResponsePlace {
+pub enum ResponseSubject {
     /// The displayed condition.
     #[default]
     Condition,
@@ -41,36 +42,36 @@ struct PlotNames {
     /// Id salt of the plot's widgets.
     salt: &'static str,
     /// Suffix of a control's label.
-    label: &'static str,
+    label_suffix: &'static str,
     /// Suffix of a pane's name.
-    pane: &'static str,
+    pane_suffix: &'static str,
     /// Suffix of a pane's name within a sentence.
-    place: &'static str,
+    sentence_suffix: &'static str,
 }
 
 const CONDITION_NAMES: PlotNames = PlotNames {
     salt: "bode",
-    label: "",
-    pane: "",
-    place: " plot",
+    label_suffix: "",
+    pane_suffix: "",
+    sentence_suffix: " plot",
 };
 const EVERY_CONDITION_NAMES: PlotNames = PlotNames {
     salt: "airspeeds",
-    label: ", plot of airspeeds",
-    pane: " in every condition",
-    place: " plot of every condition",
+    label_suffix: ", plot of airspeeds",
+    pane_suffix: " in every condition",
+    sentence_suffix: " plot of every condition",
 };
 const FOUND_MODEL_NAMES: PlotNames = PlotNames {
     salt: "found model",
-    label: ", plot of a found model",
-    pane: " of a found model",
-    place: " plot of a found model",
+    label_suffix: ", plot of a found model",
+    pane_suffix: " of a found model",
+    sentence_suffix: " plot of a found model",
 };
 const ERROR_NAMES: PlotNames = PlotNames {
     salt: "error",
-    label: ", error plot",
-    pane: " error",
-    place: " error plot",
+    label_suffix: ", error plot",
+    pane_suffix: " error",
+    sentence_suffix: " error plot",
 };
 
 impl Default for BodeQuantity<'_> {
@@ -81,33 +82,33 @@ impl Default for BodeQuantity<'_> {
 
 impl BodeQuantity<'_> {
     /// Responses in the displayed condition, in decibels and degrees.
-    pub const RESPONSE: BodeQuantity<'static> = Self::in_place(ResponsePlace::Condition);
+    pub const RESPONSE: BodeQuantity<'static> = Self::with_subject(ResponseSubject::Condition);
     /// Responses in every condition, in decibels and degrees.
     pub const RESPONSE_OF_EVERY_CONDITION: BodeQuantity<'static> =
-        Self::in_place(ResponsePlace::EveryCondition);
+        Self::with_subject(ResponseSubject::EveryCondition);
     /// Responses of a model found in a file, in decibels and degrees.
     pub const RESPONSE_OF_FOUND_MODEL: BodeQuantity<'static> =
-        Self::in_place(ResponsePlace::FoundModel);
+        Self::with_subject(ResponseSubject::FoundModel);
 
-    const fn in_place(place: ResponsePlace) -> BodeQuantity<'static> {
+    const fn with_subject(subject: ResponseSubject) -> BodeQuantity<'static> {
         BodeQuantity::Response {
             magnitude: MagnitudeUnit::Decibel,
             phase: PhaseUnit::Unwrapped,
             ratio_unit: "",
-            place,
+            subject,
         }
     }
 
     /// Returns the texts that distinguish this plot from others.
     fn names(self) -> PlotNames {
-        let place = match self {
-            Self::Response { place, .. } => place,
+        let subject = match self {
+            Self::Response { subject, .. } => subject,
             Self::Error { .. } => return ERROR_NAMES,
         };
-        match place {
-            ResponsePlace::Condition => CONDITION_NAMES,
-            ResponsePlace::EveryCondition => EVERY_CONDITION_NAMES,
-            ResponsePlace::FoundModel => FOUND_MODEL_NAMES,
+        match subject {
+            ResponseSubject::Condition => CONDITION_NAMES,
+            ResponseSubject::EveryCondition => EVERY_CONDITION_NAMES,
+            ResponseSubject::FoundModel => FOUND_MODEL_NAMES,
         }
     }
 
@@ -119,7 +120,7 @@ impl BodeQuantity<'_> {
     /// Returns the suffix that distinguishes the labels of this plot from the labels of the Bode
     /// plot.
     pub(super) fn label_suffix(self) -> &'static str {
-        self.names().label
+        self.names().label_suffix
     }
 
     /// Returns whether the plot shows the displayed condition, rather than a comparison across
@@ -129,7 +130,7 @@ impl BodeQuantity<'_> {
             self,
             Self::Error { .. }
                 | Self::Response {
-                    place: ResponsePlace::Condition,
+                    subject: ResponseSubject::Condition,
                     ..
                 }
         )
@@ -137,13 +138,13 @@ impl BodeQuantity<'_> {
 
     /// Returns a pane's name: "Magnitude".
     pub(super) fn name(self, pane: Pane) -> String {
-        format!("{pane:?}{}", self.names().pane)
+        format!("{pane:?}{}", self.names().pane_suffix)
     }
 
     /// Returns the name of a pane within a sentence: "magnitude plot".
-    pub(super) fn place(self, pane: Pane) -> String {
+    pub(super) fn name_in_sentence(self, pane: Pane) -> String {
         let pane = format!("{pane:?}").to_lowercase();
-        format!("{pane}{}", self.names().place)
+        format!("{pane}{}", self.names().sentence_suffix)
     }
 
     /// Returns a pane's display unit.

@@ -6,35 +6,49 @@ use gdcm_words::derivation::ExplainTarget;
 
 use crate::gui::widgets::controls::QUESTION;
 
-/// Name of a value, and the target of its derivation.
-pub type NamedFigure = (String, ExplainTarget);
+/// Value whose derivation can be displayed.
+#[derive(Clone, Debug)]
+pub struct Question {
+    /// Name of the value in the menu.
+    pub name: String,
+    pub target: ExplainTarget,
+}
+
+impl Question {
+    pub fn new(name: impl Into<String>, target: ExplainTarget) -> Self {
+        Self {
+            name: name.into(),
+            target,
+        }
+    }
+}
 
 /// Plot and listed values of the open menu, if any.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Questions {
+pub(super) struct QuestionMenu {
     open: Option<OpenMenu>,
 }
 
 #[derive(Clone, Debug)]
 struct OpenMenu {
     plot: Id,
-    values: Vec<NamedFigure>,
+    questions: Vec<Question>,
 }
 
-impl Questions {
-    /// Opens the menu of a plot on a secondary click, listing the values `pointed`; returns the
-    /// value chosen in the menu.
+impl QuestionMenu {
+    /// Opens the menu of a plot on a secondary click, with the questions about the mark under the
+    /// pointer; returns the target chosen in the menu.
     pub(super) fn ui(
         &mut self,
         response: &Response,
-        pointed: &[NamedFigure],
+        pointed: &[Question],
     ) -> Option<ExplainTarget> {
         if response.secondary_clicked() {
             self.open = None;
             if !pointed.is_empty() {
                 self.open = Some(OpenMenu {
                     plot: response.id,
-                    values: pointed.to_vec(),
+                    questions: pointed.to_vec(),
                 });
             }
         }
@@ -45,9 +59,9 @@ impl Questions {
         let mut chosen = None;
         response.context_menu(|ui| {
             ui.label(QUESTION);
-            for (name, target) in &menu.values {
-                if ui.button(name).clicked() {
-                    chosen = Some(target.clone());
+            for question in &menu.questions {
+                if ui.button(&question.name).clicked() {
+                    chosen = Some(question.target.clone());
                     ui.close();
                 }
             }

@@ -3,6 +3,7 @@
 use egui::{FontId, Rect, Role as WidgetRole, Sense, Stroke, Ui, WidgetInfo, vec2};
 
 use super::curve_style::Role;
+use super::panel_text::AT_RIGHT;
 use crate::gui::widgets::controls::{elided, painted_text, row_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 
@@ -58,7 +59,8 @@ impl ReadoutCell {
         } else {
             FontId::proportional(BODY_SIZE)
         };
-        for (index, x) in [0.0, -0.01].into_iter().enumerate() {
+        // The magnitude is at the left of the column, the phase at its right.
+        for (index, x) in [0.0, AT_RIGHT].into_iter().enumerate() {
             let color = if self.warns[index] {
                 palette.warning
             } else {

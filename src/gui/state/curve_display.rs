@@ -109,7 +109,12 @@ impl CurveDisplay {
                 self.hidden_models.clear();
                 self.hidden_roles = Self::hidden_at_first();
             }
-            CurveCommand::Turn(condition, pair, curve, by) => {
+            CurveCommand::Turn {
+                condition,
+                pair,
+                curve,
+                turns: by,
+            } => {
                 let turns = self.turns.entry((condition, pair, curve)).or_default();
                 *turns = (*turns + by).clamp(-99, 99);
             }

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use gdcm_method::schedule::form_comparison::{FormComparison, LeadDegreeFit};
+use gdcm_method::schedule::form_comparison::FormComparison;
+use gdcm_method::schedule::lead_degree_comparison::LeadDegreeFit;
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::Analysis;
 

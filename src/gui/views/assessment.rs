@@ -1,17 +1,15 @@
-//! Benefit of the correction in each condition.
+//! Benefit of the correction in each condition: the change of J as bars or as a table, below the
+//! selectors in the header and a summary.
 
-use egui::{Align, Layout, Rect, RichText, Sense, Ui, Vec2, vec2};
+use egui::{Align, Label, Layout, Rect, RichText, Sense, Ui, Vec2, vec2};
 
 use gdcm_method::fidelity::CostAverage;
-use gdcm_model::dataset::{ConditionId, Pair};
-use gdcm_plot::figure::assessment::change_table;
 use gdcm_plot::figure::figure::Plot;
 use gdcm_plot::figure::{Figure, MarkId};
 use gdcm_study::results::assessment_table::AssessedModel;
 use gdcm_study::{AssessedCorrection, AssessmentTable};
-use gdcm_words::Table;
-use gdcm_words::assessment::{held_out_verdict, not_assessed_text, summary_text};
 
+use super::assessment_content::{assessed_pairs, assessment_sentences, assessment_text_table};
 use super::assessment_plots::{AssessmentPlots, PHASE_PERCENT};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
@@ -26,6 +24,8 @@ use crate::gui::widgets::tables::{TableLook, table_ui};
 
 /// Minimum plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(190.0, 150.0);
+/// Smallest rise of J that the table, with one decimal, does not round to zero.
+const LEAST_SHOWN_RISE: f64 = 0.05;
 
 /// Draws the selectors in the header, from right to left.
 pub fn assessment_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
@@ -133,8 +133,8 @@ fn pairs_choice_ui(ui: &mut Ui, chosen: &mut AssessedFigures) {
     choice_ui(ui, "Responses assessed", &mut chosen.pairs, &pairs);
 }
 
-/// Draws the change of J in every condition for the chosen responses (Figures 8 to 19), below a
-/// summary.
+/// Draws a summary, and below it the change of J in every condition for the chosen responses
+/// (Figures 8 to 19).
 pub fn assessment_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -145,17 +145,35 @@ pub fn assessment_view_ui(
         ui.label(RichText::new(state.results.absence()).color(palette.dim_text));
         return;
     };
-    let sentences = assessment_sentences(state, &table).join(" · ");
+    summary_ui(ui, state, &table, palette);
+    if state.display.judging.assessed.as_table {
+        change_table_ui(ui, state, &table, palette, commands);
+    } else {
+        key_ui(ui, palette);
+        bars_ui(ui, state, &table, palette, commands);
+    }
+}
+
+/// Draws the summary in a line; its tooltip is the same text in full.
+fn summary_ui(ui: &mut Ui, state: &State, table: &AssessmentTable, palette: &Palette) {
+    let sentences = assessment_sentences(state, table).join(" · ");
     let text = RichText::new(&sentences)
         .size(SMALL_SIZE)
         .color(palette.text);
-    ui.add(egui::Label::new(text).truncate())
+    ui.add(Label::new(text).truncate())
         .on_hover_text(&sentences);
-    if state.display.judging.assessed.as_table {
-        change_table_ui(ui, state, palette, commands);
-        return;
-    }
-    key_ui(ui, palette);
+}
+
+/// Draws a plot of bars for each response, a column for each condition. A click selects the
+/// condition and the response.
+fn bars_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    table: &AssessmentTable,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    // The scene borrows the state, so the view is taken out of it while the figure is drawn.
     let mut view = state
         .display
         .figures
@@ -163,7 +181,7 @@ pub fn assessment_view_ui(
         .unwrap_or_default();
     let plots = AssessmentPlots {
         state,
-        table: &table,
+        table,
         pairs: assessed_pairs(state),
     };
     let columns: Vec<MarkId> = state
@@ -184,21 +202,27 @@ pub fn assessment_view_ui(
         ..FigureScene::new("assessment", &figure, LEAST_PLOT, message, &plots)
     };
     for event in figure_ui(ui, &scene, &mut view, palette) {
-        match event {
-            FigureEvent::Clicked(plot, MarkId::Condition(condition), _) => {
-                commands.push(SelectionCommand::SelectCondition(condition).into());
-                if let Some(pair) = plots.pairs.get(plot) {
-                    commands.push(SelectionCommand::FocusPair(*pair).into());
-                }
-            }
-            FigureEvent::Asked(figure) => {
-                commands.push(SelectionCommand::Explain(Some(figure)).into())
-            }
-            FigureEvent::Told(words) => commands.push(SelectionCommand::Tell(words).into()),
-            FigureEvent::Clicked(..) | FigureEvent::Pointed(_) => {}
-        }
+        commands.extend(bar_commands(&plots, event));
     }
     state.display.figures.insert(View::Assessment, view);
+}
+
+/// Returns the commands for an event in the plots of bars.
+fn bar_commands(plots: &AssessmentPlots<'_>, event: FigureEvent) -> Vec<Command> {
+    match event {
+        FigureEvent::Clicked(plot, MarkId::Condition(condition), _) => {
+            let mut commands = vec![SelectionCommand::SelectCondition(condition).into()];
+            if let Some(pair) = plots.pairs.get(plot) {
+                commands.push(SelectionCommand::FocusPair(*pair).into());
+            }
+            commands
+        }
+        FigureEvent::ExplanationRequested(target) => {
+            vec![SelectionCommand::Explain(Some(target)).into()]
+        }
+        FigureEvent::StatusText(words) => vec![SelectionCommand::Tell(words).into()],
+        FigureEvent::Clicked(..) | FigureEvent::Pointed(_) => Vec::new(),
+    }
 }
 
 /// Draws the colour key, from right to left.
@@ -231,14 +255,22 @@ fn key_ui(ui: &mut Ui, palette: &Palette) {
 }
 
 /// Draws the table, with a warning if J rises. A click selects the response and the condition.
-fn change_table_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
-    let Some(table) = state.assessment() else {
-        return;
-    };
+fn change_table_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    table: &AssessmentTable,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     let text = assessment_text_table(state, table);
     let pairs = assessed_pairs(state);
+    let conditions = state.dataset().conditions();
+    let part = state.display.judging.assessed.part.of();
     let color = |row: usize, column: usize| {
-        if column > 0 && text.rows[row][column].starts_with('+') {
+        // The first column holds response names.
+        let condition = conditions.get(column.checked_sub(1)?)?;
+        let change = table.change(condition.id(), *pairs.get(row)?)?;
+        if part(change) >= LEAST_SHOWN_RISE {
             Some(palette.warning)
         } else {
             None
@@ -254,72 +286,11 @@ fn change_table_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: 
         if let Some(pair) = pairs.get(click.row) {
             commands.push(SelectionCommand::FocusPair(*pair).into());
         }
-        // The first column holds response names.
         if let Some(column) = click.column.checked_sub(1)
-            && let Some(condition) = state.dataset().conditions().get(column)
+            && let Some(condition) = conditions.get(column)
         {
             commands.push(SelectionCommand::SelectCondition(condition.id()).into());
         }
     }
     state.display.judging.assessment_sorting = sorting;
-}
-
-/// Returns the assessed responses in matrix order.
-pub fn assessed_pairs(state: &State) -> Vec<Pair> {
-    let measuring = state.dataset().measuring_pairs();
-    let mut pairs = Vec::new();
-    for pair in measuring.pairs() {
-        let is_assessed = match state.display.judging.assessed.pairs {
-            AssessedPairs::OnAxis => measuring[pair],
-            AssessedPairs::OffAxis => !measuring[pair],
-            AssessedPairs::Focused => pair == state.display.selection.pair,
-            AssessedPairs::All => true,
-        };
-        if is_assessed {
-            pairs.push(pair);
-        }
-    }
-    pairs
-}
-
-/// Builds the table: a row for each response, a column for each condition, and in each cell the
-/// signed change of J.
-pub fn assessment_text_table(state: &State, table: &AssessmentTable) -> Table {
-    let part = state.display.judging.assessed.part;
-    let conditions: Vec<(ConditionId, String)> = state
-        .dataset()
-        .conditions()
-        .iter()
-        .map(|condition| (condition.id(), condition.id().to_string()))
-        .collect();
-    let title = format!("{} of each response in each condition", part.symbol());
-    change_table(
-        title,
-        (state.dataset(), table),
-        &assessed_pairs(state),
-        &conditions,
-        part.of(),
-    )
-}
-
-/// Summarises the assessment in sentences: improved responses, the verdict on the conditions held
-/// out of the schedule, and omissions.
-pub fn assessment_sentences(state: &State, table: &AssessmentTable) -> Vec<String> {
-    let pairs = assessed_pairs(state);
-    let marked = state
-        .dataset()
-        .on_axis()
-        .map(|pair, _| pairs.contains(&pair));
-    let mut sentences = vec![summary_text(&table.summary(&marked), state.dataset())];
-    if let Some(analysis) = state.analysis() {
-        sentences.extend(held_out_verdict(analysis, table.choice));
-    }
-    for left_out in &table.left_out {
-        sentences.push(format!(
-            "condition {} is left out: {}",
-            left_out.condition,
-            not_assessed_text(&left_out.why, state.dataset())
-        ));
-    }
-    sentences
 }

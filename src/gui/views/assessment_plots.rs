@@ -12,7 +12,7 @@ use gdcm_words::assessment::{missing_cost_text, not_assessed_text};
 use gdcm_words::derivation::ExplainTarget;
 
 use crate::gui::plot::FigureWords;
-use crate::gui::plot::questions::NamedFigure;
+use crate::gui::plot::questions::Question;
 use crate::gui::state::window_state::State;
 
 /// Bar width, relative to the distance between conditions.
@@ -257,7 +257,7 @@ fn absence_reason(
 }
 
 impl FigureWords for AssessmentPlots<'_> {
-    fn plot(&self, plot: usize) -> String {
+    fn plot_name(&self, plot: usize) -> String {
         let pair = self.pairs[plot];
         let mut words = Vec::new();
         for condition in self.state.dataset().conditions() {
@@ -274,7 +274,7 @@ impl FigureWords for AssessmentPlots<'_> {
         )
     }
 
-    fn pointed(&self, plot: usize, id: &MarkId, _: [f64; 2]) -> Option<String> {
+    fn status_text(&self, plot: usize, id: &MarkId, _: [f64; 2]) -> Option<String> {
         let MarkId::Condition(id) = id else {
             return None;
         };
@@ -296,7 +296,7 @@ impl FigureWords for AssessmentPlots<'_> {
         ))
     }
 
-    fn questions(&self, plot: usize, id: &MarkId) -> Vec<NamedFigure> {
+    fn questions(&self, plot: usize, id: &MarkId) -> Vec<Question> {
         let MarkId::Condition(id) = *id else {
             return Vec::new();
         };
@@ -305,6 +305,6 @@ impl FigureWords for AssessmentPlots<'_> {
             return Vec::new();
         }
         let target = ExplainTarget::CostChange(id, pair, self.table.choice);
-        vec![("Change of J".to_owned(), target)]
+        vec![Question::new("Change of J", target)]
     }
 }

@@ -5,7 +5,8 @@ use egui::{Align2, FontId, Rect, Ui, pos2, vec2};
 use gdcm_plot::figure::gains::{Across, GainQuantity, Measure, channels_figure, quieten};
 use gdcm_plot::figure::{Figure, MarkId, all_channels};
 
-use super::gain_plots::{GainPlots, LEAST_PLOT, bars_switch_ui, gain_command, shown_uncertainty};
+use super::error_bars::{error_bars_switch_ui, shown_uncertainty};
+use super::gain_plots::{GainPlots, LEAST_PLOT, gain_command};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::plot::figure_view::{figure_within_ui, rows};
@@ -37,7 +38,7 @@ pub fn channels_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command
         ),
     ];
     choice_ui(ui, "Figure of the channels", &mut measure, &figures);
-    bars_switch_ui(ui, state, "bars of the channels", commands);
+    error_bars_switch_ui(ui, state, "bars of the channels", commands);
     if (measure, across) != shown {
         commands.push(DisplayCommand::ShowChannels(measure, across).into());
     }
@@ -67,7 +68,7 @@ pub fn channels_view_ui(
         }
     }
     if plots.figure.plots.is_empty() {
-        let scene = plots.scene("channels", &plots.figure, state.results.absence());
+        let scene = plots.scene("channels", &plots.figure, 0, state.results.absence());
         figure_ui(ui, &scene, &mut view.inputs, palette);
     }
     let rect = ui.available_rect_before_wrap();
@@ -133,9 +134,7 @@ impl ChannelPlots<'_> {
         let message = plots.state.results.absence();
         let scene = FigureScene {
             is_compact: plots.across == Across::Airspeed,
-            words: plots,
-            first_plot: self.first_plot,
-            ..plots.scene(self.name, &self.figure, message)
+            ..plots.scene(self.name, &self.figure, self.first_plot, message)
         };
         let mut commands = Vec::new();
         for event in figure_within_ui(ui, inner, &scene, self.view, palette) {

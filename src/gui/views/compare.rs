@@ -5,12 +5,12 @@ use egui::{Align, Button, Layout, RichText, Role, Ui};
 use gdcm_model::dataset::Pair;
 use gdcm_model::units::signed;
 use gdcm_study::decisions::study::Variant;
-use gdcm_study::jobs::analysis_jobs::VariantJob;
 use gdcm_study::{Analysis, Edit};
 use gdcm_words::Table;
 use gdcm_words::decision_differences::decision_differences;
 
-use super::gain_plots::net_gain_pairs;
+use super::net_gain_pairs::net_gain_pairs;
+use super::variants::variant_analysis;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::state::window_state::State;
@@ -108,43 +108,6 @@ fn variant_button_ui(ui: &mut Ui, verb: &str, name: &str, hint: &str) -> bool {
     named(button, Role::Button, format!("{verb} variant {name}"))
         .on_hover_text(hint)
         .clicked()
-}
-
-/// Returns the jobs that analyse the variants.
-pub fn variant_jobs(state: &State) -> Vec<VariantJob> {
-    let mut jobs = Vec::new();
-    for variant in &state.study.variants {
-        jobs.extend(variant_job(state, &variant.name));
-    }
-    jobs
-}
-
-fn variant_job(state: &State, name: &str) -> Option<VariantJob> {
-    let study = state.study.of_variant(name)?;
-    Some(VariantJob { study })
-}
-
-/// Returns a variant's analysis, if available.
-pub fn variant_analysis<'a>(state: &'a State, variant: &Variant) -> Option<&'a Analysis> {
-    let job = variant_job(state, &variant.name)?;
-    for (known, analysis) in &state.results.variants {
-        if *known == job {
-            return Some(analysis.as_ref());
-        }
-    }
-    None
-}
-
-/// Returns the overlaid variant and its analysis, if available.
-pub fn overlaid_analysis(state: &State) -> Option<(&str, &Analysis)> {
-    let name = state.display.judging.overlaid.as_deref()?;
-    let variant = state.study.variant(name)?;
-    Some((&variant.name, variant_analysis(state, variant)?))
-}
-
-/// Returns the job for the overlaid analysis.
-pub fn overlay_job(state: &State) -> Option<VariantJob> {
-    variant_job(state, state.display.judging.overlaid.as_deref()?)
 }
 
 /// Builds the table of all decisions in which a variant differs from the current decisions.

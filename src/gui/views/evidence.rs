@@ -256,7 +256,7 @@ impl EvidencePage<'_> {
                 forms: evidence.forms,
                 palette: self.palette,
             };
-            with_height_of_rows(ui, evidence.forms.kinds.len(), |ui| {
+            with_height_of_rows(ui, evidence.forms.fits.len(), |ui| {
                 table.ui(ui, sorting, commands);
             });
         }

@@ -7,7 +7,7 @@ use gdcm_plot::figure::{Figure, FigureKind, FigureRequest, all_channels};
 use gdcm_study::results::couplings_assessment::CouplingsAssessment;
 use gdcm_study::results::requirements::Requirements;
 
-use super::frequency::{bode_options, condition_source};
+use super::frequency_curves::{bode_options, condition_source};
 use super::over_time::shown_over_time;
 use super::view_content;
 use crate::gui::plot::BodeView;
@@ -30,7 +30,7 @@ pub fn figure_of(state: &State, view: View) -> Option<Figure> {
     // not depend on them.
     let analysis = analysis.map(|analysis| analysis.asked_with(&state.study.requirements));
     let source = condition_source(state);
-    request(state, view)?.figure(analysis.as_ref(), source.as_ref())
+    figure_request(state, view)?.figure(analysis.as_ref(), source.as_ref())
 }
 
 /// Returns a file name for a view's figure: `bode-10-LON-Q`.
@@ -56,7 +56,7 @@ pub fn figure_name(state: &State, view: View) -> String {
 }
 
 /// Returns the request for a view's figure, equal to the request of the command `gdcm figure`.
-pub fn request(state: &State, view: View) -> Option<FigureRequest> {
+pub fn figure_request(state: &State, view: View) -> Option<FigureRequest> {
     let kind = view.figure()?;
     let pairs = view_content(view).figure_pairs;
     let display = &state.display;

@@ -1,27 +1,24 @@
-//! Plots over frequency in the displayed condition: their curves, and the commands for their
-//! events.
+//! Plot over frequency in the displayed condition, shared by the Bode and the error view: cursors,
+//! values and chips, and the commands for events.
 
 use std::fmt::Write as _;
 
 use egui::Ui;
 
-use gdcm_model::dataset::{Band, BundleKind, ModelId, Pair};
-use gdcm_plot::figure::ConditionSource;
-use gdcm_plot::figure::bode::BodeOptions;
+use gdcm_model::dataset::{Band, ModelId};
 use gdcm_study::Edit;
 use gdcm_study::decisions::setting;
 
-use super::compare::overlaid_analysis;
 use super::cursor_readout::ReadoutSource;
 use super::curve_chips::CurveChips;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::output::OutputCommand;
 use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::commands::study::StudyCommand;
-use crate::gui::plot::bode_event::{BodeEvent, CurveWish};
+use crate::gui::plot::bode_event::{BodeEvent, CurveAction};
 use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::plot::drawn_curves::PANES;
-use crate::gui::plot::pointed_curve::pointed_words;
+use crate::gui::plot::pointed_curve_text::pointed_curve_text;
 use crate::gui::plot::quantity::BodeQuantity;
 use crate::gui::plot::{BodeCurve, BodeScene, BodeView, CurveId, bode_ui};
 use crate::gui::state::window_state::State;
@@ -76,7 +73,7 @@ impl FrequencyPlot<'_> {
         };
         for event in bode_ui(ui, &scene, view, palette) {
             match event {
-                BodeEvent::Wished(id, CurveWish::CopyValues) => {
+                BodeEvent::ActionChosen(id, CurveAction::CopyValues) => {
                     if let Some(curve) = curves.iter().find(|curve| curve.id == id) {
                         commands.push(OutputCommand::CopyText(values_text(quantity, curve)).into());
                     }
@@ -90,7 +87,7 @@ impl FrequencyPlot<'_> {
         if let Some(CurveId::Model(id)) = &view.hovered {
             commands.push(SelectionCommand::Hover(id.clone()).into());
         }
-        if let Some(words) = pointed_words(view, curves, quantity, unit) {
+        if let Some(words) = pointed_curve_text(view, curves, quantity, unit) {
             commands.push(SelectionCommand::Tell(words).into());
         }
         if let Some(omega) = view.pointed_omega {
@@ -103,7 +100,7 @@ impl FrequencyPlot<'_> {
 fn event_command(state: &State, event: BodeEvent) -> Option<Command> {
     match event {
         BodeEvent::Clicked(CurveId::Model(id)) => Some(reject_or_restore(state, id)),
-        BodeEvent::TakenBack(CurveId::Model(id)) => {
+        BodeEvent::ClickUndone(CurveId::Model(id)) => {
             let edit = if state.study.is_rejected(&id) {
                 Edit::Reject(id)
             } else {
@@ -122,14 +119,14 @@ fn event_command(state: &State, event: BodeEvent) -> Option<Command> {
         BodeEvent::RejectedBecause(CurveId::Model(model), reason) => {
             Some(Edit::RejectBecause { model, reason }.into())
         }
-        BodeEvent::Wished(id, wish) => wish_command(state, id, wish),
+        BodeEvent::ActionChosen(id, action) => action_command(state, id, action),
         BodeEvent::Boxed(curves) => {
             let models = curves.into_iter().filter_map(model_of_curve).collect();
             Some(CurveCommand::Select(models).into())
         }
         BodeEvent::Hovered(_)
         | BodeEvent::Clicked(_)
-        | BodeEvent::TakenBack(_)
+        | BodeEvent::ClickUndone(_)
         | BodeEvent::Isolated(_)
         | BodeEvent::RejectedBecause(..)
         | BodeEvent::ChipClicked(_) => None,
@@ -153,17 +150,21 @@ fn reject_or_restore(state: &State, id: ModelId) -> Command {
 
 /// Returns the command for an entry in a curve's menu; `None` if the entry concerns models but the
 /// curve is not a model.
-pub(super) fn wish_command(state: &State, id: CurveId, wish: CurveWish) -> Option<Command> {
-    match (wish, id) {
-        (CurveWish::Turn(turns), id) => {
-            let condition = state.condition().id();
-            let pair = state.display.selection.pair;
-            Some(CurveCommand::Turn(condition, pair, id, turns).into())
-        }
-        (CurveWish::RejectOrRestore, CurveId::Model(id)) => Some(reject_or_restore(state, id)),
-        (CurveWish::Pin, CurveId::Model(id)) => Some(Edit::Pin(id).into()),
-        (CurveWish::Isolate, CurveId::Model(id)) => Some(SelectionCommand::Isolate(id).into()),
-        (CurveWish::Hide, CurveId::Model(id)) => Some(CurveCommand::HideModel(id).into()),
+pub(super) fn action_command(state: &State, id: CurveId, action: CurveAction) -> Option<Command> {
+    match (action, id) {
+        (CurveAction::Turn(turns), curve) => Some(
+            CurveCommand::Turn {
+                condition: state.condition().id(),
+                pair: state.display.selection.pair,
+                curve,
+                turns,
+            }
+            .into(),
+        ),
+        (CurveAction::RejectOrRestore, CurveId::Model(id)) => Some(reject_or_restore(state, id)),
+        (CurveAction::Pin, CurveId::Model(id)) => Some(Edit::Pin(id).into()),
+        (CurveAction::Isolate, CurveId::Model(id)) => Some(SelectionCommand::Isolate(id).into()),
+        (CurveAction::Hide, CurveId::Model(id)) => Some(CurveCommand::HideModel(id).into()),
         _ => None,
     }
 }
@@ -178,134 +179,4 @@ fn values_text(quantity: BodeQuantity<'_>, curve: &BodeCurve) -> String {
         let _ = writeln!(text, "{omega}\t{magnitude}\t{phase}");
     }
     text
-}
-
-/// Returns the source of all curves in the displayed condition; `None` until its responses are
-/// available.
-pub(in crate::gui) fn condition_source(state: &State) -> Option<ConditionSource<'_>> {
-    let mut schedule = None;
-    if let Some(analysis) = state.analysis() {
-        schedule = analysis.schedule.as_ref().ok();
-    }
-    let mut variant = None;
-    if let Some((name, analysis)) = overlaid_analysis(state)
-        && let Some(result) = analysis.condition(state.condition().id())
-    {
-        variant = Some((name, result));
-    }
-    Some(ConditionSource {
-        study: &state.study,
-        analysis: state.shown(),
-        schedule,
-        curves: state.curves()?,
-        variant,
-    })
-}
-
-/// Returns the options of the displayed curves, which are the same in the window and on paper.
-pub(in crate::gui) fn bode_options(state: &State) -> BodeOptions {
-    let display = &state.display;
-    let curves = &display.curves;
-    let isolated = match &display.selection.isolated {
-        Some(model) if model.condition == state.condition().id() => Some(model.clone()),
-        _ => None,
-    };
-    let zeros_of = if display.poles.show_zeros {
-        Some(display.selection.pair)
-    } else {
-        None
-    };
-    BodeOptions {
-        unit: curves.unit,
-        magnitude: curves.magnitude,
-        phase: curves.phase,
-        phase_error: curves.phase_error,
-        turns: curves.turns.clone(),
-        shows_muad: curves.shows_muad,
-        crossings: curves.crossings.clone(),
-        zeros_of,
-        hidden: curves.hidden_roles.clone(),
-        hidden_models: curves.hidden_models.clone(),
-        isolated,
-        ..BodeOptions::default()
-    }
-}
-
-/// Returns all curves for a response in the displayed condition; empty until its responses are
-/// available.
-pub(in crate::gui) fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
-    let mut cache = state
-        .display
-        .frequency
-        .shapes
-        .remove(&pair)
-        .unwrap_or_default();
-    let options = bode_options(state);
-    let curves = match condition_source(state) {
-        Some(source) => source.response_curves(pair, &options, &mut cache),
-        None => Vec::new(),
-    };
-    let drawn = with_interaction(state, curves, None);
-    state.display.frequency.shapes.insert(pair, cache);
-    drawn
-}
-
-/// Returns the error curves of a response in the displayed condition, as used by the fit; empty
-/// until the responses are available.
-pub(super) fn error_curves(state: &mut State, pair: Pair, options: &BodeOptions) -> Vec<BodeCurve> {
-    let mut cache = std::mem::take(&mut state.display.frequency.errors);
-    let curves = match condition_source(state) {
-        Some(source) => source.error_curves(pair, options, &mut cache),
-        None => Vec::new(),
-    };
-    let reference = error_reference(&curves);
-    let drawn = with_interaction(state, curves, reference.as_ref());
-    state.display.frequency.errors = cache;
-    drawn
-}
-
-/// Returns the identified model among the error curves: its error is zero everywhere, and the other
-/// curves are compared with it.
-pub(super) fn error_reference(curves: &[BodeCurve]) -> Option<CurveId> {
-    for curve in curves {
-        if let CurveId::Model(id) = &curve.id
-            && id.bundle == BundleKind::Identified
-        {
-            return Some(curve.id.clone());
-        }
-    }
-    None
-}
-
-/// Emphasises the curve under the pointer, and adds the effect of a click to each description.
-fn with_interaction(
-    state: &State,
-    mut curves: Vec<BodeCurve>,
-    reference: Option<&CurveId>,
-) -> Vec<BodeCurve> {
-    for curve in &mut curves {
-        if curve.id == CurveId::Scheduled && state.others_are_older() {
-            curve.label.push_str(" of older settings");
-        }
-        let CurveId::Model(id) = &curve.id else {
-            continue;
-        };
-        let is_reference = reference == Some(&curve.id);
-        let is_hovered = state.display.selection.hovered.as_ref() == Some(id);
-        let is_selected = state.display.curves.selected.contains(id);
-        // The reference cannot be rejected, so it is not highlighted as selected.
-        curve.highlighted = is_hovered || (is_selected && !is_reference);
-        let note = if is_reference {
-            "reference for the errors"
-        } else if curve.rejected {
-            "click to restore"
-        } else {
-            "click to reject"
-        };
-        if !curve.detail.is_empty() {
-            curve.detail.push_str(" · ");
-        }
-        curve.detail.push_str(note);
-    }
-    curves
 }

@@ -12,12 +12,12 @@ use gdcm_words::time_histories::record_history_table;
 
 use super::figures::figure_of;
 use super::over_time::{over_time, record_job};
-use super::requirement_limits::{decided, tolerances_ui};
+use super::requirement_limits::{requirement_edit, tolerances_ui};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::records::RecordsCommand;
-use crate::gui::plot::canvas::figure_legend_ui;
+use crate::gui::plot::figure_legend::figure_legend_ui;
 use crate::gui::plot::{FigureScene, FigureWords, figure_ui};
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
@@ -55,25 +55,39 @@ pub fn histories_ui(
         }
     };
     if let OverTime::Record(history, _) = &responses {
-        restore_panel_size(ui, "tolerances");
-        let size = TABLE_PART * ui.available_height();
-        let panel = Panel::bottom("tolerances")
-            .resizable(true)
-            .default_size(size)
-            .min_size(60.0);
         let table = record_history_table(history);
-        panel.show(ui, |ui| {
-            let shares = SharesTable {
-                table: &table,
-                palette,
-            };
-            let sorting = &mut state.display.judging.requirements_sorting[0];
-            shares.ui(ui, sorting, commands);
-        });
+        shares_panel_ui(ui, state, &table, palette, commands);
     }
+    plots_ui(ui, state, &responses, palette);
+}
+
+/// Draws the table of the shares of time inside the corridor, in a panel below the plots.
+fn shares_panel_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    table: &Table,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    restore_panel_size(ui, "tolerances");
+    let size = TABLE_PART * ui.available_height();
+    let panel = Panel::bottom("tolerances")
+        .resizable(true)
+        .default_size(size)
+        .min_size(60.0);
+    panel.show(ui, |ui| {
+        let shares = SharesTable { table, palette };
+        let sorting = &mut state.display.judging.requirements_sorting[0];
+        shares.ui(ui, sorting, commands);
+    });
+}
+
+/// Draws the responses over time below their caption and legend.
+fn plots_ui(ui: &mut Ui, state: &mut State, responses: &OverTime, palette: &Palette) {
     let figure: Figure = figure_of(state, View::Requirements).unwrap_or_default();
     ui.add(Label::new(palette.small(&figure.caption)).wrap());
     figure_legend_ui(ui, &figure, palette);
+    // The scene borrows the state, so the view is taken out of it while the figure is drawn.
     let mut view = state
         .display
         .figures
@@ -94,7 +108,7 @@ pub fn histories_ui(
     if let OverTime::Test(_) = responses {
         // `1 +`: the first plot shows the input.
         scene.accented = Some(1 + state.display.selection.pair.output);
-        scene.least = LEAST_PLOT;
+        scene.least_plot_size = LEAST_PLOT;
     }
     figure_ui(ui, &scene, &mut view, palette);
     state.display.figures.insert(View::Requirements, view);
@@ -231,7 +245,7 @@ fn test_number_ui(ui: &mut Ui, name: &str, value: f64, commands: &mut Vec<Comman
 /// Returns the command that changes the test input, or that reports why it is refused.
 fn set_test_input(state: &State, name: &'static str, test: TestInput) -> Command {
     match test.checked() {
-        Ok(test) => decided(state, name, |settings| settings.test = test),
+        Ok(test) => requirement_edit(state, name, |settings| settings.test = test),
         Err(why) => FormCommand::Refuse(why.to_string()).into(),
     }
 }
@@ -240,7 +254,7 @@ fn set_test_input(state: &State, name: &'static str, test: TestInput) -> Command
 struct HistoryWords<'a>(&'a Figure);
 
 impl FigureWords for HistoryWords<'_> {
-    fn plot(&self, plot: usize) -> String {
+    fn plot_name(&self, plot: usize) -> String {
         format!("{} over time", self.0.plots[plot].title)
     }
 }

@@ -8,7 +8,7 @@ use gdcm_plot::figure::{Figure, FigureKind, FigureRequest, all_channels};
 use gdcm_study::PhaseCorrection;
 use gdcm_words::Table;
 
-use super::frequency::condition_source;
+use super::frequency_curves::condition_source;
 use crate::gui::commands::command::Command;
 use crate::gui::plot::{FigureScene, figure_ui};
 use crate::gui::state::view::View;
@@ -58,6 +58,7 @@ pub fn leads_view_ui(
             Settings, phase, \"delay or lead\""
         }
     };
+    // The scene borrows the state, so the view is taken out of it while the figure is drawn.
     let mut view = state
         .display
         .figures

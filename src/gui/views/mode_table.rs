@@ -146,7 +146,7 @@ fn shown_damping_ratio(mode: &Mode) -> Option<f64> {
 
 /// Returns the name of a mode; `None` unless the model names its states (M17.3).
 fn mode_name(mode: &Mode, model: &Model) -> Option<String> {
-    match ModeName::of(mode, &model.states) {
+    match ModeName::determine(mode, &model.states) {
         (Some(name), NamedBy::States) => Some(name.to_string()),
         _ => None,
     }

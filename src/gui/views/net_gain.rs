@@ -9,12 +9,12 @@ use gdcm_plot::figure::{Figure, MarkId};
 use gdcm_study::decisions::setting;
 use gdcm_words::setting_words::setting_words;
 
-use super::compare::overlaid_analysis;
-use super::gain_plots::{
-    GainPlots, bars_switch_ui, gain_command, net_gain_pairs, shown_uncertainty,
-};
+use super::error_bars::{error_bars_switch_ui, shown_uncertainty};
+use super::gain_plots::{GainPlots, gain_command};
+use super::net_gain_pairs::net_gain_pairs;
 use super::schedule_evidence::{FormsTable, coefficient_table, lead_degrees_table, residual_table};
 use super::setting_controls::SettingControls;
+use super::variants::overlaid_analysis;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::plot::{FigureScene, figure_ui};
@@ -56,7 +56,7 @@ pub fn net_gain_header_ui(
     if toggle_ui(ui, ("evidence", "evidence"), shown, hint) {
         commands.push(DisplayCommand::ShowEvidence(!shown).into());
     }
-    bars_switch_ui(ui, state, "error bars", commands);
+    error_bars_switch_ui(ui, state, "error bars", commands);
     if let Some((variant, _)) = overlaid_analysis(state) {
         let button = ui.small_button(
             RichText::new(format!("□ {variant} ×")).color(palette.name_of(palette.corrected)),
@@ -130,6 +130,7 @@ pub fn net_gain_view_ui(
             .min_size(120.0);
         panel.show(ui, |ui| evidence_ui(ui, state, palette, commands));
     }
+    // The scene borrows the state, so the view is taken out of it while the figure is drawn.
     let mut view = state
         .display
         .figures
@@ -148,7 +149,7 @@ pub fn net_gain_view_ui(
     let scene = FigureScene {
         is_compact: true,
         accented,
-        ..plots.scene("net gain", &plots.figure, message)
+        ..plots.scene("net gain", &plots.figure, 0, message)
     };
     let events = figure_ui(ui, &scene, &mut view, palette);
     for event in events {

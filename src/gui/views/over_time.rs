@@ -15,7 +15,7 @@ use crate::gui::state::window_state::State;
 /// Returns the job of the record shown over time; `None` without a record, or if the test input is
 /// shown instead.
 pub fn record_job(state: &State) -> Option<RecordHistoryJob> {
-    let analysis = current(state)?;
+    let analysis = current_analysis(state)?;
     let condition = state.condition().id();
     if state.display.judging.shows_test {
         return None;
@@ -38,7 +38,7 @@ pub fn record_job(state: &State) -> Option<RecordHistoryJob> {
 
 /// Returns the job for all models' responses to all records; `None` without records.
 pub fn time_histories_job(state: &State) -> Option<TimeHistoriesJob> {
-    let analysis = current(state)?;
+    let analysis = current_analysis(state)?;
     let records = state.records.history_records();
     if records.is_empty() {
         return None;
@@ -53,7 +53,7 @@ pub fn time_histories_job(state: &State) -> Option<TimeHistoriesJob> {
 /// Returns the job for the responses to the test input.
 fn test_job(state: &State) -> Option<TestAnswersJob> {
     Some(TestAnswersJob {
-        analysis: current(state)?.into(),
+        analysis: current_analysis(state)?.into(),
         condition: state.condition().id(),
         input: state.display.selection.pair.input,
         test: state.study.requirements.test,
@@ -61,7 +61,7 @@ fn test_job(state: &State) -> Option<TestAnswersJob> {
 }
 
 /// Returns the analysis with the current settings; `None` while it is being computed.
-pub fn current(state: &State) -> Option<Arc<Analysis>> {
+pub fn current_analysis(state: &State) -> Option<Arc<Analysis>> {
     state.analysis()?;
     state.results.analysis.clone()
 }

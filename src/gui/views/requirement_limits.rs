@@ -73,7 +73,7 @@ pub fn tolerances_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
 
 /// Returns the command that changes the tolerances of time histories.
 fn set_tolerances(state: &State, tolerances: ToleranceTable) -> Command {
-    decided(state, "tolerances", |settings| {
+    requirement_edit(state, "tolerances", |settings| {
         settings.tolerances = tolerances;
     })
 }
@@ -130,7 +130,7 @@ pub fn mode_tolerances_ui(
 
 /// Returns the command that changes the tolerances of modes.
 fn set_mode_tolerances(state: &State, tolerances: ModeToleranceTable) -> Command {
-    decided(state, "tolerances of modes", |settings| {
+    requirement_edit(state, "tolerances of modes", |settings| {
         settings.mode_tolerances = tolerances;
     })
 }
@@ -170,7 +170,7 @@ pub fn overview_limits_ui(
 
 /// Returns the command that changes the limits of the overview.
 fn set_overview_limits(state: &State, limits: OverviewLimits) -> Command {
-    decided(state, "limits of the overview", |settings| {
+    requirement_edit(state, "limits of the overview", |settings| {
         settings.overview = limits;
     })
 }
@@ -241,7 +241,7 @@ impl LimitField {
 
 /// Returns the command that changes the settings of the requirements; `name` is used in the
 /// decision history.
-pub fn decided(
+pub fn requirement_edit(
     state: &State,
     name: &'static str,
     change: impl FnOnce(&mut RequirementSettings),

@@ -6,13 +6,14 @@ use std::sync::Arc;
 use egui::Ui;
 
 use gdcm_method::schedule::ScheduleKind;
-use gdcm_method::schedule::form_comparison::{FormComparison, FormFit, LeadDegreeFit};
+use gdcm_method::schedule::form_comparison::{FormComparison, FormFit};
+use gdcm_method::schedule::lead_degree_comparison::LeadDegreeFit;
 use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::units::{s_to_ms, signed};
 use gdcm_study::decisions::setting;
 use gdcm_words::Table;
 
-use super::gain_plots::net_gain_pairs;
+use super::net_gain_pairs::net_gain_pairs;
 use crate::gui::commands::command::Command;
 use crate::gui::state::evidence_cache::CachedEvidence;
 use crate::gui::state::window_state::State;
@@ -63,16 +64,16 @@ pub(super) struct FormsTable<'a> {
 impl FormsTable<'_> {
     /// Draws the table; a click on a form selects it.
     pub(super) fn ui(self, ui: &mut Ui, sorting: &mut Sorting, commands: &mut Vec<Command>) {
-        let kinds = &self.forms.kinds;
+        let fits = &self.forms.fits;
         let table = forms_table(self.state, self.forms);
         let current = self.state.study.settings.schedule.kind;
         let look = TableLook {
-            selected: &|row| kinds.get(row).is_some_and(|form| form.kind == current),
+            selected: &|row| fits.get(row).is_some_and(|form| form.kind == current),
             ..TableLook::PLAIN
         };
         let click = table_ui(ui, &table, sorting, &look, self.palette, commands);
         if let Some(click) = click
-            && let Some(form) = kinds.get(click.row)
+            && let Some(form) = fits.get(click.row)
         {
             commands.push(setting::SCHEDULE.to(form.kind).into());
         }
@@ -92,7 +93,7 @@ fn forms_table(state: &State, forms: &FormComparison) -> Table {
         columns.push(format!("{} [%]", state.dataset().pair_name(*pair)));
     }
     let mut table = Table::new("Errors of each form of the schedule", columns);
-    for form in &forms.kinds {
+    for form in &forms.fits {
         let mut cells = vec![
             kind_name(form.kind),
             percent_text(fit_rms_ln(form, &pairs)),

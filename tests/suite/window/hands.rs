@@ -64,7 +64,7 @@ fn a_dot_of_net_gain_says_how_it_was_computed() {
         .screen_position(0, &MarkId::Condition(fifth))
         .unwrap();
     secondary_click(&mut window, at);
-    let pair = gdcm::gui::views::gain_plots::net_gain_pairs(state(&window))[0];
+    let pair = gdcm::gui::views::net_gain_pairs::net_gain_pairs(state(&window))[0];
     let result = state(&window).analysis().unwrap().condition(fifth).unwrap();
     let expected = result.correction.net_gain(pair);
     ask(&mut window, "Net gain, condition 5", expected);

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use egui::Order;
 
-use gdcm::gui::plot::overview::OverviewView;
+use gdcm::gui::plot::overview_scene::OverviewView;
 
 use super::views::{give, show};
 use super::*;

@@ -228,7 +228,7 @@ fn what_bandwidths_are_asked_with_is_decided_undone_and_drawn() {
         &mut window,
         FileCommand::ReadRequirementTable(RequirementTable::Levels, path.clone()),
     );
-    assert_eq!(state(&window).study.requirements.levels.all().len(), 1);
+    assert_eq!(state(&window).study.requirements.levels.as_slice().len(), 1);
     assert!(texts(&window).contains("levels: 1"));
     std::fs::write(&path, "[]]").unwrap();
     give(
@@ -236,12 +236,19 @@ fn what_bandwidths_are_asked_with_is_decided_undone_and_drawn() {
         FileCommand::ReadRequirementTable(RequirementTable::Levels, path),
     );
     assert_eq!(
-        state(&window).study.requirements.levels.all().len(),
+        state(&window).study.requirements.levels.as_slice().len(),
         1,
         "what cannot be read changes nothing"
     );
     click(&mut window, "Remove levels");
-    assert!(state(&window).study.requirements.levels.all().is_empty());
+    assert!(
+        state(&window)
+            .study
+            .requirements
+            .levels
+            .as_slice()
+            .is_empty()
+    );
 }
 
 #[test]

@@ -8,7 +8,8 @@ use serde_json::{Value as Tree, json};
 use gdcm_model::dataset::{ConditionId, Dataset};
 use gdcm_study::Analysis;
 
-use super::matlab_struct::{Layout, cell_of_texts};
+use super::matlab_struct::Layout;
+use super::matlab_values::cell_of_texts;
 use super::{ExportFormat, Exported};
 use crate::files::corrections_file::{channel_table, corrections, write_corrections};
 use crate::files::export_contents::ExportContents;

@@ -11,7 +11,7 @@ use gdcm_model::dataset::unchecked_dataset::ModelDraft;
 use gdcm_model::dataset::{Channel, Dataset};
 
 use super::exported_model::{ExportedModel, contents_of_models, exported_models};
-use super::matlab_struct::{Fields, cell_of_texts, contained_parts, matrix, records};
+use super::matlab_values::{Fields, cell_of_texts, contained_parts, matrix, records};
 use super::{ExportFormat, Exported};
 use crate::export_fault::ExportFault;
 use crate::files::export_contents::{ExportContents, PartSource};

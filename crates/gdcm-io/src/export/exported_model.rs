@@ -13,6 +13,43 @@ use super::{ExportRequest, ExportedRole};
 use crate::export_fault::ExportFault;
 use crate::files::export_contents::{ExportContents, LeftOutPart, PartSource};
 
+/// Returns the requested corrected models, in the order of the dataset.
+pub(super) fn exported_models(
+    analysis: &Analysis,
+    request: &ExportRequest,
+) -> Result<Vec<ExportedModel>, ExportFault> {
+    let dataset = &analysis.study.dataset;
+    analysis
+        .asked_couplings()
+        .map_err(|error| ExportFault::NoCouplings {
+            why: error.words(&dataset.names_of_channels().0),
+        })?;
+    let Some(id) = request.condition else {
+        return dataset
+            .conditions()
+            .iter()
+            .map(|condition| exported_model(analysis, request, condition))
+            .collect();
+    };
+    match dataset.condition(id) {
+        Some(condition) => Ok(vec![exported_model(analysis, request, condition)?]),
+        None => Err(ExportFault::NoCondition { condition: id }),
+    }
+}
+
+/// Returns the correction parts in the requested models; none if the study lacks the requested
+/// schedule.
+pub(super) fn contents_of_models(analysis: &Analysis, request: &ExportRequest) -> ExportContents {
+    let conditions: Vec<ConditionId> = match request.condition {
+        Some(condition) => vec![condition],
+        None => analysis.study.dataset.ids().collect(),
+    };
+    match ExportContents::of_models(analysis, request.correction, &conditions) {
+        Ok(contents) => contents,
+        Err(_) => ExportContents::of_scheduled(analysis),
+    }
+}
+
 /// A corrected model, with the facts that describe it.
 pub(super) struct ExportedModel {
     pub(super) condition: ConditionId,
@@ -52,60 +89,123 @@ struct DescribedPrice {
     words: String,
 }
 
-/// Returns the requested corrected models, in the order of the dataset.
-pub(super) fn exported_models(
-    analysis: &Analysis,
-    request: &ExportRequest,
-) -> Result<Vec<ExportedModel>, ExportFault> {
-    let dataset = &analysis.study.dataset;
-    analysis
-        .asked_couplings()
-        .map_err(|error| ExportFault::NoCouplings {
-            why: error.words(&dataset.names_of_channels().0),
-        })?;
-    let Some(id) = request.condition else {
-        return dataset
-            .conditions()
-            .iter()
-            .map(|condition| exported_model(analysis, request, condition))
-            .collect();
-    };
-    match dataset.condition(id) {
-        Some(condition) => Ok(vec![exported_model(analysis, request, condition)?]),
-        None => Err(ExportFault::NoCondition { condition: id }),
+impl ExportedModel {
+    /// Returns the maximum phase error \[deg\] at the upper end of the band due to the export, that
+    /// is, to Padé approximants and omitted delays.
+    pub(super) fn phase_error_deg(&self) -> f64 {
+        self.approximation_error_deg + self.left_out_deg
     }
-}
 
-/// Returns the correction parts in the requested models; none if the study lacks the requested
-/// schedule.
-pub(super) fn contents_of_models(analysis: &Analysis, request: &ExportRequest) -> ExportContents {
-    let conditions: Vec<ConditionId> = match request.condition {
-        Some(condition) => vec![condition],
-        None => analysis.study.dataset.ids().collect(),
-    };
-    match ExportContents::of_models(analysis, request.correction, &conditions) {
-        Ok(contents) => contents,
-        Err(_) => ExportContents::of_scheduled(analysis),
-    }
-}
-
-/// Returns the phase lag \[deg\] at `omega` \[rad/s\] of the omitted delays: the longest input
-/// delay plus the longest output delay over all conditions.
-fn left_out_phase_deg(contents: &ExportContents, omega: f64) -> f64 {
-    let mut input_s = 0.0_f64;
-    let mut output_s = 0.0_f64;
-    for part in &contents.left_out {
-        let LeftOutPart::Delay(delayed) = part else {
-            continue;
-        };
-        for own in &delayed.delays {
-            match delayed.channel {
-                correction::Channel::Input(_) => input_s = input_s.max(own.delay_s),
-                correction::Channel::Output(_) => output_s = output_s.max(own.delay_s),
-            }
+    /// Returns the frequency \[rad/s\] above which the lead filters make the model invalid;
+    /// infinity without lead filters.
+    pub(super) fn not_valid_above_rad_s(&self) -> f64 {
+        match &self.price {
+            Some(described) => described.price.limit_rad_s,
+            None => f64::INFINITY,
         }
     }
-    (omega * (input_s + output_s)).to_degrees()
+
+    /// Returns the gain \[dB\] that the leads add to the most affected response at ten times the
+    /// upper end of the band; 0 without leads.
+    pub(super) fn gain_above_band_db(&self) -> f64 {
+        match &self.price {
+            Some(DescribedPrice { price, .. }) => {
+                greatest(&price.gains_db.inputs) + greatest(&price.gains_db.outputs)
+            }
+            None => 0.0,
+        }
+    }
+
+    /// Describes the model and its accuracy in a single line.
+    pub(super) fn words(&self) -> String {
+        let price = match &self.price {
+            Some(described) => format!("; {}", described.words),
+            None => String::new(),
+        };
+        format!(
+            "condition {}, model {}, {} correction: {}{}{}{price}",
+            self.condition,
+            self.name,
+            self.correction,
+            self.delay_words(),
+            self.left_out_words(),
+            self.couplings
+        )
+    }
+
+    /// Describes the omitted delays of the condition's own correction, and their phase lag at the
+    /// upper end of the band; empty without omitted delays.
+    fn left_out_words(&self) -> String {
+        if self.left_out_deg == 0.0 {
+            return String::new();
+        }
+        let left_out = telling(self.left_out_deg, 3);
+        let top = number(self.band_top_rad_s);
+        format!(
+            "; the delays of the condition's own correction are left out, which causes a phase \
+            error of up to {left_out} deg at {top} rad/s"
+        )
+    }
+
+    /// Describes the parts in the model and their accuracy; omitted delays are not mentioned.
+    ///
+    /// A part is exact unless it is approximated: in discrete time (`pade_order` 0), lead filters by
+    /// Tustin's rule; in continuous time, delays by Padé approximants.
+    fn delay_words(&self) -> String {
+        let has_delays = self.contents.delays != PartSource::None;
+        let has_leads = self.lead_states > 0;
+        if self.pade_order == 0 && has_leads {
+            return format!(
+                "gains and delays exact, lead filters by Tustin's rule, phase error up to {} deg at {} rad/s",
+                bound_words(self.approximation_error_deg),
+                number(self.band_top_rad_s)
+            );
+        }
+        if has_leads && self.delay_states == 0 {
+            return "gains and lead filters exact".to_owned();
+        }
+        if self.pade_order == 0 || self.delay_states == 0 {
+            let words = match (has_delays, self.delay_states) {
+                (true, _) => "gains and delays exact",
+                (false, 0) => "gains exact, without delays",
+                // In discrete time, the model's own delays are whole samples, and therefore exact.
+                (false, _) => "gains and the model's own delays exact",
+            };
+            return words.to_owned();
+        }
+        let exact = if has_leads {
+            "gains and lead filters"
+        } else {
+            "gains"
+        };
+        let approximated = if has_delays {
+            "delays"
+        } else {
+            "the model's own delays"
+        };
+        format!(
+            "{exact} exact, {approximated} by Pade approximants of order {}, phase error up to {} deg at {} rad/s",
+            self.pade_order,
+            bound_words(self.approximation_error_deg),
+            number(self.band_top_rad_s)
+        )
+    }
+}
+
+fn greatest(gains_db: &[f64]) -> f64 {
+    gains_db.iter().copied().fold(0.0, f64::max)
+}
+
+/// Formats an upper bound on a phase error \[deg\]; a nonzero bound below 0.001 is given as 0.001.
+fn bound_words(error_deg: f64) -> String {
+    /// Minimum reported bound.
+    const LEAST_DEG: f64 = 1e-3;
+    let bound_deg = if error_deg > 0.0 {
+        error_deg.max(LEAST_DEG)
+    } else {
+        0.0
+    };
+    format!("{bound_deg:.3}")
 }
 
 fn exported_model(
@@ -159,6 +259,25 @@ fn exported_model(
         couplings: couplings_words(analysis, dynamics),
         model: corrected.model,
     })
+}
+
+/// Returns the phase lag \[deg\] at `omega` \[rad/s\] of the omitted delays: the longest input
+/// delay plus the longest output delay over all conditions.
+fn left_out_phase_deg(contents: &ExportContents, omega: f64) -> f64 {
+    let mut input_s = 0.0_f64;
+    let mut output_s = 0.0_f64;
+    for part in &contents.left_out {
+        let LeftOutPart::Delay(delayed) = part else {
+            continue;
+        };
+        for own in &delayed.delays {
+            match delayed.channel {
+                correction::Channel::Input(_) => input_s = input_s.max(own.delay_s),
+                correction::Channel::Output(_) => output_s = output_s.max(own.delay_s),
+            }
+        }
+    }
+    (omega * (input_s + output_s)).to_degrees()
 }
 
 /// Names the correction in the description of an exported model.
@@ -289,120 +408,4 @@ fn add_state_names(names: &mut Vec<String>, channels: &[Channel], part: &str, co
             names.push(format!("{} {part} {place}", channel.name));
         }
     }
-}
-
-impl ExportedModel {
-    /// Returns the maximum phase error \[deg\] at the upper end of the band due to the export, that
-    /// is, to Padé approximants and omitted delays.
-    pub(super) fn phase_error_deg(&self) -> f64 {
-        self.approximation_error_deg + self.left_out_deg
-    }
-
-    /// Returns the frequency \[rad/s\] above which the lead filters make the model invalid;
-    /// infinity without lead filters.
-    pub(super) fn not_valid_above_rad_s(&self) -> f64 {
-        match &self.price {
-            Some(described) => described.price.limit_rad_s,
-            None => f64::INFINITY,
-        }
-    }
-
-    /// Returns the gain \[dB\] that the leads add to the most affected response at ten times the
-    /// upper end of the band; 0 without leads.
-    pub(super) fn gain_above_band_db(&self) -> f64 {
-        match &self.price {
-            Some(DescribedPrice { price, .. }) => {
-                greatest(&price.gains_db.inputs) + greatest(&price.gains_db.outputs)
-            }
-            None => 0.0,
-        }
-    }
-
-    /// Describes the model and its accuracy in a single line.
-    pub(super) fn words(&self) -> String {
-        let price = match &self.price {
-            Some(described) => format!("; {}", described.words),
-            None => String::new(),
-        };
-        format!(
-            "condition {}, model {}, {} correction: {}{}{}{price}",
-            self.condition,
-            self.name,
-            self.correction,
-            self.delay_words(),
-            self.left_out_words(),
-            self.couplings
-        )
-    }
-
-    /// Describes the omitted delays of the condition's own correction, and their phase lag at the
-    /// upper end of the band; empty without omitted delays.
-    fn left_out_words(&self) -> String {
-        if self.left_out_deg == 0.0 {
-            return String::new();
-        }
-        let left_out = telling(self.left_out_deg, 3);
-        let top = number(self.band_top_rad_s);
-        format!(
-            "; the delays of the condition's own correction are left out, which causes a phase \
-            error of up to {left_out} deg at {top} rad/s"
-        )
-    }
-
-    /// Describes the parts in the model and their accuracy; omitted delays are not mentioned.
-    fn delay_words(&self) -> String {
-        let has_delays = self.contents.delays != PartSource::None;
-        let has_leads = self.lead_states > 0;
-        if self.pade_order == 0 && has_leads {
-            return format!(
-                "gains and delays exact, lead filters by Tustin's rule, phase error up to {} deg at {} rad/s",
-                bound_words(self.approximation_error_deg),
-                number(self.band_top_rad_s)
-            );
-        }
-        if has_leads && self.delay_states == 0 {
-            return "gains and lead filters exact".to_owned();
-        }
-        if self.pade_order == 0 || self.delay_states == 0 {
-            let words = match (has_delays, self.delay_states) {
-                (true, _) => "gains and delays exact",
-                (false, 0) => "gains exact, without delays",
-                // In discrete time, the model's own delays are whole samples, and therefore exact.
-                (false, _) => "gains and the model's own delays exact",
-            };
-            return words.to_owned();
-        }
-        let exact = if has_leads {
-            "gains and lead filters"
-        } else {
-            "gains"
-        };
-        let approximated = if has_delays {
-            "delays"
-        } else {
-            "the model's own delays"
-        };
-        format!(
-            "{exact} exact, {approximated} by Pade approximants of order {}, phase error up to {} deg at {} rad/s",
-            self.pade_order,
-            bound_words(self.approximation_error_deg),
-            number(self.band_top_rad_s)
-        )
-    }
-}
-
-fn greatest(gains_db: &[f64]) -> f64 {
-    gains_db.iter().copied().fold(0.0, f64::max)
-}
-
-/// Formats an upper bound on a phase error \[deg\]; a nonzero bound below 0.001 is given as 0.001.
-fn bound_words(error_deg: f64) -> String {
-    /// Minimum reported bound.
-    const LEAST_DEG: f64 = 1e-3;
-    let bound_deg = if error_deg > 0.0 {
-        error_deg.max(LEAST_DEG)
-    } else {
-        0.0
-    };
-    format!("{bound_deg:.3}")
 }

@@ -1,15 +1,14 @@
 //! Conversion of JSON to MATLAB values with the same structure.
+//!
+//! A list of objects with equal members becomes a struct array, which MATLAB shows element by
+//! element, or is *gathered*: a struct with an array for each member, which can be plotted directly.
+//! `[{"x": 1, "y": [2, 3]}, {"x": 4, "y": [5, 6]}]` is gathered to `x = [1; 4]`, `y = [2 3; 5 6]`.
 
 use serde_json::Value as Json;
 
-use gdcm_model::dataset::Dataset;
-
-use crate::files::export_contents::ExportContents;
+use super::matlab_values::{Fields, LONGEST_NAME, cell_of_texts, row};
 use crate::formats::strides::first_index_fastest;
 use crate::formats::variables::{Array, CellArray, ElementKind, StructArray, Value};
-
-/// Maximum length of a name in MATLAB (`namelengthmax`).
-pub(super) const LONGEST_NAME: usize = 63;
 
 static NULL: Json = Json::Null;
 
@@ -22,16 +21,6 @@ pub(super) struct Layout {
     pub(super) by_name: &'static [&'static str],
     /// Lists of objects that become a struct of columns rather than a struct array.
     pub(super) columns: &'static [&'static str],
-}
-
-/// Returns whether a value is a number, or null for a missing number.
-fn is_number(json: &Json) -> bool {
-    matches!(json, Json::Number(_) | Json::Null)
-}
-
-/// Converts a JSON number; null becomes NaN.
-fn number(json: &Json) -> f64 {
-    json.as_f64().unwrap_or(f64::NAN)
 }
 
 impl Layout {
@@ -107,8 +96,8 @@ impl Layout {
         })
     }
 
-    /// Converts values to an array of this shape; in `leaves` the last index runs fastest. Objects
-    /// become a struct of arrays, numbers an array, booleans a logical array, lists of numbers an
+    /// Gathers values in an array of this shape; in `leaves`, which holds the value at each index, the
+    /// last index runs fastest. Objects become a struct of arrays, numbers an array, booleans a logical array, lists of numbers an
     /// array with an additional index, and all other values cells.
     fn gathered(&self, shape: &[usize], leaves: Vec<&Json>) -> Value {
         if leaves.iter().any(|leaf| leaf.is_object()) {
@@ -145,7 +134,7 @@ impl Layout {
         })
     }
 
-    /// Converts objects to a struct with an array for each member name; members by channel add an
+    /// Gathers objects in a struct with an array for each member name; members by channel add an
     /// index to the array.
     fn gathered_objects(&self, shape: &[usize], leaves: &[&Json]) -> Value {
         let mut fields = Fields::default();
@@ -174,6 +163,16 @@ impl Layout {
         }
         fields.record()
     }
+}
+
+/// Returns whether a value is a number, or null for a missing number.
+fn is_number(json: &Json) -> bool {
+    matches!(json, Json::Number(_) | Json::Null)
+}
+
+/// Converts a JSON number; null becomes NaN.
+fn number(json: &Json) -> f64 {
+    json.as_f64().unwrap_or(f64::NAN)
 }
 
 /// Returns the member of an object at an index; null if there is none.
@@ -262,78 +261,10 @@ fn array(shape: &[usize], numbers: Vec<f64>, kind: ElementKind) -> Value {
     })
 }
 
-/// Fields of a struct, in order.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Fields {
-    fields: Vec<(String, Value)>,
-}
-
-impl Fields {
-    /// Adds a field. `name` must consist of letters, digits and _.
-    pub(super) fn add(&mut self, name: &str, value: Value) {
-        self.fields.push((name.to_owned(), value));
-    }
-
-    /// Returns a struct with these fields.
-    pub(super) fn record(self) -> Value {
-        records(vec![self])
-    }
-}
-
-/// Returns a row of structs, which must have the same fields.
-pub(super) fn records(records: Vec<Fields>) -> Value {
-    let shape = vec![1, records.len()];
-    let mut fields: Vec<(String, Vec<Value>)> = Vec::new();
-    for record in records {
-        for (place, (name, value)) in record.fields.into_iter().enumerate() {
-            match fields.get_mut(place) {
-                Some((_, values)) => values.push(value),
-                None => fields.push((name, vec![value])),
-            }
-        }
-    }
-    Value::Struct(StructArray { shape, fields })
-}
-
-/// Returns a cell column with one string per cell.
-pub(super) fn cell_of_texts(texts: impl IntoIterator<Item = String>) -> Value {
-    let values: Vec<Value> = texts.into_iter().map(Value::text).collect();
-    Value::Cell(CellArray {
-        shape: vec![values.len(), 1],
-        values,
-    })
-}
-
-/// Returns a row vector.
-pub(super) fn row(values: impl IntoIterator<Item = f64>) -> Value {
-    let values: Vec<f64> = values.into_iter().collect();
-    matrix(1, values.len(), values)
-}
-
-/// Returns a column vector.
-pub(super) fn column(values: impl IntoIterator<Item = f64>) -> Value {
-    let values: Vec<f64> = values.into_iter().collect();
-    matrix(values.len(), 1, values)
-}
-
-/// Returns a matrix from its values in column-major order.
-pub(super) fn matrix(rows: usize, columns: usize, values: Vec<f64>) -> Value {
-    Value::Array(Array::matrix(rows, columns, values))
-}
-
-/// Returns a struct with the source of each correction part in a file, and with the omitted parts.
-pub(super) fn contained_parts(contents: &ExportContents, dataset: &Dataset) -> Value {
-    let mut fields = Fields::default();
-    for (name, source) in contents.parts() {
-        fields.add(name, Value::text(source.word()));
-    }
-    fields.add("left_out", cell_of_texts(contents.left_out_words(dataset)));
-    fields.record()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::export::matlab_values::{column, matrix};
 
     const LAYOUT: Layout = Layout {
         by_channel: &["inputs"],

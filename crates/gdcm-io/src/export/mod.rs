@@ -8,6 +8,7 @@ mod exported_model;
 pub mod figure_file;
 mod lookup_table;
 mod matlab_struct;
+mod matlab_values;
 mod program_text;
 mod programs;
 mod scheduled;

@@ -11,7 +11,7 @@ use gdcm_method::correction::Channel;
 use gdcm_method::couplings::CouplingMatrices;
 use gdcm_method::schedule::{Airspeeds, Regression};
 
-use super::matlab_struct::LONGEST_NAME;
+use super::matlab_values::LONGEST_NAME;
 use super::program_text::{c_text, comment, number, number_list, python_text};
 use super::scheduled::{Curve, Scheduled};
 use super::{Export, ExportFormat, Exported};

@@ -61,11 +61,11 @@ impl Curve {
 
     fn is_finite(&self) -> bool {
         let upper = match &self.upper {
-            Some(upper) => upper.figures(),
+            Some(upper) => upper.parameters(),
             None => &[],
         };
         self.figures
-            .figures()
+            .parameters()
             .iter()
             .chain(&self.slope)
             .chain(upper)
@@ -111,7 +111,7 @@ impl Scheduled<'_> {
         let leads = self.schedule.leads.as_ref()?;
         let least = self.schedule.airspeeds.min_kt;
         let most = self.schedule.airspeeds.max_kt;
-        if leads.taus_s[channel].figures().len() == 1 || least == most {
+        if leads.taus_s[channel].parameters().len() == 1 || least == most {
             return Some(Curve::constant(self.zero_at_s(channel, least)?));
         }
         // A table, because the numerator time constant is not a polynomial in airspeed even if the
@@ -162,7 +162,7 @@ impl Scheduled<'_> {
         let mut notes = self.notes();
         let has_lead_table = all_channels(self.dataset).into_iter().any(|channel| {
             self.zero_s(channel)
-                .is_some_and(|zero_s| zero_s.figures.figures().len() > 1)
+                .is_some_and(|zero_s| zero_s.figures.parameters().len() > 1)
         });
         if has_lead_table {
             notes.push(format!(

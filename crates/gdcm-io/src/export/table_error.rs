@@ -38,10 +38,10 @@ impl TableError {
         }
         let mut low = (greatest.airspeed_kt - step).max(least);
         let mut high = (greatest.airspeed_kt + step).min(most);
-        let ratio = (5_f64.sqrt() - 1.0) / 2.0;
+        let golden_ratio = (5_f64.sqrt() - 1.0) / 2.0;
         for _ in 0..STEPS {
-            let left = error_at(high - ratio * (high - low));
-            let right = error_at(low + ratio * (high - low));
+            let left = error_at(high - golden_ratio * (high - low));
+            let right = error_at(low + golden_ratio * (high - low));
             if left.error > right.error {
                 greatest = greatest.or_greater(left);
                 high = right.airspeed_kt;

@@ -16,7 +16,7 @@ use std::path::Path;
 use super::dataset_file::check_dataset_text;
 use super::study_file::check_study_text;
 use crate::file_error::FileError;
-use crate::location::Outline;
+use crate::json_outline::Outline;
 use crate::reading_budget::ReadingBudget;
 use crate::source::{text_reader, without_mark};
 

@@ -53,13 +53,64 @@ pub fn add_rules(rules: &Rules, path: &Path, outputs: &mut OutputSet) -> Result<
     outputs.add(path, |file| write_pretty(&text, file))
 }
 
-/// Returns the error for an entry that contains an unexpected word.
-fn word_error(entry: String, expected: &str, found: String) -> ContentError {
-    let fault = ContentFault::Word {
-        expected: expected.to_owned(),
-        found,
-    };
-    ContentError::new(Location::entry(entry), fault)
+/// Format and version of a rules file.
+pub(crate) const FORMAT: Format = Format {
+    name: "gdcm-rules",
+    version: 1,
+};
+
+/// Maximum number of patterns, and maximum number of conversions, in a rules file.
+const MOST_PATTERNS: usize = 200;
+
+/// Maximum number of declarations in a rules file.
+const MOST_DECLARATIONS: usize = 1000;
+
+#[derive(Deserialize, Serialize)]
+pub(crate) struct RulesText {
+    pub(crate) format: String,
+    #[serde(deserialize_with = "whole")]
+    pub(crate) version: u64,
+    pub(crate) name: String,
+    #[serde(default)]
+    pub(crate) description: String,
+    #[serde(deserialize_with = "list::<MOST_CHANNELS, _, _>")]
+    pub(crate) inputs: Vec<ChannelRule>,
+    #[serde(deserialize_with = "list::<MOST_CHANNELS, _, _>")]
+    pub(crate) outputs: Vec<ChannelRule>,
+    #[serde(default, deserialize_with = "list::<MOST_PAIRS, _, _>")]
+    pub(crate) on_axis: Vec<(String, String)>,
+    pub(crate) band_rad_s: [f64; 2],
+    #[serde(default, deserialize_with = "list::<MOST_PATTERNS, _, _>")]
+    pub(crate) conversions: Vec<UnitRule>,
+    #[serde(default = "standard", deserialize_with = "list::<MOST_PATTERNS, _, _>")]
+    pub(crate) patterns: Vec<String>,
+    /// Channel signs that apply to all files.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub(crate) signs: Signs,
+    /// Channel signs that apply to the models of a role, "identified" or "physics".
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub(crate) role_signs: BTreeMap<String, Signs>,
+    /// Channel units, factors and signs that apply to a role, a folder or a file.
+    #[serde(
+        default,
+        skip_serializing_if = "Vec::is_empty",
+        deserialize_with = "list::<MOST_DECLARATIONS, _, _>"
+    )]
+    pub(crate) declarations: Vec<ScopedDeclarations>,
+    /// Sample time \[s\] for models without a sample time; 0 for continuous time.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) sample_time_s: Option<f64>,
+    /// Column headings of tables, by file name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub(crate) headings: BTreeMap<String, Vec<String>>,
+    /// Rules for single models, by file and variable.
+    #[serde(default)]
+    pub(crate) models: BTreeMap<String, RowRule>,
+}
+
+/// Returns the patterns used for a file that contains none.
+fn standard() -> Vec<String> {
+    pattern_texts(standard_patterns())
 }
 
 impl RulesText {
@@ -205,64 +256,13 @@ fn pattern_texts(patterns: &[NamePattern]) -> Vec<String> {
         .collect()
 }
 
-/// Format and version of a rules file.
-pub(crate) const FORMAT: Format = Format {
-    name: "gdcm-rules",
-    version: 1,
-};
-
-/// Maximum number of patterns, and maximum number of conversions, in a rules file.
-const MOST_PATTERNS: usize = 200;
-
-/// Maximum number of declarations in a rules file.
-const MOST_DECLARATIONS: usize = 1000;
-
-#[derive(Deserialize, Serialize)]
-pub(crate) struct RulesText {
-    pub(crate) format: String,
-    #[serde(deserialize_with = "whole")]
-    pub(crate) version: u64,
-    pub(crate) name: String,
-    #[serde(default)]
-    pub(crate) description: String,
-    #[serde(deserialize_with = "list::<MOST_CHANNELS, _, _>")]
-    pub(crate) inputs: Vec<ChannelRule>,
-    #[serde(deserialize_with = "list::<MOST_CHANNELS, _, _>")]
-    pub(crate) outputs: Vec<ChannelRule>,
-    #[serde(default, deserialize_with = "list::<MOST_PAIRS, _, _>")]
-    pub(crate) on_axis: Vec<(String, String)>,
-    pub(crate) band_rad_s: [f64; 2],
-    #[serde(default, deserialize_with = "list::<MOST_PATTERNS, _, _>")]
-    pub(crate) conversions: Vec<UnitRule>,
-    #[serde(default = "standard", deserialize_with = "list::<MOST_PATTERNS, _, _>")]
-    pub(crate) patterns: Vec<String>,
-    /// Channel signs that apply to all files.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub(crate) signs: Signs,
-    /// Channel signs that apply to the models of a role, "identified" or "physics".
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub(crate) role_signs: BTreeMap<String, Signs>,
-    /// Channel units, factors and signs that apply to a role, a folder or a file.
-    #[serde(
-        default,
-        skip_serializing_if = "Vec::is_empty",
-        deserialize_with = "list::<MOST_DECLARATIONS, _, _>"
-    )]
-    pub(crate) declarations: Vec<ScopedDeclarations>,
-    /// Sample time \[s\] for models without a sample time; 0 for continuous time.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) sample_time_s: Option<f64>,
-    /// Column headings of tables, by file name.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub(crate) headings: BTreeMap<String, Vec<String>>,
-    /// Rules for single models, by file and variable.
-    #[serde(default)]
-    pub(crate) models: BTreeMap<String, RowRule>,
-}
-
-/// Returns the patterns used for a file that contains none.
-fn standard() -> Vec<String> {
-    pattern_texts(standard_patterns())
+/// Returns the error for an entry that contains an unexpected word.
+fn word_error(entry: String, expected: &str, found: String) -> ContentError {
+    let fault = ContentFault::Word {
+        expected: expected.to_owned(),
+        found,
+    };
+    ContentError::new(Location::entry(entry), fault)
 }
 
 #[cfg(test)]

@@ -161,6 +161,7 @@ fn natural_key(name: &str) -> Vec<TextAndNumber> {
     let mut parts = Vec::new();
     let mut text = String::new();
     let mut digits = String::new();
+    // A part ends where another character follows its digits.
     for letter in name.chars() {
         if letter.is_ascii_digit() && digits.len() < LONGEST {
             digits.push(letter);

@@ -12,14 +12,13 @@ use crate::formats::variables::{
     Array, CellArray, ElementKind, StructArray, TextArray, Value, Variable,
 };
 use crate::formats::{Contents, Importer, importer_of};
-use crate::location::Outline;
+use crate::json_outline::Outline;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::source::{GZIP_MAGIC, Source, text_of, without_mark};
 
-/// Estimated memory of the three allocations for shape, name and number \[bytes\].
-const OVERHEAD: u64 = 3 * 64;
-/// Estimated memory of a single value \[bytes\].
-const VALUE: u64 = size_of::<Value>() as u64 + OVERHEAD;
+/// Estimated memory of a single value \[bytes\]: the value, and the three allocations for shape,
+/// name and number.
+const VALUE_MEMORY: u64 = size_of::<Value>() as u64 + 3 * 64;
 /// Maximum number of array dimensions.
 const MOST_DIMENSIONS: usize = 3;
 
@@ -35,6 +34,7 @@ pub(crate) const JSON: Importer = Importer {
     read: read_json,
 };
 
+/// Reads a file in the format that its member "format" names; other JSON is read as variables.
 fn read_json(bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError> {
     let text = text_of(bytes, path, budget)?;
     let text = without_mark(&text);
@@ -49,7 +49,7 @@ fn read_json(bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Co
     match format.as_deref() {
         Some("\"gdcm-dataset\"") => {
             // Pass on the compressed bytes: `Source::of` decompresses them again.
-            let source = Source::of(bytes, path, budget)?;
+            let source = Source::from_bytes(bytes, path, budget)?;
             let loaded = dataset_from(&source, DatasetOrigin::File(path.to_owned()), budget)?;
             let dataset = loaded.dataset.as_ref().clone();
             return Ok(Contents::Dataset(Box::new(dataset), loaded.cautions));
@@ -96,8 +96,9 @@ fn read_variables(text: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variabl
     Ok(variables)
 }
 
+/// Converts a JSON value.
 fn value_from(json: Tree, budget: &ReadingBudget<'_>) -> Result<Value, VariableFault> {
-    budget.take(1, VALUE, "")?;
+    budget.take(1, VALUE_MEMORY, "")?;
     Ok(match json {
         Tree::Null => Value::empty(),
         Tree::Bool(flag) => Value::truth(flag),
@@ -159,6 +160,7 @@ fn number_array(list: &[Tree], budget: &ReadingBudget<'_>) -> Result<Option<Arra
         return Ok(Some(Array::matrix(1, count, values)));
     }
     budget.take(values.len() as u64, 8, "")?;
+    // Reorder the numbers from row-major order, as in the text, to column-major order.
     let re = Places::row_major(&shape)
         .into_iter()
         .flatten()

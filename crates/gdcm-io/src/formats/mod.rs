@@ -7,8 +7,13 @@
 //!       -> models or records                  (recognise)
 //! ```
 //!
+//! Readers take memory and work from a `ReadingBudget` before they use it. The last argument is the
+//! name of the variable in an error; where it is empty, a caller adds the name or there is none. A
+//! factor of 2 allows for vectors, which grow by doubling.
+//!
 //! A new format is an `Importer` in a file of its own in this folder, and an entry in `FORMATS`.
 
+mod counted;
 mod folders;
 mod foreign_formats;
 mod json_tree;
@@ -20,6 +25,7 @@ pub mod npy;
 pub(crate) mod octave;
 pub(crate) mod recorded_columns;
 pub(crate) mod sparse_matrix;
+pub(crate) mod stored_number;
 pub mod strides;
 pub mod text;
 pub mod variables;
@@ -183,7 +189,8 @@ fn ending_of(path: &Path) -> String {
 
 /// Receives the progress of reading files, and can cancel it.
 pub trait FolderProgress {
-    /// Receives the start of a file: its number, counted from 1, the number of files, and its name.
+    /// Called when the reading of a file begins, with its number, counted from 1, the number of
+    /// files, and its name.
     fn reading(&self, number: usize, count: usize, name: &str);
     /// Receives the memory taken for the contents of a file \[bytes\].
     fn taken(&self, _bytes: u64) {}

@@ -1,23 +1,16 @@
 //! Report section on the conditions: representatives, gains and delays with their basis, and plots.
 
-use std::collections::BTreeSet;
-
 use gdcm_method::correction::{Channel, Outcome};
 use gdcm_method::fidelity::SUGGESTION_RATIO;
 use gdcm_model::dataset::{BundleKind, Condition, ModelId, Pair};
 use gdcm_model::number_format::{compact, decimals};
-use gdcm_model::progress::{Cancelled, Progress, Unobserved};
+use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_model::units::{number, s_to_ms, signed};
-use gdcm_plot::figure::bode::{BodeOptions, bode_figure, overview_figure};
+use gdcm_plot::figure::all_channels;
 use gdcm_plot::figure::condition_source::condition_words;
-use gdcm_plot::figure::error::error_figure;
 use gdcm_plot::figure::gains::class_names;
-use gdcm_plot::figure::poles::poles_figure;
-use gdcm_plot::figure::{ConditionSource, Figure, Mark, Role, all_channels};
-use gdcm_study::jobs::curve_jobs::ConditionModes;
 use gdcm_study::results::condition_remarks::condition_remarks;
 use gdcm_study::results::remark_kind::RemarkKind;
-use gdcm_study::stages::condition_curves::{CURVE_POINTS, curves_band};
 use gdcm_study::{Analysis, ConditionAnalysis, Engine, Study};
 use gdcm_words::Table;
 use gdcm_words::caution::{failure_text, undefined_text};
@@ -25,8 +18,11 @@ use gdcm_words::leads::lead_words;
 use gdcm_words::remark::remark_text;
 use gdcm_words::solution_details::details;
 
-use super::Unobtrusive;
-use super::page::{CONDITIONS_DRAWN, MODELS_SHOWN, PAIRS_DRAWN, PAIRS_LISTED, Page, names};
+use super::CancellationOnly;
+use super::condition_plots::add_condition_plots;
+use super::page::{CONDITIONS_DRAWN, PAIRS_LISTED, Page};
+use super::shown_models::models_shown;
+use super::wording::{MISSING, counted, names};
 
 /// Adds a subsection for each condition: representatives, gains and delays with their basis, and
 /// plots.
@@ -56,7 +52,7 @@ pub(super) fn add_conditions(
             Some(Ok(result)) => {
                 add_result(page, analysis, result);
                 if index < CONDITIONS_DRAWN {
-                    let step = Unobtrusive(progress);
+                    let step = CancellationOnly(progress);
                     add_condition_plots(page, analysis, result, engine, &step)?;
                 }
             }
@@ -67,30 +63,6 @@ pub(super) fn add_conditions(
             None => page.paragraph("This condition was not analysed."),
         }
         progress.advanced(index + 1, conditions.len());
-    }
-    Ok(())
-}
-
-/// Computes the curves of a condition and adds its plots.
-fn add_condition_plots(
-    page: &mut Page,
-    analysis: &Analysis,
-    result: &ConditionAnalysis,
-    engine: &mut Engine,
-    progress: &dyn Progress,
-) -> Result<(), Cancelled> {
-    let study = &analysis.study;
-    let grid = (curves_band(&study.settings), CURVE_POINTS);
-    let curves = engine.curves(&study.dataset, result.condition.id(), grid, progress)?;
-    if let Some(curves) = curves {
-        let source = ConditionSource {
-            study,
-            analysis: Some(result),
-            schedule: analysis.schedule.as_ref().ok(),
-            curves: &curves,
-            variant: None,
-        };
-        add_plots(page, result, &source);
     }
     Ok(())
 }
@@ -277,15 +249,17 @@ fn add_responses(page: &mut Page, study: &Study, result: &ConditionAnalysis) {
     page.table(&table);
     if shown.len() < all.len() {
         page.paragraph(&format!(
-            "Not listed: {} responses that are neither on-axis nor held.",
-            all.len() - shown.len()
+            "Not listed: {} neither on-axis nor held.",
+            responses_that_are(all.len() - shown.len())
         ));
     }
     page.list(undefined_lines(study, result));
 }
 
-/// Placeholder for a missing value in tables.
-const MISSING: &str = "–";
+fn responses_that_are(count: usize) -> String {
+    let verb = if count == 1 { "is" } else { "are" };
+    format!("{} that {verb}", counted(count, "response"))
+}
 
 /// Formats a value with `digits` decimals; a missing value as [`MISSING`].
 fn decimals_or_missing(value: Option<f64>, digits: usize) -> String {
@@ -430,147 +404,4 @@ fn kept_word(
     } else {
         "yes"
     }
-}
-
-/// Maximum number of responses in a figure, in at most two rows.
-const IN_A_FIGURE: usize = 10;
-
-/// Adds the plots of a condition: the responses in the objective, their ratios and phase
-/// differences, an overview of all responses, and the poles.
-fn add_plots(page: &mut Page, result: &ConditionAnalysis, source: &ConditionSource<'_>) {
-    let options = BodeOptions {
-        hidden_models: models_hidden(source.study, result),
-        ..BodeOptions::default()
-    };
-    add_response_plots(page, source, &options);
-    add_overview(page, source, &options);
-    add_poles(page, source, &options);
-}
-
-/// Adds Bode plots of the responses in the objective (on-axis; all if none is on-axis), and plots
-/// of ratio and phase difference between the identified representative and the physics models.
-fn add_response_plots(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOptions) {
-    let id = source.curves.condition.id();
-    let measuring: Vec<Pair> = source.study.dataset.measuring_pairs().marked().collect();
-    let drawn = &measuring[..measuring.len().min(PAIRS_DRAWN)];
-    for pairs in drawn.chunks(IN_A_FIGURE) {
-        let title = format!("Condition {id}, responses{}", on_axis_words(source));
-        let caption = "Magnitude and phase of every model, and of the representative under its own and under the scheduled \
-                       correction.";
-        page.figure(&bode_figure(source, pairs, options), &title, caption);
-        let title = format!("Condition {id}, difference between identified and physics models");
-        let caption = "Ratio and phase difference of the identified representative and each kept physics model, with G, D, the \
-                       bounds and the quantiles.";
-        let figure = without_values(error_figure(source, pairs, options));
-        page.figure(&figure, &title, caption);
-    }
-    if drawn.len() < measuring.len() {
-        page.paragraph(&format!(
-            "{} of {} responses in the objective are drawn.",
-            drawn.len(),
-            measuring.len()
-        ));
-    }
-}
-
-/// Adds a plot of the magnitudes of all responses, unless there are too many for a figure.
-fn add_overview(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOptions) {
-    let without_bundles = BodeOptions {
-        hidden: BTreeSet::from([Role::Perturbed, Role::Identified, Role::Rejected]),
-        ..options.clone()
-    };
-    let overview = overview_figure(source, &without_bundles);
-    if overview.plots.len() <= 6 * IN_A_FIGURE {
-        let id = source.curves.condition.id();
-        page.figure(
-            &overview,
-            &format!("Condition {id}, magnitude of every response"),
-            "With J before and after the correction; * marks held responses.",
-        );
-    }
-}
-
-/// Adds a plot of the model poles, with their shifts due to couplings.
-fn add_poles(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOptions) {
-    let Ok(modes) = ConditionModes::of(&source.curves.condition, &Unobserved) else {
-        return;
-    };
-    let shifts = match source.analysis {
-        Some(result) => result.pole_shifts(),
-        None => Default::default(),
-    };
-    let id = source.curves.condition.id();
-    page.figure(
-        &poles_figure(source, &modes, options, (&|_| Vec::new(), &shifts)),
-        &format!("Condition {id}, poles of its models"),
-        "Physics models ×, identified models +; rays of equal damping ratio. Corrections of \
-        channels do not move poles; couplings do.",
-    );
-}
-
-/// Reduces line labels to their names ("G", "UB") for narrow frames: the tables give the values.
-fn without_values(mut figure: Figure) -> Figure {
-    let panels = figure.plots.iter_mut().flat_map(|plot| &mut plot.panels);
-    for mark in panels.flat_map(|panel| &mut panel.marks) {
-        if let Mark::Rule(rule) = mark {
-            rule.label = rule.label.split(' ').next().unwrap_or_default().to_owned();
-        }
-    }
-    figure
-}
-
-/// Returns " on axis" if the dataset marks on-axis responses. Otherwise all responses enter the
-/// objective, and the words are empty.
-fn on_axis_words(source: &ConditionSource<'_>) -> &'static str {
-    if source.study.dataset.on_axis().marked().next().is_some() {
-        " on axis"
-    } else {
-        ""
-    }
-}
-
-/// Returns the indices of the models of a bundle that are listed and drawn: all models of a short
-/// bundle; of a long bundle the representative, nominal and suggested models, then rejected models,
-/// then others spread evenly over the bundle.
-fn models_shown(study: &Study, result: &ConditionAnalysis, kind: BundleKind) -> BTreeSet<usize> {
-    let models = result.condition.bundle(kind);
-    if models.len() <= MODELS_SHOWN {
-        return (0..models.len()).collect();
-    }
-    let suggested = result.suggested();
-    let mut important = Vec::new();
-    let mut rejected = Vec::new();
-    for (index, model) in models.iter().enumerate() {
-        let is_suggested = kind == BundleKind::Physics && suggested.contains(&model.name);
-        let is_representative = result.representative_name(kind) == model.name;
-        if model.is_nominal() || is_representative || is_suggested {
-            important.push(index);
-        }
-        if study.is_rejected(&ModelId::new(result.condition.id(), kind, &model.name)) {
-            rejected.push(index);
-        }
-    }
-    rejected.truncate(MODELS_SHOWN / 2);
-    let evenly = (0..MODELS_SHOWN).map(|part| part * models.len() / MODELS_SHOWN);
-    let mut shown = BTreeSet::new();
-    for index in important.into_iter().chain(rejected).chain(evenly) {
-        if shown.len() < MODELS_SHOWN {
-            shown.insert(index);
-        }
-    }
-    shown
-}
-
-/// Returns the models of a condition that are not drawn.
-fn models_hidden(study: &Study, result: &ConditionAnalysis) -> BTreeSet<ModelId> {
-    let mut hidden = BTreeSet::new();
-    for kind in BundleKind::BOTH {
-        let shown = models_shown(study, result, kind);
-        for (index, model) in result.condition.bundle(kind).iter().enumerate() {
-            if !shown.contains(&index) {
-                hidden.insert(ModelId::new(result.condition.id(), kind, &model.name));
-            }
-        }
-    }
-    hidden
 }

@@ -2,11 +2,18 @@
 //! paper. The bytes depend only on the study.
 
 mod assessment;
+mod condition_plots;
 mod conditions;
+mod couplings;
+mod left_out;
 mod page;
+mod provenance;
 mod requirements;
 mod schedule;
+mod shown_models;
 mod study;
+mod uncertainty;
+mod wording;
 
 use std::path::Path;
 
@@ -41,7 +48,7 @@ pub struct ReportSource {
 impl ReportSource {
     /// Describes the files of a study: its dataset, and the study file if it is saved. Folders are
     /// omitted, so that the report does not depend on their location.
-    pub fn of(loaded: &LoadedDataset, study: Option<&Path>) -> Self {
+    pub fn from_files(loaded: &LoadedDataset, study: Option<&Path>) -> Self {
         let study = study
             .and_then(Path::file_name)
             .map(|name| sanitized(&name.to_string_lossy()));
@@ -65,8 +72,9 @@ pub struct ReportSubject<'a> {
     pub known: &'a KnownPoles,
 }
 
-/// Returns the report on an analysis as HTML; `engine` computes the responses that are plotted.
-/// Each condition is a progress step.
+/// Returns the report on an analysis as HTML. Error bars and the assessment of the couplings are
+/// computed first if the analysis lacks them, because several sections show them; `engine` also
+/// computes the responses that are plotted. Each condition is a progress step.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `progress` requests it.
@@ -76,17 +84,17 @@ pub fn report(
     engine: &mut Engine,
     progress: &dyn Progress,
 ) -> Result<String, Cancelled> {
-    let with_bars = assessment::with_bars(subject.analysis, engine, progress)?;
-    let analysis = &assessment::with_couplings(with_bars, engine, progress)?;
+    let with_bars = uncertainty::with_bars(subject.analysis, engine, progress)?;
+    let analysis = &couplings::with_couplings(with_bars, engine, progress)?;
     let mut page = Page::default();
     study::add_summary(&mut page, analysis);
     study::add_settings(&mut page, &analysis.study);
-    study::add_files(&mut page, &analysis.study, source);
-    study::add_left_out(&mut page, analysis);
-    assessment::add_couplings(&mut page, analysis);
+    provenance::add_files(&mut page, &analysis.study, source);
+    left_out::add_left_out(&mut page, analysis);
+    couplings::add_couplings(&mut page, analysis);
     conditions::add_conditions(&mut page, analysis, engine, progress)?;
     schedule::add_schedule(&mut page, analysis);
-    assessment::add_uncertainty(&mut page, analysis);
+    uncertainty::add_uncertainty(&mut page, analysis);
     assessment::add_assessment(&mut page, analysis);
     requirements::add_requirements(
         &mut page,
@@ -99,7 +107,7 @@ pub fn report(
     )?;
     page.section("The method");
     page.fixed(include_str!("method.html"));
-    study::add_models(&mut page, &analysis.study);
+    provenance::add_models(&mut page, &analysis.study);
     let title = format!(
         "Gain and delay corrections of {}",
         analysis.study.dataset.name()
@@ -112,10 +120,11 @@ pub fn report(
     Ok(page.finish(&title, &[origin]))
 }
 
-/// Progress that forwards only cancellation: the steps of inner computations are not shown.
-struct Unobtrusive<'a>(&'a dyn Progress);
+/// Progress for computations within a step of the report: forwards cancellation, and does not show
+/// their own steps.
+struct CancellationOnly<'a>(&'a dyn Progress);
 
-impl Progress for Unobtrusive<'_> {
+impl Progress for CancellationOnly<'_> {
     fn cancelled(&self) -> bool {
         self.0.cancelled()
     }

@@ -7,6 +7,8 @@ use gdcm_plot::figure::{ColumnWidth, Figure};
 use gdcm_plot::paper::{escaped, inline_svg};
 use gdcm_words::Table;
 
+use super::wording::counted_are;
+
 /// Maximum number of conditions with figures; the tables list all conditions.
 pub(super) const CONDITIONS_DRAWN: usize = 60;
 /// Maximum number of responses with figures, for on-axis and for off-axis responses each.
@@ -16,20 +18,6 @@ pub(super) const PAIRS_DRAWN: usize = 40;
 pub(super) const PAIRS_LISTED: usize = 48;
 /// Maximum number of models of a bundle that are listed and drawn.
 pub(super) const MODELS_SHOWN: usize = 40;
-/// Maximum number of names in a list within a sentence.
-pub(super) const NAMES_SHOWN: usize = 12;
-
-/// Joins names with commas; of more than [`NAMES_SHOWN`] names, the first ones and the number of
-/// the others.
-pub(super) fn names<S: AsRef<str>>(all: &[S]) -> String {
-    let shown: Vec<&str> = all.iter().take(NAMES_SHOWN).map(AsRef::as_ref).collect();
-    let shown = shown.join(", ");
-    if all.len() <= NAMES_SHOWN {
-        return shown;
-    }
-    format!("{shown} and {} more", all.len() - NAMES_SHOWN)
-}
-
 /// Maximum distance \[pt\] between a simplified line in a figure and its original points: less than
 /// the thinnest line width, hence invisible. Simplifying reduces the file size to a quarter.
 const TOLERANCE_PT: f64 = 0.1;
@@ -158,7 +146,7 @@ impl Page {
         self.body.push_str("</tbody>\n</table>\n");
         if table.rows.len() > ROWS {
             let more = table.rows.len() - ROWS;
-            self.paragraph(&format!("{more} more rows are omitted here."));
+            self.paragraph(&format!("{} omitted here.", counted_are(more, "more row")));
         }
     }
 
@@ -420,16 +408,5 @@ mod tests {
     #[test]
     fn letters_of_every_language_stay() {
         assert_eq!(words("Höhe Δφ → 重量"), "Höhe Δφ → 重量");
-    }
-
-    #[test]
-    fn of_many_names_the_first_are_given_and_the_others_counted() {
-        assert_eq!(names(&["a", "b"]), "a, b");
-        let many: Vec<String> = (0..1000).map(|number| number.to_string()).collect();
-        assert!(
-            names(&many).ends_with("10, 11 and 988 more"),
-            "{}",
-            names(&many)
-        );
     }
 }

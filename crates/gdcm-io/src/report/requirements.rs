@@ -16,7 +16,7 @@ use gdcm_words::requirements::{RequirementsOverview, bandwidth_table, mode_table
 use gdcm_words::time_histories::{record_table, share_table};
 
 use super::page::Page;
-use super::{ReportSubject, Unobtrusive};
+use super::{CancellationOnly, ReportSubject};
 
 /// Maximum number of columns in a table that fits on a page.
 const COLUMNS: usize = 9;
@@ -36,7 +36,7 @@ pub(super) fn add_requirements(
         histories,
         known,
     } = subject;
-    let requirements = engine.requirements(analysis, known, &Unobtrusive(progress))?;
+    let requirements = engine.requirements(analysis, known, &CancellationOnly(progress))?;
     page.section("Requirements");
     page.paragraph(
         "Criteria used to accept simulators and flight control laws, evaluated for the physics \

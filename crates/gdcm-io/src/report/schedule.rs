@@ -13,11 +13,12 @@ use gdcm_study::{Analysis, Study};
 use gdcm_words::Table;
 use gdcm_words::schedule::{delayed_channel_text, schedule_caution_text};
 
-use super::page::{PAIRS_DRAWN, Page, names};
+use super::page::{PAIRS_DRAWN, Page};
 use super::study::schedule_words;
+use super::wording::names;
 
 /// Maximum number of channels in a figure, in two rows.
-const IN_A_FIGURE: usize = 12;
+const CHANNELS_IN_A_FIGURE: usize = 12;
 /// Maximum number of responses in a figure, in two rows.
 const PAIRS_IN_A_FIGURE: usize = 10;
 /// Maximum number of value columns in a table that fits on a page.
@@ -53,7 +54,7 @@ fn add_channels(
     axes: (Measure, Across),
     title: &str,
 ) {
-    for channels in channels.chunks(IN_A_FIGURE) {
+    for channels in channels.chunks(CHANNELS_IN_A_FIGURE) {
         let uncertainty = analysis.uncertainty.as_deref();
         let figure = channels_figure(analysis, uncertainty, channels, axes);
         let caption = "Optimum of each condition, and the bounds of its search; dashed: no \

@@ -1,27 +1,20 @@
-//! Report sections on the study as a whole: results, settings, sources, and excluded models.
+//! Report sections on the study as a whole: summary of the results, and settings.
 
-use std::collections::BTreeMap;
-
-use gdcm_method::fidelity::SUGGESTION_RATIO;
 use gdcm_method::schedule::{ScheduleKind, ScheduleSettings};
-use gdcm_model::dataset::model::Provenance;
-use gdcm_model::dataset::{BundleKind, Channel, Condition, Dataset, ModelId, PairTable};
-use gdcm_model::number_format::decimals;
+use gdcm_model::dataset::{BundleKind, Condition, Dataset, PairTable};
 use gdcm_model::units::{number, six_digits};
 use gdcm_plot::figure::assessment::usual_choice;
 use gdcm_plot::figure::condition_source::quantity_symbol;
 use gdcm_study::decisions::setting;
 use gdcm_study::decisions::setting::SETTINGS;
-use gdcm_study::results::caution::Caution;
 use gdcm_study::{Analysis, AssessmentTable, ConditionAnalysis, Study};
 use gdcm_words::Table;
 use gdcm_words::assessment::summary_text;
-use gdcm_words::caution::{caution_text, failure_text};
+use gdcm_words::caution::failure_text;
 
-use super::assessment::capital;
 use super::conditions::proof_word;
-use super::page::{NAMES_SHOWN, Page, names};
-use super::{PROGRAM, ReportSource};
+use super::page::Page;
+use super::wording::{MISSING, capital, counted_are, names};
 
 /// Adds the summary of the results.
 pub(super) fn add_summary(page: &mut Page, analysis: &Analysis) {
@@ -44,8 +37,9 @@ pub(super) fn add_summary(page: &mut Page, analysis: &Analysis) {
     let scheduled = analysis.scheduled().len();
     page.paragraph(&format!(
         "{solved} of {} conditions have a result; the schedule is fitted to {scheduled} of them; \
-        {rejected} models are rejected.",
-        conditions.len()
+        {} rejected.",
+        conditions.len(),
+        counted_are(rejected, "model")
     ));
     page.paragraph(&assessment_sentence(analysis));
     page.list(failures);
@@ -73,12 +67,10 @@ pub fn assessment_sentence(analysis: &Analysis) -> String {
         ""
     };
     format!(
-        "J of the nominal models with the schedule, over the {which} of all assessed conditions: {found}.{between}"
+        "Change in J of the nominal models due to the schedule, over the {which} of all assessed \
+        conditions: {found}.{between}"
     )
 }
-
-/// Placeholder for a missing value in tables.
-const MISSING: &str = "–";
 
 fn condition_table(analysis: &Analysis) -> Table {
     let title = "Conditions: kept models, matched held responses, and whether the gains are \
@@ -205,221 +197,4 @@ pub(super) fn schedule_words(settings: &ScheduleSettings) -> String {
         "{kind}{second}, of {quantity}; airspeeds within {} kt count as equal; {delays}",
         six_digits(settings.airspeed_tolerance_kt)
     )
-}
-
-/// Adds the section on the files of the study and the dataset.
-pub(super) fn add_files(page: &mut Page, study: &Study, source: &ReportSource) {
-    page.section("Provenance");
-    let dataset = &study.dataset;
-    let study_file = match &source.study {
-        Some(file) => file.clone(),
-        None => "not saved in a file".to_owned(),
-    };
-    page.facts([
-        ("Dataset", dataset.name().to_owned()),
-        ("Dataset file", source.dataset.clone()),
-        ("SHA-256 of the dataset file", source.sha256.clone()),
-        ("Study", study_file),
-        ("Program", PROGRAM.to_owned()),
-        ("Inputs", channel_words(dataset.inputs())),
-        ("Outputs", channel_words(dataset.outputs())),
-    ]);
-    for line in dataset.description().lines() {
-        if !line.trim().is_empty() {
-            page.paragraph(line);
-        }
-    }
-    let cautions = source.cautions.iter();
-    page.list(cautions.map(|caution| format!("Caution about the file: {caution}.")));
-}
-
-/// Lists channels with their units: "LON [%], LAT [%]".
-fn channel_words(channels: &[Channel]) -> String {
-    let words: Vec<String> = channels
-        .iter()
-        .map(|channel| format!("{} [{}]", channel.name, channel.unit))
-        .collect();
-    words.join(", ")
-}
-
-/// Adds the section on the source files of the models, if the dataset records any.
-pub(super) fn add_models(page: &mut Page, study: &Study) {
-    let mut models: BTreeMap<[String; 5], Vec<String>> = BTreeMap::new();
-    let mut unknown = 0;
-    for condition in study.dataset.conditions() {
-        for kind in BundleKind::BOTH {
-            for model in condition.bundle(kind) {
-                let Some(source) = &model.source else {
-                    unknown += 1;
-                    continue;
-                };
-                let models_of_file = models.entry(source_cells(source)).or_default();
-                models_of_file.push(format!("{}: {}", condition.id(), model.name));
-            }
-        }
-    }
-    page.section("Sources of the models");
-    if models.is_empty() {
-        page.paragraph("The dataset does not state the source files of its models.");
-        return;
-    }
-    let columns = [
-        "file",
-        "SHA-256",
-        "variable",
-        "made",
-        "note",
-        "models, by condition",
-    ];
-    let mut table = Table::new("Source files of the models", columns);
-    for (cells, models) in models {
-        table.row(cells.into_iter().chain([names(&models)]));
-    }
-    page.table(&table);
-    if unknown > 0 {
-        page.paragraph(&format!(
-            "The dataset does not state the source of {unknown} models."
-        ));
-    }
-}
-
-/// Returns the table cells of a model's source: file, hash, variable (or records), date and note.
-fn source_cells(source: &Provenance) -> [String; 5] {
-    let Provenance {
-        file,
-        sha256,
-        variable,
-        made,
-        note,
-        records,
-        ..
-    } = source;
-    let mut variable = variable.clone();
-    if variable.is_none() && !records.is_empty() {
-        variable = Some(format!("records {}", records.join(", ")));
-    }
-    [file, sha256, &variable, made, note].map(|part| part.clone().unwrap_or_default())
-}
-
-const NO_REASON: &str = "no reason was given";
-
-/// Adds the section on excluded models: rejected ones with the analyst's reasons, those excluded by
-/// the analysis, and suspected ones.
-pub(super) fn add_left_out(page: &mut Page, analysis: &Analysis) {
-    page.section("Models left out");
-    let rejected = rejected_table(analysis);
-    if rejected.rows.is_empty() {
-        page.paragraph("No model is rejected.");
-    } else {
-        page.paragraph(&format!(
-            "Only the analyst can reject a model. A discontinuity ratio above {SUGGESTION_RATIO} \
-            makes a model suspect."
-        ));
-    }
-    page.table(&rejected);
-    let mut lines = Vec::new();
-    for condition in analysis.study.dataset.conditions() {
-        lines.extend(left_out_lines(analysis, condition));
-    }
-    page.list(lines);
-}
-
-fn rejected_table(analysis: &Analysis) -> Table {
-    let columns = [
-        "condition",
-        "bundle",
-        "model",
-        "discontinuity ratio",
-        "analyst's reason",
-    ];
-    let mut table = Table::new("Rejected models", columns);
-    for condition in analysis.study.dataset.conditions() {
-        for kind in BundleKind::BOTH {
-            rejected_rows(analysis, condition, kind, &mut table);
-        }
-    }
-    table
-}
-
-/// Adds a row for each rejected model. Of the models rejected without a reason, only the first
-/// [`NAMES_SHOWN`] are listed; the others are counted.
-fn rejected_rows(analysis: &Analysis, condition: &Condition, kind: BundleKind, table: &mut Table) {
-    let study = &analysis.study;
-    let result = analysis.condition(condition.id());
-    let mut without_reason = 0;
-    for model in condition.bundle(kind) {
-        let id = ModelId::new(condition.id(), kind, &model.name);
-        if !study.is_rejected(&id) {
-            continue;
-        }
-        let reason = study.reason(&id);
-        if reason.is_none() {
-            without_reason += 1;
-            if without_reason > NAMES_SHOWN {
-                continue;
-            }
-        }
-        let ratio = match result {
-            Some(result) if kind == BundleKind::Physics => result.discontinuity_ratio(&model.name),
-            _ => None,
-        };
-        table.row([
-            condition.id().to_string(),
-            kind.to_string(),
-            model.name.clone(),
-            ratio.map_or(MISSING.to_owned(), |ratio| decimals(ratio, 2)),
-            reason.unwrap_or(NO_REASON).to_owned(),
-        ]);
-    }
-    if without_reason > NAMES_SHOWN {
-        table.row([
-            condition.id().to_string(),
-            kind.to_string(),
-            format!("{} more", without_reason - NAMES_SHOWN),
-            MISSING.to_owned(),
-            NO_REASON.to_owned(),
-        ]);
-    }
-}
-
-/// Describes the models of a condition that are excluded by the analysis, suspected but kept, or
-/// pinned by the analyst.
-fn left_out_lines(analysis: &Analysis, condition: &Condition) -> Vec<String> {
-    let study = &analysis.study;
-    let id = condition.id();
-    let Some(result) = analysis.condition(id) else {
-        return Vec::new();
-    };
-    let mut lines = Vec::new();
-    let mut set_aside = 0;
-    for caution in &result.cautions {
-        if let Caution::SetAside { .. } = caution {
-            set_aside += 1;
-            if set_aside <= NAMES_SHOWN {
-                let words = caution_text(caution, |pair| study.dataset.pair_name(pair));
-                lines.push(format!("Condition {id}: {words}."));
-            }
-        }
-    }
-    if set_aside > NAMES_SHOWN {
-        let more = set_aside - NAMES_SHOWN;
-        lines.push(format!("Condition {id}: {more} more models are set aside."));
-    }
-    let rejected = &study.choice(id).physics.rejected;
-    let mut kept = result.suggested();
-    kept.retain(|name| !rejected.contains(name));
-    if !kept.is_empty() {
-        lines.push(format!(
-            "Condition {id}: suspect because of their discontinuity ratios, but kept: {}.",
-            names(&kept)
-        ));
-    }
-    for kind in BundleKind::BOTH {
-        if let Some(pinned) = &study.choice(id).bundle(kind).pinned {
-            lines.push(format!(
-                "Condition {id}: the analyst chose \"{pinned}\" to represent the {kind} models."
-            ));
-        }
-    }
-    lines
 }

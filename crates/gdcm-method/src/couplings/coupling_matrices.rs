@@ -1,5 +1,5 @@
-//! Input mixing and output feedback, and their application to a frequency response and to a model
-//! (M16.3).
+//! Input mixing `M~` and output feedback `K`, and their application to a frequency response and to a
+//! model (M16.3): `H~ = (I - H K)^-1 H M~`.
 
 use nalgebra::{Complex, DMatrix, Dyn, LU};
 
@@ -271,7 +271,7 @@ impl CouplingMatrices {
         let (Some(c_closed), Some(d_closed)) = (algebraic.solve(c), algebraic.solve(d)) else {
             return Err(singular);
         };
-        // `c_closed`, `d_closed`: K~ C = K (I - D K)^-1 C, and likewise for D.
+        // `c_closed = (I - D K)^-1 C`, so that `K~ C = K c_closed`; likewise `d_closed` for D.
         let a_closed = a + b * (k * &c_closed);
         let b_closed = (b + b * (k * &d_closed)) * &mixing;
         let model = StateSpace::new(a_closed, b_closed, c_closed, d_closed * mixing)?;

@@ -89,7 +89,7 @@ pub struct Bandwidth {
 impl Bandwidth {
     /// Computes bandwidth and phase delay of `attitude`, with standard deviations if an uncertainty
     /// band is available.
-    pub fn of(
+    pub fn read(
         attitude: &AttitudeResponse<'_>,
         settings: &BandwidthSettings,
         deviation: Option<PairBand<'_>>,
@@ -185,7 +185,7 @@ impl Reading<'_> {
         });
         let deviation = self
             .deviation
-            .and_then(|band| band.phase_crossing(self.attitude, root));
+            .and_then(|band| band.phase_crossing_sd(self.attitude, root));
         self.metric(root, [root, root], deviation)
     }
 
@@ -246,7 +246,7 @@ impl Reading<'_> {
         });
         let deviation = self
             .deviation
-            .and_then(|band| band.gain_crossing(self.attitude, root, top));
+            .and_then(|band| band.gain_crossing_sd(self.attitude, root, top));
         self.metric(root, [root, top], deviation)
     }
 
@@ -301,7 +301,7 @@ impl Reading<'_> {
         let Some(line) = PhaseLine::read(self.attitude, from) else {
             return Err(NoMetric::ResponseEnds { needed: to });
         };
-        let deviation = self.deviation.and_then(|band| band.phase_delay(from));
+        let deviation = self.deviation.and_then(|band| band.phase_delay_sd(from));
         let metric = self.metric(line.phase_delay_s(), [from, to], deviation)?;
         Ok(PhaseDelay { metric, line })
     }

@@ -8,7 +8,7 @@
 //!
 //! | file | content | standard |
 //! |---|---|---|
-//! | `attitude_response` | response from which bandwidths are read | |
+//! | `attitude_response`, `sampled_model` | response from which bandwidths are read | |
 //! | `bandwidth`, `phase_delay`, `response_deviation`, `level_boundary` | bandwidth, phase delay, their uncertainty and levels | ADS-33E-PRF 3.3.2, 3.4.1; MIL-DTL-32742 |
 //! | `mode_comparison`, `mode_pairing`, `mode_name`, `mode_values`, `mode_tolerance` | modes | 14 CFR part 60, appendix C, table C2A, 2.c.3.a, 2.d.3.a |
 //! | `summary` | J, rms in time, Theil's coefficients, MUAD | MIL-STD-1797A, appendix A, 4.2.1.2 |
@@ -32,6 +32,7 @@ mod mode_values;
 mod phase_delay;
 mod positive_number;
 mod response_deviation;
+pub mod sampled_model;
 pub mod summary;
 pub mod test_input;
 pub mod tolerance;

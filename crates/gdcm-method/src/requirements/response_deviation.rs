@@ -3,9 +3,12 @@
 //!
 //! ```text
 //! phase crossing:  sd = sd_phase / |d phase / d omega|
-//! gain crossing:   sd^2 = (sd_dB(omega_gain)^2 + sd_dB(omega_180)^2 + (m'(omega_180) sd(omega_180))^2) / m'(omega_gain)^2,  m in dB
+//! gain crossing:   sd^2 = (sd_dB(omega_gain)^2 + sd_dB(omega_180)^2 + (m'(omega_180) sd(omega_180))^2) / m'(omega_gain)^2
 //! phase delay:     sd = sqrt(sd_phase(omega_180)^2 + sd_phase(2 omega_180)^2) / (2 omega_180)
 //! ```
+//!
+//! `m` is the magnitude \[dB\], `m'` its derivative with respect to omega; `sd_dB` and `sd_phase` are
+//! the standard deviations of the response's magnitude and phase.
 //!
 //! Errors at distant frequencies are assumed independent, errors at neighbouring frequencies are
 //! not: the deviation of a phase delay read from the least-squares line is also computed from the
@@ -32,7 +35,7 @@ pub struct PairBand<'a> {
 
 impl PairBand<'_> {
     /// Returns the magnitude's standard deviation \[dB\] at `omega` \[rad/s\].
-    fn magnitude_db(&self, omega: f64) -> Option<f64> {
+    fn sd_db(&self, omega: f64) -> Option<f64> {
         between(
             self.bands.omega(),
             self.bands.sd_db().get(self.pair)?,
@@ -41,7 +44,7 @@ impl PairBand<'_> {
     }
 
     /// Returns the phase's standard deviation \[rad\] at `omega` \[rad/s\].
-    fn phase(&self, omega: f64) -> Option<f64> {
+    fn sd_phase(&self, omega: f64) -> Option<f64> {
         between(
             self.bands.omega(),
             self.bands.sd_deg().get(self.pair)?,
@@ -52,36 +55,36 @@ impl PairBand<'_> {
 
     /// Returns the standard deviation \[rad/s\] of the frequency at which the phase crosses a
     /// level.
-    pub(super) fn phase_crossing(
+    pub(super) fn phase_crossing_sd(
         &self,
         attitude: &AttitudeResponse<'_>,
         omega: f64,
     ) -> Option<f64> {
         let slope = phase_slope(attitude, omega)?;
-        Some(self.phase(omega)? / slope.abs())
+        Some(self.sd_phase(omega)? / slope.abs())
     }
 
     /// Returns the standard deviation \[rad/s\] of the frequency at which the magnitude exceeds its
     /// value at `omega_180` by 6 dB.
-    pub(super) fn gain_crossing(
+    pub(super) fn gain_crossing_sd(
         &self,
         attitude: &AttitudeResponse<'_>,
         omega: f64,
         omega_180: f64,
     ) -> Option<f64> {
         let from_omega_180 =
-            magnitude_slope(attitude, omega_180)? * self.phase_crossing(attitude, omega_180)?;
+            magnitude_slope(attitude, omega_180)? * self.phase_crossing_sd(attitude, omega_180)?;
         let level = self
-            .magnitude_db(omega)?
-            .hypot(self.magnitude_db(omega_180)?)
+            .sd_db(omega)?
+            .hypot(self.sd_db(omega_180)?)
             .hypot(from_omega_180);
         Some(level / magnitude_slope(attitude, omega)?.abs())
     }
 
     /// Returns the standard deviation of the phase delay \[s\].
-    pub(super) fn phase_delay(&self, omega_180: f64) -> Option<f64> {
+    pub(super) fn phase_delay_sd(&self, omega_180: f64) -> Option<f64> {
         let twice = 2.0 * omega_180;
-        Some(self.phase(omega_180)?.hypot(self.phase(twice)?) / twice)
+        Some(self.sd_phase(omega_180)?.hypot(self.sd_phase(twice)?) / twice)
     }
 }
 

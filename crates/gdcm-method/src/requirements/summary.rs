@@ -8,6 +8,9 @@
 //! MUAD:   1 - sum ln(b/a) / ln(omega_N/omega_1) over the ranges (a, b) in which the error leaves an envelope
 //! ```
 //!
+//! `y` are the flown and `y^` the simulated outputs over `n_t` samples, `n_o` the number of outputs
+//! with a weight; the band extends from `omega_1` to `omega_N`.
+//!
 //! Tischler & Remple, "Aircraft and Rotorcraft System Identification", 2nd ed. 2012, 14.3 (J_rms
 //! and its weights); MIL-STD-1797A, appendix A, 4.2.1.2 (MUAD).
 
@@ -66,7 +69,7 @@ pub struct RmsCost {
 impl RmsCost {
     /// Computes the cost over all samples of `windows`; `None` without samples, or if no output has
     /// a weight.
-    pub fn of(windows: &[ValidationWindow], outputs: &[Channel]) -> Option<Self> {
+    pub fn compute(windows: &[ValidationWindow], outputs: &[Channel]) -> Option<Self> {
         let mut counted: Vec<WeightedOutput> = Vec::new();
         let mut left_out = Vec::new();
         for (output, channel) in outputs.iter().enumerate() {
@@ -170,7 +173,7 @@ pub struct Summary {
 
 impl Summary {
     /// Computes all costs under the correction in `source`.
-    pub fn of(source: &SummarySource<'_>) -> Self {
+    pub fn compute(source: &SummarySource<'_>) -> Self {
         let SummarySource {
             mismatch,
             correction,
@@ -189,7 +192,7 @@ impl Summary {
             mismatch.map(|pair, mismatch| muad_share(mismatch.as_ref()?, omega, correction(pair)?));
         Self {
             cost: OnAxisAndAll::average(&costs, on_axis),
-            rms: validation.and_then(|validation| RmsCost::of(&validation.windows, outputs)),
+            rms: validation.and_then(|validation| RmsCost::compute(&validation.windows, outputs)),
             theil: validation
                 .map(|validation| validation.theil.clone())
                 .unwrap_or_default(),
@@ -244,17 +247,17 @@ mod tests {
             &[3.0, -3.0, 0.3048, 0.0, 9.0, 9.0],
             &[0.0, 0.0, 0.0, 0.3048, 0.0, 0.0],
         )];
-        let cost = RmsCost::of(&windows, &outputs()).unwrap();
+        let cost = RmsCost::compute(&windows, &outputs()).unwrap();
         assert!(
             (cost.value - 5.0_f64.sqrt()).abs() < 1e-13,
             "the root of (9 + 1) / 2: {cost:?}"
         );
         assert_eq!(cost.left_out, [2]);
-        assert_eq!(RmsCost::of(&[], &outputs()), None);
-        assert_eq!(RmsCost::of(&windows, &outputs()[2..]), None);
+        assert_eq!(RmsCost::compute(&[], &outputs()), None);
+        assert_eq!(RmsCost::compute(&windows, &outputs()[2..]), None);
         let twice = [windows[0].clone(), windows[0].clone()];
         assert_eq!(
-            RmsCost::of(&twice, &outputs()).unwrap(),
+            RmsCost::compute(&twice, &outputs()).unwrap(),
             cost,
             "repeated data do not change a mean"
         );
@@ -273,7 +276,7 @@ mod tests {
             validation: None,
             outputs: &outputs(),
         };
-        let summary = Summary::of(&source);
+        let summary = Summary::compute(&source);
         assert_eq!(
             (summary.cost.all, summary.muad.on_axis, summary.rms),
             (Some(0.0), Some(1.0), None)
@@ -345,7 +348,7 @@ mod tests {
             validation: None,
             outputs: &outputs(),
         };
-        let summary = Summary::of(&source);
+        let summary = Summary::compute(&source);
         // 20 W_g 2^2 = 80, by M4.
         assert_eq!((summary.cost.on_axis, summary.muad.on_axis), (None, None));
         assert!((summary.cost.all.unwrap() - 80.0).abs() < 1e-12);

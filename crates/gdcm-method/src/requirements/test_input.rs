@@ -31,7 +31,7 @@ pub struct TestInput {
 /// Reasons why a model has no response to a test.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TestInputError {
-    #[error("there is no input {}: the model has {inputs} inputs", input + 1)]
+    #[error("there is no input {}: the number of inputs of the model is {inputs}", input + 1)]
     NoInput { input: usize, inputs: usize },
     /// The size is not finite, or the duration is not above zero and at most 600 s.
     #[error("test input: expected a finite size and a duration greater than 0 s and at most \
@@ -48,6 +48,8 @@ pub enum TestInputError {
 
 /// Maximum test duration \[s\].
 const LONGEST_S: f64 = 600.0;
+/// Added to each sample number, so that a change at a sample is not missed due to rounding.
+const ROUNDING_SAMPLES: f64 = 1e-6;
 
 impl Default for TestInput {
     /// Returns a unit step that lasts two seconds.
@@ -88,8 +90,9 @@ impl TestInput {
     /// [`TestInputError::Numbers`] otherwise.
     pub fn checked(self) -> Result<Self, TestInputError> {
         let duration_s = self.duration_s;
-        let is_duration = duration_s.is_finite() && duration_s > 0.0 && duration_s <= LONGEST_S;
-        if self.size.is_finite() && is_duration {
+        let is_valid_duration =
+            duration_s.is_finite() && duration_s > 0.0 && duration_s <= LONGEST_S;
+        if self.size.is_finite() && is_valid_duration {
             Ok(self)
         } else {
             Err(TestInputError::Numbers {
@@ -103,8 +106,7 @@ impl TestInput {
     pub fn signal(&self, sample_time_s: f64, samples: usize) -> Vec<f64> {
         (0..samples)
             .map(|n| {
-                // The added millionth of a sample covers rounding errors.
-                let time_s = (n as f64 + 1e-6) * sample_time_s;
+                let time_s = (n as f64 + ROUNDING_SAMPLES) * sample_time_s;
                 self.at(time_s)
             })
             .collect()

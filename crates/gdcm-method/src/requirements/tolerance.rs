@@ -8,11 +8,14 @@
 //!    trend: sign of the correlation between y^ and y about their means
 //! ```
 //!
+//! `y` are the flown and `y^` the simulated samples with index n, `dt` apart; `theta` is an attitude
+//! and `q` its rate.
+//!
 //! 14 CFR part 60, appendix C, table C2A. The check is not a qualification: the tests of that table
 //! are steps and doublets at given conditions. Integrals of body rates are attitudes for small
 //! angles only.
 
-use nalgebra::{DMatrix, Vector3};
+use nalgebra::DMatrix;
 
 use gdcm_model::simulation::ValidationWindow;
 use gdcm_model::statistics::mean;
@@ -55,35 +58,7 @@ pub struct ToleranceCheck {
     pub largest_excess: f64,
     /// Time of `largest_excess` \[s\].
     pub largest_excess_at_s: f64,
-    trend: Moments,
-}
-
-/// Sums over the samples, after subtraction of the means: flown squared, simulated squared, flown
-/// times simulated.
-type Moments = Vector3<f64>;
-
-fn moments(flown: &[f64], simulated: &[f64]) -> Moments {
-    let flown_mean = mean(flown);
-    let simulated_mean = mean(simulated);
-    flown
-        .iter()
-        .zip(simulated)
-        .map(|(flown, simulated)| {
-            let flown = flown - flown_mean;
-            let simulated = simulated - simulated_mean;
-            Vector3::new(flown * flown, simulated * simulated, flown * simulated)
-        })
-        .sum()
-}
-
-/// Returns the correlation coefficient; `None` if either signal is constant.
-fn correlation(moments: Moments) -> Option<f64> {
-    let scale = moments.x.sqrt() * moments.y.sqrt();
-    if scale > 0.0 {
-        Some(moments.z / scale)
-    } else {
-        None
-    }
+    trend: TrendSums,
 }
 
 impl ToleranceCheck {
@@ -108,7 +83,7 @@ impl ToleranceCheck {
             inside: excess.iter().filter(|excess| **excess <= 0.0).count(),
             largest_excess: excess[largest],
             largest_excess_at_s: window.start_s + window.sample_time_s * largest as f64,
-            trend: moments(&flown, &simulated),
+            trend: TrendSums::new(&flown, &simulated),
             flown,
             simulated,
             width,
@@ -128,7 +103,7 @@ impl ToleranceCheck {
     /// Returns the correlation between simulated and flown samples about their means; `None` if
     /// either is constant. For off-axis outputs a positive sign is the correct trend.
     pub fn correlation(&self) -> Option<f64> {
-        correlation(self.trend)
+        self.trend.correlation()
     }
 
     /// Returns the time intervals \[s\] outside the corridor, each from its first to its last
@@ -241,6 +216,50 @@ fn integral(samples: &[f64], sample_time_s: f64) -> Vec<f64> {
     integrals
 }
 
+/// Sums over the samples, after subtraction of the means, from which the correlation is computed
+/// (step 4).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct TrendSums {
+    flown_squared: f64,
+    simulated_squared: f64,
+    /// Flown times simulated.
+    product: f64,
+}
+
+impl TrendSums {
+    fn new(flown: &[f64], simulated: &[f64]) -> Self {
+        let flown_mean = mean(flown);
+        let simulated_mean = mean(simulated);
+        let mut sums = Self::default();
+        for (flown, simulated) in flown.iter().zip(simulated) {
+            let flown = flown - flown_mean;
+            let simulated = simulated - simulated_mean;
+            sums.add(Self {
+                flown_squared: flown * flown,
+                simulated_squared: simulated * simulated,
+                product: flown * simulated,
+            });
+        }
+        sums
+    }
+
+    fn add(&mut self, other: Self) {
+        self.flown_squared += other.flown_squared;
+        self.simulated_squared += other.simulated_squared;
+        self.product += other.product;
+    }
+
+    /// Returns the correlation coefficient; `None` if either signal is constant.
+    fn correlation(self) -> Option<f64> {
+        let scale = self.flown_squared.sqrt() * self.simulated_squared.sqrt();
+        if scale > 0.0 {
+            Some(self.product / scale)
+        } else {
+            None
+        }
+    }
+}
+
 /// An output over all windows of a record, each with its own estimated initial state (M14, 6).
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordCheck {
@@ -294,6 +313,10 @@ impl RecordCheck {
     /// Returns the correlation between simulated and flown samples, each about its mean in its
     /// window; `None` if either is constant.
     pub fn correlation(&self) -> Option<f64> {
-        correlation(self.windows.iter().map(|window| window.trend).sum())
+        let mut trend = TrendSums::default();
+        for window in &self.windows {
+            trend.add(window.trend);
+        }
+        trend.correlation()
     }
 }

@@ -6,7 +6,11 @@
 //! 3  contribution gamma z from the second variable, if any, subtracted from these values
 //! 4  the remainder regressed on v: polynomial by least squares, or means by cluster
 //! 5  the delays, or the signed delays, regressed where these are scheduled
+//! 6  checks between the conditions (interpolation_check)
 //! ```
+//!
+//! `V` is the airspeed, `k` a channel's gain, `z` the second variable scaled to -1 to 1, and `gamma`
+//! its coefficient.
 
 use gdcm_model::dataset::condition::FlightState;
 
@@ -49,12 +53,25 @@ pub struct DelaySchedule {
 }
 
 impl Schedule {
-    /// Fits the schedule, without cautions (steps 1 to 5).
+    /// Fits the schedule to the conditions' corrections and checks it between them.
     ///
     /// # Errors
     /// [`ScheduleError`] without conditions, if a condition lacks the second variable, or if its
     /// effect cannot be separated from the effect of airspeed.
-    pub(super) fn fit(
+    pub fn fit(
+        points: &[ScheduledPoint<'_>],
+        settings: ScheduleSettings,
+    ) -> Result<Self, ScheduleError> {
+        let mut schedule = Self::fit_unchecked(points, settings)?;
+        schedule.cautions = schedule.find_cautions(points);
+        Ok(schedule)
+    }
+
+    /// Fits the schedule, without cautions (steps 1 to 5).
+    ///
+    /// # Errors
+    /// The same as for [`Schedule::fit`].
+    pub(super) fn fit_unchecked(
         points: &[ScheduledPoint<'_>],
         settings: ScheduleSettings,
     ) -> Result<Self, ScheduleError> {
@@ -288,7 +305,7 @@ mod tests {
         let corrections = [0.8, 1.1, 0.9, 1.3].map(|gain| correction(gain, gain * gain));
         let airspeeds_kt = [40.0, 70.0, 100.0, 140.0];
         let points = points(&airspeeds_kt, &corrections, 1.0);
-        let schedule = Schedule::of(&points, ScheduleSettings::default()).unwrap();
+        let schedule = Schedule::fit(&points, ScheduleSettings::default()).unwrap();
         let products: Vec<f64> = corrections
             .iter()
             .map(|c| c.net_gain(Pair::new(0, 0)).ln())
@@ -304,7 +321,7 @@ mod tests {
     #[test]
     fn without_conditions_there_is_no_schedule() {
         assert_eq!(
-            Schedule::of(&[], ScheduleSettings::default()),
+            Schedule::fit(&[], ScheduleSettings::default()),
             Err(ScheduleError::NoCondition)
         );
     }
@@ -319,7 +336,7 @@ mod tests {
             second: None,
         }];
         assert_eq!(
-            Schedule::of(&points, ScheduleSettings::default())
+            Schedule::fit(&points, ScheduleSettings::default())
                 .unwrap()
                 .at(60.0)
                 .input_delays_s,
@@ -330,7 +347,7 @@ mod tests {
             ..ScheduleSettings::default()
         };
         assert_eq!(
-            Schedule::of(&points, settings)
+            Schedule::fit(&points, settings)
                 .unwrap()
                 .at(60.0)
                 .input_delays_s,
@@ -355,7 +372,7 @@ mod tests {
             delays: true,
             ..ScheduleSettings::default()
         };
-        let schedule = Schedule::of(&points, settings).unwrap();
+        let schedule = Schedule::fit(&points, settings).unwrap();
         let [at_70, at_90, at_110] =
             [70.0, 90.0, 110.0].map(|kt| schedule.at(kt).input_delays_s[0]);
         assert_eq!(

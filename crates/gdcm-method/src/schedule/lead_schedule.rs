@@ -63,7 +63,7 @@ impl LeadSchedule {
     pub fn degree(&self) -> usize {
         self.taus_s
             .iter()
-            .map(|(_, regression)| regression.figures().len().saturating_sub(1))
+            .map(|(_, regression)| regression.parameters().len().saturating_sub(1))
             .max()
             .unwrap_or(0)
     }

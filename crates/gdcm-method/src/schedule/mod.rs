@@ -6,9 +6,10 @@
 //! | `settings` | form, degree, regressed quantity, delays |
 //! | `airspeeds`, `regression` | clusters of airspeeds; polynomial and lookup table |
 //! | `second_variable`, `second_term` | altitude or mass besides airspeed, and its contribution |
-//! | `channel_schedule`, `lead_schedule` | fit and evaluation |
+//! | `scheduled_point`, `channel_schedule`, `lead_schedule` | fit and evaluation |
 //! | `interpolation_check`, `caution` | checks between the conditions |
-//! | `form_comparison` | residuals and leave-one-condition-out errors by form and degree |
+//! | `form_comparison`, `predictions` | residuals and leave-one-condition-out errors by form |
+//! | `lead_degree_comparison` | the same for the signed delays by degree |
 //! | `assessment` | J before and after a correction |
 //! | `coefficient_table` | coefficients with channel names |
 
@@ -20,7 +21,9 @@ mod coefficient_table;
 mod error;
 pub mod form_comparison;
 mod interpolation_check;
+pub mod lead_degree_comparison;
 mod lead_schedule;
+mod predictions;
 pub mod regression;
 mod scheduled_point;
 mod second_term;

@@ -1,5 +1,13 @@
 //! Changes in a condition's values if its models are substituted (M13.1), and the error bars of all
 //! conditions (M13.2, M13.3).
+//!
+//! ```text
+//! s_phys^2 <- mean of (q - q_0)^2 over the other kept physics models, each instead of the representative
+//! s_own^2  <- the same over the other kept identified models
+//! s_id^2   <- s_own^2 pooled with the other conditions (variance_component), or the reported s^2 if that is larger
+//! ```
+//!
+//! `q` is a scalar of the condition, `q_0` its value with both representatives.
 
 pub use super::coherence_error::{CoherenceError, Measurement};
 pub use super::scalar::{Figures, Scalar, ScalarTable};
@@ -18,8 +26,11 @@ pub struct ReportedUncertainty {
 /// Mean square changes in a scalar.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Changes {
+    /// `s_phys^2`: changes due to other physics models.
     trim: Option<VarianceComponent>,
+    /// `s_own^2`: changes due to other identified models.
     own: Option<VarianceComponent>,
+    /// Number of substitutions for which the scalar does not exist.
     left_out: usize,
 }
 
@@ -34,7 +45,7 @@ impl ConditionSpread {
     /// Computes the mean squares about the representatives' scalars. `trim` has an entry for each
     /// other kept physics model, `own` for each other kept identified model; `None` if the analysis
     /// with that model failed.
-    pub fn of(
+    pub fn new(
         representatives: &Figures,
         trim: &[Option<&Figures>],
         own: &[Option<&Figures>],

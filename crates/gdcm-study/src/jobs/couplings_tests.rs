@@ -7,10 +7,11 @@ use nalgebra::DMatrix;
 use serde_json::Value;
 
 use gdcm_method::correction::{Channels, Pade};
-use gdcm_method::couplings::coupling_effects::{cyclic_inputs, feedback_shares, mixing_shares};
-use gdcm_method::couplings::fit::{CouplingFit, left_out_fits};
+use gdcm_method::couplings::coupling_shares::{cyclic_inputs, feedback_shares, mixing_shares};
+use gdcm_method::couplings::fit::CouplingFit;
+use gdcm_method::couplings::jackknife::left_out_fits;
 use gdcm_method::couplings::problem::{
-    CouplingOptions, mean_delays_s, response_deviation, without_channels,
+    CouplingOptions, mean_delays_s, response_deviation, without_delays_and_leads,
 };
 use gdcm_method::couplings::*;
 use gdcm_method::schedule::CostChange;
@@ -100,7 +101,12 @@ impl Example {
                 id: result.condition.id(),
                 airspeed_kt: result.condition.flight_state().airspeed_kt,
                 physics: Arc::new(response(BundleKind::Physics)),
-                flight: without_channels(&flight, grid.omega(), &delays_s, Some(&leads.design)),
+                flight: without_delays_and_leads(
+                    &flight,
+                    grid.omega(),
+                    &delays_s,
+                    Some(&leads.design),
+                ),
                 usable: result
                     .comparison
                     .representative
@@ -153,7 +159,7 @@ impl Example {
         let margin = |model: &Model| {
             let singular =
                 matrices.least_singular_values(&FrequencyResponse::of(&model.dynamics, &grid));
-            LoopMargin::of(&singular, grid.omega()).unwrap()
+            LoopMargin::find(&singular, grid.omega()).unwrap()
         };
         let models =
             results(&self.analysis).map(|result| representative(result, BundleKind::Physics));
@@ -368,7 +374,7 @@ fn the_bars_of_the_example_tell_its_largest_entries_from_nothing() {
     let fits = left_out_fits(&problem, &Sequential, &Unobserved).unwrap();
     assert_eq!(fits.len(), 11);
     let airspeed_kt = FEEDBACK.matrices.airspeeds().mean_kt;
-    let bars = CouplingBars::of(&fits, airspeed_kt, 0.9).unwrap();
+    let bars = CouplingBars::from_fits(&fits, airspeed_kt, 0.9).unwrap();
     let mixing = FEEDBACK.matrices.normalised_mixing(airspeed_kt);
     let is_told = |to: usize, from: usize| mixing[(to, from)].abs() > bars.mixing[(to, from)];
     let (inputs, _) = EXAMPLE.dataset.names_of_channels();

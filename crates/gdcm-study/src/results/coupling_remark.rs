@@ -3,7 +3,7 @@
 
 use nalgebra::Complex;
 
-use gdcm_method::couplings::coupling_effects::{FeedbackShare, MixingShare};
+use gdcm_method::couplings::coupling_shares::{FeedbackShare, MixingShare};
 use gdcm_method::couplings::problem::CouplingError;
 use gdcm_method::couplings::{LoopMargin, Unknown};
 use gdcm_model::dataset::{ConditionId, Pair};

@@ -1,6 +1,6 @@
 //! Finds the remarks on couplings: diagnosis, benefit and cost, cautions (M16.4).
 
-use gdcm_method::couplings::coupling_effects::{
+use gdcm_method::couplings::coupling_shares::{
     FeedbackShare, cyclic_inputs, feedback_shares, mixing_shares,
 };
 use gdcm_method::couplings::{LEAST_CONDITIONS, LoopMargin};

@@ -7,9 +7,8 @@ use std::sync::Arc;
 use nalgebra::{Complex, DMatrix};
 use serde::Serialize;
 
-use gdcm_method::couplings::coupling_effects::PoleShiftError;
 use gdcm_method::couplings::problem::CouplingError;
-use gdcm_method::couplings::{CouplingBars, LeftOutFit, LoopMargin, PoleShift};
+use gdcm_method::couplings::{CouplingBars, LeftOutFit, LoopMargin, PoleShift, PoleShiftError};
 use gdcm_model::dataset::{Band, ConditionId, Pair, PairTable};
 
 use super::fitted_couplings::FittedCouplings;
@@ -122,7 +121,7 @@ impl CouplingsAssessment {
     }
 
     fn bars(&self, airspeed_kt: f64) -> Option<CouplingBars> {
-        CouplingBars::of(&self.left_out_fits, airspeed_kt, self.level).ok()
+        CouplingBars::from_fits(&self.left_out_fits, airspeed_kt, self.level).ok()
     }
 
     /// Returns `M~`, m x m, at an airspeed, with its error bars.

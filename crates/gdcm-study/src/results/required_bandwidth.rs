@@ -14,11 +14,12 @@ use serde::{Serialize, Serializer};
 use gdcm_method::correction::leads::ChannelLeads;
 use gdcm_method::correction::{Channel, ChannelCorrection, Pade};
 use gdcm_method::requirements::attitude_response::{
-    AttitudeResponse, AttitudeResponseError, ResponseAt, SampledModel, search_frequencies,
+    AttitudeResponse, AttitudeResponseError, ResponseAt, search_frequencies,
 };
 use gdcm_method::requirements::bandwidth::{
     AboveBand, Bandwidth, BandwidthSettings, Metric, NoMetric, PairBand, substitution_bar,
 };
+use gdcm_method::requirements::sampled_model::SampledModel;
 use gdcm_method::requirements::{AttitudeOutput, BandwidthRule};
 use gdcm_method::uncertainty::spread::Figures;
 use gdcm_method::uncertainty::{Scalar, student_quantile};
@@ -251,7 +252,7 @@ struct EvaluatedModel<'a> {
 
 impl<'a> EvaluatedModel<'a> {
     fn new(dynamics: Cow<'a, Dynamics>, bands: Option<&'a ModelBands>, band: Band) -> Self {
-        let sampled = SampledModel::of(&dynamics, band);
+        let sampled = SampledModel::new(&dynamics, band);
         Self {
             dynamics,
             bands,
@@ -440,7 +441,7 @@ impl<'a> ConditionBandwidths<'a> {
         let study = &self.asked.analysis.study;
         let band = study.settings.band;
         let channel = &study.dataset.outputs()[pair.output];
-        let output = AttitudeOutput::of(channel)?;
+        let output = AttitudeOutput::classify(channel)?;
         let exact = model.sampled.exact(pair, correction.multiplier);
         let interpolated = model.sampled.interpolated(pair, correction.multiplier);
         let attitude = match &*model.dynamics {
@@ -470,7 +471,7 @@ impl<'a> ConditionBandwidths<'a> {
         };
         let deviation = model.bands.map(|bands| PairBand { bands, pair });
         Ok(MeasuredBandwidth {
-            bandwidth: Bandwidth::of(&attitude, &settings, deviation),
+            bandwidth: Bandwidth::read(&attitude, &settings, deviation),
             reversed_phase_deg: attitude.reversed_phase_deg(),
         })
     }

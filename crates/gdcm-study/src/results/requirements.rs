@@ -233,7 +233,7 @@ fn summary_finding(asked: &AskedCondition<'_>, role: RequirementRole) -> Summary
         Some(correction) => correction.on(pair),
         None => Some(GainDelay::NONE),
     };
-    let summary = Summary::of(&SummarySource {
+    let summary = Summary::compute(&SummarySource {
         mismatch: &asked.result.comparison.representative.mismatch,
         correction: &multiplier,
         on_axis: &study.dataset.measuring_pairs(),

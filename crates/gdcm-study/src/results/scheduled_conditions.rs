@@ -1,9 +1,8 @@
 //! Conditions in the schedule, and alternative schedules: without a condition, in other forms
 //! (M11).
 
-use gdcm_method::schedule::form_comparison::{
-    FormComparison, LeadDegreeFit, compare_forms, compare_lead_degrees,
-};
+use gdcm_method::schedule::form_comparison::{FormComparison, compare_forms};
+use gdcm_method::schedule::lead_degree_comparison::{LeadDegreeFit, compare_lead_degrees};
 use gdcm_method::schedule::settings::NOTABLE_DELAY_S;
 use gdcm_method::schedule::{
     DelayScheduling, Schedule, ScheduleError, ScheduleSettings, ScheduledPoint,
@@ -34,7 +33,7 @@ impl Analysis {
             choice.scheduled = false;
         }
         let settings = schedule_settings(&others, &self.conditions);
-        Schedule::of(&scheduled_points(&others, &self.conditions), settings)
+        Schedule::fit(&scheduled_points(&others, &self.conditions), settings)
     }
 
     /// Compares the forms of the schedule; lists are in the order of [`Analysis::scheduled`] (M11).

@@ -502,7 +502,7 @@ fn finding(
             theil.insert(output.name.clone(), *coefficient);
         }
     }
-    let (j_rms, excluded) = match RmsCost::of(windows, comparison.outputs) {
+    let (j_rms, excluded) = match RmsCost::compute(windows, comparison.outputs) {
         Some(cost) => (Some(cost.value), cost.left_out),
         None => (None, Vec::new()),
     };

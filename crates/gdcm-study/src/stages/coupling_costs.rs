@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 use gdcm_method::correction::Pade;
 use gdcm_method::correction::lead_price::ABOVE_BAND;
-use gdcm_method::couplings::coupling_effects::relative_change_db;
+use gdcm_method::couplings::response_effects::relative_change_db;
 use gdcm_method::couplings::{LEAST_CONDITIONS, LeftOutFit, LoopMargin, PoleShift};
 use gdcm_method::schedule::CostChange;
 use gdcm_model::dataset::{Band, BundleKind, ConditionId, Model, Pair, PairTable};
@@ -286,7 +286,7 @@ fn condition_effect(
         grid.len() - 1,
     );
     let poles = condition_poles(study, result, coupled, progress)?;
-    let margin = LoopMargin::of(&singular_values[from_band..], &grid.omega()[from_band..]);
+    let margin = LoopMargin::find(&singular_values[from_band..], &grid.omega()[from_band..]);
     Ok(ConditionEffect {
         couplings: ConditionCouplings {
             airspeed_kt: result.condition.flight_state().airspeed_kt,

@@ -6,7 +6,7 @@ use gdcm_method::correction::Channels;
 use gdcm_method::correction::leads::{LeadDesign, LeadSettings};
 use gdcm_method::couplings::problem::{
     CouplingError, CouplingOptions, coherence_deviation, mean_delays_s, response_deviation,
-    without_channels,
+    without_delays_and_leads,
 };
 use gdcm_method::couplings::{CouplingCondition, CouplingKind, CouplingProblem, fit_couplings};
 use gdcm_method::fidelity::CoherenceWeights;
@@ -145,7 +145,7 @@ impl CouplingFitKey {
             let dynamics = &source.identified().dynamics;
             let flight = match &self.delays_s {
                 Some(delays_s) => {
-                    without_channels(&source.flight, &omega, delays_s, design.as_ref())
+                    without_delays_and_leads(&source.flight, &omega, delays_s, design.as_ref())
                 }
                 None => (*source.flight).clone(),
             };

@@ -156,7 +156,7 @@ impl Engine {
         let mut conditions = analyze_conditions(run, &mut self.conditions, fitted, first)?;
         let doubts = add_doubts(study, &mut conditions);
         let settings = schedule_settings(study, &conditions);
-        let schedule = Schedule::of(&scheduled_points(study, &conditions), settings);
+        let schedule = Schedule::fit(&scheduled_points(study, &conditions), settings);
         let apart = signed_delays_apart(study, &conditions);
         let mut analysis = Analysis {
             study: study.clone(),

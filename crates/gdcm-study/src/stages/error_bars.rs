@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 use gdcm_method::schedule::airspeeds::airspeed_indicators;
 use gdcm_method::schedule::{Schedule, ScheduledQuantity, SecondVariable};
-use gdcm_method::uncertainty::least_squares::SecondVariableError;
+use gdcm_method::uncertainty::second_variable_effect::SecondVariableError;
 use gdcm_method::uncertainty::spread::{BarSource, bars};
 use gdcm_method::uncertainty::{
     Bar, Design, Difference, Scalar, ScheduleBand, SecondVariableDesign, VarianceDecomposition,
@@ -179,7 +179,7 @@ impl<'a> ScheduleEvidence<'a> {
             .map(|&pair| {
                 let bars = self.bars(Scalar::NetGain(pair));
                 let decomposition = |design: &Option<Design>| {
-                    VarianceDecomposition::of(design.as_ref()?, bars.as_ref()?)
+                    VarianceDecomposition::new(design.as_ref()?, bars.as_ref()?)
                 };
                 PairScatter {
                     pair,
@@ -204,9 +204,9 @@ impl<'a> ScheduleEvidence<'a> {
             }
             let decomposition = self
                 .bars(scalar)
-                .and_then(|bars| VarianceDecomposition::of(&design, &bars));
+                .and_then(|bars| VarianceDecomposition::new(&design, &bars));
             if let Some(decomposition) = decomposition {
-                bands.push((scalar, ScheduleBand::of(&design, &decomposition, level)));
+                bands.push((scalar, ScheduleBand::new(&design, &decomposition, level)));
             }
         }
         Some(ScheduleBands { bands })
@@ -222,7 +222,7 @@ impl<'a> ScheduleEvidence<'a> {
             let values = variable
                 .values(&self.states)
                 .ok_or(SecondVariableError::NotVaried)?;
-            SecondVariableDesign::of(&rows, &values)
+            SecondVariableDesign::new(&rows, &values)
         });
         let mut tests = Vec::new();
         for &pair in pairs {
@@ -302,7 +302,7 @@ fn airspeed_differences(
                         pair,
                         conditions: [first.id(), second.id()],
                         airspeed_kt: 0.5 * (a_kt + b_kt),
-                        difference: Difference::of(&a, &b),
+                        difference: Difference::between(&a, &b),
                         p_holm: None,
                     });
                 }

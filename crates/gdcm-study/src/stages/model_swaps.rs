@@ -222,7 +222,7 @@ impl SwapMemo {
             (true, Some(base)) => Figures::clone(&base),
             (true, None) => representative_figures(input.analysis).map(|_, _| None),
         };
-        let spread = ConditionSpread::of(
+        let spread = ConditionSpread::new(
             &base,
             &bundle_figures(&substitutions, BundleKind::Physics),
             &bundle_figures(&substitutions, BundleKind::Identified),

@@ -22,7 +22,7 @@ struct Model {
 struct Numbers;
 
 impl FigureWords for Numbers {
-    fn plot(&self, plot: usize) -> String {
+    fn plot_name(&self, plot: usize) -> String {
         format!("plot {plot}")
     }
 }

@@ -4,9 +4,8 @@ use egui_kittest::kittest::Queryable;
 use gdcm_model::dataset::Pair;
 
 use super::*;
-use crate::gui::plot::overview::{
-    OverviewCell, OverviewEvent, OverviewScene, OverviewView, overview_ui,
-};
+use crate::gui::plot::overview::overview_ui;
+use crate::gui::plot::overview_scene::{OverviewCell, OverviewEvent, OverviewScene, OverviewView};
 use crate::gui::widgets::palette;
 use crate::gui::widgets::palette::Palette;
 

@@ -39,12 +39,12 @@ pub(super) fn preview_ui(
     };
     let found = part.found.clone();
     let count = (found.inputs.len() * found.outputs.len()).max(1);
-    let place = assembly.preview.response.min(count - 1);
+    let response = assembly.preview.response.min(count - 1);
     let names: Vec<String> = (0..count)
-        .map(|place| response_name(&found, place))
+        .map(|response| response_name(&found, response))
         .collect();
-    response_choice_ui(ui, &names, place, commands);
-    update(&mut assembly.preview, &found, place, band);
+    response_choice_ui(ui, &names, response, commands);
+    update_curves(&mut assembly.preview, &found, response, band);
     let Some((_, _, curves)) = &assembly.preview.drawn else {
         return;
     };
@@ -52,36 +52,36 @@ pub(super) fn preview_ui(
         quantity: BodeQuantity::RESPONSE_OF_FOUND_MODEL,
         unit: FrequencyUnit::default(),
         message: Some("This response cannot be computed: the model is incomplete or inconsistent"),
-        ..BodeScene::new(&names[place], curves, band)
+        ..BodeScene::new(&names[response], curves, band)
     };
     bode_ui(ui, &scene, &mut assembly.preview.view, palette);
 }
 
-fn response_choice_ui(ui: &mut Ui, names: &[String], place: usize, commands: &mut Vec<Command>) {
+fn response_choice_ui(ui: &mut Ui, names: &[String], shown: usize, commands: &mut Vec<Command>) {
     let choices: Vec<(usize, &str, &str)> = names
         .iter()
         .enumerate()
-        .map(|(place, name)| (place, name.as_str(), "Response shown"))
+        .map(|(response, name)| (response, name.as_str(), "Response shown"))
         .collect();
-    let mut chosen = place;
+    let mut chosen = shown;
     choice_ui(ui, "Response of the preview", &mut chosen, &choices);
-    if chosen != place {
+    if chosen != shown {
         commands.push(AssemblingCommand::ShowResponse(chosen).into());
     }
 }
 
 /// Recomputes the curve if another model or response has been selected.
-fn update(preview: &mut Preview, found: &FoundModel, place: usize, band: (f64, f64)) {
+fn update_curves(preview: &mut Preview, found: &FoundModel, response: usize, band: (f64, f64)) {
     let key = found.key();
     let mut is_same_model = false;
-    if let Some((drawn_key, drawn_place, _)) = &preview.drawn {
+    if let Some((drawn_key, drawn_response, _)) = &preview.drawn {
         is_same_model = *drawn_key == key;
-        if is_same_model && *drawn_place == place {
+        if is_same_model && *drawn_response == response {
             return;
         }
     }
-    let curves = curve(found, place, band).into_iter().collect();
-    preview.drawn = Some((key, place, curves));
+    let curves = curve(found, response, band).into_iter().collect();
+    preview.drawn = Some((key, response, curves));
     // A different model may have other frequencies, so `request_fit` also fits the frequency axis.
     if is_same_model {
         preview.view.request_refit();
@@ -90,15 +90,15 @@ fn update(preview: &mut Preview, found: &FoundModel, place: usize, band: (f64, f
     }
 }
 
-/// Returns the pair at `place`: `output * inputs + input`.
-fn pair(found: &FoundModel, place: usize) -> Pair {
+/// Returns the pair of a response, whose index is `output * inputs + input`.
+fn pair(found: &FoundModel, response: usize) -> Pair {
     let inputs = found.inputs.len().max(1);
-    Pair::new(place / inputs, place % inputs)
+    Pair::new(response / inputs, response % inputs)
 }
 
 /// Returns "LON → Q", with the channel names in the file.
-fn response_name(found: &FoundModel, place: usize) -> String {
-    let pair = pair(found, place);
+fn response_name(found: &FoundModel, response: usize) -> String {
+    let pair = pair(found, response);
     format!(
         "{} → {}",
         channel_name(&found.inputs, pair.input, "input"),
@@ -122,10 +122,10 @@ struct PairResponse {
     values: Vec<Complex<f64>>,
 }
 
-fn curve(found: &FoundModel, place: usize, band: (f64, f64)) -> Option<BodeCurve> {
+fn curve(found: &FoundModel, response: usize, band: (f64, f64)) -> Option<BodeCurve> {
     let PairResponse { omega, values } = match found.response() {
-        Some(_) => measured_response(found, place)?,
-        None => model_response(found, pair(found, place), band)?,
+        Some(_) => measured_response(found, response)?,
+        None => model_response(found, pair(found, response), band)?,
     };
     let shape = ResponseShape::new(&values);
     let model = ModelId::new(ConditionId(0), BundleKind::Physics, found.key());
@@ -143,17 +143,17 @@ fn curve(found: &FoundModel, place: usize, band: (f64, f64)) -> Option<BodeCurve
     })
 }
 
-/// Returns a response measured in the file, in which the values of each pair are contiguous; `None`
-/// without measured responses.
-fn measured_response(found: &FoundModel, place: usize) -> Option<PairResponse> {
-    let response = found.response()?;
-    let count = response.omega.len();
-    let range = place * count..(place + 1) * count;
-    let re = response.re.values.get(range.clone())?;
-    let im = response.im.values.get(range)?;
+/// Returns a response measured in the file, in which the values of each pair are contiguous and the
+/// pairs are ordered as in [`pair`]; `None` without measured responses.
+fn measured_response(found: &FoundModel, response: usize) -> Option<PairResponse> {
+    let measured = found.response()?;
+    let count = measured.omega.len();
+    let range = response * count..(response + 1) * count;
+    let re = measured.re.values.get(range.clone())?;
+    let im = measured.im.values.get(range)?;
     let values = re.iter().zip(im).map(|(re, im)| Complex::new(*re, *im));
     Some(PairResponse {
-        omega: response.omega.clone(),
+        omega: measured.omega.clone(),
         values: values.collect(),
     })
 }

@@ -9,7 +9,7 @@ use gdcm_model::executor::Sequential;
 use gdcm_model::simulation::{FlightRecord, Segment};
 use gdcm_sysid::spectra::spectrum::spectra;
 
-use super::frame_cache::kept;
+use super::frame_cache::cached;
 use super::page::Page;
 use crate::gui::plot::chart::{Chart, ChartAxis, ChartLine, ChartSpan};
 use crate::gui::plot::chart_view::chart_ui;
@@ -127,7 +127,7 @@ fn record_spectra(ui: &Ui, page: Page<'_>, band: Band) -> Vec<RecordSpectra> {
     let mut spectra = Vec::new();
     for (index, row) in records.rows.iter().enumerate() {
         let Some(flight) = &row.flight else { continue };
-        let inputs = kept(
+        let inputs = cached(
             ui,
             &format!("autospectrum {index}"),
             &[Arc::clone(flight) as _],
@@ -144,6 +144,9 @@ fn record_spectra(ui: &Ui, page: Page<'_>, band: Band) -> Vec<RecordSpectra> {
 
 /// Computes the power spectral density of each input about its mean,
 /// `2 dt² / T |Σ u exp(-j ω t)|²`, averaged over [`SMOOTHED`] lines.
+///
+/// The spectrum `U = dt / sqrt(T) Σ u exp(-j ω t)` comes from [`spectra`]; u is the input, dt the
+/// sample time and T the length of the record \[s\].
 ///
 /// One-sided: the integral over frequency \[Hz\] is the variance (Bendat and Piersol, Random Data,
 /// 5.2.2). The spectrum extends to twice the band end `highest` \[rad/s\].
@@ -167,15 +170,15 @@ fn autospectra(flight: &FlightRecord, highest: f64) -> Autospectra {
     let Some(spectrum) = found.first() else {
         return Vec::new();
     };
-    let mut all = Vec::new();
+    let mut autospectra = Vec::new();
     for input in 0..flight.inputs.ncols() {
         let mut lines = Vec::new();
         for (line, omega) in spectrum.omega.iter().enumerate() {
             lines.push([*omega, 2.0 * spectrum.inputs[(input, line)].norm_sqr()]);
         }
-        all.push(lines.chunks(SMOOTHED).map(smoothed_level).collect());
+        autospectra.push(lines.chunks(SMOOTHED).map(smoothed_level).collect());
     }
-    all
+    autospectra
 }
 
 /// Returns the median of the positive time steps \[s\], which is the sample time if sampling is

@@ -9,7 +9,7 @@ use gdcm_model::units::telling;
 use gdcm_sysid::records::ModeSpan;
 use gdcm_sysid::spectra::gaps::{Gap, Treatment};
 
-use super::frame_cache::kept;
+use super::frame_cache::cached;
 use super::page::Page;
 use super::simulation::{Simulated, simulated, time_models_ui};
 use super::spectrogram::{spectrogram_choice_ui, spectrogram_ui};
@@ -19,7 +19,7 @@ use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::plot::chart::{Chart, ChartAxis, ChartLine, ChartSpan};
 use crate::gui::plot::chart_view::chart_ui;
-use crate::gui::plot::stretch::chosen_stretch;
+use crate::gui::plot::dragged_range::take_dragged_range;
 use crate::gui::widgets::choices::check_ui;
 use crate::gui::widgets::controls::entry_ui;
 use crate::gui::widgets::palette::Palette;
@@ -52,13 +52,13 @@ pub(super) fn histories_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comma
         part_ui(ui, page, commands);
         span_ui(ui, page);
     });
-    if let Some((part_s, has_ended)) = chosen_stretch(ui, Page::time_axis()) {
+    if let Some(part_s) = take_dragged_range(ui, Page::time_axis()) {
         spans.push(ChartSpan {
-            ends: part_s,
+            ends: part_s.ends,
             color: palette.accent.gamma_multiply(0.35),
         });
-        if has_ended {
-            commands.push(RecordsCommand::AddPart(records.chosen, part_s).into());
+        if part_s.has_ended {
+            commands.push(RecordsCommand::AddPart(records.chosen, part_s.ends).into());
         }
     }
     preparation_ui(ui, page);
@@ -166,7 +166,7 @@ impl ChannelCharts<'_> {
         };
         let flight = self.flight;
         let source = Arc::clone(flight) as _;
-        let lines = kept(ui, &format!("channel {index}"), &[source], (), || {
+        let lines = cached(ui, &format!("channel {index}"), &[source], (), || {
             recorded_points(flight, index)
         });
         lines

@@ -11,9 +11,9 @@ use gdcm_sysid::diagnostics::model_doubts::HELD_OUT;
 use gdcm_sysid::identification::Identification;
 use gdcm_words::channel_time_skew::time_skew_text;
 
-use super::frame_cache::{Source, kept};
+use super::frame_cache::{Source, cached};
 use super::page::Page;
-use super::record_list::{BAD, CHI_SQUARED};
+use super::record_list::{BAD_FIT, CHI_SQUARED};
 use super::remedies::{
     Remedy, band_remedy, caution_remedies, remove_common_delay, study_band_remedy,
 };
@@ -87,7 +87,7 @@ fn summary_ui(ui: &mut Ui, found: &Identification, palette: &Palette) {
     ui.label(RichText::new(format!("CT-PBSID, refined: order {order}")).strong());
     ui.horizontal_wrapped(|ui| {
         ui.label("χ²/dof");
-        let color = limit_color(found.cost, BAD, palette);
+        let color = limit_color(found.cost, BAD_FIT, palette);
         ui.label(RichText::new(format!("{:.2}", found.cost)).color(color))
             .on_hover_text(CHI_SQUARED);
         if let Some(raw) = found.held_out_cost
@@ -159,7 +159,7 @@ fn late_channel_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
         return;
     };
     let sources: [Source; 2] = [Arc::clone(found) as _, Arc::clone(condition) as _];
-    let late = kept(ui, "late channel", &sources, (), || {
+    let late = cached(ui, "late channel", &sources, (), || {
         ChannelTimeSkew::of_condition(&found.measured, job.request.options.band, condition)
     });
     let Some(late) = *late else {

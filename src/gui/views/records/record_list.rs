@@ -20,7 +20,7 @@ const LEAST_NAME: f32 = 60.0;
 pub(super) const CHI_SQUARED: &str =
     "Cost per degree of freedom of the recommended model; 1 if only noise remains (M14, section 6)";
 /// Limit of χ²/dof above which the fit of a record is bad (M14, section 6).
-pub(super) const BAD: f64 = 1.5;
+pub(super) const BAD_FIT: f64 = 1.5;
 
 const HEADINGS: [(&str, &str); 4] = [
     ("use", "Use the record for identification or validation"),
@@ -186,7 +186,7 @@ fn fit_cost(page: Page<'_>, index: usize) -> Option<f64> {
 
 /// Formats χ²/dof, in the warning colour if the fit is bad.
 pub(super) fn cost_text(cost: f64, palette: &Palette) -> RichText {
-    let color = if cost <= BAD {
+    let color = if cost <= BAD_FIT {
         palette.text
     } else {
         palette.warning

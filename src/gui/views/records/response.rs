@@ -7,7 +7,7 @@ use egui::{Color32, Id, Rect, RichText, Role, Sense, Shape, Stroke, Ui, vec2};
 use gdcm_sysid::identification::CautionNote;
 
 use super::drawn_response::{BodePart, CurvePoint, DrawnResponse, MeasuredBand};
-use super::frame_cache::kept;
+use super::frame_cache::cached;
 use super::page::Page;
 use crate::gui::plot::chart::{Chart, ChartAxis, ChartBand, ChartLine, ChartMarks, ChartSpan};
 use crate::gui::plot::chart_view::chart_ui;
@@ -64,7 +64,7 @@ fn drawn_response(ui: &Ui, page: Page<'_>) -> Option<Arc<DrawnResponse>> {
     {
         let band = job.request.options.band;
         let source = Arc::clone(&model) as _;
-        return Some(kept(ui, "first model", &[source], pair, || {
+        return Some(cached(ui, "first model", &[source], pair, || {
             DrawnResponse::first_model(&model, band, pair)
         }));
     }
@@ -80,7 +80,7 @@ fn drawn_response(ui: &Ui, page: Page<'_>) -> Option<Arc<DrawnResponse>> {
         },
     };
     let source = Arc::clone(found) as _;
-    Some(kept(ui, "response", &[source], pair, || {
+    Some(cached(ui, "response", &[source], pair, || {
         DrawnResponse::new(found, measured_band, pair)
     }))
 }

@@ -11,7 +11,7 @@ use gdcm_study::jobs::identification_jobs::{SimulationFailure, SimulationJob};
 use gdcm_sysid::identification::Identification;
 use gdcm_words::missing_results::simulation_failure_text;
 
-use super::frame_cache::kept;
+use super::frame_cache::cached;
 use super::page::Page;
 use super::record_list::cost_text;
 use crate::gui::commands::command::Command;
@@ -68,7 +68,7 @@ impl Simulated<'_> {
         };
         let name = format!("{} {output}", self.model.name());
         let source = Arc::clone(validation) as _;
-        let lines = kept(ui, &name, &[source], (), || {
+        let lines = cached(ui, &name, &[source], (), || {
             simulated_points(validation, output)
         });
         lines

@@ -1,4 +1,4 @@
-//! JSON values by channel and by response, which contain the channel names of a dataset.
+//! JSON values by channel and by response, labelled with the channel names of a dataset.
 
 use serde_json::{Map, Value, json};
 
@@ -100,7 +100,7 @@ impl<'a> ChannelNames<'a> {
 
     /// Returns the regression coefficients of each channel.
     pub(super) fn coefficients(&self, regressions: &Channels<Regression>) -> Value {
-        self.by_channel(|channel| regressions[channel].figures().to_vec())
+        self.by_channel(|channel| regressions[channel].parameters().to_vec())
     }
 
     pub(super) fn gains(&self, correction: &ChannelCorrection) -> Value {

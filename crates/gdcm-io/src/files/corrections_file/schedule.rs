@@ -24,7 +24,7 @@ pub(super) fn schedule_json(names: &ChannelNames<'_>, schedule: &Schedule) -> Va
     });
     let delays_s = schedule.delays.as_ref().map(|delays| {
         let mut coefficients = names.coefficients(&delays.taus_s);
-        coefficients["upper_s"] = delays.upper_s.figures().into();
+        coefficients["upper_s"] = delays.upper_s.parameters().into();
         coefficients
     });
     let tau_s = schedule.leads.as_ref().map(|leads| {

@@ -15,44 +15,6 @@ use gdcm_words::uncertainty::{bar_remark_texts, difference_text, second_variable
 
 use super::channel_names::{ChannelNames, is_empty_value, rows_of, without_empty};
 
-/// Returns a confidence interval with its standard deviations, and the deviation within the band
-/// that a single gain cannot remove. For a gain, intervals are factors, and standard deviations
-/// refer to the natural logarithm; for a delay, all values are in seconds.
-fn bar_json(scalar: Scalar, bar: &Bar, level: f64, left_in_band: Option<f64>) -> Value {
-    let interval = bar.interval(level).map(|ends| in_units(scalar, ends));
-    let inner_interval = bar.inner_interval(level).map(|ends| in_units(scalar, ends));
-    let mut members = Map::new();
-    for (name, value) in [
-        ("interval", json!(interval)),
-        ("interval_identification", json!(inner_interval)),
-        (
-            "u_physics",
-            json!(bar.trim.map(|part| part.variance.sqrt())),
-        ),
-        (
-            "u_identification",
-            json!(bar.identification.map(|part| part.variance.sqrt())),
-        ),
-        ("degrees_of_freedom", json!(bar.degrees_of_freedom())),
-        ("left_in_band", json!(left_in_band)),
-        ("remarks", json!(bar_remark_texts(bar))),
-    ] {
-        if !is_empty_value(&value) {
-            members.insert(name.to_owned(), value);
-        }
-    }
-    Value::Object(members)
-}
-
-/// Returns an interval in the file's units: factors for gains, seconds for delays.
-fn in_units(scalar: Scalar, ends: [f64; 2]) -> [f64; 2] {
-    if scalar.is_delay() {
-        ends
-    } else {
-        ends.map(f64::exp)
-    }
-}
-
 /// Returns the confidence interval of a net gain; `None` if it was not computed.
 pub(super) fn net_gain_bar(
     analysis: &Analysis,
@@ -112,6 +74,44 @@ impl ConditionBars<'_> {
 
     fn by_channel(&self, scalar: fn(Channel) -> Scalar) -> Value {
         self.names.by_channel(|channel| self.bar(scalar(channel)))
+    }
+}
+
+/// Returns a confidence interval with its standard deviations, and the deviation within the band
+/// that a single gain cannot remove. For a gain, intervals are factors, and standard deviations
+/// refer to the natural logarithm; for a delay, all values are in seconds.
+fn bar_json(scalar: Scalar, bar: &Bar, level: f64, left_in_band: Option<f64>) -> Value {
+    let interval = bar.interval(level).map(|ends| in_units(scalar, ends));
+    let inner_interval = bar.inner_interval(level).map(|ends| in_units(scalar, ends));
+    let mut members = Map::new();
+    for (name, value) in [
+        ("interval", json!(interval)),
+        ("interval_identification", json!(inner_interval)),
+        (
+            "u_physics",
+            json!(bar.trim.map(|part| part.variance.sqrt())),
+        ),
+        (
+            "u_identification",
+            json!(bar.identification.map(|part| part.variance.sqrt())),
+        ),
+        ("degrees_of_freedom", json!(bar.degrees_of_freedom())),
+        ("left_in_band", json!(left_in_band)),
+        ("remarks", json!(bar_remark_texts(bar))),
+    ] {
+        if !is_empty_value(&value) {
+            members.insert(name.to_owned(), value);
+        }
+    }
+    Value::Object(members)
+}
+
+/// Returns an interval in the file's units: factors for gains, seconds for delays.
+fn in_units(scalar: Scalar, ends: [f64; 2]) -> [f64; 2] {
+    if scalar.is_delay() {
+        ends
+    } else {
+        ends.map(f64::exp)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Dataset files, `*.json` and `*.json.gz`.
 
 mod conversion;
+mod model_conversion;
 mod text;
 
 use std::fmt;
@@ -55,8 +56,8 @@ impl DatasetOrigin {
         }
     }
 
-    /// Returns the path of the file; for the embedded example, a name to be used in error messages.
-    pub(crate) fn path(&self) -> PathBuf {
+    /// Returns the path by which error messages name the dataset.
+    pub(crate) fn message_path(&self) -> PathBuf {
         match self {
             DatasetOrigin::File(path) => path.clone(),
             DatasetOrigin::EmbeddedExample => PathBuf::from(self.to_string()),
@@ -111,6 +112,50 @@ pub fn load_dataset_within(
     )
 }
 
+/// Loads a dataset from bytes in memory; error messages name `origin` as the source.
+pub fn load_dataset_bytes(bytes: &[u8], origin: DatasetOrigin) -> Result<LoadedDataset, FileError> {
+    let budget = ReadingBudget::default();
+    dataset_from(
+        &Source::from_bytes(bytes, &origin.message_path(), &budget)?,
+        origin,
+        &budget,
+    )
+}
+
+/// Loads the example dataset that is part of the program.
+pub fn embedded_example() -> Result<LoadedDataset, FileError> {
+    load_dataset_bytes(EXAMPLE, DatasetOrigin::EmbeddedExample)
+}
+
+/// Loads a dataset from the text of a file or from text in memory; all other loaders call this one.
+pub(crate) fn dataset_from(
+    source: &Source<'_>,
+    origin: DatasetOrigin,
+    budget: &ReadingBudget<'_>,
+) -> Result<LoadedDataset, FileError> {
+    let path = origin.message_path();
+    let error = |fault| FileError::content_of(&path, fault, source.text());
+    // Three kinds of cautions: unknown keys, keys of other models, and strange values.
+    let (text, mut cautions) = FORMAT.decode::<DatasetText>(source.text(), &path, budget)?;
+    let CautionedDraft {
+        draft,
+        cautions: misplaced,
+    } = text.into_draft().map_err(error)?;
+    cautions.extend(misplaced);
+    let (dataset, oddities) = draft
+        .checked()
+        .map_err(|fault| error(ContentError::from(fault)))?;
+    for odd in oddities {
+        cautions.push(format!("{}{}", odd.place.before(), odd.words));
+    }
+    Ok(LoadedDataset {
+        dataset: Arc::new(dataset),
+        sha256: source.sha256.clone(),
+        origin,
+        cautions,
+    })
+}
+
 /// Returns all faults in a dataset file, each with its place; empty if the dataset can be loaded.
 ///
 /// # Errors
@@ -139,27 +184,12 @@ pub(crate) fn check_dataset_text(
     FORMAT.decode::<DatasetText>(text, path, budget).map(drop)
 }
 
-/// Loads a dataset from bytes in memory; error messages name `origin` as the source.
-pub fn load_dataset_bytes(bytes: &[u8], origin: DatasetOrigin) -> Result<LoadedDataset, FileError> {
-    let budget = ReadingBudget::default();
-    dataset_from(
-        &Source::of(bytes, &origin.path(), &budget)?,
-        origin,
-        &budget,
-    )
-}
-
-/// Loads the example dataset that is part of the program.
-pub fn embedded_example() -> Result<LoadedDataset, FileError> {
-    load_dataset_bytes(EXAMPLE, DatasetOrigin::EmbeddedExample)
-}
-
 /// Writes the example dataset, uncompressed, into a directory, which is created if missing; returns
 /// the path of the file.
 pub fn write_example(directory: &Path, existing: Existing) -> Result<PathBuf, FileError> {
-    let source = Source::of(
+    let source = Source::from_bytes(
         EXAMPLE,
-        &DatasetOrigin::EmbeddedExample.path(),
+        &DatasetOrigin::EmbeddedExample.message_path(),
         &ReadingBudget::default(),
     )?;
     let path = directory.join(EXAMPLE_NAME);
@@ -200,33 +230,5 @@ pub fn add_dataset(
         } else {
             write_compact(&text, file)
         }
-    })
-}
-
-/// Returns the dataset read from a source.
-pub(crate) fn dataset_from(
-    source: &Source<'_>,
-    origin: DatasetOrigin,
-    budget: &ReadingBudget<'_>,
-) -> Result<LoadedDataset, FileError> {
-    let path = origin.path();
-    let error = |fault| FileError::content_of(&path, fault, source.text());
-    let (text, mut cautions) = FORMAT.decode::<DatasetText>(source.text(), &path, budget)?;
-    let CautionedDraft {
-        draft,
-        cautions: misplaced,
-    } = text.into_draft().map_err(error)?;
-    cautions.extend(misplaced);
-    let (dataset, oddities) = draft
-        .checked()
-        .map_err(|fault| error(ContentError::from(fault)))?;
-    for odd in oddities {
-        cautions.push(format!("{}{}", odd.place.before(), odd.words));
-    }
-    Ok(LoadedDataset {
-        dataset: Arc::new(dataset),
-        sha256: source.sha256.clone(),
-        origin,
-        cautions,
     })
 }

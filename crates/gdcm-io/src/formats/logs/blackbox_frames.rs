@@ -1,18 +1,65 @@
 //! Encoding and prediction of the fields in blackbox frames.
 //!
-//! Each field has a numbered encoding and a numbered predictor
-//! (<https://betaflight.com/docs/development/Blackbox-Internals>). The file holds the differences
-//! from the predictions.
+//! A frame holds the difference of each field from a prediction. Decoding has two steps, for which
+//! the header of the flight gives each field a number: the encoding says how the difference is
+//! packed into bytes (`FrameFields::differences`), the predictor what it is added to
+//! (`FrameFields::values`).
+//!
+//! Source: <https://betaflight.com/docs/development/Blackbox-Internals>.
 
 /// Maximum number of fields in a frame.
 const MOST_FIELDS: usize = 256;
 
-/// Descriptions of the fields in all frames with the same letter.
+/// Numbers of the supported encodings.
+mod encoding {
+    /// Variable-length integer with the sign in the lowest bit.
+    pub(super) const SIGNED_VB: u8 = 0;
+    /// Variable-length integer without a sign.
+    pub(super) const UNSIGNED_VB: u8 = 1;
+    /// 14-bit integer with the opposite sign.
+    pub(super) const NEG_14BIT: u8 = 3;
+    /// Up to eight fields: a byte that marks the nonzero fields, then these.
+    pub(super) const TAG8_8SVB: u8 = 6;
+    /// Three fields: two bits that give their lengths, then the fields.
+    pub(super) const TAG2_3S32: u8 = 7;
+    /// Four fields: a byte with two bits for the length of each, then the fields.
+    pub(super) const TAG8_4S16: u8 = 8;
+    /// No bytes; the difference is 0.
+    pub(super) const NULL: u8 = 9;
+}
+
+/// Numbers of the predictors that do not predict 0; all others, such as 0, do.
+mod predictor {
+    /// Value in the preceding frame.
+    pub(super) const PREVIOUS: u8 = 1;
+    /// Continuation of the line through the two preceding frames.
+    pub(super) const STRAIGHT_LINE: u8 = 2;
+    /// Mean of the two preceding frames.
+    pub(super) const AVERAGE_2: u8 = 3;
+    /// Header value `minthrottle`.
+    pub(super) const MIN_THROTTLE: u8 = 4;
+    /// Field `motor[0]` in the same frame.
+    pub(super) const MOTOR_0: u8 = 5;
+    /// Value in the preceding frame plus 1.
+    pub(super) const INCREMENT: u8 = 6;
+    /// The number 1500.
+    pub(super) const FIXED_1500: u8 = 8;
+    /// Header value `vbatref`.
+    pub(super) const VBATREF: u8 = 9;
+    /// Header value `motorOutput`.
+    pub(super) const MIN_MOTOR: u8 = 11;
+}
+
+/// Descriptions of the fields in all frames with the same letter; each list has an entry for each
+/// field.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FrameFields {
     pub(super) names: Vec<String>,
+    /// Whether the values are signed 32-bit integers, otherwise unsigned.
     pub(super) signed: Vec<bool>,
+    /// Numbers in `predictor`.
     pub(super) predictors: Vec<u8>,
+    /// Numbers in `encoding`.
     pub(super) encodings: Vec<u8>,
 }
 
@@ -35,10 +82,12 @@ pub(super) struct Predecessors {
 /// Cursor over bytes that hold packed integers.
 pub(super) struct PackedBytes<'b> {
     bytes: &'b [u8],
+    /// Offset of the next byte.
     pub(super) at: usize,
 }
 
 impl<'b> PackedBytes<'b> {
+    /// Creates a cursor at the offset `at` \[bytes\].
     pub(super) fn new(bytes: &'b [u8], at: usize) -> Self {
         Self { bytes, at }
     }
@@ -70,14 +119,15 @@ impl<'b> PackedBytes<'b> {
         Some((value >> 1).cast_signed() ^ -((value & 1).cast_signed()))
     }
 
-    /// Reads a signed 14-bit integer, which is stored with the opposite sign.
-    fn negative_14(&mut self) -> Option<i32> {
+    /// Reads the encoding `NEG_14BIT`.
+    fn neg_14bit(&mut self) -> Option<i32> {
         Some(-extended(self.unsigned()? & 0x3fff, 14))
     }
 
-    /// Reads three signed integers of 2, 4 or 6 bits each, or of individual lengths from 1 to 4
-    /// bytes.
-    fn three(&mut self) -> Option<[i32; 3]> {
+    /// Reads the encoding `TAG2_3S32`. The upper two bits of the first byte are the tag: 0, 1 and 2
+    /// mean 2, 4 and 6 bits for each integer; with 3, the lower six bits give the length of each
+    /// integer, from 1 to 4 bytes.
+    fn tag2_3s32(&mut self) -> Option<[i32; 3]> {
         let lead = self.byte()?;
         Some(match lead >> 6 {
             0 => [lead >> 4, lead >> 2, lead].map(|bits| extended(u32::from(bits & 3), 2)),
@@ -89,6 +139,8 @@ impl<'b> PackedBytes<'b> {
             _ => {
                 let mut values = [0; 3];
                 for (index, value) in values.iter_mut().enumerate() {
+                    // Two bits for each length, the first integer lowest; bytes follow lowest
+                    // first.
                     let bytes = 1 + u32::from((lead >> (2 * index)) & 3);
                     let mut bits = 0_u32;
                     for byte in 0..bytes {
@@ -101,13 +153,15 @@ impl<'b> PackedBytes<'b> {
         })
     }
 
-    /// Reads four signed integers of 0, 4, 8 or 16 bits each, packed without gaps, the higher half
-    /// of each byte first.
-    fn four(&mut self) -> Option<[i32; 4]> {
+    /// Reads the encoding `TAG8_4S16`. The tags 0 to 3 mean integers of 0, 4, 8 and 16 bits, which
+    /// are packed without gaps, the higher half of each byte first.
+    fn tag8_4s16(&mut self) -> Option<[i32; 4]> {
         let tags = self.byte()?;
+        // Lower half of the last byte, if it has not been used.
         let mut half = None;
         let mut values = [0; 4];
         for (index, value) in values.iter_mut().enumerate() {
+            // Length of the integer in halves of a byte.
             let halves = [0, 1, 2, 4][usize::from((tags >> (2 * index)) & 3)];
             let mut bits = 0_u32;
             for _ in 0..halves {
@@ -149,32 +203,34 @@ impl FrameFields {
             && self.encodings.iter().all(|encoding| is_known(*encoding))
     }
 
-    /// Reads the stored differences of a frame; returns `None` if they are damaged.
+    /// Reads the differences of a frame from its bytes; returns `None` if they are damaged.
     pub(super) fn differences(&self, bytes: &mut PackedBytes<'_>) -> Option<Vec<i64>> {
         let count = self.names.len();
         let mut values: Vec<i64> = Vec::with_capacity(count);
         while values.len() < count {
-            let from = values.len();
-            match self.encodings[from] {
-                0 => values.push(i64::from(bytes.signed()?)),
-                1 => values.push(i64::from(bytes.unsigned()?)),
-                3 => values.push(i64::from(bytes.negative_14()?)),
-                6 => self.read_tagged(bytes, &mut values)?,
-                7 => values.extend(bytes.three()?.map(i64::from)),
-                8 => values.extend(bytes.four()?.map(i64::from)),
+            let field = values.len();
+            match self.encodings[field] {
+                encoding::SIGNED_VB => values.push(i64::from(bytes.signed()?)),
+                encoding::UNSIGNED_VB => values.push(i64::from(bytes.unsigned()?)),
+                encoding::NEG_14BIT => values.push(i64::from(bytes.neg_14bit()?)),
+                encoding::TAG8_8SVB => self.read_tag8_8svb(bytes, &mut values)?,
+                encoding::TAG2_3S32 => values.extend(bytes.tag2_3s32()?.map(i64::from)),
+                encoding::TAG8_4S16 => values.extend(bytes.tag8_4s16()?.map(i64::from)),
+                // `encoding::NULL`: `is_whole` admits no other.
                 _ => values.push(0),
             }
         }
+        // A group of three or four may reach beyond the last field.
         values.truncate(count);
         Some(values)
     }
 
-    /// Reads up to eight consecutive fields with encoding 6. They share a leading byte in which
-    /// each bit marks a nonzero field; a single field has no such byte.
-    fn read_tagged(&self, bytes: &mut PackedBytes<'_>, values: &mut Vec<i64>) -> Option<()> {
+    /// Reads up to eight consecutive fields with the encoding `TAG8_8SVB`. They share a leading byte
+    /// in which each bit marks a nonzero field; a single field has no such byte.
+    fn read_tag8_8svb(&self, bytes: &mut PackedBytes<'_>, values: &mut Vec<i64>) -> Option<()> {
         let mut count = 0;
-        for encoding in self.encodings[values.len()..].iter().take(8) {
-            if *encoding != 6 {
+        for number in self.encodings[values.len()..].iter().take(8) {
+            if *number != encoding::TAG8_8SVB {
                 break;
             }
             count += 1;
@@ -191,33 +247,37 @@ impl FrameFields {
         Some(())
     }
 
-    /// Computes the field values of a frame; `values` are its stored differences.
+    /// Computes the field values of a frame by adding its predictions to its differences.
+    ///
+    /// A missing predecessor counts as 0, and a missing earlier frame as equal to the last.
     pub(super) fn values(
         &self,
-        mut values: Vec<i64>,
+        differences: Vec<i64>,
         before: &Predecessors,
         header: HeaderNumbers,
     ) -> Vec<i64> {
+        // The differences are replaced by the values in the order of the fields.
+        let mut values = differences;
         let motor = self.names.iter().position(|name| name == "motor[0]");
         for field in 0..values.len() {
             let last = field_of(&before.last, field).unwrap_or(0);
             let earlier = field_of(&before.earlier, field).unwrap_or(last);
             let predicted = match self.predictors[field] {
-                1 => last,
-                2 => 2 * last - earlier,
-                3 => (last + earlier) / 2,
-                4 => header.least_throttle,
-                5 => motor
+                predictor::PREVIOUS => last,
+                predictor::STRAIGHT_LINE => 2 * last - earlier,
+                predictor::AVERAGE_2 => (last + earlier) / 2,
+                predictor::MIN_THROTTLE => header.least_throttle,
+                predictor::MOTOR_0 => motor
                     .and_then(|motor| values.get(motor))
                     .copied()
                     .unwrap_or(0),
-                6 => last + 1,
-                8 => 1500,
-                9 => header.battery,
-                11 => header.least_motor,
+                predictor::INCREMENT => last + 1,
+                predictor::FIXED_1500 => 1500,
+                predictor::VBATREF => header.battery,
+                predictor::MIN_MOTOR => header.least_motor,
                 _ => 0,
             };
-            // 32-bit arithmetic, as in the logger.
+            // Keep the lower 32 bits, as the arithmetic of the logger does.
             let low = values[field].wrapping_add(predicted) as u32;
             values[field] = if self.signed[field] {
                 i64::from(low.cast_signed())
@@ -229,9 +289,18 @@ impl FrameFields {
     }
 }
 
-/// Returns whether this program can decode an encoding.
-fn is_known(encoding: u8) -> bool {
-    matches!(encoding, 0 | 1 | 3 | 6 | 7 | 8 | 9)
+/// Returns whether this program can decode the encoding with a number.
+fn is_known(number: u8) -> bool {
+    matches!(
+        number,
+        encoding::SIGNED_VB
+            | encoding::UNSIGNED_VB
+            | encoding::NEG_14BIT
+            | encoding::TAG8_8SVB
+            | encoding::TAG2_3S32
+            | encoding::TAG8_4S16
+            | encoding::NULL
+    )
 }
 
 /// Returns the value of a field; `None` if the frame or the field is missing.
@@ -256,27 +325,27 @@ mod tests {
             [0, -1, 1, -2].map(Some)
         );
         assert_eq!(
-            PackedBytes::new(&[0xff, 0x3f], 0).negative_14(),
+            PackedBytes::new(&[0xff, 0x3f], 0).neg_14bit(),
             Some(-0x1fff)
         );
         assert_eq!(
-            PackedBytes::new(&[0b0001_1011], 0).three(),
+            PackedBytes::new(&[0b0001_1011], 0).tag2_3s32(),
             Some([1, -2, -1])
         );
         assert_eq!(
-            PackedBytes::new(&[0b0100_0111, 0x9f], 0).three(),
+            PackedBytes::new(&[0b0100_0111, 0x9f], 0).tag2_3s32(),
             Some([7, -7, -1])
         );
         assert_eq!(
-            PackedBytes::new(&[0b1100_0001, 0x34, 0x12, 0xff, 0x05], 0).three(),
+            PackedBytes::new(&[0b1100_0001, 0x34, 0x12, 0xff, 0x05], 0).tag2_3s32(),
             Some([0x1234, -1, 5])
         );
         // Lengths 4, 8, 0 and 16 bits: the values 1, -2, 0 and 0x1234.
         assert_eq!(
-            PackedBytes::new(&[0b1100_1001, 0x1f, 0xe1, 0x23, 0x40], 0).four(),
+            PackedBytes::new(&[0b1100_1001, 0x1f, 0xe1, 0x23, 0x40], 0).tag8_4s16(),
             Some([1, -2, 0, 0x1234])
         );
-        assert_eq!(PackedBytes::new(&[0b1100_1001, 0x1f], 0).four(), None);
+        assert_eq!(PackedBytes::new(&[0b1100_1001, 0x1f], 0).tag8_4s16(), None);
     }
 
     #[test]

@@ -1,13 +1,19 @@
 //! Messages in binary and text DataFlash logs: layouts, and samples grouped by topic.
+//!
+//! The steps, in this order: [`MessageLayout::parse`] for each message type, then
+//! [`Layouts::set_units`]; with all layouts known, [`SampleFields::find`] for each type; then
+//! [`Topics::add`] for each message, and at the end [`Topics::into_columns`].
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
-use crate::formats::logs::meanings::{ARDUPILOT, give_meanings};
+use gdcm_sysid::records::ModeSpan;
+
+use crate::formats::logs::meanings::{ARDUPILOT, assign_documented_meanings};
 use crate::formats::logs::mode_spans::{mode_spans, modes_note};
 use crate::formats::logs::topics::{TopicField, TopicSamples};
 use crate::formats::recorded_columns::Columns;
-use crate::formats::strides::{NumberClass, StoredNumber};
+use crate::formats::stored_number::{NumberClass, StoredNumber};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Names of messages that describe the log and hold no samples.
@@ -15,13 +21,12 @@ const DESCRIPTIONS: [&str; 5] = ["FMT", "FMTU", "UNIT", "MULT", "PARM"];
 /// Unit letter of the field that identifies the instance of a sensor.
 const INSTANCE: char = '#';
 
-/// Data type of a message field, given by a letter.
+/// Data type of a message field, given by a format letter
+/// (<https://ardupilot.org/dev/docs/code-overview-adding-a-new-log-message.html>).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum FieldKind {
-    Number {
-        stored: StoredNumber,
-        factor: f64,
-    },
+    /// Number that is stored divided by `factor`.
+    Number { stored: StoredNumber, factor: f64 },
     /// Field that is not a number, with its length \[bytes\].
     Other(usize),
 }
@@ -220,8 +225,7 @@ impl<'l> SampleFields<'l> {
             if index == stamp.field || Some(index) == instance {
                 continue;
             }
-            // The format letters for hundredths already include the factor, which the multiplier
-            // repeats.
+            // Some format letters already include a factor, which the multiplier repeats.
             let multiplier = if factor == 1.0 {
                 layouts.multiplier(layout, index)
             } else {
@@ -252,8 +256,9 @@ pub(super) struct Topics {
 }
 
 impl Topics {
-    /// Adds a sample from a message; `value` returns the message field at an index.
-    pub(super) fn take(
+    /// Adds a sample from a message, whose fields have the values that `value` returns for their
+    /// indices; ignores a message without a time stamp.
+    pub(super) fn add(
         &mut self,
         fields: &SampleFields<'_>,
         value: impl Fn(usize) -> Option<f64>,
@@ -286,7 +291,34 @@ impl Topics {
 
     /// Returns the columns, with their documented channels and units, and the flight modes over
     /// time.
-    pub(super) fn columns(self, notes: Vec<String>) -> Result<Columns, VariableFault> {
+    pub(super) fn into_columns(self, notes: Vec<String>) -> Result<Columns, VariableFault> {
+        let modes = self.flight_modes();
+        let columns = self
+            .by_name
+            .into_values()
+            .flat_map(TopicSamples::into_columns)
+            .collect();
+        let mut columns = Columns {
+            notes,
+            ..Columns::new(String::new(), columns)
+        };
+        if columns.columns.is_empty() {
+            return Err(VariableFault::damaged(
+                "",
+                "a log without a message that has time stamps and numbers",
+                0,
+            ));
+        }
+        columns
+            .notes
+            .extend(assign_documented_meanings(&mut columns.columns, &ARDUPILOT));
+        columns.notes.extend(modes_note(&modes));
+        columns.modes = modes;
+        Ok(columns)
+    }
+
+    /// Returns the spans in which the vehicle was armed, and those of the flight modes.
+    fn flight_modes(&self) -> Vec<ModeSpan> {
         let mut modes = Vec::new();
         if let Some(armed) = self.states("ARM", "ArmState") {
             modes.extend(mode_spans(armed.time_s, armed.values(), |state| {
@@ -305,28 +337,7 @@ impl Topics {
                 Some(format!("mode {mode}"))
             }));
         }
-        let columns = self
-            .by_name
-            .into_values()
-            .flat_map(TopicSamples::columns)
-            .collect();
-        let mut columns = Columns {
-            notes,
-            ..Columns::new(String::new(), columns)
-        };
-        if columns.columns.is_empty() {
-            return Err(VariableFault::damaged(
-                "",
-                "a log without a message that has time stamps and numbers",
-                0,
-            ));
-        }
-        columns
-            .notes
-            .extend(give_meanings(&mut columns.columns, &ARDUPILOT));
-        columns.notes.extend(modes_note(&modes));
-        columns.modes = modes;
-        Ok(columns)
+        modes
     }
 
     /// Returns a field over time, from instance 0 of a message.

@@ -52,9 +52,9 @@ fn read_text(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, Variab
             continue;
         };
         let cells: Vec<&str> = cells.collect();
-        topics.take(fields, |index| cells.get(index)?.parse().ok(), budget)?;
+        topics.add(fields, |index| cells.get(index)?.parse().ok(), budget)?;
     }
-    topics.columns(vec![
+    topics.into_columns(vec![
         "an ArduPilot log as text; time in seconds since the start of the autopilot".to_owned(),
     ])
 }

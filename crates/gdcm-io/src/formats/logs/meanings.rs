@@ -60,9 +60,10 @@ pub(super) const PX4: Meanings = Meanings {
         acceleration along z are negative upwards (give COL=-COLUMN to reverse a sign)",
 };
 
-/// ArduPilot: `SIDD` from the system identification mode, `RATE`, `IMU`
-/// (<https://ardupilot.org/copter/docs/logmessages.html>). `R`, `P` and `Y` are roll, pitch and
-/// yaw; `…Out` goes to the motors, from -1 to 1 (`AOut` from 0 to 1).
+/// Messages of ArduPilot: `SIDD` (system identification mode), `RATE` (rate controllers), `IMU`
+/// (inertial measurement unit) and `ATT` (attitude)
+/// (<https://ardupilot.org/copter/docs/logmessages.html>). In `RATE`, `R`, `P` and `Y` are roll,
+/// pitch and yaw; `…Out` goes to the motors, from -1 to 1 (`AOut` from 0 to 1).
 pub(super) const ARDUPILOT: Meanings = Meanings {
     columns: &[
         documented("RATE.ROut", "LAT", "1"),
@@ -110,7 +111,10 @@ pub(super) const BETAFLIGHT: Meanings = Meanings {
 
 /// Assigns the documented channels and units to columns. Returns a note that lists the assigned
 /// channels; `None` if there are none.
-pub(super) fn give_meanings(columns: &mut [RecordColumn], meanings: &Meanings) -> Option<String> {
+pub(super) fn assign_documented_meanings(
+    columns: &mut [RecordColumn],
+    meanings: &Meanings,
+) -> Option<String> {
     let mut channels: Vec<&str> = Vec::new();
     let mut assignments: Vec<String> = Vec::new();
     for documented in meanings.columns {
@@ -141,6 +145,7 @@ pub(super) fn give_meanings(columns: &mut [RecordColumn], meanings: &Meanings) -
     ))
 }
 
+/// Returns whether a column has two different values.
 fn varies(column: &RecordColumn) -> bool {
     column.range().is_some_and(|(least, most)| least < most)
 }
@@ -161,7 +166,7 @@ mod tests {
                 ..RecordColumn::new("IMU.GyrY", moving)
             },
         ];
-        let words = give_meanings(&mut columns, &ARDUPILOT).unwrap();
+        let words = assign_documented_meanings(&mut columns, &ARDUPILOT).unwrap();
         let found: Vec<_> = columns.iter().map(|column| column.meaning).collect();
         assert_eq!(found, [Some("Q"), Some("P"), None, None], "{words}");
         assert_eq!(

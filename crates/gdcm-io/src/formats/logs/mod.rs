@@ -1,12 +1,14 @@
 //! Aircraft logs, which consist of topics with a time axis each.
 //!
 //! ```text
-//! bytes -> messages -> topics: stamps, and a column for each field  (ulog, dataflash, blackbox)
+//! bytes -> messages -> topics: stamps, and a column for each field  (ulog, dataflash)
+//!       -> frames   -> a single topic                               (blackbox)
 //!       -> documented units and channels                            (meanings)
 //! ```
 
 mod blackbox;
 mod blackbox_frames;
+mod blackbox_heading;
 mod dataflash;
 mod dataflash_messages;
 mod dataflash_text;

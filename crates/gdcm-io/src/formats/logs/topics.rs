@@ -54,9 +54,9 @@ impl TopicSamples {
         Ok(())
     }
 
-    /// Converts the fields to columns; returns none if there are fewer than `FEWEST_SAMPLES`
-    /// samples.
-    pub(super) fn columns(self) -> Vec<RecordColumn> {
+    /// Converts the fields to columns, which share a time axis; returns none if there are fewer than
+    /// `FEWEST_SAMPLES` samples.
+    pub(super) fn into_columns(self) -> Vec<RecordColumn> {
         if self.time_s.len() < FEWEST_SAMPLES {
             return Vec::new();
         }

@@ -1,9 +1,10 @@
 //! Message layouts in ULog. The fields are numbers, arrays or nested layouts, which are flattened
-//! to a list of numbers.
+//! to a list of numbers: with `esc_report:float rpm` and `esc_status:uint64_t timestamp;esc_report[2]
+//! esc`, the numbers of `esc_status` are `timestamp`, `esc[0].rpm` and `esc[1].rpm`.
 
 use std::collections::BTreeMap;
 
-use crate::formats::strides::{NumberClass, StoredNumber};
+use crate::formats::stored_number::{NumberClass, StoredNumber};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Maximum message length \[bytes\]; the length field has 16 bits.
@@ -34,7 +35,7 @@ impl Place {
 
     /// Reads the number from message data; `None` if the data are too short.
     pub(super) fn read(&self, data: &[u8]) -> Option<f64> {
-        self.stored.at(data, self.offset)
+        self.stored.decode_at(data, self.offset)
     }
 }
 

@@ -1,6 +1,21 @@
 //! Contents of arrays, which may contain further arrays.
 //!
-//! Source: "MAT-File Format", The MathWorks, "miMATRIX Format".
+//! Each array is an element (`element.rs`) whose data are a header (`array_header.rs`) and, by
+//! class, these elements:
+//!
+//! ```text
+//! numbers           real parts; imaginary parts if complex
+//! sparse matrix     row indices, column starts, real parts; imaginary parts if complex
+//! characters        character codes
+//! cell array        an array for each cell
+//! struct array      length of a field name, field names, then an array for each field of the
+//!                   first record, of the second, ...
+//! old-style object  class name, then as a struct array
+//! opaque array      class system, class name, then a reference to an object
+//! ```
+//!
+//! Source: "MAT-File Format", The MathWorks, "miMATRIX Format". It does not describe opaque arrays:
+//! for these, this reader follows the MatFileHandler, matio (Python) and MAT.jl projects.
 
 use std::collections::HashSet;
 
@@ -13,30 +28,39 @@ use crate::formats::mat::subsystem::{CLASS_SYSTEM, Reference, Subsystem};
 use crate::formats::mat::unreadable::{unread_class, unreadable};
 use crate::formats::mat::value_path::{Step, ValuePath};
 use crate::formats::sparse_matrix::CompressedColumns;
-use crate::formats::variables::{Array, CellArray, Object, RECORD, StructArray, Value};
+use crate::formats::variables::{Array, CellArray, Object, RECORD_MEMORY, StructArray, Value};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Reads arrays within a budget.
+///
+/// In the methods, `contents` is the position in the data of an array, and `path` leads to the
+/// value that is being read.
 #[derive(Clone, Copy)]
 pub(super) struct ArrayReader<'a> {
     pub(super) budget: &'a ReadingBudget<'a>,
-    /// Objects of the file, or the reason why they cannot be read.
-    pub(super) objects: Result<&'a Subsystem, &'a str>,
+    pub(super) objects: &'a Objects,
+}
+
+/// Objects to which the opaque arrays of a file refer.
+pub(super) enum Objects {
+    Read(Subsystem),
+    /// The objects cannot be read, for this reason; references to them become opaque values.
+    Unread(String),
 }
 
 impl ArrayReader<'_> {
     /// Reads the next array within another array; errors contain `path`.
-    pub(super) fn nested_value(
+    pub(super) fn read_nested_value(
         &self,
         contents: &mut Cursor<'_>,
         path: &ValuePath<'_>,
     ) -> Result<Value, VariableFault> {
-        self.next_value(contents, path)
+        self.read_next_value(contents, path)
             .map_err(|fault| path.locate(fault))
     }
 
     /// Reads the next array and moves `contents` to the element after it.
-    fn next_value(
+    fn read_next_value(
         &self,
         contents: &mut Cursor<'_>,
         path: &ValuePath<'_>,
@@ -48,7 +72,7 @@ impl ArrayReader<'_> {
             return Ok(Value::empty());
         }
         let header = ArrayHeader::read(&mut data, self.budget)?;
-        let value = self.value(&header, &mut data, path)?;
+        let value = self.read_value(&header, &mut data, path)?;
         *contents = ReadArray {
             start,
             element,
@@ -60,41 +84,44 @@ impl ArrayReader<'_> {
     }
 
     /// Reads the value of an array after its header.
-    pub(super) fn value(
+    pub(super) fn read_value(
         &self,
         header: &ArrayHeader,
         contents: &mut Cursor<'_>,
         path: &ValuePath<'_>,
     ) -> Result<Value, VariableFault> {
-        self.value_of_class(header, contents, path)
+        self.read_value_of_class(header, contents, path)
             .map_err(|fault| path.locate(fault))
     }
 
-    fn value_of_class(
+    /// Reads the value as its class requires; errors do not yet contain `path`.
+    fn read_value_of_class(
         &self,
         header: &ArrayHeader,
         contents: &mut Cursor<'_>,
         path: &ValuePath<'_>,
     ) -> Result<Value, VariableFault> {
         Ok(match header.class {
-            ArrayClass::Float | ArrayClass::Integer => Value::Array(self.array(header, contents)?),
-            ArrayClass::Sparse => Value::Array(self.sparse(header, contents)?),
+            ArrayClass::Float | ArrayClass::Integer => {
+                Value::Array(self.read_array(header, contents)?)
+            }
+            ArrayClass::Sparse => Value::Array(self.read_sparse(header, contents)?),
             ArrayClass::Char => {
                 let element = Element::read(contents)?;
                 Value::Text(read_text(&element, &header.shape, self.budget)?)
             }
-            ArrayClass::Cell => Value::Cell(self.cell(header, contents, path)?),
-            ArrayClass::Struct => Value::Struct(self.records(header, contents, path)?),
-            ArrayClass::Object => Value::Object(self.folder_object(header, contents, path)?),
+            ArrayClass::Cell => Value::Cell(self.read_cell(header, contents, path)?),
+            ArrayClass::Struct => Value::Struct(self.read_records(header, contents, path)?),
+            ArrayClass::Object => Value::Object(self.read_folder_object(header, contents, path)?),
             ArrayClass::FunctionHandle => {
                 Element::pass_all(contents)?;
                 unread_class("function_handle", path)
             }
-            ArrayClass::Opaque => self.opaque(contents, path)?,
+            ArrayClass::Opaque => self.read_opaque(contents, path)?,
         })
     }
 
-    fn array(
+    fn read_array(
         &self,
         header: &ArrayHeader,
         contents: &mut Cursor<'_>,
@@ -114,7 +141,7 @@ impl ArrayReader<'_> {
         })
     }
 
-    fn sparse(
+    fn read_sparse(
         &self,
         header: &ArrayHeader,
         contents: &mut Cursor<'_>,
@@ -125,10 +152,11 @@ impl ArrayReader<'_> {
         };
         let rows = read_sizes(&Element::read(contents)?, self.budget)?;
         let starts = read_sizes(&Element::read(contents)?, self.budget)?;
+        // The starts end with the number of stored entries.
         let stored = starts.last().copied().unwrap_or(0);
-        let re = self.sparse_numbers(header, stored, contents)?;
+        let re = self.read_sparse_numbers(header, stored, contents)?;
         let im = if header.is_complex {
-            Some(self.sparse_numbers(header, stored, contents)?)
+            Some(self.read_sparse_numbers(header, stored, contents)?)
         } else {
             None
         };
@@ -150,7 +178,7 @@ impl ArrayReader<'_> {
     }
 
     /// Reads the real or imaginary parts of the `stored` entries of a sparse matrix.
-    fn sparse_numbers(
+    fn read_sparse_numbers(
         &self,
         header: &ArrayHeader,
         stored: usize,
@@ -168,7 +196,7 @@ impl ArrayReader<'_> {
         read_numbers(&element, element.count()?, self.budget)
     }
 
-    fn cell(
+    fn read_cell(
         &self,
         header: &ArrayHeader,
         contents: &mut Cursor<'_>,
@@ -177,7 +205,7 @@ impl ArrayReader<'_> {
         self.take_values(header.count, contents)?;
         let mut values = Vec::new();
         for at in 0..header.count {
-            values.push(self.nested_value(contents, &path.step(Step::Cell(at))?)?);
+            values.push(self.read_nested_value(contents, &path.step(Step::Cell(at))?)?);
         }
         Ok(CellArray {
             shape: header.shape.clone(),
@@ -186,7 +214,7 @@ impl ArrayReader<'_> {
     }
 
     /// Reads an object of an old-style class, defined in an `@` folder.
-    fn folder_object(
+    fn read_folder_object(
         &self,
         header: &ArrayHeader,
         contents: &mut Cursor<'_>,
@@ -195,11 +223,11 @@ impl ArrayReader<'_> {
         let class = Element::read(contents)?.name()?;
         Ok(Object {
             class,
-            records: self.records(header, contents, path)?,
+            records: self.read_records(header, contents, path)?,
         })
     }
 
-    fn records(
+    fn read_records(
         &self,
         header: &ArrayHeader,
         contents: &mut Cursor<'_>,
@@ -209,7 +237,7 @@ impl ArrayReader<'_> {
         let count = header.count;
         self.take_values(count.saturating_mul(names.len()), contents)?;
         // A file of a few bytes can announce any number of records without fields.
-        self.budget.take(count as u64, RECORD, "")?;
+        self.budget.take(count as u64, RECORD_MEMORY, "")?;
         let mut fields: Vec<(String, Vec<Value>)> = Vec::with_capacity(names.len());
         for name in names {
             fields.push((name, Vec::new()));
@@ -220,7 +248,7 @@ impl ArrayReader<'_> {
             let record = path.step(Step::Record(at))?;
             let path = if count == 1 { path } else { &record };
             for (name, values) in &mut fields {
-                values.push(self.nested_value(contents, &path.step(Step::Field(name))?)?);
+                values.push(self.read_nested_value(contents, &path.step(Step::Field(name))?)?);
             }
         }
         Ok(StructArray {
@@ -240,12 +268,9 @@ impl ArrayReader<'_> {
             .take(count as u64, 2 * size_of::<Value>() as u64, "")
     }
 
-    /// Reads an opaque array after its name: an object, whose contents are stored in another part
-    /// of the file, or a value that cannot be read.
-    ///
-    /// The format is not published by The MathWorks; this reader follows the descriptions by the
-    /// MatFileHandler, matio (Python) and MAT.jl projects.
-    fn opaque(
+    /// Reads an opaque array after its name: an object, whose contents are stored in the object
+    /// part of the file, an enumeration, or a value that cannot be read.
+    fn read_opaque(
         &self,
         contents: &mut Cursor<'_>,
         path: &ValuePath<'_>,
@@ -258,11 +283,11 @@ impl ArrayReader<'_> {
                 numbers or text";
             return Ok(Value::opaque(format!("{class} ({system})"), why));
         }
-        let contents = self.nested_value(contents, path)?;
+        let contents = self.read_nested_value(contents, path)?;
         let variable = path.text();
         let objects = match self.objects {
-            Ok(objects) => objects,
-            Err(why) => return Ok(unreadable(&class, why, &variable)),
+            Objects::Read(objects) => objects,
+            Objects::Unread(why) => return Ok(unreadable(&class, why, &variable)),
         };
         if let Some(reference) = Reference::from_value(&contents) {
             return objects.resolve(&reference, path, self.budget);

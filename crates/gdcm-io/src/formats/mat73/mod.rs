@@ -22,6 +22,7 @@ mod number_type;
 mod object_part;
 mod objects;
 mod reader;
+mod sparse_group;
 mod values;
 
 use std::sync::Arc;

@@ -1,17 +1,18 @@
-//! Values other than arrays of numbers: strings, empty arrays, compound records and sparse
-//! matrices.
+//! Values of datasets other than arrays of numbers: strings, empty arrays and compound records.
 
-use hdf5_pure::{CompoundMember, Dataset, Datatype, Object, StringPadding, VlenStringReadOptions};
+use hdf5_pure::{CompoundMember, Dataset, Datatype, StringPadding, VlenStringReadOptions};
 
 use crate::formats::mat::text_rows;
 use crate::formats::mat73::attributes::MatlabAttributes;
-use crate::formats::mat73::dataset::{Elements, Order};
+use crate::formats::mat73::dataset::Elements;
 use crate::formats::mat73::library_fault::{damaged, library_fault};
 use crate::formats::mat73::number_type::NumberType;
-use crate::formats::sparse_matrix::CompressedColumns;
-use crate::formats::strides::count;
+use crate::formats::strides::element_count;
 use crate::formats::variables::{Array, CellArray, ElementKind, StructArray, TextArray, Value};
 use crate::reading_budget::{ReadingBudget, VariableFault};
+
+/// Memory of the shape and the number in an array with a single number \[bytes\].
+const NUMBER_MEMORY: u64 = 24;
 
 /// Converts a character array, stored as UTF-16 codes, to a string for each row.
 pub(super) fn character_rows(
@@ -42,7 +43,7 @@ pub(super) fn strings(
             budget.take(count as u64, u64::from(*size), path)?;
             elements
                 .places()
-                .map(|place| decode_fixed_text(elements.at(place), padding))
+                .map(|place| decode_fixed_text(elements.bytes_at(place), padding))
                 .collect()
         }
         Datatype::VariableLength {
@@ -111,7 +112,7 @@ pub(super) fn empty_value(
     let Some(shape) = stored_shape(elements, path, budget)? else {
         return Err(damaged(path, "the shape of an empty array is wrong"));
     };
-    if shape.len() < 2 || count(&shape) != Some(0) {
+    if shape.len() < 2 || element_count(&shape) != Some(0) {
         return Err(damaged(path, "the shape of an empty array is wrong"));
     }
     Ok(match attributes.class_name() {
@@ -157,6 +158,7 @@ fn stored_shape(
         .collect())
 }
 
+/// Returns an array without elements.
 fn empty_array(shape: Vec<usize>, kind: ElementKind) -> Array {
     Array {
         shape,
@@ -178,12 +180,16 @@ pub(super) fn compound_records(
     };
     let mut fields = Vec::with_capacity(members.len());
     for member in members {
-        // Memory of a value, its shape and its number.
-        let size = size_of::<Value>() as u64 + 24;
+        let size = size_of::<Value>() as u64 + NUMBER_MEMORY;
         budget.take(elements.count() as u64, size, path)?;
         let mut values = Vec::new();
         for place in elements.places() {
-            values.push(member_value(member, elements.at(place), path, budget)?);
+            values.push(member_value(
+                member,
+                elements.bytes_at(place),
+                path,
+                budget,
+            )?);
         }
         fields.push((member.name.clone(), values));
     }
@@ -219,93 +225,4 @@ fn member_value(
         "a field of a record",
         "it is neither a number nor a string of fixed length",
     ))
-}
-
-/// Group with a sparse matrix in compressed sparse column format (`MATLAB_sparse`).
-pub(super) struct SparseGroup<'g> {
-    pub(super) height: u64,
-    pub(super) is_logical: bool,
-    /// Members of the group: row indices `ir`, column starts `jc` and numbers `data`.
-    pub(super) members: &'g [(String, Object)],
-    pub(super) path: &'g str,
-    pub(super) budget: &'g ReadingBudget<'g>,
-}
-
-impl SparseGroup<'_> {
-    /// Expands the sparse matrix to a full matrix.
-    pub(super) fn full_matrix(&self) -> Result<Array, VariableFault> {
-        let starts = self.integers("jc")?.ok_or_else(|| self.contradiction())?;
-        let rows = self.integers("ir")?.unwrap_or_default();
-        let data = self.data()?;
-        let height = usize::try_from(self.height).map_err(|_| self.contradiction())?;
-        let width = starts
-            .len()
-            .checked_sub(1)
-            .ok_or_else(|| self.contradiction())?;
-        let kind = if self.is_logical {
-            ElementKind::Logical
-        } else {
-            data.kind
-        };
-        self.budget.take(rows.len() as u64, 8, self.path)?;
-        let columns = CompressedColumns {
-            shape: [height, width],
-            kind,
-            rows,
-            starts,
-            re: data.re,
-            im: data.im,
-        };
-        columns
-            .into_entries()
-            .ok_or_else(|| self.contradiction())?
-            .full_matrix(self.path, self.budget, || self.contradiction())
-    }
-
-    /// Reads the nonzero numbers; without a dataset `data` there are none.
-    fn data(&self) -> Result<Array, VariableFault> {
-        let Some(elements) = self.member("data")? else {
-            return Ok(Array::matrix(0, 0, Vec::new()));
-        };
-        match elements.numbers(self.path, self.budget)? {
-            Some(numbers) => Ok(numbers),
-            None => Err(damaged(
-                self.path,
-                "the elements of a sparse matrix are not numbers",
-            )),
-        }
-    }
-
-    /// Reads the integers of the member `name`; `None` if the group has no such member.
-    fn integers(&self, name: &str) -> Result<Option<Vec<usize>>, VariableFault> {
-        let Some(elements) = self.member(name)? else {
-            return Ok(None);
-        };
-        let Some(words) = elements.words(self.path, self.budget)? else {
-            return Err(damaged(
-                self.path,
-                "the indices of a sparse matrix are not integers",
-            ));
-        };
-        Ok(Some(
-            words
-                .into_iter()
-                .map(|word| usize::try_from(word).unwrap_or(usize::MAX))
-                .collect(),
-        ))
-    }
-
-    fn member(&self, name: &str) -> Result<Option<Elements>, VariableFault> {
-        let found = self.members.iter().find(|(member, _)| member == name);
-        match found {
-            Some((_, Object::Dataset(dataset))) => {
-                Elements::read(dataset, Order::Columns, self.path, self.budget).map(Some)
-            }
-            _ => Ok(None),
-        }
-    }
-
-    fn contradiction(&self) -> VariableFault {
-        damaged(self.path, "the sparse matrix is inconsistent")
-    }
 }

@@ -1,6 +1,6 @@
 //! Storage forms of values, which follow from the names of their types.
 
-use crate::formats::strides::NumberClass;
+use crate::formats::stored_number::NumberClass;
 use crate::formats::variables::{Array, ElementKind};
 
 /// Number type in the binary encoding.

@@ -1,13 +1,12 @@
 //! Tables of numbers in columns, written by programs or by hand.
 
+use crate::formats::counted::counted;
 use crate::formats::text::cell_number::cell_number;
 use crate::formats::text::encoding::refuse_binary;
-use crate::formats::text::heading::{
-    Heading, NumberedLine, is_mostly_numbers, names_one_more_column,
-};
+use crate::formats::text::heading::{Heading, is_mostly_numbers, names_one_more_column};
 use crate::formats::text::heading_units::name_and_unit;
 use crate::formats::text::layout::{Layout, RowShape};
-use crate::formats::text::lines::{comment, excerpt, is_rule, lines};
+use crate::formats::text::lines::{NumberedLine, comment, excerpt, is_rule, lines};
 use crate::formats::text::separator::Separator;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
@@ -28,8 +27,8 @@ pub struct TextTable {
     pub lines: Vec<usize>,
     pub separator: Separator,
     pub decimal_comma: bool,
-    /// Lines that are not rows, such as comments and headings, with their line numbers.
-    pub skipped: Vec<(usize, String)>,
+    /// Lines that are not rows, such as comments and headings.
+    pub skipped: Vec<NumberedLine>,
     /// Notes for the user on how ambiguous parts were read.
     pub notes: Vec<String>,
 }
@@ -64,9 +63,9 @@ impl TextTable {
     pub fn with_headings(mut self, headings: &[String]) -> Result<Self, VariableFault> {
         if headings.len() != self.columns.len() {
             let found = format!(
-                "{} headings for {} columns",
-                headings.len(),
-                self.columns.len()
+                "{} for {}",
+                counted(headings.len(), "heading"),
+                counted(self.columns.len(), "column")
             );
             return Err(VariableFault::format("one heading for each column", found));
         }
@@ -93,11 +92,12 @@ pub fn read_table(text: &str, budget: &ReadingBudget) -> Result<TextTable, Varia
     };
     let mut reading = Reading::new(layout, budget)?;
     for (number, line) in lines(text) {
-        reading.line(number, line)?;
+        reading.take_line(number, line)?;
     }
     reading.finish(text)
 }
 
+/// Returns the error for a text without a row of numbers.
 fn no_numbers(text: &str) -> VariableFault {
     let found = match excerpt(text).as_str() {
         "" => "an empty file".to_owned(),
@@ -106,7 +106,9 @@ fn no_numbers(text: &str) -> VariableFault {
     VariableFault::format(EXPECTED, found)
 }
 
-/// State of reading a table.
+/// State of reading a table. Each line is a row, or it is skipped: an empty line, a comment, a ruled
+/// line, and a line before the first row that may be a heading. Skipped lines other than empty lines
+/// are kept, because names and units are looked up in them at the end.
 struct Reading<'m> {
     layout: Layout,
     budget: &'m ReadingBudget<'m>,
@@ -131,35 +133,40 @@ impl<'m> Reading<'m> {
         })
     }
 
-    fn line(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
+    /// Adds a line as a row, or skips it.
+    ///
+    /// # Errors
+    /// [`VariableFault`] if a row has the wrong number of columns, or text follows the first row.
+    fn take_line(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
         if line.trim().is_empty() {
             return Ok(());
         }
         if comment(line).is_some() {
             // Check for rows first: "#N/A;1" and ";1;2" are rows that begin with a comment mark.
             return match self.layout.row_shape(line) {
-                Some(shape) if self.layout.fits(shape) => self.row(number, line),
-                _ => self.skip(number, line),
+                Some(shape) if self.layout.fits(shape) => self.take_row(number, line),
+                _ => self.skip_line(number, line),
             };
         }
         if is_rule(line) {
-            return self.skip(number, line);
+            return self.skip_line(number, line);
         }
         if self.lines.is_empty() {
-            self.line_before_rows(number, line)
+            self.take_line_before_rows(number, line)
         } else if self.repeats_heading(line) {
             self.notes.push(format!(
                 "line {number} repeats a heading: the rows after it continue the table"
             ));
-            self.skip(number, line)
+            self.skip_line(number, line)
         } else {
-            self.row(number, line)
+            self.take_row(number, line)
         }
     }
 
-    fn line_before_rows(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
+    /// Adds a line as the first row, or skips it.
+    fn take_line_before_rows(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
         match self.layout.row_shape(line) {
-            Some(shape) if self.layout.fits(shape) => self.row(number, line),
+            Some(shape) if self.layout.fits(shape) => self.take_row(number, line),
             // A single number in a wider table is no row: it may be a number of rows or a date.
             Some(RowShape { width: 1, .. }) => {
                 let columns = self.layout.columns;
@@ -167,10 +174,10 @@ impl<'m> Reading<'m> {
                     "line {number} is skipped: it holds one number, but the table has {columns} \
                     columns"
                 ));
-                self.skip(number, line)
+                self.skip_line(number, line)
             }
-            Some(_) => self.row(number, line),
-            None => self.heading(number, line),
+            Some(_) => self.take_row(number, line),
+            None => self.take_text_before_rows(number, line),
         }
     }
 
@@ -179,19 +186,19 @@ impl<'m> Reading<'m> {
         self.skipped_above_rows()
             .iter()
             .take(COMPARED_HEADINGS)
-            .any(|heading| heading.1.trim() == line.trim())
+            .any(|heading| heading.text.trim() == line.trim())
     }
 
     /// Returns the lines before the first row that were skipped.
     fn skipped_above_rows(&self) -> &[NumberedLine] {
         let first_row = self.lines.first().copied().unwrap_or(0);
-        let count = self
-            .skipped
-            .partition_point(|(number, _)| *number < first_row);
+        let count = self.skipped.partition_point(|line| line.number < first_row);
         &self.skipped[..count]
     }
 
-    fn heading(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
+    /// Adds a line that is not a row of numbers as the first row if it is probably a row with errors,
+    /// which are then reported; otherwise skips it.
+    fn take_text_before_rows(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
         let columns = self.layout.columns;
         let cells: Vec<_> = self
             .layout
@@ -201,20 +208,29 @@ impl<'m> Reading<'m> {
             .collect();
         let fits = cells.len() == columns || cells.len() == columns + 1;
         if fits && is_mostly_numbers(&cells, self.layout) {
-            self.row(number, line)
+            self.take_row(number, line)
         } else {
-            self.skip(number, line)
+            self.skip_line(number, line)
         }
     }
 
-    fn skip(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
+    /// Keeps a line that is not a row.
+    fn skip_line(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
         self.budget.take(2 * line.len() as u64 + 64, 1, "")?;
-        self.skipped.push((number, line.to_owned()));
+        self.skipped.push(NumberedLine {
+            number,
+            text: line.to_owned(),
+        });
         Ok(())
     }
 
-    fn row(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
+    /// Appends the numbers in a line to the columns.
+    ///
+    /// # Errors
+    /// [`VariableFault`] if a cell is not a number, or the number of columns is wrong.
+    fn take_row(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
         let is_first = self.lines.is_empty();
+        // An empty last cell is a column, not a trailing separator, if the heading names it.
         if is_first && self.layout.trailing && names_one_more_column(&self.skipped, self.layout) {
             self.layout.columns += 1;
             self.layout.trailing = false;
@@ -276,6 +292,7 @@ impl<'m> Reading<'m> {
         )
     }
 
+    /// Returns the error for a line with the wrong number of columns.
     fn wrong_width(&self, number: usize, line: &str) -> VariableFault {
         let mut found: usize = 0;
         let mut ends_empty = false;
@@ -292,12 +309,14 @@ impl<'m> Reading<'m> {
             "",
             number,
             format!(
-                "{found} columns, but the table has {expected} (separated by {separator}); \
-                complete the line, or split the file where the columns change"
+                "{}, but the table has {expected} (separated by {separator}); \
+                complete the line, or split the file where the columns change",
+                counted(found, "column")
             ),
         )
     }
 
+    /// Finds names and units in the skipped lines, and returns the table.
     fn finish(mut self, text: &str) -> Result<TextTable, VariableFault> {
         if self.lines.is_empty() {
             return Err(no_numbers(text));
@@ -405,7 +424,7 @@ mod columns_tests {
             table
                 .skipped
                 .iter()
-                .map(|(line, _)| *line)
+                .map(|line| line.number)
                 .collect::<Vec<_>>(),
             [1, 2, 3, 6, 8]
         );
@@ -440,7 +459,7 @@ mod columns_tests {
              correct it, or leave the cell empty"
         );
         assert!(
-            message("t;x;\n1;2;\n3;4;\n5;\n").starts_with("line 4: 1 columns, but the table has 2")
+            message("t;x;\n1;2;\n3;4;\n5;\n").starts_with("line 4: 1 column, but the table has 2")
         );
         assert_eq!(
             message("1,2\n3,4\nt,x\n"),

@@ -1,4 +1,11 @@
 //! Frequency responses in a table, recognised by the names and units of its columns.
+//!
+//! ```text
+//! FrequencyColumns::recognise   names and units -> which columns hold which responses
+//!   column_meaning.rs           meaning of a single column
+//!   response_recognition.rs     responses from several columns
+//! FrequencyColumns::values      numbers -> points of each response (response_columns.rs)
+//! ```
 
 use crate::formats::text::columns::TextTable;
 use crate::formats::text::response_columns::{RecognisedResponse, ResponsePoints, column_place};
@@ -69,6 +76,7 @@ impl FrequencyColumns {
         frequencies.len() > 1 && frequencies.is_sorted_by(|above, below| above > below)
     }
 
+    /// Returns the points of each response; the frequencies must increase.
     fn increasing_values(&self, table: &TextTable) -> Result<Vec<ResponsePoints>, VariableFault> {
         let omega = self.omega(table)?;
         self.responses

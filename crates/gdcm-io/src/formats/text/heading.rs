@@ -1,16 +1,14 @@
 //! Column names and units, from the lines before the numbers.
 
+use crate::formats::counted::counted;
 use crate::formats::text::cell_number::has_number;
 use crate::formats::text::heading_units::{is_unit, name_and_unit};
 use crate::formats::text::layout::Layout;
-use crate::formats::text::lines::{comment, is_rule};
+use crate::formats::text::lines::{NumberedLine, comment, is_rule};
 use crate::formats::text::separator::Separator;
 
 /// Number of lines before the first row that are searched for names and units.
 const SEARCHED: usize = 100;
-
-/// A line with its number, counted from 1.
-pub(super) type NumberedLine = (usize, String);
 
 /// Names and units of the columns.
 #[derive(Debug, PartialEq, Eq)]
@@ -39,20 +37,21 @@ impl Heading {
             notes: Vec::new(),
         };
         let mut lines = fitting_lines(above, layout).into_iter();
-        let Some(mut names) = lines.next() else {
+        let Some(nearest) = lines.next() else {
             heading.note_misfit(above, layout);
             return heading;
         };
-        if is_units_line(&names.cells)
-            && let Some(before) = lines.next()
-            && names.number > before.number
-        {
-            heading.units = names.cells.iter().map(|cell| unit_of(cell)).collect();
-            heading
-                .notes
-                .push(format!("line {} gives the units", names.number));
-            names = before;
-        }
+        let names = match lines.next() {
+            // The names must be above the units: the next candidate may be a comment below them.
+            Some(next) if is_units_line(&nearest.cells) && next.number < nearest.number => {
+                heading.units = nearest.cells.iter().map(|cell| unit_of(cell)).collect();
+                heading
+                    .notes
+                    .push(format!("line {} gives the units", nearest.number));
+                next
+            }
+            _ => nearest,
+        };
         heading.take_names(&names.cells);
         heading
             .notes
@@ -60,6 +59,7 @@ impl Heading {
         heading
     }
 
+    /// Takes the names, and the units that are still unknown, from the cells of a line.
     fn take_names(&mut self, cells: &[String]) {
         let mut names = Vec::with_capacity(cells.len());
         for (cell, known_unit) in cells.iter().zip(&mut self.units) {
@@ -77,15 +77,15 @@ impl Heading {
         let nearest = above
             .iter()
             .rev()
-            .find(|(_, line)| comment(line).is_none() && !is_rule(line));
-        let Some((number, line)) = nearest else {
+            .find(|line| comment(&line.text).is_none() && !is_rule(&line.text));
+        let Some(NumberedLine { number, text }) = nearest else {
             return;
         };
-        let found = layout.separator.cells(line).count();
+        let found = layout.separator.cells(text).count();
         if found > 1 {
-            let columns = layout.columns;
+            let columns = counted(layout.columns, "column");
             self.notes.push(format!(
-                "line {number} has {found} words for {columns} columns: it is not read as column \
+                "line {number} has {found} words for {columns}: it is not read as column \
                 names"
             ));
         }
@@ -97,17 +97,17 @@ fn fitting_lines(above: &[NumberedLine], layout: Layout) -> Vec<FittingLine> {
     let candidates: Vec<_> = above
         .iter()
         .rev()
-        .filter(|(_, line)| !is_rule(line))
+        .filter(|line| !is_rule(&line.text))
         .take(SEARCHED)
         .collect();
     let mut fitting = Vec::new();
     for is_comment in [false, true] {
-        for (number, line) in &candidates {
-            let marked = comment(line);
-            if marked.is_some() != is_comment {
+        for NumberedLine { number, text } in &candidates {
+            let after_mark = comment(text);
+            if after_mark.is_some() != is_comment {
                 continue;
             }
-            if let Some(cells) = heading_cells(marked.unwrap_or(line), layout) {
+            if let Some(cells) = heading_cells(after_mark.unwrap_or(text), layout) {
                 fitting.push(FittingLine {
                     number: *number,
                     cells,
@@ -119,7 +119,8 @@ fn fitting_lines(above: &[NumberedLine], layout: Layout) -> Vec<FittingLine> {
 }
 
 /// Splits a heading into a cell for each column; `None` if this is impossible. The separator may
-/// differ from the separator between the numbers.
+/// differ from the separator between the numbers; these are tried, in this order: the separator of
+/// the numbers, the other separators, wide blanks, blanks outside brackets, any blanks.
 fn heading_cells(line: &str, layout: Layout) -> Option<Vec<String>> {
     let columns = layout.columns;
     if layout.separator != Separator::Blanks
@@ -160,6 +161,7 @@ fn fitted(mut cells: Vec<String>, layout: Layout) -> Option<Vec<String>> {
     if fits { Some(cells) } else { None }
 }
 
+/// Returns whether a cell contains a letter.
 fn has_letters(cell: &str) -> bool {
     cell.chars().any(char::is_alphabetic)
 }
@@ -231,14 +233,14 @@ fn cells_with_brackets_joined(line: &str, columns: usize) -> Vec<String> {
 /// Returns whether a heading has one name more than `layout` has columns: then the empty cells
 /// after a trailing separator are a column.
 pub(super) fn names_one_more_column(above: &[NumberedLine], layout: Layout) -> bool {
-    above.iter().any(|(_, line)| {
-        let named = layout
+    above.iter().any(|NumberedLine { text, .. }| {
+        let named_columns = layout
             .separator
-            .cells(comment(line).unwrap_or(line))
+            .cells(comment(text).unwrap_or(text))
             .take(layout.columns + 2)
             .filter(|cell| has_letters(cell))
             .count();
-        named == layout.columns + 1
+        named_columns == layout.columns + 1
     })
 }
 
@@ -269,7 +271,10 @@ mod heading_tests {
         let above: Vec<_> = lines
             .iter()
             .enumerate()
-            .map(|(index, line)| (index + 1, (*line).to_owned()))
+            .map(|(index, line)| NumberedLine {
+                number: index + 1,
+                text: (*line).to_owned(),
+            })
             .collect();
         Heading::find(
             &above,

@@ -4,6 +4,10 @@ use crate::formats::text::matlab_scanner::{Position, REMEDY, ValueError, refused
 use crate::formats::variables::{Array, StructArray, Value};
 use crate::reading_budget::ReadingBudget;
 
+/// Numbers of rows and columns from this limit on are rejected; all integers below it are exact as
+/// floats.
+const COUNT_LIMIT: f64 = 1e15;
+
 /// A supported MATLAB function, by the kind of value that it creates.
 #[derive(Clone, Copy)]
 pub(super) enum Function {
@@ -16,6 +20,7 @@ pub(super) enum Function {
     Text,
 }
 
+/// Contents of a filled matrix.
 #[derive(Clone, Copy)]
 pub(super) enum Fill {
     Zeros,
@@ -98,6 +103,7 @@ impl Call<'_> {
         };
         if let Fill::Identity = fill {
             for index in 0..rows.min(columns) {
+                // Column-major order: a column has `rows` elements.
                 values[index * rows + index] = 1.0;
             }
         }
@@ -126,7 +132,7 @@ fn count_from(value: &Value) -> Option<usize> {
     let Value::Array(array) = value else {
         return None;
     };
-    if array.len() != 1 || array.re[0].fract() != 0.0 || array.re[0] >= 1e15 {
+    if array.len() != 1 || array.re[0].fract() != 0.0 || array.re[0] >= COUNT_LIMIT {
         return None;
     }
     Some(array.re[0].max(0.0) as usize)

@@ -1,5 +1,6 @@
 //! Values in MATLAB or Octave statements: numbers, strings, matrices, cell arrays and models.
 
+use crate::formats::counted::counted;
 use crate::formats::strides::first_index_fastest;
 use crate::formats::text::literal_functions::{Call, Function};
 use crate::formats::text::matlab_scanner::{
@@ -43,23 +44,23 @@ enum Element {
 
 impl ValueReader<'_, '_, '_> {
     /// Reads a value; rejects a statement that continues after it.
-    pub(super) fn whole_value(&mut self) -> Result<Value, ValueError> {
-        let value = self.value(0)?;
+    pub(super) fn read_whole_value(&mut self) -> Result<Value, ValueError> {
+        let value = self.read_value(0)?;
         self.scanner.pass_blanks()?;
         match self.scanner.peek() {
             None | Some(';' | ',' | '\n' | '\r') => Ok(value),
-            Some(_) => not_computed(self.scanner.position()),
+            Some(_) => refuse_expression(self.scanner.position()),
         }
     }
 
     /// Reads a value; `depth` is its nesting depth.
-    fn value(&mut self, depth: usize) -> Result<Value, ValueError> {
+    fn read_value(&mut self, depth: usize) -> Result<Value, ValueError> {
         if depth > MOST_NESTED {
             return Err(VariableFault::too_deep("").into());
         }
         self.scanner.pass_blanks()?;
         let place = self.scanner.position();
-        if let Some(ComplexNumber { re, im }) = self.complex(false)? {
+        if let Some(ComplexNumber { re, im }) = self.read_complex(false)? {
             let im = if im == 0.0 { None } else { Some(vec![im]) };
             return Ok(Value::Array(Array {
                 im,
@@ -67,20 +68,20 @@ impl ValueReader<'_, '_, '_> {
             }));
         }
         match self.scanner.peek() {
-            Some('[') => self.matrix(),
-            Some('{') => self.cell_array(place, depth),
-            Some('\'' | '"') => Ok(Value::text(self.scanner.quoted(self.budget)?)),
+            Some('[') => self.read_matrix(),
+            Some('{') => self.read_cell_array(place, depth),
+            Some('\'' | '"') => Ok(Value::text(self.scanner.read_quoted(self.budget)?)),
             Some('@') => refused(format!("functions are not supported; {REMEDY}"), place),
             None | Some('\n' | '\r' | ';' | ',') => {
                 refused("a value is missing here; write it", place)
             }
-            Some(_) => self.named_value(place, depth),
+            Some(_) => self.read_named_value(place, depth),
         }
     }
 
     /// Reads a function call, or a copy of a variable or field.
-    fn named_value(&mut self, place: Position, depth: usize) -> Result<Value, ValueError> {
-        let path = self.scanner.path(self.budget)?;
+    fn read_named_value(&mut self, place: Position, depth: usize) -> Result<Value, ValueError> {
+        let path = self.scanner.read_path(self.budget)?;
         let before = self.scanner.clone();
         self.scanner.pass_blanks()?;
         match path.as_slice() {
@@ -88,7 +89,7 @@ impl ValueReader<'_, '_, '_> {
                 format!("this is not a number, string or matrix; {REMEDY}"),
                 place,
             ),
-            [function] if self.scanner.take("(") => self.call(function, place, depth),
+            [function] if self.scanner.take("(") => self.read_call(function, place, depth),
             path => {
                 *self.scanner = before;
                 self.workspace.copy(path, place, self.budget)
@@ -96,14 +97,15 @@ impl ValueReader<'_, '_, '_> {
         }
     }
 
-    /// Reads a real number, or a complex number such as `1 - 2i`, at this position; `None` if there
-    /// is no number.
-    fn complex(&mut self, in_matrix: bool) -> Result<Option<ComplexNumber>, ValueError> {
+    /// Reads a real number, or a complex number such as `1 - 2i`, at this position; `None`, without
+    /// moving, if there is no number. `in_matrix`: between square brackets, where a blank may
+    /// separate two elements.
+    fn read_complex(&mut self, in_matrix: bool) -> Result<Option<ComplexNumber>, ValueError> {
         let before = self.scanner.clone();
         let Some(Number {
             value,
             is_imaginary,
-        }) = self.signed()?
+        }) = self.read_signed()?
         else {
             *self.scanner = before;
             return Ok(None);
@@ -111,7 +113,8 @@ impl ValueReader<'_, '_, '_> {
         let behind = self.scanner.clone();
         let is_spaced = self.scanner.pass_blanks()?;
         let is_sign = matches!(self.scanner.peek(), Some('+' | '-'));
-        // The blank in `[1 -2i]` separates two elements, but not in `[1 - 2i]`.
+        // The blank in `[1 -2i]` separates two elements, but not in `[1 - 2i]`, where another blank
+        // follows the sign.
         let is_separate = in_matrix
             && is_spaced
             && !self.scanner.rest()[usize::from(is_sign)..].starts_with([' ', '\t']);
@@ -121,7 +124,7 @@ impl ValueReader<'_, '_, '_> {
             && let Ok(Some(Number {
                 value: im,
                 is_imaginary: true,
-            })) = self.signed()
+            })) = self.read_signed()
         {
             return Ok(Some(ComplexNumber { re: value, im }));
         }
@@ -134,7 +137,7 @@ impl ValueReader<'_, '_, '_> {
     }
 
     /// Reads a number with any signs before it; `None` if there is no number.
-    fn signed(&mut self) -> Result<Option<Number>, ValueError> {
+    fn read_signed(&mut self) -> Result<Option<Number>, ValueError> {
         let mut sign = 1.0;
         loop {
             match self.scanner.peek() {
@@ -146,13 +149,13 @@ impl ValueReader<'_, '_, '_> {
             self.scanner.pass_blanks()?;
             self.budget.work(1, "")?;
         }
-        if let Some(number) = self.scanner.number()? {
+        if let Some(number) = self.scanner.read_number()? {
             return Ok(Some(Number {
                 value: sign * number.value,
                 ..number
             }));
         }
-        let value = match self.scanner.name() {
+        let value = match self.scanner.read_name() {
             Some("inf" | "Inf") => sign * f64::INFINITY,
             Some("nan" | "NaN") => f64::NAN,
             _ => return Ok(None),
@@ -163,38 +166,39 @@ impl ValueReader<'_, '_, '_> {
         }))
     }
 
-    /// Reads rows of elements from an opening bracket to the closing bracket; `element` reads an
-    /// element.
-    fn rows<T>(
+    /// Reads rows of elements from an opening bracket, at this position, to the closing bracket
+    /// `close`; `read_element` reads an element. Commas or blanks separate elements, semicolons or
+    /// line ends separate rows; empty rows do not count.
+    fn read_rows<T>(
         &mut self,
         close: char,
         opening: Position,
-        mut element: impl FnMut(&mut Self) -> Result<T, ValueError>,
+        mut read_element: impl FnMut(&mut Self) -> Result<T, ValueError>,
     ) -> Result<Rows<T>, ValueError> {
         self.scanner.at += 1;
         let mut elements = Vec::new();
         let mut columns = 0;
         let mut rows = 0;
-        // Number of elements in the current row.
-        let mut row = 0;
+        let mut row_length = 0;
         loop {
             let is_spaced = self.scanner.pass_blanks()?;
             let place = self.scanner.position();
             let next = self.scanner.peek();
             let ends_row = matches!(next, Some(';' | '\n' | '\r')) || next == Some(close);
-            if ends_row && row > 0 {
+            if ends_row && row_length > 0 {
                 if rows == 0 {
-                    columns = row;
+                    columns = row_length;
                 }
                 rows += 1;
-                if row != columns {
+                if row_length != columns {
+                    let found = counted(row_length, "column");
                     let what = format!(
-                        "row {rows} has {row} columns, but the first row has {columns}; complete \
-                        the shorter row"
+                        "row {rows} has {found}, but the first row has {columns}; complete the \
+                        shorter row"
                     );
                     return refused(what, opening);
                 }
-                row = 0;
+                row_length = 0;
             }
             match next {
                 None => return refused("the bracket is never closed; close it", opening),
@@ -209,12 +213,12 @@ impl ValueReader<'_, '_, '_> {
                     });
                 }
                 Some(sign) => {
-                    if row > 0 && self.is_operator(sign, is_spaced) {
-                        return not_computed(place);
+                    if row_length > 0 && self.is_operator(sign, is_spaced) {
+                        return refuse_expression(place);
                     }
                     self.budget.take(2, size_of::<T>() as u64, "")?;
-                    elements.push(element(self)?);
-                    row += 1;
+                    elements.push(read_element(self)?);
+                    row_length += 1;
                 }
             }
         }
@@ -237,14 +241,15 @@ impl ValueReader<'_, '_, '_> {
         behind.starts_with([' ', '\t']) && OPERATORS.contains(sign)
     }
 
-    fn cell_array(&mut self, opening: Position, depth: usize) -> Result<Value, ValueError> {
+    /// Reads a cell array.
+    fn read_cell_array(&mut self, opening: Position, depth: usize) -> Result<Value, ValueError> {
         let Rows {
             rows,
             columns,
             elements,
-        } = self.rows('}', opening, |reader| {
+        } = self.read_rows('}', opening, |reader| {
             reader.budget.take(4, 64, "")?;
-            reader.value(depth + 1)
+            reader.read_value(depth + 1)
         })?;
         Ok(Value::Cell(CellArray {
             shape: vec![rows, columns],
@@ -254,28 +259,33 @@ impl ValueReader<'_, '_, '_> {
 
     /// Reads a matrix of numbers, transposed if a quotation mark follows it, or of strings in
     /// double quotation marks.
-    fn matrix(&mut self) -> Result<Value, ValueError> {
+    fn read_matrix(&mut self) -> Result<Value, ValueError> {
         let opening = self.scanner.position();
         let Rows {
             rows,
             columns,
             elements,
-        } = self.rows(']', opening, Self::matrix_element)?;
+        } = self.read_rows(']', opening, Self::read_matrix_element)?;
         let count = elements.len();
         self.budget
             .take(count as u64, 2 * size_of::<Element>() as u64, "")?;
         let is_transposed = self.scanner.take("'");
-        // Values are stored in column-major order: row-major order is the storage of the transpose.
-        let (shape, elements) = if is_transposed {
-            (vec![columns, rows], elements)
+        // Values are stored in column-major order, which for the transpose is the order as read, row
+        // by row.
+        let shape = if is_transposed {
+            vec![columns, rows]
         } else {
-            let by_column = first_index_fastest(&[rows, columns], elements);
-            (vec![rows, columns], by_column)
+            vec![rows, columns]
+        };
+        let by_column = if is_transposed {
+            elements
+        } else {
+            first_index_fastest(&[rows, columns], elements)
         };
         let mut real_parts = Vec::new();
         let mut imaginary_parts = Vec::new();
         let mut texts = Vec::new();
-        for element in elements {
+        for element in by_column {
             match element {
                 Element::Number { re, im } => {
                     real_parts.push(re);
@@ -307,13 +317,14 @@ impl ValueReader<'_, '_, '_> {
         Ok(Value::Text(TextArray { shape, texts }))
     }
 
-    fn matrix_element(&mut self) -> Result<Element, ValueError> {
+    /// Reads an element between square brackets.
+    fn read_matrix_element(&mut self) -> Result<Element, ValueError> {
         let place = self.scanner.position();
-        if let Some(ComplexNumber { re, im }) = self.complex(true)? {
+        if let Some(ComplexNumber { re, im }) = self.read_complex(true)? {
             return Ok(Element::Number { re, im });
         }
         match self.scanner.peek() {
-            Some('"') => Ok(Element::Text(self.scanner.quoted(self.budget)?)),
+            Some('"') => Ok(Element::Text(self.scanner.read_quoted(self.budget)?)),
             Some('\'') => refused(
                 "strings in brackets are not joined; write {'A', 'B'}",
                 place,
@@ -327,7 +338,12 @@ impl ValueReader<'_, '_, '_> {
 
     /// Reads the arguments after the opening bracket of a function call, and returns the value of
     /// the function.
-    fn call(&mut self, name: &str, place: Position, depth: usize) -> Result<Value, ValueError> {
+    fn read_call(
+        &mut self,
+        name: &str,
+        place: Position,
+        depth: usize,
+    ) -> Result<Value, ValueError> {
         let Some(function) = Function::find(name) else {
             return refused(format!("{name}(…) is not evaluated; {REMEDY}"), place);
         };
@@ -338,13 +354,13 @@ impl ValueReader<'_, '_, '_> {
                 break;
             }
             self.budget.take(2, size_of::<Value>() as u64, "")?;
-            arguments.push(self.value(depth + 1)?);
+            arguments.push(self.read_value(depth + 1)?);
             self.scanner.pass_blanks()?;
             if self.scanner.take(")") {
                 break;
             }
             if !self.scanner.take(",") {
-                return not_computed(self.scanner.position());
+                return refuse_expression(self.scanner.position());
             }
         }
         let call = Call {
@@ -357,6 +373,6 @@ impl ValueReader<'_, '_, '_> {
 }
 
 /// Returns the error for an expression, because this reader evaluates none.
-fn not_computed<T>(place: Position) -> Result<T, ValueError> {
+fn refuse_expression<T>(place: Position) -> Result<T, ValueError> {
     refused(format!("expressions are not evaluated; {REMEDY}"), place)
 }

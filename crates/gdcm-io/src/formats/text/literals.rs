@@ -8,7 +8,7 @@ use crate::formats::text::encoding::refuse_binary;
 use crate::formats::text::lines::excerpt;
 use crate::formats::text::literal_values::ValueReader;
 use crate::formats::text::matlab_scanner::{
-    Position, Scanner, ValueError, begins_word, is_of_word, refused,
+    Position, Scanner, ValueError, begins_name, is_name_character, refused,
 };
 use crate::formats::text::workspace::Workspace;
 use crate::formats::variables::{Value, Variable};
@@ -64,7 +64,7 @@ pub fn read_literals(text: &str, budget: &ReadingBudget) -> Result<Statements, V
     };
     while !reading.scanner.rest().is_empty() {
         budget.work(1, "")?;
-        reading.statement()?;
+        reading.read_statement()?;
     }
     Ok(Statements {
         variables: reading.workspace.variables,
@@ -91,7 +91,8 @@ struct Beginning {
 }
 
 impl<'t> Reading<'t, '_> {
-    fn statement(&mut self) -> Result<(), VariableFault> {
+    /// Reads or skips the next statement, or moves past a separator between statements.
+    fn read_statement(&mut self) -> Result<(), VariableFault> {
         self.scanner.pass_blanks()?;
         let begin = Beginning {
             position: self.scanner.position(),
@@ -107,20 +108,20 @@ impl<'t> Reading<'t, '_> {
                 self.scanner.at += 1;
                 Ok(())
             }
-            Some('[') => self.function_results(begin),
-            Some(_) => self.named_statement(begin),
+            Some('[') => self.read_function_results(begin),
+            Some(_) => self.read_named_statement(begin),
         }
     }
 
     /// Reads a statement other than an assignment of function results; if no name begins it, it is
     /// skipped with a note.
-    fn named_statement(&mut self, begin: Beginning) -> Result<(), VariableFault> {
-        let path = self.scanner.path(self.budget)?;
+    fn read_named_statement(&mut self, begin: Beginning) -> Result<(), VariableFault> {
+        let path = self.scanner.read_path(self.budget)?;
         let behind = self.scanner.clone();
         self.scanner.pass_blanks()?;
         let is_equality = self.scanner.rest().starts_with("==");
         if !path.is_empty() && !is_equality && self.scanner.take("=") {
-            return self.assignment(&path, begin.position);
+            return self.read_assignment(&path, begin.position);
         }
         match path.as_slice() {
             [] => self.pass_over(begin, "is not understood"),
@@ -159,14 +160,14 @@ impl<'t> Reading<'t, '_> {
     }
 
     /// Skips "[a, b] = …" and makes the variables opaque, because functions are not executed.
-    fn function_results(&mut self, begin: Beginning) -> Result<(), VariableFault> {
+    fn read_function_results(&mut self, begin: Beginning) -> Result<(), VariableFault> {
         let line = self.scanner.rest_of_line();
         let Some(names) = assigned_names(line) else {
             return self.pass_over(begin, "is not executed");
         };
         let why = "it is the result of a function, which is not executed; write its value";
-        for name in names.split(|c: char| !is_of_word(c)) {
-            if begins_word(name) {
+        for name in names.split(|c: char| !is_name_character(c)) {
+            if begins_name(name) {
                 self.set_unread(&[name], begin.position, why)?;
             }
         }
@@ -174,11 +175,11 @@ impl<'t> Reading<'t, '_> {
     }
 
     /// Reads the value of an assignment; an unsupported value makes the variable opaque.
-    fn assignment(&mut self, path: &[&'t str], begin: Position) -> Result<(), VariableFault> {
+    fn read_assignment(&mut self, path: &[&'t str], begin: Position) -> Result<(), VariableFault> {
         let before = self.scanner.clone();
-        match self.assigned_value(begin) {
+        match self.read_assigned_value(begin) {
             Ok(value) => return self.workspace.set(path, value, self.budget),
-            Err(ValueError::Fault(fault)) => return Err(fault.of(|| path.join("."))),
+            Err(ValueError::Fault(fault)) => return Err(fault.in_variable(|| path.join("."))),
             Err(ValueError::NotUnderstood { what, at }) => {
                 self.scanner = before;
                 self.set_unread(path, at, &what)?;
@@ -186,10 +187,11 @@ impl<'t> Reading<'t, '_> {
         }
         self.scanner
             .pass_statement(self.budget)
-            .map_err(|fault| fault.of(|| path.join(".")))
+            .map_err(|fault| fault.in_variable(|| path.join(".")))
     }
 
-    fn assigned_value(&mut self, begin: Position) -> Result<Value, ValueError> {
+    /// Reads the value after the equals sign of an assignment.
+    fn read_assigned_value(&mut self, begin: Position) -> Result<Value, ValueError> {
         if self.open_blocks > 0 {
             return refused(
                 "it is set within a condition or a loop, which is not executed; write its value \
@@ -202,7 +204,7 @@ impl<'t> Reading<'t, '_> {
             budget: self.budget,
             workspace: &self.workspace,
         };
-        reader.whole_value()
+        reader.read_whole_value()
     }
 
     /// Makes a variable or field opaque, for the reason `what`.
@@ -411,7 +413,7 @@ mod tests {
     fn errors_give_the_place_and_the_remedy() {
         assert_eq!(
             why("A = [1 2; 3];"),
-            "line 1, column 5: row 2 has 1 columns, but the first row has 2; complete the shorter row"
+            "line 1, column 5: row 2 has 1 column, but the first row has 2; complete the shorter row"
         );
         assert_eq!(
             why("\nA = \n"),

@@ -1,4 +1,7 @@
 //! Scanner for MATLAB or Octave statements: blanks and comments, names, strings and numbers.
+//!
+//! Methods that read or skip something move past it; methods that return `None` or false do not
+//! move. A copy of the scanner keeps a position, to which reading can return.
 
 use crate::formats::text::lines::excerpt;
 use crate::reading_budget::{ReadingBudget, VariableFault};
@@ -10,12 +13,12 @@ pub(super) const REMEDY: &str =
 pub(super) const MOST_NESTED: usize = 64;
 
 /// Returns whether a name can contain this character.
-pub(super) fn is_of_word(character: char) -> bool {
+pub(super) fn is_name_character(character: char) -> bool {
     character.is_alphanumeric() || character == '_'
 }
 
 /// Returns whether a text begins like a name.
-pub(super) fn begins_word(text: &str) -> bool {
+pub(super) fn begins_name(text: &str) -> bool {
     text.starts_with(|first: char| first.is_alphabetic() || first == '_')
 }
 
@@ -33,6 +36,7 @@ impl From<VariableFault> for ValueError {
     }
 }
 
+/// Returns the error that a value at a position is not supported.
 pub(super) fn refused<T>(what: impl Into<String>, at: Position) -> Result<T, ValueError> {
     Err(ValueError::NotUnderstood {
         what: what.into(),
@@ -75,6 +79,7 @@ impl<'t> Scanner<'t> {
         }
     }
 
+    /// Returns the text from the current position on.
     pub(super) fn rest(&self) -> &'t str {
         &self.text[self.at..]
     }
@@ -83,6 +88,7 @@ impl<'t> Scanner<'t> {
         self.rest().split(['\n', '\r']).next().unwrap_or_default()
     }
 
+    /// Returns the next character, without moving.
     pub(super) fn peek(&self) -> Option<char> {
         self.rest().chars().next()
     }
@@ -189,26 +195,35 @@ impl<'t> Scanner<'t> {
     }
 
     /// Reads the name at this position; `None` if there is none.
-    pub(super) fn name(&mut self) -> Option<&'t str> {
+    pub(super) fn read_name(&mut self) -> Option<&'t str> {
         let rest = self.rest();
-        if !begins_word(rest) {
+        if !begins_name(rest) {
             return None;
         }
-        let end = rest.find(|c: char| !is_of_word(c)).unwrap_or(rest.len());
+        let end = rest
+            .find(|c: char| !is_name_character(c))
+            .unwrap_or(rest.len());
         self.at += end;
         Some(&rest[..end])
     }
 
     /// Reads the names at this position, separated by points as in "sys.A"; empty if there are
     /// none.
-    pub(super) fn path(&mut self, budget: &ReadingBudget) -> Result<Vec<&'t str>, VariableFault> {
-        let mut path: Vec<&'t str> = self.name().into_iter().collect();
+    pub(super) fn read_path(
+        &mut self,
+        budget: &ReadingBudget,
+    ) -> Result<Vec<&'t str>, VariableFault> {
+        let mut path: Vec<&'t str> = self.read_name().into_iter().collect();
         while let Some(first) = path.first() {
             if path.len() > MOST_NESTED {
                 return Err(VariableFault::too_deep(first));
             }
             let before = self.clone();
-            let next = if self.take(".") { self.name() } else { None };
+            let next = if self.take(".") {
+                self.read_name()
+            } else {
+                None
+            };
             let Some(name) = next else {
                 *self = before;
                 break;
@@ -221,7 +236,7 @@ impl<'t> Scanner<'t> {
 
     /// Reads a string up to the closing quotation mark on the same line; a doubled quotation mark
     /// stands for a single one.
-    pub(super) fn quoted(&mut self, budget: &ReadingBudget) -> Result<String, ValueError> {
+    pub(super) fn read_quoted(&mut self, budget: &ReadingBudget) -> Result<String, ValueError> {
         let opening = self.position();
         let quote = self.peek().unwrap_or('\'');
         self.at += 1;
@@ -247,20 +262,21 @@ impl<'t> Scanner<'t> {
     }
 
     /// Reads the unsigned number at this position; `None` if there is none.
-    pub(super) fn number(&mut self) -> Result<Option<Number>, ValueError> {
+    pub(super) fn read_number(&mut self) -> Result<Option<Number>, ValueError> {
         let rest = self.rest();
         let place = self.position();
         let bytes = rest.as_bytes();
         if !(is_digit(bytes, 0) || (rest.starts_with('.') && is_digit(bytes, 1))) {
             return Ok(None);
         }
+        // Offsets in `rest`: mantissa, exponent, letter i or j, then letters that make it invalid.
         let mut end = past_mantissa(bytes);
         end = past_exponent(bytes, end);
         let value = rest[..end].replace(['d', 'D'], "e").parse();
         let is_imaginary = matches!(bytes.get(end), Some(b'i' | b'j'));
         end += usize::from(is_imaginary);
         let tail = rest[end..]
-            .find(|c: char| !is_of_word(c))
+            .find(|c: char| !is_name_character(c))
             .unwrap_or(rest.len() - end);
         self.at += end + tail;
         match value {
@@ -323,7 +339,7 @@ impl<'t> Scanner<'t> {
 
     /// Moves past a string, or to the end of the line if the string is not closed.
     fn pass_text(&mut self, budget: &ReadingBudget) -> Result<(), VariableFault> {
-        match self.quoted(budget) {
+        match self.read_quoted(budget) {
             Err(ValueError::Fault(fault)) => return Err(fault),
             Err(ValueError::NotUnderstood { .. }) => self.pass_line(),
             Ok(_) => {}
@@ -368,7 +384,7 @@ fn is_indexed_assignment(line: &str, open: char, close: char) -> bool {
         if depth == 0 {
             let behind = line[at + 1..]
                 .trim_start()
-                .trim_start_matches(|c: char| c == '.' || is_of_word(c))
+                .trim_start_matches(|c: char| c == '.' || is_name_character(c))
                 .trim_start();
             return behind.starts_with('=') && !behind.starts_with("==");
         }
@@ -376,7 +392,7 @@ fn is_indexed_assignment(line: &str, open: char, close: char) -> bool {
     false
 }
 
-/// Open brackets in a statement, the outermost first.
+/// Open brackets in a statement that is skipped, the outermost first.
 #[derive(Default)]
 struct OpenBrackets(Vec<OpenBracket>);
 
@@ -444,6 +460,7 @@ impl OpenBrackets {
     }
 }
 
+/// Returns whether there is a digit at an offset.
 fn is_digit(bytes: &[u8], at: usize) -> bool {
     bytes.get(at).is_some_and(u8::is_ascii_digit)
 }

@@ -1,9 +1,20 @@
 //! Text files with numbers: tables in columns, frequency responses, matrices, and MATLAB
 //! statements.
+//!
+//! ```text
+//! bytes -> text                              (encoding)
+//!       -> table: columns, names, units      (columns, with layout, heading, cell_number)
+//!            -> frequency responses          (frequency_columns)
+//!       -> table, after complex numbers, words or times of day are replaced by plain numbers
+//!                                            (complex_columns, word_columns)
+//!       -> matrices with names               (matrix_text)
+//!       -> variables of MATLAB statements    (literals)
+//! ```
 
 mod cell_number;
 mod clock_time;
 mod column_meaning;
+mod column_words;
 mod columns;
 mod complex_columns;
 pub(crate) mod encoding;
@@ -16,6 +27,7 @@ mod literal_functions;
 mod literal_values;
 mod literals;
 mod matlab_scanner;
+mod matrix_lines;
 mod matrix_text;
 mod response_columns;
 mod response_label;
@@ -110,14 +122,15 @@ fn begins_with_numbers(bytes: &[u8]) -> bool {
         if line.contains('=') {
             return false;
         }
-        if is_row_of_numbers(line) {
+        if is_row_of_plain_numbers(line) {
             return true;
         }
     }
     false
 }
 
-fn is_row_of_numbers(line: &str) -> bool {
+/// Returns whether a line holds only numbers in the notation of Rust, with any separator.
+fn is_row_of_plain_numbers(line: &str) -> bool {
     let mut has_number = false;
     for cell in line.split([',', ';', '\t', ' ']) {
         if cell.is_empty() {

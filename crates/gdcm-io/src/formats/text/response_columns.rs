@@ -3,7 +3,8 @@
 use crate::formats::text::columns::TextTable;
 use crate::reading_budget::VariableFault;
 
-/// A frequency response in columns of a table.
+/// A frequency response in columns of a table; its frequencies are in another column, which all
+/// responses of the table share.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RecognisedResponse {
     /// Output, if the column names give it.

@@ -45,6 +45,7 @@ impl ResponseLabel {
         }
     }
 
+    /// Creates a label from the texts of output and input, either of which may be empty.
     fn from_parts(output: &str, input: &str) -> Self {
         Self {
             output: channel(output),

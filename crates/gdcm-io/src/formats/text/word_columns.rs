@@ -15,6 +15,7 @@ const SAMPLE: usize = 200;
 const MOST_WORDS: usize = 500;
 /// Maximum number of words listed in a note.
 const SHOWN: usize = 12;
+/// Length of a day \[s\].
 const DAY_S: f64 = 86_400.0;
 
 /// A text in whose columns numbers have replaced words and times of day.
@@ -29,6 +30,7 @@ pub struct NumberedText {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Numbers,
+    /// Times of day, with or without a date.
     Clock,
     Words,
 }
@@ -61,6 +63,7 @@ pub fn numbered_words(
     }))
 }
 
+/// Returns the cells of a line without blanks around them.
 fn trimmed_cells(line: &str, separator: Separator) -> Vec<String> {
     separator
         .cells(line)
@@ -201,6 +204,7 @@ impl Column {
     /// Returns the time since the first time in the column \[s\]; a time that goes back by more
     /// than half a day is on the next day. Returns an empty string for any other cell.
     fn seconds(&mut self, cell: &str) -> String {
+        // Without a date, the time is since midnight and below `DAY_S`.
         let Some(mut now_s) = clock_s(cell) else {
             return String::new();
         };
@@ -209,6 +213,7 @@ impl Column {
             last_s: now_s,
         });
         if now_s < DAY_S && now_s < last_s - DAY_S / 2.0 {
+            // Add whole days, so that the time is as near as possible to the last.
             now_s += DAY_S * ((last_s - now_s) / DAY_S).round();
         }
         self.clock = Some(ClockSpan {

@@ -88,6 +88,7 @@ impl<'t> Workspace<'t> {
     }
 }
 
+/// Returns a record without fields.
 fn empty_struct() -> Value {
     Value::Struct(StructArray::one(Vec::new()))
 }

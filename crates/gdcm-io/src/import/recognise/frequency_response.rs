@@ -13,7 +13,7 @@ use super::flight_condition::{Page, facts_of, origin_of};
 use super::labels::{inputs_of, outputs_of};
 use super::record::Record;
 use super::state_space::source_of;
-use super::values::{array_of, first_text_of, list_of};
+use super::values::{Field, array_of, first_text_of, list_of};
 use crate::files::model_collection::bare_draft;
 use crate::formats::variables::Array;
 
@@ -60,6 +60,45 @@ pub(super) fn is_response(record: &Record<'_>) -> bool {
     };
     let has_frequencies = array_of(frequencies.value).is_some_and(|array| array.len() > 1);
     has_frequencies && (complex_array(record).is_some() || real_and_imaginary(record).is_some())
+}
+
+/// Reads the measured response in `record`.
+pub(super) fn response(record: &Record<'_>, variable: &str) -> Result<FoundModel, String> {
+    refuse_delays(record)?;
+    let frequencies = Frequencies::read(record)?;
+    let stored = StoredResponse::find(record)?;
+    let layout = ResponseLayout::new(stored.shape, frequencies.omega.len())?;
+    let coherence = coherence_of(record, &stored, &layout)?;
+    let response = ResponseDraft {
+        re: layout.ordered("response", stored.re)?,
+        im: layout.ordered("response", stored.im)?,
+        omega: frequencies.omega,
+        coherence,
+        valid_bands: None,
+        estimate: Estimate::default(),
+    };
+    let origin = match origin_of(record) {
+        Origin::Identified { method, order } => Origin::Identified { method, order },
+        Origin::Nominal { .. } | Origin::Perturbed { .. } => Origin::Identified {
+            method: None,
+            order: None,
+        },
+    };
+    let mut notes = Vec::new();
+    if frequencies.is_hertz {
+        notes.push("frequencies in Hz".to_owned());
+    }
+    Ok(FoundModel {
+        draft: ModelDraft {
+            response: Some(response),
+            source: Some(source_of(variable)),
+            ..bare_draft(variable.to_owned(), origin)
+        },
+        inputs: inputs_of(record, layout.inputs)?,
+        outputs: outputs_of(record, layout.outputs)?,
+        facts: facts_of(record, Page::ONLY)?,
+        notes,
+    })
 }
 
 /// Returns the array of complex values and marks its field as used; `None` if there is none.
@@ -111,45 +150,6 @@ impl<'v> StoredResponse<'v> {
     }
 }
 
-/// Reads the measured response in `record`.
-pub(super) fn response(record: &Record<'_>, variable: &str) -> Result<FoundModel, String> {
-    refuse_delays(record)?;
-    let frequencies = Frequencies::read(record)?;
-    let stored = StoredResponse::find(record)?;
-    let layout = ResponseLayout::new(stored.shape, frequencies.omega.len())?;
-    let coherence = coherence_of(record, &stored, &layout)?;
-    let response = ResponseDraft {
-        re: layout.ordered("response", stored.re)?,
-        im: layout.ordered("response", stored.im)?,
-        omega: frequencies.omega,
-        coherence,
-        valid_bands: None,
-        estimate: Estimate::default(),
-    };
-    let origin = match origin_of(record) {
-        Origin::Identified { method, order } => Origin::Identified { method, order },
-        Origin::Nominal { .. } | Origin::Perturbed { .. } => Origin::Identified {
-            method: None,
-            order: None,
-        },
-    };
-    let mut notes = Vec::new();
-    if frequencies.is_hertz {
-        notes.push("frequencies in Hz".to_owned());
-    }
-    Ok(FoundModel {
-        draft: ModelDraft {
-            response: Some(response),
-            source: Some(source_of(variable)),
-            ..bare_draft(variable.to_owned(), origin)
-        },
-        inputs: inputs_of(record, layout.inputs)?,
-        outputs: outputs_of(record, layout.outputs)?,
-        facts: facts_of(record, Page::ONLY)?,
-        notes,
-    })
-}
-
 /// Returns the coherence γ²; `None` if the record has none.
 ///
 /// # Errors
@@ -191,53 +191,107 @@ struct Frequencies {
 
 impl Frequencies {
     fn read(record: &Record<'_>) -> Result<Self, String> {
-        let unit_text = record
-            .get(UNITS)
-            .and_then(first_text_of)
-            .unwrap_or_default();
-        let unit = PhysicalUnit::of(&unit_text);
-        let multiple_of_hertz = unit.filter(|unit| unit.dimension == Dimension::Frequency);
-        let angular_rate = unit.filter(|unit| unit.name.starts_with("rad/"));
+        let unit = FrequencyUnit::read(record);
+        let GivenFrequencies { field, is_hertz } = GivenFrequencies::find(record, &unit)?;
+        let values = list_of("frequencies", record.take(field))?;
+        let factor = if is_hertz {
+            unit.rad_s_per_multiple_of_hertz()
+        } else {
+            unit.rad_s_per_angular_rate()?
+        };
+        Ok(Self {
+            omega: values.into_iter().map(|value| value * factor).collect(),
+            is_hertz,
+        })
+    }
+}
+
+/// Field with the frequencies of a response.
+struct GivenFrequencies<'v> {
+    field: Field<'v>,
+    is_hertz: bool,
+}
+
+impl<'v> GivenFrequencies<'v> {
+    /// Finds the field; its name decides about the unit, unless a unit is given.
+    ///
+    /// # Errors
+    /// The reason if there are no frequencies, or neither their name nor a unit tells whether they
+    /// are in rad/s or Hz.
+    fn find(record: &Record<'v>, unit: &FrequencyUnit) -> Result<Self, String> {
         // Without a unit, MATLAB and python-control use rad/s.
         let has_default = record.class.is_some() || record.get(&["frdata", "fresp"]).is_some();
-        let (field, is_hertz) = if let Some(field) = record.find(RADIANS) {
-            (field, multiple_of_hertz.is_some())
+        if let Some(field) = record.find(RADIANS) {
+            Ok(Self {
+                field,
+                is_hertz: unit.multiple_of_hertz.is_some(),
+            })
         } else if let Some(field) = record.find(FREQUENCIES) {
-            if unit_text.is_empty() && !has_default {
+            if unit.text.is_empty() && !has_default {
                 return Err(
                     "frequencies: unit missing, rad/s or Hz; call them omega_rad_s or f_hz, or give \"rad/s\" or \"Hz\" \
                         beside them as frequency_unit"
                         .to_owned(),
                 );
             }
-            (field, multiple_of_hertz.is_some())
+            Ok(Self {
+                field,
+                is_hertz: unit.multiple_of_hertz.is_some(),
+            })
         } else if let Some(field) = record.find(HERTZ) {
-            (field, true)
+            Ok(Self {
+                field,
+                is_hertz: true,
+            })
         } else {
-            return Err("frequencies are missing".to_owned());
-        };
-        let values = list_of("frequencies", record.take(field))?;
-        let factor = if is_hertz {
-            match multiple_of_hertz {
-                Some(unit) => TAU * unit.size,
-                None => TAU * 1.0,
-            }
-        } else if let Some(unit) = angular_rate {
-            unit.size
-        } else {
-            match unit_text.to_lowercase().as_str() {
-                "" | "rad" | "rads" | "rad/timeunit" => 1.0,
-                other => {
-                    return Err(format!(
-                        "frequencies are in \"{other}\"; expected rad/s or Hz"
-                    ));
-                }
-            }
-        };
-        Ok(Self {
-            omega: values.into_iter().map(|value| value * factor).collect(),
-            is_hertz,
-        })
+            Err("frequencies are missing".to_owned())
+        }
+    }
+}
+
+/// Unit that is given beside the frequencies.
+struct FrequencyUnit {
+    /// Name of the unit; empty if none is given.
+    text: String,
+    /// The unit, if it is Hz, kHz, ...
+    multiple_of_hertz: Option<PhysicalUnit>,
+    /// The unit, if it is an angle in rad over a time.
+    angular_rate: Option<PhysicalUnit>,
+}
+
+impl FrequencyUnit {
+    fn read(record: &Record<'_>) -> Self {
+        let text = record
+            .get(UNITS)
+            .and_then(first_text_of)
+            .unwrap_or_default();
+        let unit = PhysicalUnit::of(&text);
+        Self {
+            multiple_of_hertz: unit.filter(|unit| unit.dimension == Dimension::Frequency),
+            angular_rate: unit.filter(|unit| unit.name.starts_with("rad/")),
+            text,
+        }
+    }
+
+    /// Returns the factor from the unit to rad/s; without a unit, from Hz.
+    fn rad_s_per_multiple_of_hertz(&self) -> f64 {
+        match self.multiple_of_hertz {
+            Some(unit) => TAU * unit.size,
+            None => TAU,
+        }
+    }
+
+    /// Returns the factor from the unit to rad/s; without a unit, 1.
+    fn rad_s_per_angular_rate(&self) -> Result<f64, String> {
+        if let Some(unit) = self.angular_rate {
+            return Ok(unit.size);
+        }
+        match self.text.to_lowercase().as_str() {
+            "" | "rad" | "rads" | "rad/timeunit" => Ok(1.0),
+            other => Err(format!(
+                "frequencies are in \"{other}\"; expected rad/s or Hz"
+            )),
+        }
     }
 }
 
@@ -247,6 +301,8 @@ struct ResponseLayout {
     inputs: usize,
     /// Number of frequencies.
     count: usize,
+    // Distances in the file between values whose output, input or frequency index differs by 1. In a
+    // file, the first index runs fastest.
     output_stride: usize,
     input_stride: usize,
     frequency_stride: usize,
@@ -298,8 +354,8 @@ impl ResponseLayout {
         for output in 0..self.outputs {
             for input in 0..self.inputs {
                 let start = output * self.output_stride + input * self.input_stride;
-                for k in 0..self.count {
-                    ordered.push(values[start + k * self.frequency_stride]);
+                for frequency in 0..self.count {
+                    ordered.push(values[start + frequency * self.frequency_stride]);
                 }
             }
         }

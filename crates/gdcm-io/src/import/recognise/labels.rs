@@ -182,7 +182,7 @@ fn label_texts(field: &str, value: &Value) -> Result<Option<Vec<String>>, String
 
 /// Returns the label of a channel object as a string, with its unit in brackets: "P [deg/s]".
 fn channel_object_text(records: &StructArray, index: usize) -> Option<String> {
-    let record = Record::from_struct(records, index, None, 0);
+    let record = Record::from_struct(records, index);
     let name = record.get(LABEL_NAMES).and_then(first_text_of)?;
     let unit = record
         .get(LABEL_UNITS)

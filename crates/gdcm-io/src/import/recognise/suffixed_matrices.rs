@@ -39,31 +39,16 @@ pub(super) fn suffixed_models(
         .filter_map(|variable| variable.name.strip_prefix('A'))
         .filter(|suffix| !suffix.is_empty() && by_name.contains_key(format!("B{suffix}").as_str()))
         .collect();
+    // Delays that apply to one model only, by their suffix.
     let delays = delays_with_suffix(variables, &suffixes.iter().copied().collect());
     for suffix in suffixes {
         budget.work(STEPS, "")?;
         let mut fields = matrices_with_suffix(&by_name, suffix);
-        if fields.len() < 3 || !is_state_space(&Record::from_fields(fields.iter().copied())) {
+        if !is_state_space(&Record::from_fields(fields.iter().copied())) {
             continue;
         }
         budget.work(STEPS * variables.len() as u64, "")?;
-        for variable in variables {
-            if MATRICES.contains(&variable.name.as_str()) {
-                continue;
-            }
-            let mut name = variable.name.as_str();
-            if delays.contains(name) {
-                match name.strip_suffix(suffix) {
-                    Some(stem) if is_delay(stem) => name = stem,
-                    // Skip a delay that has the suffix of another model.
-                    _ => continue,
-                }
-            }
-            fields.push(Field {
-                name,
-                value: &variable.value,
-            });
-        }
+        fields.extend(fields_beside(variables, suffix, &delays));
         let record = Record::from_fields(fields.into_iter()).shared();
         let name = suffix.trim_start_matches('_');
         models
@@ -99,6 +84,33 @@ fn matrices_with_suffix<'v>(by_name: &HashMap<&str, &'v Value>, suffix: &str) ->
         {
             fields.push(Field { name, value });
         }
+    }
+    fields
+}
+
+/// Returns the fields that apply to the model with this suffix, other than its matrices: all variables
+/// but the delays that have the suffix of another model. The suffix is removed from its delays.
+fn fields_beside<'v>(
+    variables: &'v [Variable],
+    suffix: &str,
+    delays: &BTreeSet<&str>,
+) -> Vec<Field<'v>> {
+    let mut fields = Vec::new();
+    for variable in variables {
+        if MATRICES.contains(&variable.name.as_str()) {
+            continue;
+        }
+        let mut name = variable.name.as_str();
+        if delays.contains(name) {
+            match name.strip_suffix(suffix) {
+                Some(stem) if is_delay(stem) => name = stem,
+                _ => continue,
+            }
+        }
+        fields.push(Field {
+            name,
+            value: &variable.value,
+        });
     }
     fields
 }

@@ -93,6 +93,8 @@ pub(super) fn page_of(
             "{name}: expected real numbers, found complex numbers"
         ));
     }
+    // The first index runs fastest: if it selects the page, the numbers of a page are `pages` apart;
+    // otherwise the pages follow one another. Either way, its numbers are in column order.
     let is_interleaved = array.shape.len() == 3 && pages_first;
     let start = if is_interleaved {
         page

@@ -23,8 +23,9 @@ const SAMPLE_RATE_NAMES: [&str; 5] = [
     "fsamp",
 ];
 
-/// Number of samples in a record.
+/// Length of a record.
 struct RecordLength {
+    /// Number of samples.
     rows: usize,
     /// Whether a time vector determines the length.
     is_timed: bool,
@@ -50,55 +51,73 @@ pub(super) fn array_columns(record: &Record<'_>, variable: &str) -> Option<Colum
     if rows < fewest {
         return None;
     }
-    let mut columns: Vec<RecordColumn> = Vec::new();
-    let mut matrices = 0;
-    let mut vectors = 0;
-    let mut has_labels = false;
-    let mut left_out = Vec::new();
-    for field in record.fields() {
-        let Some(samples) = samples_of(field.value, Some(rows)) else {
-            continue;
-        };
-        let name = field.name.trim_matches('_');
-        if samples.rows != rows {
-            if samples.rows > 1 {
-                left_out.push(name);
-            }
-            continue;
-        }
-        let count = samples.columns.len();
-        if count == 1 {
-            vectors += 1;
-        } else {
-            matrices += 1;
-        }
-        let labels = ColumnLabels::find(record, name, count);
-        has_labels |= labels.has_names();
-        columns.extend(labels.label(name, samples.columns));
-    }
-    if columns.len() < 2 {
+    let mut arrays = LongArrays::find(record, rows);
+    if arrays.columns.len() < 2 {
         return None;
     }
-    let mut notes = Vec::new();
-    if !left_out.is_empty() {
-        notes.push(format!(
-            "omitted because of another length: {}",
-            left_out.join(", ")
-        ));
-    }
-    // The columns of a single matrix without labels have no names.
-    let named = has_labels || vectors > 0 || matrices > 1;
-    if !named {
-        for (index, column) in columns.iter_mut().enumerate() {
+    if !arrays.have_names {
+        for (index, column) in arrays.columns.iter_mut().enumerate() {
             column.name = format!("column {}", index + 1);
         }
     }
+    let mut notes = Vec::new();
+    if !arrays.left_out.is_empty() {
+        notes.push(format!(
+            "omitted because of another length: {}",
+            arrays.left_out.join(", ")
+        ));
+    }
     Some(Columns {
-        named,
+        named: arrays.have_names,
         sample_time_s,
         notes,
-        ..Columns::new(variable.to_owned(), columns)
+        ..Columns::new(variable.to_owned(), arrays.columns)
     })
+}
+
+/// Vectors and matrices with the length of a record.
+struct LongArrays {
+    columns: Vec<RecordColumn>,
+    /// Whether the columns have names: not those of a single matrix without labels.
+    have_names: bool,
+    /// Names of the arrays with another length; single numbers are not listed.
+    left_out: Vec<String>,
+}
+
+impl LongArrays {
+    fn find(record: &Record<'_>, rows: usize) -> Self {
+        let mut columns: Vec<RecordColumn> = Vec::new();
+        let mut matrices = 0;
+        let mut vectors = 0;
+        let mut has_labels = false;
+        let mut left_out = Vec::new();
+        for field in record.fields() {
+            let Some(samples) = samples_of(field.value, Some(rows)) else {
+                continue;
+            };
+            let name = field.name.trim_matches('_');
+            if samples.rows != rows {
+                if samples.rows > 1 {
+                    left_out.push(name.to_owned());
+                }
+                continue;
+            }
+            let count = samples.columns.len();
+            if count == 1 {
+                vectors += 1;
+            } else {
+                matrices += 1;
+            }
+            let labels = ColumnLabels::find(record, name, count);
+            has_labels |= labels.has_names();
+            columns.extend(labels.label(name, samples.columns));
+        }
+        Self {
+            columns,
+            have_names: has_labels || vectors > 0 || matrices > 1,
+            left_out,
+        }
+    }
 }
 
 /// Returns the length of the longest time vector. Without a sufficiently long one, returns the

@@ -148,7 +148,7 @@ fn evidence_is_of_the_scheduled_conditions_and_agrees_with_the_schedule() {
         (
             scheduled.len(),
             evidence.airspeeds_kt.len(),
-            evidence.kinds.len()
+            evidence.fits.len()
         ),
         (11, 11, SCHEDULE_KINDS.len())
     );
@@ -174,9 +174,9 @@ fn evidence_is_of_the_scheduled_conditions_and_agrees_with_the_schedule() {
             .collect::<Vec<_>>()
     };
     let errors = evidence
-        .kinds
+        .fits
         .iter()
-        .map(|kind| kind.left_out_rms_ln(on_axis()).unwrap())
+        .map(|fit| fit.left_out_rms_ln(on_axis()).unwrap())
         .collect::<Vec<f64>>();
     // The gain deficits of the example change by tens of percent over airspeed, so the constant
     // schedule predicts left-out conditions worst.

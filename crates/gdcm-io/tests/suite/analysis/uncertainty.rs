@@ -416,7 +416,7 @@ fn a_table_of_numbers_is_split_as_the_reference_does() {
                 .iter()
                 .map(|id| *id as usize - 1)
                 .collect();
-            Difference::of(&bars[places[0]], &bars[places[1]])
+            Difference::between(&bars[places[0]], &bars[places[1]])
         });
         let probabilities: Vec<f64> = differences
             .map(|difference| difference.p().unwrap())
@@ -424,7 +424,7 @@ fn a_table_of_numbers_is_split_as_the_reference_does() {
         for (found, reference) in holm(&probabilities).iter().zip(references) {
             assert_near("Holm", *found, &reference["p_holm"], TOLERANCE);
         }
-        let about_schedule = VarianceDecomposition::of(&design, &bars).unwrap();
+        let about_schedule = VarianceDecomposition::new(&design, &bars).unwrap();
         assert_split(
             "about the schedule",
             &about_schedule,
@@ -433,11 +433,11 @@ fn a_table_of_numbers_is_split_as_the_reference_does() {
         );
         assert_split(
             "at equal airspeed",
-            &VarianceDecomposition::of(&by_airspeed, &bars).unwrap(),
+            &VarianceDecomposition::new(&by_airspeed, &bars).unwrap(),
             &table["same_airspeed"],
             TOLERANCE,
         );
-        let band = ScheduleBand::of(&Arc::new(design.clone()), &about_schedule, 0.9);
+        let band = ScheduleBand::new(&Arc::new(design.clone()), &about_schedule, 0.9);
         for (place, airspeed) in numbers(&table["bands"]["airspeed_kt"])
             .into_iter()
             .enumerate()
@@ -463,7 +463,7 @@ fn a_table_of_numbers_is_split_as_the_reference_does() {
             assert_near("left out", found.unwrap(), reference, TOLERANCE);
         }
         for (name, values) in [("altitude", "altitude_ft"), ("weight", "mass_kg")] {
-            let effect = SecondVariableDesign::of(&rows, &numbers(&case[values]))
+            let effect = SecondVariableDesign::new(&rows, &numbers(&case[values]))
                 .unwrap()
                 .effect(&figures, 0.9);
             assert_near(name, effect.effect, &table[name]["effect"], TOLERANCE);

@@ -8,7 +8,7 @@ use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
 
 use super::{constant, matrix_at};
 use crate::correction::Pade;
-use crate::couplings::coupling_effects::relative_change_db;
+use crate::couplings::response_effects::relative_change_db;
 use crate::couplings::{CoupledModelError, CouplingMatrices, LoopMargin};
 
 /// A helicopter with four states, two inputs, three outputs and feed-through.
@@ -64,7 +64,7 @@ fn without_couplings_nothing_changes() {
             .iter()
             .all(|shift| shift.distance_rad_s() == Some(0.0) && !shift.is_newly_unstable())
     );
-    let margin = LoopMargin::of(
+    let margin = LoopMargin::find(
         &none.least_singular_values(&response_of(&physics)),
         grid().omega(),
     )
@@ -171,7 +171,7 @@ fn a_pole_that_the_loop_makes_unstable_is_marked() {
     let response = FrequencyResponse::of(&Dynamics::StateSpace(lag), &grid());
     let couplings = constant(&dmatrix![1.0], &dmatrix![0.9]);
     let margin =
-        LoopMargin::of(&couplings.least_singular_values(&response), grid().omega()).unwrap();
+        LoopMargin::find(&couplings.least_singular_values(&response), grid().omega()).unwrap();
     // |1 - 0.9 / (1 + j 0.2)| at the lowest frequency.
     let expected = (Complex::from(1.0) - Complex::from(0.9) / Complex::new(1.0, 0.2)).norm();
     assert!(

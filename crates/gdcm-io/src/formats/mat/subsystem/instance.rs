@@ -1,4 +1,8 @@
 //! Assembly of objects from the cells that hold their properties.
+//!
+//! An object becomes a record with its saved properties, followed by the class defaults of the
+//! properties that are not saved. References in the values of properties are replaced by the objects
+//! to which they point; `Assembly::open` prevents endless recursion.
 
 use std::collections::{HashMap, HashSet};
 
@@ -14,8 +18,11 @@ use crate::formats::variables::{
 };
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Property that holds the value that a class saves instead of an object.
+/// Property that holds the value that a class saves instead of an object; such an object has no
+/// defaults.
 const CREATED: &str = "any";
+/// All integers below this limit are exact as floats.
+const EXACT_BELOW: f64 = (1_u64 << 53) as f64;
 
 /// Assembles objects, including nested objects.
 pub(super) struct Assembly<'s> {
@@ -25,9 +32,35 @@ pub(super) struct Assembly<'s> {
     open: Vec<u32>,
 }
 
+/// Property of an object.
 struct NamedValue {
     name: String,
     value: Value,
+}
+
+/// Fields of records that are being assembled.
+#[derive(Default)]
+struct Fields {
+    /// Name and values of each field, in the order in which the fields were found.
+    fields: Vec<(String, Vec<Value>)>,
+    /// Index in `fields`, by name.
+    indices: HashMap<String, usize>,
+}
+
+impl Fields {
+    /// Returns the values of a field; adds the field if it is new.
+    fn values_mut(&mut self, name: String) -> &mut Vec<Value> {
+        let index = match self.indices.get(&name) {
+            Some(&index) => index,
+            None => {
+                self.fields.push((name.clone(), Vec::new()));
+                let index = self.fields.len() - 1;
+                self.indices.insert(name, index);
+                index
+            }
+        };
+        &mut self.fields[index].1
+    }
 }
 
 impl<'s> Assembly<'s> {
@@ -65,9 +98,10 @@ impl<'s> Assembly<'s> {
         if contains_itself {
             return Ok(unreadable(class, "it contains itself", &path.text()));
         }
-        let open = self.open.len();
+        let open_before = self.open.len();
         let records = self.records(reference, path);
-        self.open.truncate(open);
+        // After an error, the objects inside are still marked as open.
+        self.open.truncate(open_before);
         match records {
             Ok(records) => Ok(Value::Object(Object {
                 class: class.to_owned(),
@@ -115,8 +149,8 @@ impl<'s> Assembly<'s> {
         reference: &Reference,
         path: &ValuePath<'_>,
     ) -> Result<StructArray, VariableFault> {
-        let mut fields: Vec<(String, Vec<Value>)> = Vec::new();
-        let mut field_indices: HashMap<String, usize> = HashMap::new();
+        let mut fields = Fields::default();
+        // A property may be missing in some objects: its values are padded to one per object.
         for (at, &object) in reference.objects.iter().enumerate() {
             let record = path.step(Step::Record(at))?;
             let path = if reference.objects.len() == 1 {
@@ -126,27 +160,18 @@ impl<'s> Assembly<'s> {
             };
             self.open.push(object);
             for NamedValue { name, value } in self.properties(object, reference.class, path)? {
-                let field = match field_indices.get(&name) {
-                    Some(&field) => field,
-                    None => {
-                        fields.push((name.clone(), Vec::new()));
-                        field_indices.insert(name, fields.len() - 1);
-                        fields.len() - 1
-                    }
-                };
-                if let Some((_, values)) = fields.get_mut(field) {
-                    self.pad(values, at)?;
-                    values.push(value);
-                }
+                let values = fields.values_mut(name);
+                self.pad(values, at)?;
+                values.push(value);
             }
             self.open.pop();
         }
-        for (_, values) in &mut fields {
+        for (_, values) in &mut fields.fields {
             self.pad(values, reference.objects.len())?;
         }
         Ok(StructArray {
             shape: reference.shape.clone(),
-            fields,
+            fields: fields.fields,
         })
     }
 
@@ -207,6 +232,7 @@ impl<'s> Assembly<'s> {
         Ok(properties)
     }
 
+    /// Returns the value of a saved property.
     fn property(
         &mut self,
         property: &Property,
@@ -223,6 +249,7 @@ impl<'s> Assembly<'s> {
                 subsystem.directory.name(name).unwrap_or_default(),
             )),
             Content::Number(number) => {
+                // The directory stores logical values like integers.
                 let kind = if number <= 1 {
                     ElementKind::Logical
                 } else {
@@ -308,10 +335,9 @@ impl<'s> Assembly<'s> {
 
 /// Converts numbers to integers; `None` if any may have been rounded.
 fn exact_words(array: &Array) -> Option<Vec<u64>> {
-    const MOST: f64 = (1_u64 << 53) as f64;
     let mut words = Vec::with_capacity(array.re.len());
     for &number in &array.re {
-        if !(0.0..MOST).contains(&number) {
+        if !(0.0..EXACT_BELOW).contains(&number) {
             return None;
         }
         words.push(number as u64);

@@ -1,22 +1,19 @@
-//! Picking: finds the nearest (not the topmost) curve or dot under the pointer.
+//! Curves under the pointer or in a selection box: the nearest curve, not the topmost, and all
+//! curves through an area.
 
 use egui::{Pos2, Rect, pos2, vec2};
 use egui_plot::{PlotPoint, PlotTransform};
-
-use gdcm_plot::figure::figure::Dot;
-use gdcm_plot::figure::{MarkId, Panel};
 
 use super::drawn_curves::{BodeCurve, CurveId, LogFrequencies, Pane};
 use super::thinning::is_finite;
 
 /// Maximum distance between the pointer and a picked curve \[pt\].
 pub const PICK_RADIUS: f32 = 8.0;
-/// Maximum distance between the pointer and a picked dot \[pt\].
-const DOT_RADIUS: f32 = 10.0;
 
 /// Curve under the pointer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Hit {
+    /// Index among the curves of the scene.
     pub(super) curve: usize,
     /// Frequency of the curve's point nearest to the pointer \[rad/s\].
     pub(super) omega: f64,
@@ -26,12 +23,13 @@ pub(super) struct Hit {
 
 /// Returns the curve nearest to `pointer` within [`PICK_RADIUS`]; among equally near curves, the
 /// topmost.
-pub(super) fn nearest(
+pub(super) fn nearest_curve(
     curves: &[BodeCurve],
     pane: Pane,
     pointer: Pos2,
     transform: &PlotTransform,
 ) -> Option<Hit> {
+    // The best hit so far, and the layer of its curve.
     let mut best: Option<(Hit, usize)> = None;
     let mut axis = LogFrequencies::default();
     let [low, high] = [-PICK_RADIUS, PICK_RADIUS]
@@ -44,8 +42,9 @@ pub(super) fn nearest(
         let layer = curve.role.layer(curve.rejected);
         let is_better = match best {
             None => true,
-            Some((hit, top)) => {
-                closest.distance < hit.distance || (closest.distance == hit.distance && layer > top)
+            Some((hit, best_layer)) => {
+                closest.distance < hit.distance
+                    || (closest.distance == hit.distance && layer > best_layer)
             }
         };
         if closest.distance <= PICK_RADIUS && is_better {
@@ -61,40 +60,8 @@ pub(super) fn nearest(
     best.map(|(hit, _)| hit)
 }
 
-/// Dot under the pointer.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct PointedMark {
-    pub(super) id: MarkId,
-    /// Axis coordinates of the dot.
-    pub(super) at: [f64; 2],
-}
-
-/// Returns the nearest dot with an id; among equally near dots, the topmost, which is drawn last.
-pub(super) fn nearest_dot(
-    panel: &Panel,
-    transform: &PlotTransform,
-    pointer: Pos2,
-) -> Option<PointedMark> {
-    let mut nearest: Option<(f32, &Dot, &MarkId)> = None;
-    for dot in panel.dots() {
-        let Some(id) = &dot.id else { continue };
-        let distance = transform
-            .position_from_point(&PlotPoint::new(dot.x, dot.y))
-            .distance(pointer);
-        let is_nearest = nearest.is_none_or(|(least, ..)| distance <= least);
-        if distance <= DOT_RADIUS && is_nearest {
-            nearest = Some((distance, dot, id));
-        }
-    }
-    let (_, dot, id) = nearest?;
-    Some(PointedMark {
-        id: id.clone(),
-        at: [dot.x, dot.y],
-    })
-}
-
 /// Returns the curves that run through an area on the screen.
-pub(super) fn touched(
+pub(super) fn curves_in(
     curves: &[BodeCurve],
     pane: Pane,
     area: Rect,
@@ -255,8 +222,10 @@ mod tests {
             flat(2, 54.0, Role::Corrected),
             flat(3, 60.0, Role::Nominal),
         ];
-        let hit =
-            |y| nearest(&curves, Pane::Magnitude, pos2(50.0, y), &transform()).map(|hit| hit.curve);
+        let hit = |y| {
+            nearest_curve(&curves, Pane::Magnitude, pos2(50.0, y), &transform())
+                .map(|hit| hit.curve)
+        };
         assert_eq!(hit(49.0), Some(0));
         assert_eq!(hit(47.0), Some(1));
         assert_eq!(hit(42.0), Some(2));
@@ -269,14 +238,14 @@ mod tests {
             flat(1, 50.0, Role::Corrected),
             flat(2, 50.0, Role::Perturbed),
         ];
-        let hit = nearest(&curves, Pane::Magnitude, pos2(50.0, 50.0), &transform());
+        let hit = nearest_curve(&curves, Pane::Magnitude, pos2(50.0, 50.0), &transform());
         assert_eq!(hit.map(|hit| hit.curve), Some(0));
     }
 
     #[test]
     fn a_hit_has_the_frequency_under_the_pointer() {
         let curves = [flat(1, 50.0, Role::Nominal)];
-        let hit = nearest(&curves, Pane::Magnitude, pos2(50.0, 48.0), &transform());
+        let hit = nearest_curve(&curves, Pane::Magnitude, pos2(50.0, 48.0), &transform());
         assert!(hit.is_some_and(|hit| (hit.omega - 10f64.sqrt()).abs() < 1e-4));
     }
 
@@ -290,11 +259,11 @@ mod tests {
         // The area lies between the curve points at 3 and 10 rad/s.
         let area = Rect::from_min_max(pos2(70.0, 44.0), pos2(75.0, 52.0));
         assert_eq!(
-            touched(&curves, Pane::Magnitude, area, &transform()),
+            curves_in(&curves, Pane::Magnitude, area, &transform()),
             [numbered(1), numbered(2)]
         );
         assert!(
-            touched(&curves, Pane::Phase, area, &transform()).is_empty(),
+            curves_in(&curves, Pane::Phase, area, &transform()).is_empty(),
             "a lone point is no curve"
         );
     }
@@ -315,7 +284,7 @@ mod tests {
     fn gaps_cannot_be_picked() {
         let curves = [flat(1, 50.0, Role::Nominal)];
         assert_eq!(
-            nearest(&curves, Pane::Phase, pos2(50.0, 100.0), &transform()),
+            nearest_curve(&curves, Pane::Phase, pos2(50.0, 100.0), &transform()),
             None
         );
     }

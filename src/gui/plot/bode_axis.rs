@@ -7,22 +7,23 @@ use super::bode_scene::BodeScene;
 use super::drawn_curves::Pane;
 use super::ticks::Ticks;
 
+/// Axis of a Bode plot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum PlotAxis {
+pub(super) enum BodeAxis {
     /// Frequency axis, shared by both panes.
     Frequency,
     /// A pane's vertical axis.
     Values(Pane),
 }
 
-impl PlotAxis {
+impl BodeAxis {
     /// Returns the accessible name: "Frequency axis, magnitude plot".
     pub(super) fn name(self, scene: &BodeScene<'_>, pane: Pane) -> String {
         let kind = match self {
             Self::Frequency => "Frequency",
             Self::Values(_) => "Value",
         };
-        format!("{kind} axis, {}", scene.quantity.place(pane))
+        format!("{kind} axis, {}", scene.quantity.name_in_sentence(pane))
     }
 
     /// Returns the unit in brackets; empty without a unit.
@@ -95,7 +96,7 @@ mod tests {
     #[test]
     fn typed_frequencies_are_places_on_the_logarithmic_axis() {
         let scene = BodeScene::new("", &[], (0.5, 12.0));
-        let range = PlotAxis::Frequency
+        let range = BodeAxis::Frequency
             .range(&scene, &texts("0.1", " 100 "))
             .unwrap();
         assert_eq!(
@@ -106,14 +107,14 @@ mod tests {
             }
         );
         assert_eq!(
-            PlotAxis::Frequency.texts(&scene, range),
+            BodeAxis::Frequency.texts(&scene, range),
             texts("0.1", "100")
         );
         let hertz = BodeScene {
             unit: FrequencyUnit::Hertz,
             ..scene
         };
-        let range = PlotAxis::Frequency.range(&hertz, &texts("1", "2")).unwrap();
+        let range = BodeAxis::Frequency.range(&hertz, &texts("1", "2")).unwrap();
         assert!((10f64.powf(range.min) - std::f64::consts::TAU).abs() < 1e-12);
     }
 
@@ -121,7 +122,7 @@ mod tests {
     fn invalid_limits_are_refused_with_a_message() {
         let scene = BodeScene::new("", &[], (0.5, 12.0));
         let frequencies = |min, max| {
-            PlotAxis::Frequency
+            BodeAxis::Frequency
                 .range(&scene, &texts(min, max))
                 .unwrap_err()
                 .to_string()
@@ -136,7 +137,7 @@ mod tests {
         );
         assert_eq!(frequencies("0", "2"), "\"0\" is not a frequency");
         assert_eq!(frequencies("1", "two"), "\"two\" is not a frequency");
-        let values = PlotAxis::Values(Pane::Magnitude);
+        let values = BodeAxis::Values(Pane::Magnitude);
         assert_eq!(
             values.range(&scene, &texts("\u{2212}20", "5")),
             Ok(Range {

@@ -1,4 +1,4 @@
-//! Description of the curve under the pointer: its name, and its values at the pointer.
+//! Status text for the curve under the pointer: its name, and its values at the pointer.
 
 use gdcm_model::number_format::decimals;
 use gdcm_model::response::wrap;
@@ -8,8 +8,9 @@ use super::bode_view::BodeView;
 use super::drawn_curves::{BodeCurve, Pane};
 use super::quantity::BodeQuantity;
 
-/// Formats frequency, name and values of the curve under the pointer in a single line.
-pub fn pointed_words(
+/// Formats frequency, name and values of the curve under the pointer in a single line; `None` if no
+/// curve is under the pointer.
+pub fn pointed_curve_text(
     view: &BodeView,
     curves: &[BodeCurve],
     quantity: BodeQuantity<'_>,

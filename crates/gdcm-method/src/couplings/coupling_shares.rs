@@ -1,18 +1,19 @@
-//! Effects of mixing and feedback (M16.4): their entries in pilot units (percent of stick, degrees
-//! of swashplate phase), the stability margin of the loop, its effect above the band, and the
-//! shifts of the poles.
+//! Entries of mixing and feedback in pilot units: percent of stick, degrees of swashplate phase
+//! (M16.4).
+//!
+//! ```text
+//! feedback:  share of K_ij <- |K_ij| max |R'_jl|  over all inputs l, conditions and frequencies
+//! mixing:    share of M_ij <- M~_ij;  between the cyclic inputs also as swashplate phase, atan M~_ij
+//! ```
+//!
+//! `R'` is the flight response without its channels' delays and leads.
 
-use nalgebra::{Complex, DMatrix};
+use nalgebra::DMatrix;
 
-use gdcm_model::dataset::{ConditionId, Pair, PairTable, StateSpace};
-use gdcm_model::response::eigenvalues::ModesError;
-use gdcm_model::response::{FrequencyResponse, modes};
-use gdcm_model::units::ratio_to_db;
+use gdcm_model::dataset::{ConditionId, Pair, PairTable};
 
-use super::coupling_matrices::{CoupledModelError, CouplingMatrices};
+use super::coupling_matrices::CouplingMatrices;
 use super::problem::CouplingProblem;
-use crate::correction::Pade;
-use crate::fidelity::mode_tracks;
 
 /// Peak share of the stick that is used by an entry of `K`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -165,148 +166,6 @@ pub fn cyclic_inputs(
         }
     }
     cyclic.try_into().ok()
-}
-
-/// Stability margin of the loop: the minimum over several frequencies of the smallest singular
-/// value of `I - K H`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LoopMargin {
-    /// Minimum singular value: 1 without feedback, 0 if a closed-loop pole is at `j omega`.
-    pub least: f64,
-    pub omega_rad_s: f64,
-}
-
-impl LoopMargin {
-    /// Margin below which the loop is reported as close to ringing.
-    pub const CAUTION: f64 = 0.5;
-
-    /// Returns the minimum of singular values, given at `omega` \[rad/s\]; `None` if none is
-    /// finite.
-    pub fn of(singular_values: &[f64], omega: &[f64]) -> Option<Self> {
-        let mut margin: Option<Self> = None;
-        for (&least, &omega_rad_s) in singular_values.iter().zip(omega) {
-            let is_smaller = margin.is_none_or(|margin| least < margin.least);
-            if least.is_finite() && is_smaller {
-                margin = Some(Self { least, omega_rad_s });
-            }
-        }
-        margin
-    }
-
-    /// Returns whether the margin is below [`Self::CAUTION`].
-    pub fn is_close_to_ringing(&self) -> bool {
-        self.least < Self::CAUTION
-    }
-}
-
-impl CouplingMatrices {
-    /// Returns the smallest singular value of `I - K H` at each frequency; NaN if `H` lacks a
-    /// fed-back response. The matrix is m x m, at the inputs, where all channels have the same
-    /// unit.
-    pub fn least_singular_values(&self, physics: &FrequencyResponse) -> Vec<f64> {
-        let points = physics.curve(Pair::new(0, 0)).len();
-        (0..points)
-            .map(|k| self.least_singular_value(physics, k))
-            .collect()
-    }
-
-    /// Returns the smallest singular value of `I - K H` at frequency index `k`.
-    fn least_singular_value(&self, physics: &FrequencyResponse, k: usize) -> f64 {
-        let (inputs, outputs) = self.feedback().shape();
-        let difference = DMatrix::from_fn(inputs, inputs, |to, from| {
-            // Skip responses that are not fed back, since they may be missing.
-            let fed: Complex<f64> = (0..outputs)
-                .filter(|&output| self.feedback()[(to, output)] != 0.0)
-                .map(|output| {
-                    physics.curve(Pair::new(output, from))[k] * self.feedback()[(to, output)]
-                })
-                .sum();
-            let unit = if to == from { 1.0 } else { 0.0 };
-            -fed + unit
-        });
-        if difference.iter().any(|entry| !entry.is_finite()) {
-            return f64::NAN;
-        }
-        difference.singular_values().min()
-    }
-}
-
-/// Returns `20 log10 |H~ - H| / |H|` of every response at frequency index `k`, p x m; `None` if a
-/// value is not finite or `H` is zero, minus infinity if nothing changes.
-pub fn relative_change_db(
-    physics: &FrequencyResponse,
-    coupled: &FrequencyResponse,
-    k: usize,
-) -> PairTable<Option<f64>> {
-    physics.curves().map(|pair, curve| {
-        let before = curve.get(k)?;
-        let after = coupled.curve(pair).get(k)?;
-        let ratio = (after - before).norm() / before.norm();
-        if ratio.is_finite() {
-            Some(ratio_to_db(ratio))
-        } else {
-            None
-        }
-    })
-}
-
-/// A pole of a coupled model and its counterpart in the physics model; conjugate pairs are counted
-/// once.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PoleShift {
-    /// Pole without coupling \[rad/s\]; `None` for an additional state (delays inside the loop).
-    pub before: Option<Complex<f64>>,
-    /// Pole with coupling \[rad/s\].
-    pub after: Complex<f64>,
-}
-
-/// Reasons why the poles of a coupled model are unavailable.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum PoleShiftError {
-    #[error(transparent)]
-    Model(#[from] CoupledModelError),
-    #[error(transparent)]
-    Modes(#[from] ModesError),
-}
-
-impl PoleShift {
-    /// Returns the distance between both poles \[rad/s\]; `None` for an additional state.
-    pub fn distance_rad_s(&self) -> Option<f64> {
-        Some((self.after - self.before?).norm())
-    }
-
-    /// Returns whether coupling moved the pole into the right half-plane.
-    pub fn is_newly_unstable(&self) -> bool {
-        let was_unstable = self.before.is_some_and(|before| before.re > 0.0);
-        self.after.re > 0.0 && !was_unstable
-    }
-}
-
-impl CouplingMatrices {
-    /// Returns the poles of a physics model with mixing and feedback, in ascending `|lambda|`. They
-    /// are matched to the poles without coupling so that the sum of distances is minimal.
-    /// Discrete-time poles are converted by `s = ln z / T`.
-    ///
-    /// # Errors
-    /// [`PoleShiftError`] if the coupled model or its eigenvalues are unavailable.
-    pub fn pole_shifts(
-        &self,
-        physics: &StateSpace,
-        airspeed_kt: f64,
-        pade: Pade,
-    ) -> Result<Vec<PoleShift>, PoleShiftError> {
-        let before = modes(physics)?;
-        let after = modes(&self.model(physics, airspeed_kt, pade)?)?;
-        let tracks = mode_tracks(&[&before, &after], 1);
-        let shifts = tracks
-            .into_iter()
-            .map(|track| PoleShift {
-                before: track.modes[0].map(|mode| before[mode].pole),
-                after: after[track.reference].pole,
-            })
-            .collect();
-        Ok(shifts)
-    }
 }
 
 #[cfg(test)]

@@ -15,6 +15,7 @@ use gdcm::executor::Pool;
 use gdcm_io::{embedded_example, load_dataset};
 use gdcm_method::correction::delta::{Delta, delay_upper_s, gain_bounds, mismatch_table};
 use gdcm_method::fidelity::Discontinuity;
+use gdcm_method::fidelity::discontinuity::PerturbedModel;
 use gdcm_model::dataset::model::Origin;
 use gdcm_model::dataset::{
     Band, BundleKind, Condition, ConditionId, Dataset, Dynamics, Model, ModelId, StateSpace,
@@ -72,9 +73,12 @@ fn stages(criterion: &mut Criterion) {
         None,
     );
     let models = condition.bundle(BundleKind::Physics);
-    let perturbations: Vec<_> = models
+    let perturbed: Vec<PerturbedModel<'_>> = models
         .iter()
-        .map(|model| (model.name.as_str(), model.perturbation()))
+        .map(|model| PerturbedModel {
+            name: &model.name,
+            perturbation: model.perturbation(),
+        })
         .collect();
     let mut group = criterion.benchmark_group("one condition");
     group.bench_function("responses of models not prepared", |bencher| {
@@ -86,7 +90,7 @@ fn stages(criterion: &mut Criterion) {
         });
     });
     group.bench_function("ratios", |bencher| {
-        bencher.iter(|| Discontinuity::fit(&figures.physics, &perturbations, &|| false))
+        bencher.iter(|| Discontinuity::fit(&figures.physics, &perturbed, &|| false))
     });
     group.bench_function("G and D", |bencher| {
         bencher.iter(|| Delta::new(&mismatch, grid.omega()))

@@ -88,7 +88,7 @@ fn response_table(analysis: &Analysis, result: &ConditionAnalysis) -> Table {
         "J after",
     ];
     let leads = result.compensated.as_ref();
-    let price = leads.and_then(|compensated| LeadPrice::of(&compensated.leads));
+    let price = leads.and_then(|compensated| LeadPrice::new(&compensated.leads));
     let mut table = Table::new("", with_price_heading(&columns, price.as_ref()));
     let dataset = &analysis.study.dataset;
     for pair in shown_pairs(&analysis.study) {
@@ -173,7 +173,7 @@ fn lead_table(dataset: &Dataset, correction: &ChannelCorrection, leads: &Channel
         "servo of [rad/s]",
         "replaced by",
     ];
-    let price = LeadPrice::of(leads);
+    let price = LeadPrice::new(leads);
     let mut table = Table::new("", with_price_heading(&columns, price.as_ref()));
     let (inputs, outputs) = dataset.names_of_channels();
     for (channel, delay_s) in correction.signed_delays_s().iter() {

@@ -206,9 +206,10 @@ pub(super) fn apply_signs(study: &mut Study, signs: &[ChannelSign]) -> Result<()
     } in signs
     {
         let (inputs, outputs) = study.dataset.names_of_channels();
-        let named: Vec<correction::Channel> = correction::Channel::all(inputs.len(), outputs.len())
-            .filter(|channel| channel.name(&inputs, &outputs) == *name)
-            .collect();
+        let named: Vec<correction::Channel> =
+            correction::Channel::inputs_then_outputs(inputs.len(), outputs.len())
+                .filter(|channel| channel.name(&inputs, &outputs) == *name)
+                .collect();
         let [channel] = named[..] else {
             let count = named.len();
             let known = [inputs, outputs].concat().join(", ");

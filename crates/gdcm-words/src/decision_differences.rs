@@ -107,7 +107,7 @@ fn pair_differences(
 
 fn sign_differences(before: &Study, after: &Study) -> Vec<DecisionDifference> {
     let mut differences = Vec::new();
-    for channel in Channel::all_of(&before.dataset) {
+    for channel in Channel::of_dataset(&before.dataset) {
         if before.signs.get(&channel) != after.signs.get(&channel) {
             differences.push(DecisionDifference::new(
                 format!("sign of {}", channel.name_in(&before.dataset)),

@@ -25,7 +25,7 @@ pub fn lead_words(
     let Some(compensated) = &result.compensated else {
         return Vec::new();
     };
-    let price = LeadPrice::of(&compensated.leads);
+    let price = LeadPrice::new(&compensated.leads);
     let mut words = Vec::new();
     for pair in result.held().marked() {
         words.extend(wanted_lead_words(
@@ -63,7 +63,7 @@ fn wanted_lead_words(
 ) -> Option<String> {
     let compensated = result.compensated.as_ref()?;
     let wanted_s = result.wanted_delay_s(pair)?;
-    let [output, input] = Channel::of(pair);
+    let [output, input] = Channel::of_pair(pair);
     let part = |channel: Channel| {
         let tau_s = compensated.leads.taus_s[channel];
         let is_opposite = tau_s != 0.0 && (tau_s > 0.0) != (wanted_s > 0.0);
@@ -112,7 +112,7 @@ fn half_width_words(
 /// model is valid; `None` without leads.
 pub fn lead_limit_words(result: &ConditionAnalysis) -> Option<String> {
     let leads = &result.compensated.as_ref()?.leads;
-    let limit = number(LeadPrice::of(leads)?.limit_rad_s);
+    let limit = number(LeadPrice::new(leads)?.limit_rad_s);
     let states: usize = leads
         .filters()
         .iter()

@@ -401,7 +401,7 @@ impl<'a> Cell<'a> {
             )],
             commands,
         );
-        let turns = Channel::of(self.pair).map(|channel| self.turn(channel));
+        let turns = Channel::of_pair(self.pair).map(|channel| self.turn(channel));
         entries_ui(ui, turns, commands);
         if let Some(shown) = self.shown
             && self.undefined().is_none()

@@ -382,7 +382,7 @@ fn coupling_caution(state: &State) -> Option<CouplingCaution> {
 /// Returns the lead price: the maximum magnitude that the filters of a constrained response add
 /// above the band (M15.6); `None` up to 0.05 dB.
 fn lead_caution(shown: &ConditionAnalysis) -> Option<String> {
-    let price = LeadPrice::of(&shown.compensated.as_ref()?.leads)?;
+    let price = LeadPrice::new(&shown.compensated.as_ref()?.leads)?;
     let most_db = shown
         .held()
         .marked()

@@ -35,7 +35,7 @@ pub fn leads_view_ui(
             .default_size(TABLE_PART * width)
             .min_size(160.0);
         panel.show(ui, |ui| {
-            let pair = Channel::of(state.display.selection.pair);
+            let pair = Channel::of_pair(state.display.selection.pair);
             let channels = all_channels(state.dataset());
             let look = TableLook {
                 selected: &|row| match channels.get(row) {
@@ -88,7 +88,7 @@ fn figure(state: &State) -> Figure {
 /// model is valid. `None` without leads.
 pub fn leads_table(state: &State) -> Option<Table> {
     let leads = state.shown()?.correction.leads.as_ref()?;
-    let price = LeadPrice::of(leads);
+    let price = LeadPrice::new(leads);
     let (inputs, outputs) = state.dataset().names_of_channels();
     let top = leads.design.band_top_rad_s();
     let title = match &price {

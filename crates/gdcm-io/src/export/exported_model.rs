@@ -230,7 +230,7 @@ fn exported_model(
             model: model.name.clone(),
             words: error.words(&inputs, &outputs),
         })?;
-    let price = correction.leads.as_ref().and_then(LeadPrice::of);
+    let price = correction.leads.as_ref().and_then(LeadPrice::new);
     let band_top_rad_s = analysis.study.settings.band.max();
     let is_sampled = dynamics.timing().sample_time_s.is_some();
     let contents = ExportContents::of_models(analysis, request.correction, &[id])

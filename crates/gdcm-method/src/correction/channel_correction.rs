@@ -106,7 +106,7 @@ impl ChannelCorrection {
     /// Returns the correction factor of a response; `None` if its net gain is not positive, which
     /// is possible if `k` itself is scheduled.
     pub fn on(&self, pair: Pair) -> Option<GainDelay> {
-        let leads = Channel::of(pair).map(|channel| self.lead(channel));
+        let leads = Channel::of_pair(pair).map(|channel| self.lead(channel));
         Some(self.without_leads_on(pair)?.led(leads))
     }
 

@@ -25,7 +25,8 @@ pub struct Conflict {
 pub enum ConflictKind {
     /// The net value prescribed for two channels exceeds the maximum that the upper bound permits.
     AboveUpper {
-        channels: (Channel, Channel),
+        /// The input and the output.
+        channels: [Channel; 2],
         /// Product of gains, or sum of delays \[s\], prescribed by the entries.
         asked: f64,
         /// Minimum sufficient upper bound.
@@ -34,7 +35,8 @@ pub enum ConflictKind {
     /// The net value prescribed for two channels is below the minimum that the lower bound permits;
     /// for delays, it is a phase lead.
     BelowLower {
-        channels: (Channel, Channel),
+        /// The input and the output.
+        channels: [Channel; 2],
         /// Product of gains, or (negative) sum of delays \[s\], prescribed by the entries.
         asked: f64,
         /// Maximum sufficient lower bound; `None` for delays, whose lower bound is fixed.
@@ -81,9 +83,7 @@ impl Conflict {
     pub fn channels(&self) -> Vec<Channel> {
         match self.kind {
             ConflictKind::AboveUpper { channels, .. }
-            | ConflictKind::BelowLower { channels, .. } => {
-                vec![channels.0, channels.1]
-            }
+            | ConflictKind::BelowLower { channels, .. } => channels.to_vec(),
             ConflictKind::TooFarApart {
                 greater, lesser, ..
             } => vec![greater, lesser],

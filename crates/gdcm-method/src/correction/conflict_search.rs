@@ -1,4 +1,9 @@
 //! Search for the conflict behind each constrained entry whose target could not be met in stage 1.
+//!
+//! The nodes, their values `s` and the entries as prescribed differences of nodes are those of
+//! [`super::constraints`]. A missed entry is a *pull* from one node to another: it requires
+//! `s_to - s_from >= weight`, but stage 1 has reached less. The pulls are the directed edges of a
+//! graph, the *flow*.
 
 use std::collections::VecDeque;
 
@@ -6,9 +11,11 @@ use gdcm_model::dataset::Pair;
 
 use super::branch_and_bound::effort::{Effort, SearchStopped};
 use super::channels::Channel;
-use super::components::{Constraints, PairNodes, Reached, STRAIN};
+use super::components::ACCEPTED_INFEASIBILITY;
 use super::conflict::{Conflict, ConflictKind};
+use super::constraints::{Constraints, PairNodes};
 use super::problem::Problem;
+use super::reachable_targets::Reached;
 use super::rounding::three_digits;
 
 /// An entry that stage 1 could not meet, with the smallest conflict that explains it.
@@ -21,15 +28,15 @@ pub(crate) struct EntryConflict {
 /// Finds the smallest conflict behind each entry that stage 1 missed by more than `tolerance` (in
 /// coordinates); the same conflict can appear several times.
 ///
-/// Stage 1 is a least-squares problem, so that its residuals form a flow: the pull of a missed
-/// entry on a channel is balanced by another missed entry or by an active bound. Every path in this
-/// flow from bound to bound, and every loop, is an infeasible set, and every missed entry lies on
-/// such a path or loop (Farkas). If a part of the path or loop is infeasible by itself, that part
-/// is the conflict, and the residual of the entry is a compromise with it.
+/// Stage 1 is a least-squares problem, so that its residuals balance: the pull of a missed entry on
+/// a channel is balanced by another missed entry or by an active bound. Every path in the flow from
+/// bound to bound, and every loop, is an infeasible set, and every missed entry lies on such a path
+/// or loop (Farkas). If a part of the path or loop is infeasible by itself, that part is the
+/// conflict, and the residual of the entry is a compromise with it.
 ///
 /// ```text
 /// for each missed entry
-///     1  loop <- shortest way along the flow from the end of the entry back to its start
+///     1  loop <- the entry, and the shortest way along the flow from its end back to its start
 ///     2  path <- shortest way from a lower bound to its start, the entry, shortest way from its end to an upper bound
 ///     3  the shorter of both, where each bound counts as one entry
 ///     4  its shortest part that the bounds at both ends do not permit, if any
@@ -67,13 +74,31 @@ pub(crate) fn entry_conflicts(
 /// difference is smaller.
 #[derive(Clone, Copy)]
 struct Pull {
+    /// Node `from`, too high.
     from: usize,
+    /// Node `to`, too low.
     to: usize,
     weight: f64,
     pair: Pair,
 }
 
 impl Pull {
+    /// Returns the node from which a walk in this direction takes the pull.
+    fn start(&self, direction: Direction) -> usize {
+        match direction {
+            Direction::Along => self.from,
+            Direction::Against => self.to,
+        }
+    }
+
+    /// Returns the node to which the pull leads a walk in this direction.
+    fn end(&self, direction: Direction) -> usize {
+        match direction {
+            Direction::Along => self.to,
+            Direction::Against => self.from,
+        }
+    }
+
     /// Returns the entry in the opposite direction, which is equivalent because the constraint is
     /// an equality.
     fn reversed(&self) -> Self {
@@ -120,7 +145,7 @@ impl<'a> Flow<'a> {
         point: &[f64],
     ) -> Self {
         let mut pulls = Vec::new();
-        // Sum of the pulls on each node.
+        // Sum of the pulls on each node: negative downwards, positive upwards.
         let mut net = vec![0.0; constraints.nodes()];
         for (asked, target) in constraints.entries.iter().zip(&reached.targets) {
             let missing = asked.sum - target.sum;
@@ -160,12 +185,13 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// Returns the smaller conflict: the shortest loop through `pull`, or the shortest path through
-    /// it from bound to bound; each bound counts as one entry.
+    /// Steps 1 to 4: returns the smaller conflict: the shortest loop through `pull`, or the
+    /// shortest path through it from bound to bound; each bound counts as one entry.
     fn smallest_through(&self, pull: &Pull) -> Option<Conflict> {
         let around = self.shortest_walk(pull.to, Direction::Along, |node| node == pull.from);
         let path = self.path_through(pull);
         match (around, path) {
+            // The loop has `around.len() + 1` entries, the path also two bounds.
             (Some(around), Some(path)) if around.len() < path.len() + 2 => {
                 Some(self.loop_conflict(pull, around))
             }
@@ -206,9 +232,9 @@ impl<'a> Flow<'a> {
         self.conflict(entries, ConflictKind::Loop { mismatch })
     }
 
-    /// Returns the conflict in the shortest proper part of a sequence that the bounds at its two
-    /// ends do not permit; `None` if there is none. In a loop, a part may continue from the last
-    /// pull to the first.
+    /// Step 4: returns the conflict in the shortest proper part of a sequence that the bounds at
+    /// its two ends do not permit; `None` if there is none. In a loop, a part may continue from the
+    /// last pull to the first.
     fn smallest_part(&self, pulls: &[Pull], shape: Shape) -> Option<Conflict> {
         let count = pulls.len();
         for length in 1..count {
@@ -241,7 +267,7 @@ impl<'a> Flow<'a> {
         let needed: f64 = run.iter().map(|pull| pull.weight).sum();
         let most = self.constraints.node_range(last.to).high;
         let least = self.constraints.node_range(first.from).low;
-        needed - (most - least) > STRAIN
+        needed - (most - least) > ACCEPTED_INFEASIBILITY
     }
 
     /// Returns the conflict of a path from a node at its minimum to a node at its maximum.
@@ -253,15 +279,17 @@ impl<'a> Flow<'a> {
         let start = self.constraints.channel(start);
         let end = self.constraints.channel(end);
         // The value of an output node is minus its coordinate: at the minimum of the node, the
-        // output is at its upper bound.
+        // output is at its upper bound. From an output to an input, `needed` is therefore the sum
+        // of both coordinates, from an input to an output minus the sum; a bound of half the sum on
+        // both channels suffices.
         let kind = match (start, end) {
             (Channel::Output(_), Channel::Input(_)) => ConflictKind::AboveUpper {
-                channels: (end, start),
+                channels: [end, start],
                 asked: coordinate.value(needed),
                 upper: three_digits(coordinate.value(0.5 * needed), f64::ceil),
             },
             (Channel::Input(_), Channel::Output(_)) => ConflictKind::BelowLower {
-                channels: (start, end),
+                channels: [start, end],
                 asked: coordinate.value(-needed),
                 lower: self.sufficient_lower(coordinate.value(-0.5 * needed)),
             },
@@ -287,7 +315,7 @@ impl<'a> Flow<'a> {
             lesser,
             asked,
             upper: three_digits(quantity.net(bounds.lower, asked), f64::ceil),
-            lower: self.sufficient_lower(quantity.without(bounds.upper, asked)),
+            lower: self.sufficient_lower(quantity.other_channel(bounds.upper, asked)),
         }
     }
 
@@ -324,13 +352,10 @@ impl<'a> Flow<'a> {
                 return walk_back(&came_by, start, node, direction);
             }
             for pull in &self.pulls {
-                let (leaves, enters) = match direction {
-                    Direction::Along => (pull.from, pull.to),
-                    Direction::Against => (pull.to, pull.from),
-                };
-                if leaves == node && enters != start && came_by[enters].is_none() {
-                    came_by[enters] = Some(*pull);
-                    queue.push_back(enters);
+                let next = pull.end(direction);
+                if pull.start(direction) == node && next != start && came_by[next].is_none() {
+                    came_by[next] = Some(*pull);
+                    queue.push_back(next);
                 }
             }
         }
@@ -350,10 +375,7 @@ fn walk_back(
     let mut node = end;
     while node != start {
         let pull = came_by[node]?;
-        node = match direction {
-            Direction::Along => pull.from,
-            Direction::Against => pull.to,
-        };
+        node = pull.start(direction);
         walked.push(pull);
     }
     walked.reverse();

@@ -98,7 +98,8 @@ impl ConflictText<'_> {
     /// Remedies for insufficient lead other than a change of the bounds.
     const MORE_LEAD: &'static str = "increase R_max or reduce n";
 
-    /// Composes the sentence "ENTRIES cannot be held: LIMIT; REMEDIES."
+    /// Composes the sentence "ENTRIES cannot be held: LIMIT; CHANGE or RELEASE." LIMIT is the limit
+    /// of the bounds that the entries exceed, CHANGE a change of the bounds that is sufficient.
     fn sentence(&self) -> String {
         let conflict = self.conflict;
         let entries = pair_names(&conflict.entries, self.inputs, self.outputs);
@@ -112,7 +113,7 @@ impl ConflictText<'_> {
             2 => "cannot both be held",
             _ => "cannot all be held",
         };
-        let limit = match conflict.kind {
+        let limit_and_change = match conflict.kind {
             ConflictKind::Loop { mismatch } => {
                 return format!(
                     "{entries} form a loop: their {} disagree by {}; {release}.",
@@ -131,12 +132,12 @@ impl ConflictText<'_> {
                 channels,
                 asked,
                 upper,
-            } => self.above_upper(channels, asked, upper),
+            } => self.maximum_and_change(channels, asked, upper),
             ConflictKind::BelowLower {
                 channels,
                 asked,
                 lower,
-            } => self.below_lower(channels, asked, lower),
+            } => self.minimum_and_change(channels, asked, lower),
             ConflictKind::TooFarApart {
                 greater,
                 lesser,
@@ -145,7 +146,7 @@ impl ConflictText<'_> {
                 lower,
             } if conflict.quantity.is_gain() => {
                 let lower = lower.unwrap_or(conflict.bounds.lower);
-                let limit = self.ratio_too_great(greater, lesser, asked);
+                let limit = self.ratio_limit(greater, lesser, asked);
                 format!(
                     "{limit}; set the upper bound to {upper}, or the lower bound to {lower}, or"
                 )
@@ -156,15 +157,15 @@ impl ConflictText<'_> {
                 asked,
                 upper,
                 ..
-            } => self.difference_too_great(greater, lesser, asked, upper),
+            } => self.difference_limit_and_change(greater, lesser, asked, upper),
         };
-        format!("{entries} {cannot}: {limit} {release}.")
+        format!("{entries} {cannot}: {limit_and_change} {release}.")
     }
 
-    /// Describes a net value above its maximum: twice the upper bound, or its square for gains.
-    fn above_upper(&self, channels: (Channel, Channel), asked: f64, upper: f64) -> String {
-        let first = self.symbol(channels.0);
-        let second = self.symbol(channels.1);
+    /// Describes a net value above its maximum: twice the upper bound, or its square for gains;
+    /// ends with a sufficient change of the bounds and "or".
+    fn maximum_and_change(&self, channels: [Channel; 2], asked: f64, upper: f64) -> String {
+        let [first, second] = channels.map(|channel| self.symbol(channel));
         let bound = self.conflict.bounds.upper;
         if self.conflict.quantity.is_gain() {
             let (most, asked) = told_apart(bound.powi(2), asked, 3);
@@ -185,10 +186,10 @@ impl ConflictText<'_> {
         )
     }
 
-    /// Describes a net value below its minimum: twice the lower bound, or its square for gains.
-    fn below_lower(&self, channels: (Channel, Channel), asked: f64, lower: Option<f64>) -> String {
-        let first = self.symbol(channels.0);
-        let second = self.symbol(channels.1);
+    /// Describes a net value below its minimum: twice the lower bound, or its square for gains;
+    /// ends with a sufficient change of the bounds, if there is one, and "or".
+    fn minimum_and_change(&self, channels: [Channel; 2], asked: f64, lower: Option<f64>) -> String {
+        let [first, second] = channels.map(|channel| self.symbol(channel));
         let bound = self.conflict.bounds.lower;
         match self.conflict.quantity {
             Quantity::Gain(_) => {
@@ -215,8 +216,8 @@ impl ConflictText<'_> {
         }
     }
 
-    /// Describes a ratio of gains above the ratio of the bounds.
-    fn ratio_too_great(&self, greater: Channel, lesser: Channel, asked: f64) -> String {
+    /// Describes a ratio of gains above the ratio of the bounds, without a change.
+    fn ratio_limit(&self, greater: Channel, lesser: Channel, asked: f64) -> String {
         let greater = self.symbol(greater);
         let lesser = self.symbol(lesser);
         let low = self.conflict.bounds.lower;
@@ -228,8 +229,9 @@ impl ConflictText<'_> {
         )
     }
 
-    /// Describes a difference of delays above the difference of the bounds.
-    fn difference_too_great(
+    /// Describes a difference of delays above the difference of the bounds; ends with a sufficient
+    /// change of the bounds and "or".
+    fn difference_limit_and_change(
         &self,
         greater: Channel,
         lesser: Channel,

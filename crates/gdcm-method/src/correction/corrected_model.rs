@@ -1,5 +1,6 @@
-//! A corrected model given by matrices (M10); its delays are approximated by rational functions if
-//! they require states.
+//! A corrected model `M_O H M_I` given by matrices (M10): the model `H` in series with the gain and
+//! the delay or lead filter of each input (`M_I`) and output channel (`M_O`). Its delays are
+//! approximated by rational functions if they require states.
 
 use nalgebra::DMatrix;
 

@@ -1,5 +1,10 @@
 //! Delta gain and delta delay: the gain and delay by which a single response would have to be
 //! corrected, eq. (5), (9); and the channel bounds, from their spread over the band (M7).
+//!
+//! ```text
+//! G    = median |H_ref| / |H_sim|                       D = median Delta phi(H_sim, H_ref) / omega
+//! band delay = sum W omega Delta phi / sum W omega^2    W: coherence weight, otherwise 1 (M15.2)
+//! ```
 
 use serde::{Deserialize, Serialize};
 
@@ -10,6 +15,10 @@ use gdcm_model::units::db_to_ratio;
 
 use super::GainBounds;
 use crate::fidelity::{CoherenceWeights, Mismatch};
+
+/// Magnitude \[dB\] beyond which a ratio (above 1e50 or below 1e-50) is regarded as infinite or
+/// zero, because the objective cannot represent its square (M6).
+pub const LARGEST_GAIN_DB: f64 = 1000.0;
 
 /// Models from which G is computed; D is always computed from the representatives.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -110,9 +119,9 @@ pub(crate) fn band_delay_s(
 ) -> f64 {
     let mut moment = 0.0;
     let mut square = 0.0;
-    for (place, (phase, omega)) in phase.zip(omega).enumerate() {
+    for (index, (phase, omega)) in phase.zip(omega).enumerate() {
         let weight = match weights {
-            Some(weights) => weights[place],
+            Some(weights) => weights[index],
             None => 1.0,
         };
         moment += weight * omega * phase;
@@ -120,10 +129,6 @@ pub(crate) fn band_delay_s(
     }
     moment / square
 }
-
-/// Magnitude \[dB\] beyond which a ratio (above 1e50 or below 1e-50) is regarded as infinite or
-/// zero, because the objective cannot represent its square (M6).
-pub const LARGEST_GAIN_DB: f64 = 1000.0;
 
 /// Computes the mismatch of every response that both models contain and whose ratio is finite and
 /// not zero, at the frequencies that count; `coherence_weights` selects and weights them, otherwise

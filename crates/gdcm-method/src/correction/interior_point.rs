@@ -1,5 +1,5 @@
-//! Minimum of a least-squares objective over its box, found by the interior-point method of
-//! Clarabel.
+//! Minimum of a least-squares objective `F(s)` over its box `lower <= s <= upper`, found by the
+//! interior-point method of Clarabel. Its variables `s` are the scales of an [`Objective`].
 
 use gdcm_numerics::{CscMatrix, DefaultSettings, convex_program};
 

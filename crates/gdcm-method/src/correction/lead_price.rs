@@ -25,7 +25,7 @@ pub struct LeadPrice {
 
 impl LeadPrice {
     /// Computes the price of leads; `None` if no channel has a filter.
-    pub fn of(leads: &ChannelLeads) -> Option<Self> {
+    pub fn new(leads: &ChannelLeads) -> Option<Self> {
         let filters = leads.filters();
         if filters.iter().all(|(_, filter)| filter.is_none()) {
             return None;
@@ -128,7 +128,7 @@ mod tests {
     #[test]
     fn a_response_pays_for_the_filters_of_both_its_channels_at_ten_times_the_band() {
         let leads = leads(-0.04, -0.02);
-        let price = LeadPrice::of(&leads).expect("both have a filter");
+        let price = LeadPrice::new(&leads).expect("both have a filter");
         let pair = Pair {
             output: 0,
             input: 0,
@@ -156,9 +156,9 @@ mod tests {
 
     #[test]
     fn delays_cost_nothing_and_a_schedule_costs_the_most_of_its_airspeeds() {
-        assert_eq!(LeadPrice::of(&leads(0.01, 0.0)), None);
-        let input_leads = LeadPrice::of(&leads(-0.04, -0.01)).expect("leads");
-        let output_leads = LeadPrice::of(&leads(-0.02, -0.03)).expect("leads");
+        assert_eq!(LeadPrice::new(&leads(0.01, 0.0)), None);
+        let input_leads = LeadPrice::new(&leads(-0.04, -0.01)).expect("leads");
+        let output_leads = LeadPrice::new(&leads(-0.02, -0.03)).expect("leads");
         let most = input_leads.clone().or_more(&output_leads);
         assert_eq!(most.gains_db.inputs[0], input_leads.gains_db.inputs[0]);
         assert_eq!(most.gains_db.outputs[0], output_leads.gains_db.outputs[0]);

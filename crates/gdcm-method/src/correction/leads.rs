@@ -117,9 +117,10 @@ impl LeadDesign {
         )
     }
 
-    /// Computes `-d d(l) / d l`, dimensionless. With `x = a omega` it is the weighted mean of
-    /// `(1 + x^2) / (1 + x^4)`, or of `1 / (1 + x^2)` for first order.
-    fn falling(&self, lead_s: f64) -> f64 {
+    /// Computes `-d'(l)`, by how much the band delay falls with the lead time, dimensionless. With
+    /// `x = a omega` it is the weighted mean of `(1 + x^2) / (1 + x^4)`, or of `1 / (1 + x^2)` for
+    /// first order.
+    fn band_delay_fall(&self, lead_s: f64) -> f64 {
         let zero_s = self.filter_of(lead_s).zero_s;
         let slopes = self.omega.iter().map(|&omega| {
             let square = (zero_s * omega).powi(2);
@@ -145,7 +146,7 @@ impl LeadDesign {
     /// `l_max` for a `tau` below the lower bound, and 0 for one that is not negative.
     ///
     /// ```text
-    /// 1  low, high = 0, l_max;  l = tau / d'(0), at most l_max
+    /// 1  low = 0, high = l_max;  l = tau / d'(0), at most l_max
     /// 2  miss = d(l) - tau;  replace low or high by l according to the sign of the miss (d decreases)
     /// 3  l' = l - miss / d'(l);  if l' is not between low and high, use the midpoint
     /// 4  l = l', repeat from 2, until l changes by less than a relative 1e-9 (the error is then about its square)
@@ -163,7 +164,7 @@ impl LeadDesign {
         if tau_s <= self.lower_s {
             return high;
         }
-        let mut lead_s = (-tau_s / self.falling(0.0)).min(high);
+        let mut lead_s = (-tau_s / self.band_delay_fall(0.0)).min(high);
         for _ in 0..STEPS {
             let miss_s = self.band_delay_s(lead_s) - tau_s;
             if miss_s > 0.0 {
@@ -171,7 +172,7 @@ impl LeadDesign {
             } else {
                 high = lead_s;
             }
-            let newton_s = lead_s + miss_s / self.falling(lead_s);
+            let newton_s = lead_s + miss_s / self.band_delay_fall(lead_s);
             let next_s = if (low..=high).contains(&newton_s) {
                 newton_s
             } else {

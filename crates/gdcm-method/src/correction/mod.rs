@@ -5,8 +5,19 @@
 //! minimum. The signed delays of M15 are the solution of a convex program in the form of eq. (11);
 //! [`LeadDesign`](leads::LeadDesign) converts negative delays to filters. `solve` also explains
 //! infeasible constraints and finds remedies; [`sensitivities`](sensitivity::sensitivities) and
-//! [`toggles`](sensitivity::toggles) compute the cost of each constrained entry. Tables are
+//! [`toggles`](toggles::toggles) compute the cost of each constrained entry. Tables are
 //! `[output, input]`, gains are ratios, delays are in seconds.
+//!
+//! ```text
+//! delta                                            G and D from two models, and the bounds
+//! problem, solve, solution                         eq. (7) and (11): problem, entry point, result
+//!     constraints, components, reachable_targets       stage 1
+//!     scaled_objective, branch_and_bound               stage 2 and the proof
+//!     conflict_search, conflict, remedy                explanation of infeasible entries
+//! sensitivity, toggles                             cost of each constrained entry
+//! leads, lead_price                                lead filters for negative delays
+//! channel_correction, corrected_model, pade        the correction of a response, and of a model as matrices
+//! ```
 
 pub mod branch_and_bound;
 pub mod channel_correction;
@@ -16,6 +27,8 @@ mod components;
 pub mod conflict;
 mod conflict_search;
 mod conflict_text;
+mod connected_pieces;
+mod constraints;
 pub mod corrected_model;
 pub mod delta;
 mod interior_point;
@@ -25,12 +38,14 @@ pub mod leads;
 pub mod pade;
 pub mod problem;
 pub mod quantity;
+mod reachable_targets;
 pub mod remedy;
 mod rounding;
 mod scaled_objective;
 pub mod sensitivity;
 pub mod solution;
 pub mod solve;
+pub mod toggles;
 
 pub use branch_and_bound::search::ProofBudget;
 pub use channel_correction::ChannelCorrection;

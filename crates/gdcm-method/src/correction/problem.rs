@@ -1,5 +1,7 @@
 //! Problem for the channel values: eq. (7) for gains, eq. (11) for delays, M15.4 for signed delays.
 
+use std::ops::RangeInclusive;
+
 use serde::{Deserialize, Serialize};
 
 use gdcm_model::dataset::{Pair, PairTable};
@@ -7,6 +9,19 @@ use gdcm_model::dataset::{Pair, PairTable};
 use super::branch_and_bound::effort::SearchStopped;
 use super::interval::Interval;
 use super::quantity::{Coordinate, GainObjective, Quantity};
+
+/// Valid delta gains; outside this range, their squares overflow or underflow.
+const GAINS: RangeInclusive<f64> = 1e-50..=1e50;
+
+/// Valid gain bounds (-180 to 180 dB); outside this range, products overflow during the search for
+/// a proof.
+const GAIN_BOUNDS: RangeInclusive<f64> = 1e-9..=1e9;
+
+/// Maximum magnitude of a delta delay or bound \[s\]; beyond it, its square overflows.
+const MOST_DELAY_S: f64 = 1e50;
+
+/// Valid weights of the regularisation.
+const ALPHAS: RangeInclusive<f64> = 0.0..=1e12;
 
 /// Minimum and maximum value of every channel (M7): gains `0 < lower <= upper`; delays \[s\], with
 /// `lower` zero; signed delays \[s\], `lower <= 0 <= upper` (M15.4).
@@ -139,16 +154,6 @@ impl From<SearchStopped> for ProblemError {
     }
 }
 
-/// Valid delta gains; outside this range, their squares overflow or underflow.
-const GAINS: std::ops::RangeInclusive<f64> = 1e-50..=1e50;
-
-/// Valid gain bounds (-180 to 180 dB); outside this range, products overflow during the search for
-/// a proof.
-const GAIN_BOUNDS: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
-
-/// Maximum magnitude of a delta delay or bound \[s\]; beyond it, its square overflows.
-const MOST_DELAY_S: f64 = 1e50;
-
 /// A response and its delta gain or delta delay.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Entry {
@@ -218,7 +223,7 @@ impl Problem {
             self.check_delta(pair, *delta)?;
         }
         self.check_bounds()?;
-        if (0.0..=1e12).contains(&self.alpha) {
+        if ALPHAS.contains(&self.alpha) {
             Ok(())
         } else {
             Err(ProblemError::Alpha { alpha: self.alpha })
@@ -288,7 +293,7 @@ impl Problem {
             .fit_entries()
             .map(|Entry { pair, delta }| {
                 self.quantity
-                    .miss(delta, outputs[pair.output], inputs[pair.input])
+                    .residual(delta, outputs[pair.output], inputs[pair.input])
                     .powi(2)
             })
             .sum();
@@ -305,7 +310,7 @@ impl Problem {
         let departures: f64 = outputs
             .iter()
             .chain(regularised_inputs)
-            .map(|value| self.quantity.miss(neutral, *value, neutral).powi(2))
+            .map(|value| self.quantity.residual(neutral, *value, neutral).powi(2))
             .sum();
         fit + self.alpha * departures
     }
@@ -355,8 +360,8 @@ impl Problem {
     /// Returns the permitted range of the coordinate, the same for every channel.
     pub(crate) fn range(&self) -> Interval {
         let coordinate = self.coordinate();
-        let low = coordinate.coordinate(self.bounds.lower);
-        let high = coordinate.coordinate(self.bounds.upper);
+        let low = coordinate.transform(self.bounds.lower);
+        let high = coordinate.transform(self.bounds.upper);
         match coordinate {
             Coordinate::Logarithm => Interval { low, high },
             // Limit the range: along a path of constrained entries, a channel differs by at most

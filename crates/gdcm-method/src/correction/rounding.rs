@@ -6,6 +6,7 @@ pub(super) fn three_digits(value: f64, round: fn(f64) -> f64) -> f64 {
     if value == 0.0 || !value.is_finite() {
         return value;
     }
+    // `value` is `digits 10^exponent` with `digits` from 100 to 999.
     let exponent = value.abs().log10().floor() as i32 - 2;
     // Divide instead of multiplying by a negative power: 187 / 100 is 1.87 exactly.
     let digits = if exponent < 0 {

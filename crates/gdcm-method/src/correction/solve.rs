@@ -8,14 +8,14 @@ use super::branch_and_bound::effort::{Effort, SearchStopped};
 use super::branch_and_bound::newton::Newton;
 use super::branch_and_bound::objective::Objective;
 use super::branch_and_bound::search::{Minima, ProofBudget, search};
-use super::components::{
-    ChannelCoordinates, Components, ConstrainedSum, Constraints, Placement, Reached, reach,
-};
+use super::components::{ChannelCoordinates, Components, Placement};
 use super::conflict::{Conflict, ConflictKind};
 use super::conflict_search::entry_conflicts;
+use super::constraints::{ConstrainedSum, Constraints};
 use super::interior_point::interior_point;
 use super::problem::{Problem, ProblemError};
 use super::quantity::{Coordinate, GainObjective, Quantity};
+use super::reachable_targets::{Reached, reach};
 use super::remedy::Remedy;
 use super::scaled_objective::{rounding_floor, scaled_objective};
 use super::solution::{LocalMinimum, Outcome, Proof, Solution, Unmatched};
@@ -34,7 +34,7 @@ const MATCHED_DELAY_S: f64 = 1e-9;
 ///
 /// ```text
 /// 1  targets: the sums nearest to the deltas that the box and the loops permit (stage 1)
-/// 2  objective over the scales that the constrained sums leave free (M8, structure)
+/// 2  objective over the scales that the constrained sums leave free (M8, proof)
 /// 3  global minimum by branch and bound, from a start near it (stage 2)
 /// 4  limit alpha -> 0+ if a common scale is free
 /// 5  for each infeasible delta of stage 1: its conflict, and the single changes that would resolve all conflicts
@@ -70,14 +70,17 @@ pub fn solve(
 ) -> Result<Solution, ProblemError> {
     problem.check()?;
     let effort = Effort::new(stop);
+    // Step 1.
     let constraints = Constraints::new(problem);
     let reached = reach(&constraints, |nearest_sums| {
         minimise(nearest_sums, problem.quantity, &effort)
     })?;
+    // Steps 2 and 3.
     let objective = scaled_objective(problem, &reached.components);
     let start = newton_start(&objective, problem.quantity)?;
     let floor = rounding_floor(problem);
     let mut found = search(&objective, &start, budget, floor, &effort)?;
+    // Step 4.
     for minimum in &mut found.minima {
         take_alpha_limit(
             problem.quantity,
@@ -87,6 +90,7 @@ pub fn solve(
         );
     }
     let proof = proof(problem, &reached.components, found);
+    // Step 5.
     let misses = misses(problem, &constraints, &reached, &effort)?;
     let conflicts = distinct_conflicts(&misses.unmatched);
     let remedy = Remedy::new(
@@ -143,8 +147,9 @@ fn minimise(
     Ok(scales)
 }
 
-/// Takes the limit `alpha -> 0+`: sets each free common scale to the value that minimises the
-/// regularised deviations from neutral.
+/// Takes the limit `alpha -> 0+`: the fit does not determine a common shift of the scales in a
+/// floating piece, which is therefore set to the value that minimises the regularised deviations
+/// from neutral.
 fn take_alpha_limit(
     quantity: Quantity,
     components: &Components,
@@ -174,8 +179,8 @@ fn select_piece(piece: &[usize], nodes: &[Placement], values: &[f64]) -> Vec<f64
 }
 
 /// Returns the shift of a group's scales that minimises the regularised deviations from neutral; it
-/// raises the inputs and lowers the outputs. Regularised are the outputs (the inputs, if the group
-/// has no output); for signed delays, the inputs and the outputs.
+/// raises the coordinates of the inputs and lowers those of the outputs by the same amount. The
+/// outputs are regularised (the inputs, if the group has no output); for signed delays, both.
 fn least_departure_shift(quantity: Quantity, channels: &ChannelCoordinates) -> f64 {
     let ChannelCoordinates { inputs, outputs } = channels;
     if quantity.regularises_inputs() {
@@ -219,8 +224,8 @@ fn local_minimum(problem: &Problem, components: &Components, scales: &[f64]) -> 
 fn channel_values(problem: &Problem, coordinates: &[f64]) -> Vec<f64> {
     let bounds = problem.bounds;
     let coordinate = problem.coordinate();
-    let low = coordinate.coordinate(bounds.lower);
-    let high = coordinate.coordinate(bounds.upper);
+    let low = coordinate.transform(bounds.lower);
+    let high = coordinate.transform(bounds.upper);
     // Tolerance: a few roundings at the magnitude of the range.
     let rounding = 16.0 * f64::EPSILON * (1.0 + low.abs().max(high.abs()));
     let mut values = Vec::with_capacity(coordinates.len());

@@ -1,11 +1,23 @@
-//! Linear least-absolute-deviations fits with non-negative weights, by a search over the fit's
-//! vertices and the edges between them.
+//! Linear least-absolute-deviations fits with non-negative weights, `min sum_i |x_i w - y_i|` over
+//! `w >= 0`, by a search over the vertices of the fit and the edges between them.
+//!
+//! With `n` unknowns `w_k`, the *constraints* are `x_i w = y_i` (the rows) and `w_k = 0`. `n`
+//! independent constraints, a *basis*, meet in a *vertex*; some vertex attains the minimum. An
+//! *edge* leaves a vertex in the direction in which all constraints of its basis but one remain
+//! satisfied; the sum is convex and piecewise linear along it.
 
 use std::cmp::Ordering;
 
 use nalgebra::{DMatrix, DVector};
 
 use gdcm_numerics::{CscMatrix, DefaultSettings, convex_program};
+
+/// Deviations and weights below this count as zero; the right-hand sides are scaled to at most 1.
+const ZERO: f64 = 1e-11;
+/// Relative change in the summed deviations below which an edge counts as flat.
+const FLAT: f64 = 1e-10;
+/// Smallest singular value of independent constraints, whose coefficients are of order 1.
+const INDEPENDENT: f64 = 1e-6;
 
 /// Reasons why a fit is unavailable.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -21,7 +33,7 @@ pub enum FitError {
 /// with the smallest `sum_i (sqrt(x_i w) - sqrt(y_i))^2`.
 ///
 /// ```text
-/// 1  vertex <- intersection of those constraints x_i w = y_i, w_k = 0 that the least squares fit satisfies best
+/// 1  vertex <- intersection of those constraints that the least squares fit satisfies best
 /// 2  edge along which the sum falls: release a constraint in the basis, move to where the sum stops falling,
 ///    add the constraint met there; again from 2
 /// 3  edges along which the sum stays the same: compare all vertices that they lead to; again from 2
@@ -42,6 +54,7 @@ pub fn least_absolute_deviations(
     if scale == 0.0 {
         return Ok(vec![0.0; unknowns]);
     }
+    // Fit `y / scale`, and multiply the weights by `scale` at the end.
     let scaled: Vec<f64> = y.iter().map(|y| y / scale).collect();
     let fit = Fit::new(x, &scaled);
     let start = Vertex::nearest(&fit, &fit.least_squares()).unwrap_or_else(|| Vertex::origin(&fit));
@@ -62,7 +75,7 @@ pub fn least_absolute_deviations(
         .collect())
 }
 
-/// Follows descending edges to the optimum, then compares all equally good vertices.
+/// Steps 2 and 3: follows descending edges to the optimum, then compares all equally good vertices.
 fn best_vertex(
     fit: &Fit<'_>,
     start: Vertex,
@@ -72,6 +85,7 @@ fn best_vertex(
     /// unknowns has.
     const MOST_VERTICES: usize = 300;
     let mut best = start.clone();
+    // Equally good vertices; the edges of those before `next` have been followed.
     let mut equal = vec![start];
     let mut next = 0;
     while next < equal.len() && equal.len() < MOST_VERTICES {
@@ -88,7 +102,7 @@ fn best_vertex(
             Neighbours::Equal(vertices) => vertices,
         };
         for vertex in equally_good {
-            if !equal.iter().any(|known| known.is_at(&vertex)) {
+            if !equal.iter().any(|known| known.coincides_with(&vertex)) {
                 if fit.squared_root_deviations(&vertex.weights)
                     < fit.squared_root_deviations(&best.weights)
                 {
@@ -102,7 +116,9 @@ fn best_vertex(
     Ok(best)
 }
 
-/// Solves the linear program `min sum t` subject to `x w - t <= y`, `-x w - t <= -y`, `w >= 0`.
+/// Step 4: solves the linear program `min sum t` subject to `x w - t <= y`, `-x w - t <= -y`,
+/// `w >= 0`. Columns: the weights `w`, then a `t` for each row. Rows: the three groups of
+/// inequalities in this order.
 fn solve_linear_program(x: &[Vec<f64>], y: &[f64], unknowns: usize) -> Result<Vec<f64>, FitError> {
     let rows = x.len();
     let mut entries = Triplets::default();
@@ -164,13 +180,8 @@ impl Triplets {
     }
 }
 
-/// Deviations and weights below this count as zero; the right-hand sides are scaled to at most 1.
-const ZERO: f64 = 1e-11;
-/// Relative change in the summed deviations below which an edge counts as flat.
-const FLAT: f64 = 1e-10;
-
-/// The constraints `x_i w = y_i` (the rows) and `w_k = 0` (the weights), counted in this order; a
-/// vertex is an intersection of as many constraints as there are unknowns.
+/// The constraints of a fit: `x_i w = y_i` (the rows), then `w_k = 0` (the weights), counted in
+/// this order.
 struct Fit<'a> {
     /// The rows `x_i`, row-major.
     x: Vec<f64>,
@@ -236,8 +247,8 @@ impl<'a> Fit<'a> {
         constraint >= self.y.len()
     }
 
-    /// Returns the coefficients of these constraints, a row each: from `x` for a row, from the
-    /// identity for a weight.
+    /// Returns the coefficients of these constraints, a matrix row each: from `x` for a row, from
+    /// the identity for a weight.
     fn matrix(&self, constraints: &[usize]) -> DMatrix<f64> {
         DMatrix::from_fn(
             constraints.len(),
@@ -314,23 +325,26 @@ impl Crossing {
     }
 }
 
-/// Returns the constraint at the first crossing where twice the accumulated changes reach `rise`: a
-/// weighted median, found by bisection rather than by sorting.
+/// Returns the constraint at the first crossing along an edge at which the slope has risen by at
+/// least `rise`, the sum of twice the changes up to there: a weighted median, found by bisection
+/// rather than by sorting.
 fn crossing_at(mut crossings: Vec<Crossing>, rise: f64) -> Option<usize> {
-    let mut left = crossings.as_mut_slice();
+    // `candidates` contains the crossing; the slope has risen by `risen` before them.
+    let mut candidates = crossings.as_mut_slice();
     let mut risen = 0.0;
-    while left.len() > 1 {
-        let (near, _, _) = left.select_nth_unstable_by(left.len() / 2, Crossing::compare);
+    while candidates.len() > 1 {
+        let (near, _, _) =
+            candidates.select_nth_unstable_by(candidates.len() / 2, Crossing::compare);
         let middle = near.len();
         let rise_of_near: f64 = near.iter().map(|crossing| 2.0 * crossing.change).sum();
         if risen + rise_of_near >= rise {
-            left = &mut left[..middle];
+            candidates = &mut candidates[..middle];
         } else {
             risen += rise_of_near;
-            left = &mut left[middle..];
+            candidates = &mut candidates[middle..];
         }
     }
-    let last = left.first()?;
+    let last = candidates.first()?;
     if risen + 2.0 * last.change >= rise {
         Some(last.constraint)
     } else {
@@ -350,9 +364,7 @@ impl Vertex {
         let mut basis = Vec::new();
         for constraint in order {
             basis.push(constraint);
-            // Offsets are scaled to at most 1: a smaller singular value means a redundant
-            // constraint.
-            if fit.matrix(&basis).rank(1e-6) < basis.len() {
+            if fit.matrix(&basis).rank(INDEPENDENT) < basis.len() {
                 basis.pop();
             }
             if basis.len() == fit.unknowns {
@@ -391,7 +403,7 @@ impl Vertex {
     }
 
     /// Returns whether two vertices coincide.
-    fn is_at(&self, other: &Self) -> bool {
+    fn coincides_with(&self, other: &Self) -> bool {
         self.weights
             .iter()
             .zip(&other.weights)
@@ -419,7 +431,8 @@ impl Vertex {
     }
 
     /// Returns the edges of this vertex. Each releases a constraint of the basis: a row in either
-    /// direction, a weight only upwards.
+    /// direction, a weight only upwards. Column `leaving` of the inverse basis matrix changes the
+    /// left-hand side of that constraint at rate 1, and no other in the basis.
     fn edges(&self, fit: &Fit<'_>, deviations: &[f64]) -> Vec<Edge> {
         let Some(inverse) = fit.matrix(&self.basis).try_inverse() else {
             return Vec::new();
@@ -461,8 +474,8 @@ impl Vertex {
 
     /// Returns the vertex along an edge at which the summed deviations stop falling.
     ///
-    /// Each row whose deviation changes sign along the edge adds twice its change to the rate; a
-    /// weight that reaches zero ends the edge.
+    /// Each row whose deviation changes sign along the edge raises the slope of the sum by twice
+    /// its rate of change; the sum stops falling where the slope is no longer negative.
     fn end_of_edge(&self, fit: &Fit<'_>, edge: &Edge, deviations: &[f64]) -> Option<Self> {
         let mut crossings = Vec::new();
         for (constraint, deviation) in deviations.iter().enumerate() {
@@ -501,7 +514,8 @@ impl Vertex {
     }
 }
 
-/// Rates of change of the summed deviations along a direction and against it.
+/// Rates of change of the summed deviations along a direction and against it: a row whose deviation
+/// is zero adds `|change|` in both, another row adds its change times the sign of its deviation.
 struct EdgeRates {
     along: f64,
     against: f64,
@@ -511,13 +525,13 @@ struct EdgeRates {
 
 impl EdgeRates {
     fn new(fit: &Fit<'_>, deviations: &[f64], direction: &[f64]) -> Self {
-        // `growing`: a zero deviation grows in either direction.
         let mut growing = 0.0;
         let mut signed = 0.0;
         let mut scale = 0.0;
         for (row, deviation) in deviations[..fit.y.len()].iter().enumerate() {
             let change = fit.left(row, direction);
             if deviation.abs() <= ZERO {
+                // A zero deviation grows in either direction.
                 growing += change.abs();
             } else {
                 signed += change * deviation.signum();

@@ -21,7 +21,7 @@ use nalgebra::Complex;
 
 use gdcm_model::response::Mode;
 
-use crate::fidelity::mode_tracks::least_total;
+use crate::fidelity::assignment::cheapest_assignment;
 
 /// Maximum s-plane distance within a pair, relative to the larger modulus.
 pub const LARGEST_PAIR_DISTANCE: f64 = 0.5;
@@ -59,15 +59,16 @@ pub(super) fn mode_pairs(
     let columns = single_modes(model);
     let scales = output_scales(flown, least_rad_s);
     // Each flown mode has an additional column, which leaves it unpaired.
-    let assigned = least_total(
-        rows.len(),
-        columns.len() + rows.len(),
-        |row, column| match columns.get(column) {
-            Some(&mode) => pair_cost(&flown[rows[row]], &model[mode], &scales, least_rad_s)
-                .unwrap_or(BARRED_COST),
-            None => UNPAIRED_COST,
-        },
-    );
+    let assigned =
+        cheapest_assignment(
+            rows.len(),
+            columns.len() + rows.len(),
+            |row, column| match columns.get(column) {
+                Some(&mode) => pair_cost(&flown[rows[row]], &model[mode], &scales, least_rad_s)
+                    .unwrap_or(BARRED_COST),
+                None => UNPAIRED_COST,
+            },
+        );
     let mut pairs = Vec::with_capacity(rows.len());
     for (row, column) in assigned.into_iter().enumerate() {
         let pair = columns.get(column).and_then(|&mode| {

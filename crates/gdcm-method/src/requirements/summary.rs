@@ -20,7 +20,7 @@ use gdcm_model::simulation::{Validation, ValidationWindow};
 use gdcm_model::statistics::mean;
 use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit, conversion_factor};
 
-use crate::fidelity::{CostAverage, Mismatch, leaves};
+use crate::fidelity::{CostAverage, Mismatch, ranges_outside};
 
 /// Means over the on-axis responses and over all responses.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -134,7 +134,7 @@ pub fn muad_share(mismatch: &Mismatch, omega: &[f64], correction: GainDelay) -> 
         .phases(&mismatch.phase, omega)
         .map(|phase| wrap(phase).to_degrees())
         .collect();
-    let outside: f64 = leaves(omega, &error_db, &error_deg)
+    let outside: f64 = ranges_outside(omega, &error_db, &error_deg)
         .iter()
         .map(|(from, to)| (to / from).ln())
         .sum();
@@ -289,7 +289,7 @@ mod tests {
         // 2 dB exceed the upper magnitude between about 2 and 6 rad/s (muad.rs).
         let omega = omega();
         let two_db = mismatch(2.0, 0.0);
-        let ranges = leaves(&omega, &[2.0; 200], &[0.0; 200]);
+        let ranges = ranges_outside(&omega, &[2.0; 200], &[0.0; 200]);
         let expected = 1.0 - (ranges[0].1 / ranges[0].0).ln() / 24.0_f64.ln();
         assert!((muad_share(&two_db, &omega, GainDelay::NONE).unwrap() - expected).abs() < 1e-14);
         assert_eq!(

@@ -124,7 +124,7 @@ impl Schedule {
         let mut highest: Option<LeadPrice> = None;
         for step in 0..=steps {
             let leads = leads.at(&self.airspeeds, self.step_kt(step));
-            let Some(price) = LeadPrice::of(&leads) else {
+            let Some(price) = LeadPrice::new(&leads) else {
                 continue;
             };
             highest = Some(match highest {

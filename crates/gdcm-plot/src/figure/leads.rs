@@ -71,7 +71,7 @@ impl PairLeads {
         let band = source.study.settings.band;
         let (inputs, outputs) = dataset.names_of_channels();
         let pair_name = dataset.pair_name(pair);
-        let [output, input] = Channel::of(pair);
+        let [output, input] = Channel::of_pair(pair);
         let mut curves = Vec::new();
         for channel in all_channels(dataset) {
             if ![output, input].contains(&channel) {
@@ -103,7 +103,7 @@ impl PairLeads {
             pair_name,
             omega: frequencies(band.min(), ABOVE_BAND * band.max()),
             curves,
-            price: correction.leads.as_ref().and_then(LeadPrice::of),
+            price: correction.leads.as_ref().and_then(LeadPrice::new),
         }
     }
 

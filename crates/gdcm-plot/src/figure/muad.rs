@@ -3,7 +3,7 @@
 //!
 //! The envelopes are defined for the ratio of model to reference.
 
-use gdcm_method::fidelity::{Muad, leaves};
+use gdcm_method::fidelity::{Muad, ranges_outside};
 use gdcm_model::response::wrap;
 use gdcm_model::units::s_to_ms;
 
@@ -108,7 +108,7 @@ pub fn noticed(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<(f64, f64)> {
         mismatch_db.push(-error_db);
         principal_deg.push(wrap(radians).to_degrees());
     }
-    leaves(&omega, &mismatch_db, &principal_deg)
+    ranges_outside(&omega, &mismatch_db, &principal_deg)
 }
 
 #[cfg(test)]

@@ -49,7 +49,7 @@ impl Study {
         channel: Channel,
         role: Option<SignRole>,
     ) -> Result<(), EditRefusal> {
-        if !Channel::all_of(&self.dataset).any(|known| known == channel) {
+        if !Channel::of_dataset(&self.dataset).any(|known| known == channel) {
             return Err(EditRefusal::NoChannel { channel });
         }
         let mut signs = self.signs.clone();

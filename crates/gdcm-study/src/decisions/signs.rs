@@ -142,7 +142,7 @@ impl BundleSigns<'_> {
 
     /// Returns the product of the signs of the two channels of a response.
     fn pair_sign(&self, pair: Pair) -> f64 {
-        let [output, input] = Channel::of(pair);
+        let [output, input] = Channel::of_pair(pair);
         self.sign(output) * self.sign(input)
     }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use gdcm_method::correction::problem::ProblemError;
-use gdcm_method::correction::sensitivity::{Toggle, toggles};
+use gdcm_method::correction::toggles::{Toggle, toggles};
 use gdcm_method::correction::{Problem, ProofBudget, Solution};
 use gdcm_model::dataset::Pair;
 use gdcm_model::progress::{Cancelled, Progress};

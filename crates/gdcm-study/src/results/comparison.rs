@@ -3,7 +3,8 @@
 //! bounds.
 
 use gdcm_method::correction::delta::Delta;
-use gdcm_method::fidelity::distance::{BundleDistance, DiscontinuityError, Representative};
+use gdcm_method::fidelity::discontinuity::DiscontinuityError;
+use gdcm_method::fidelity::distance::{BundleDistance, Representative};
 use gdcm_method::fidelity::{Cost, Discontinuity, Mismatch};
 use gdcm_model::dataset::{BundleKind, PairTable};
 

@@ -286,7 +286,7 @@ impl PairCorrection {
 
     /// Returns the effect of a correction on a response; `None` where the net gain is not positive.
     fn from_correction(correction: &ChannelCorrection, pair: Pair) -> Option<Self> {
-        let has_leads = Channel::of(pair)
+        let has_leads = Channel::of_pair(pair)
             .into_iter()
             .any(|channel| correction.lead(channel).is_some());
         Some(Self {
@@ -298,7 +298,7 @@ impl PairCorrection {
     /// Returns the effect of the correction after a swap; `None` where a gain or delay is missing.
     fn from_figures(figures: &Figures, pair: Pair, leads: Option<&ChannelLeads>) -> Option<Self> {
         let gain = figures[Scalar::NetGain(pair)]?.exp();
-        let [output, input] = Channel::of(pair);
+        let [output, input] = Channel::of_pair(pair);
         let taus_s = [
             figures[Scalar::ChannelDelay(output)]?,
             figures[Scalar::ChannelDelay(input)]?,

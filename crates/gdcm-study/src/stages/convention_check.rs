@@ -54,7 +54,7 @@ impl Sample<'_> {
     fn of_channel(&self, channel: Channel) -> impl Iterator<Item = (Pair, &Mismatch)> {
         self.mismatch
             .iter()
-            .filter(move |(pair, _)| channel.is_of(*pair))
+            .filter(move |(pair, _)| channel.belongs_to(*pair))
             .filter_map(|(pair, mismatch)| Some((pair, mismatch.as_ref()?)))
     }
 
@@ -100,7 +100,7 @@ impl Sample<'_> {
 
 /// Returns a response's other channel.
 fn other_channel(channel: Channel, pair: Pair) -> Channel {
-    let [output, input] = Channel::of(pair);
+    let [output, input] = Channel::of_pair(pair);
     if channel == output { input } else { output }
 }
 
@@ -155,7 +155,8 @@ pub(crate) fn convention_doubts(
             gains: delta_gains(mismatch),
         })
         .collect();
-    let channels: Vec<Channel> = Channel::all(measuring.inputs(), measuring.outputs()).collect();
+    let channels: Vec<Channel> =
+        Channel::inputs_then_outputs(measuring.inputs(), measuring.outputs()).collect();
     let mut doubts = Vec::new();
     for channel in &channels {
         doubts.extend(sign_doubt(&samples, measuring, *channel));

@@ -24,7 +24,7 @@ pub(crate) fn signed_delays_apart(study: &Study, outcomes: &Outcomes) -> Vec<Sch
             leads.push((result.condition.id(), &compensated.leads));
         }
     }
-    Channel::all_of(&study.dataset)
+    Channel::of_dataset(&study.dataset)
         .filter_map(|channel| signed_delay_apart(&leads, channel))
         .collect()
 }

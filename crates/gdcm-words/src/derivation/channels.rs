@@ -54,7 +54,7 @@ impl Objective {
 /// Derives the net gain `k_o k_i` of a response.
 pub(super) fn net_gain(context: &Context<'_>, pair: Pair) -> Derivation {
     let result = context.result;
-    let [output, input] = Channel::of(pair);
+    let [output, input] = Channel::of_pair(pair);
     let value = result.correction.net_gain(pair);
     let step = format!(
         "k_{} k_{} = {} · {} = {}",
@@ -78,7 +78,7 @@ pub(super) fn net_gain(context: &Context<'_>, pair: Pair) -> Derivation {
 /// Derives the net delay `τ_o + τ_i` \[ms\] of a response.
 pub(super) fn net_delay(context: &Context<'_>, pair: Pair) -> Derivation {
     let result = context.result;
-    let [output, input] = Channel::of(pair);
+    let [output, input] = Channel::of_pair(pair);
     let value = s_to_ms(result.correction.net_delay_s(pair));
     let step = format!(
         "τ_{} + τ_{} = {} + {} = {} ms",
@@ -218,10 +218,11 @@ impl Optimum<'_> {
         let mut steps = Vec::new();
         for (pair, target) in self.solution.targets.iter() {
             let Some(target) = target else { continue };
-            if !channel.is_of(pair) {
+            if !channel.belongs_to(pair) {
                 continue;
             }
-            let [output, input] = Channel::of(pair).map(|channel| self.context.channel(channel));
+            let [output, input] =
+                Channel::of_pair(pair).map(|channel| self.context.channel(channel));
             let sum = if is_gain {
                 format!("k_{output} k_{input}")
             } else {

@@ -116,7 +116,7 @@ impl<'a> ChannelNames<'a> {
     /// has no leads.
     pub(super) fn leads(&self, correction: &ChannelCorrection) -> Option<Value> {
         let leads = correction.leads.as_ref()?;
-        let price = LeadPrice::of(leads);
+        let price = LeadPrice::new(leads);
         Some(self.by_channel(|channel| {
             let filter = leads.filters()[channel];
             json!({

@@ -177,7 +177,7 @@ impl ChannelRow<'_> {
 
     /// Returns the cost of the leads in the condition's own correction.
     fn price(&self) -> Option<LeadPrice> {
-        LeadPrice::of(self.results.own()?.leads.as_ref()?)
+        LeadPrice::new(self.results.own()?.leads.as_ref()?)
     }
 
     /// Returns the channel's lead filter in the condition's own correction.

@@ -179,7 +179,7 @@ fn conflict_json(names: &ChannelNames<'_>, conflict: &Conflict, words: String) -
 }
 
 fn sensitivity_json(names: &ChannelNames<'_>, sensitivity: &Sensitivity) -> Value {
-    let (restraint, entry, channel) = match sensitivity.restraint {
+    let (restraint, entry, channel) = match sensitivity.constraint {
         ActiveConstraint::Held(pair) => ("held", Some(names.pair(pair)), None),
         ActiveConstraint::LowerBound(channel) => ("lower_bound", None, Some(channel)),
         ActiveConstraint::UpperBound(channel) => ("upper_bound", None, Some(channel)),

@@ -8,8 +8,8 @@ use nalgebra::DMatrix;
 
 use gdcm_method::correction::branch_and_bound::search::Limit;
 use gdcm_method::correction::problem::ProblemError;
-use gdcm_method::correction::sensitivity::toggles;
 use gdcm_method::correction::solve::solve;
+use gdcm_method::correction::toggles::toggles;
 use gdcm_method::correction::{Bounds, Outcome, Problem, ProofBudget};
 use gdcm_model::dataset::condition::FlightState;
 use gdcm_model::dataset::dataset::DatasetHeader;

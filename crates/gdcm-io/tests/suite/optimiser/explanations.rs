@@ -113,7 +113,7 @@ fn a_product_below_the_bounds_is_explained() {
     };
     // The required product is 0.3: 0.547^2 = 0.2992 is below, 0.548^2 = 0.3003 above.
     assert_eq!(*lower, Some(0.547));
-    assert_eq!(*channels, (Channel::Input(3), Channel::Output(5)));
+    assert_eq!(*channels, [Channel::Input(3), Channel::Output(5)]);
     assert!(is_matched(&bounded(&problem, 0.547, 1.4)));
     assert!(!is_matched(&bounded(&problem, 0.548, 1.4)));
 }

@@ -1,14 +1,32 @@
-//! Newton's method for a local minimum over the box of scales.
+//! Newton's method for a local minimum over the box `lower <= s <= upper` of the scales.
+//!
+//! With the gradient `g` and the Hessian `H` at the current point, the quadratic model of the
+//! function is `g' d + d' H d / 2`, where `d` is the step.
 
 use super::effort::Effort;
 use super::objective::{Curvature, Differentiable, Expansion, ScaleBox};
+
+/// Maximum number of steps: about ten are typical; a flat start or an inflection requires a few
+/// tens.
+const STEPS: usize = 100;
+/// Predicted decrease, relative to the value, that is near the minimum.
+const NEAR_MINIMUM: f64 = 1e-13;
+/// Number of steps near the minimum, which reach the rounding level of the slopes, even across the
+/// end of an envelope.
+const STEPS_NEAR_MINIMUM: usize = 3;
+/// Share of the predicted decrease that a step must attain (Armijo).
+const SUFFICIENT_DECREASE: f64 = 1e-4;
+/// Maximum number of trials with a halved step.
+const HALVINGS: usize = 40;
+/// Rounding level of the scales: a shorter step ends the descent.
+const LEAST_STEP: f64 = 1e-15;
 
 /// A projected Newton method.
 ///
 /// ```text
 /// 1  quadratic model at the current point; the step leads to its minimum over the box
 /// 2  halve the step until the function decreases
-/// 3  stop when the step is at rounding level, or when `enough` holds
+/// 3  repeat from 1, until the step is at rounding level or `enough` holds
 /// ```
 ///
 /// Each step minimises the model over the box exactly, so that the active bounds are correct as
@@ -17,8 +35,10 @@ pub(crate) struct Newton<'a> {
     effort: &'a Effort<'a>,
     /// Expansion of the function at the final point.
     pub(crate) reached: Expansion,
+    /// Expansion of the function at the point that is tried next.
     trial: Expansion,
     model: QuadraticModel,
+    /// The point that is tried next.
     next: Vec<f64>,
 }
 
@@ -44,11 +64,9 @@ impl<'a> Newton<'a> {
         scales: &mut [f64],
         mut enough: impl FnMut(&[f64], &Expansion) -> bool,
     ) {
-        // About ten steps are typical; a flat start or an inflection requires a few tens.
-        const STEPS: usize = 100;
         self.effort.spend(function.work());
         function.expand(scales, Curvature::True, &mut self.reached);
-        let mut near = 0;
+        let mut steps_near = 0;
         for _ in 0..STEPS {
             if self.effort.is_stopped() || enough(scales, &self.reached) {
                 return;
@@ -60,20 +78,20 @@ impl<'a> Newton<'a> {
             let Some(step) = self.minimise_model(function, scales) else {
                 return;
             };
-            // This close to the minimum, three further steps reach the rounding level of the
-            // slopes, even across the end of an envelope.
-            if step.has_true_curvature && step.decrease <= 1e-13 * self.reached.value.value.abs() {
-                near += 1;
+            if step.has_true_curvature
+                && step.decrease <= NEAR_MINIMUM * self.reached.value.value.abs()
+            {
+                steps_near += 1;
             }
             let moved = self.search_line(function, bounds, scales, step.decrease);
-            if !moved || near == 3 {
+            if !moved || steps_near == STEPS_NEAR_MINIMUM {
                 return;
             }
         }
     }
 
-    /// Minimises the quadratic model, with the true curvature if the Hessian is positive definite,
-    /// otherwise with the curvature's magnitude. `None` if neither has a minimum.
+    /// Step 1: minimises the quadratic model, with the true curvature if the Hessian is positive
+    /// definite, otherwise with the curvature's magnitude. `None` if neither has a minimum.
     fn minimise_model(
         &mut self,
         function: &impl Differentiable,
@@ -94,8 +112,8 @@ impl<'a> Newton<'a> {
         })
     }
 
-    /// Halves the step until the function decreases, and takes it; returns `false` if no step
-    /// decreases the function, or if the step is at rounding level.
+    /// Step 2: halves the step until the function decreases, and takes it; returns `false` if no
+    /// step decreases the function, or if the step is at rounding level.
     fn search_line(
         &mut self,
         function: &impl Differentiable,
@@ -114,15 +132,16 @@ impl<'a> Newton<'a> {
         let here = self.reached.value;
         let noise = 4.0 * f64::EPSILON * here.value.abs() + 0.25 * here.error;
         let mut fraction = 1.0;
-        for _ in 0..40 {
+        for _ in 0..HALVINGS {
             self.place(fraction, bounds, scales);
             self.effort.spend(function.work());
             function.expand(&self.next, Curvature::True, &mut self.trial);
-            if self.trial.value.value <= here.value - 1e-4 * fraction * decrease + noise {
+            if self.trial.value.value
+                <= here.value - SUFFICIENT_DECREASE * fraction * decrease + noise
+            {
                 scales.copy_from_slice(&self.next);
                 std::mem::swap(&mut self.reached, &mut self.trial);
-                // Stop after a step below the rounding level of the scales.
-                return fraction * longest > 1e-15;
+                return fraction * longest > LEAST_STEP;
             }
             fraction *= 0.5;
         }
@@ -153,23 +172,27 @@ struct ModelStep {
     has_true_curvature: bool,
 }
 
-/// Quadratic model of the function over the box; `minimise` fills `step`.
+/// Quadratic model `g' d + d' H d / 2` of the function over the box `low <= d <= high`. The caller
+/// sets `low` and `high`; [`QuadraticModel::minimise`] finds `step`.
 #[derive(Clone, Debug)]
 struct QuadraticModel {
+    /// Number of scales.
     scales: usize,
     /// Lower bound on the step of each scale, at most 0.
     low: Vec<f64>,
     /// Upper bound on the step of each scale, at least 0.
     high: Vec<f64>,
+    /// The step `d`.
     step: Vec<f64>,
-    /// Slope of the model after the step.
+    /// Slope `g + H d` of the model after the step.
     slope: Vec<f64>,
     /// Scales without an active bound, in ascending order.
     free: Vec<usize>,
     is_free: Vec<bool>,
-    /// Cholesky factor of the Hessian of the free scales, row by row.
+    /// Lower Cholesky factor of the Hessian of the free scales. Its rows and columns are places in
+    /// `free`, not scales; each row has memory for all scales.
     factor: Vec<f64>,
-    /// Step to the unbounded minimum, for each free scale.
+    /// Further step to the unbounded minimum over the free scales, by scale.
     move_to: Vec<f64>,
 }
 
@@ -189,8 +212,8 @@ impl QuadraticModel {
         }
     }
 
-    /// Minimises `g d + d H d / 2`, with the gradient and Hessian at a point, over
-    /// `low <= d <= high` by a primal active-set method, which is exact and finite.
+    /// Minimises the model, with the gradient and Hessian of `at`, over `low <= d <= high` by a
+    /// primal active-set method, which is exact and finite.
     ///
     /// ```text
     /// 1  free: every scale, unless its slope pushes it against its bound
@@ -211,6 +234,7 @@ impl QuadraticModel {
                 || (self.high[scale] <= 0.0 && slope <= 0.0);
             self.is_free[scale] = self.low[scale] < self.high[scale] && !is_pressed;
         }
+        // Added to the diagonal, far below the curvature of any scale that matters.
         let ridge = 1e-12
             * (0..self.scales)
                 .map(|scale| hessian[scale * self.scales + scale])
@@ -250,14 +274,21 @@ impl QuadraticModel {
         1 + free * free * free / 96 + (self.scales * self.scales) as u64 / 16
     }
 
-    /// Computes `move_to = -H_ff^-1 slope_f` over the free scales by a Cholesky factorisation.
-    /// `None` if `H_ff` is not positive definite.
+    /// Computes `move_to = -H_ff^-1 slope_f` over the free scales, where `H_ff` is the Hessian of
+    /// these scales. `None` if it is not positive definite.
     fn solve_free(&mut self, hessian: &[f64], ridge: f64) -> Option<()> {
         self.free.clear();
         self.free
             .extend((0..self.scales).filter(|&scale| self.is_free[scale]));
-        let size = self.free.len();
-        for row in 0..size {
+        self.factorise_free(hessian, ridge)?;
+        self.substitute();
+        Some(())
+    }
+
+    /// Writes the Cholesky factor of `H_ff + ridge I` to `factor`; `None` if it is not positive
+    /// definite. `row`, `column` and `inner` are places in `free`.
+    fn factorise_free(&mut self, hessian: &[f64], ridge: f64) -> Option<()> {
+        for row in 0..self.free.len() {
             for column in 0..=row {
                 let mut entry = hessian[self.free[row] * self.scales + self.free[column]];
                 if row == column {
@@ -282,6 +313,12 @@ impl QuadraticModel {
                 };
             }
         }
+        Some(())
+    }
+
+    /// Solves `factor factor' move_to = -slope` for the free scales, forwards, then backwards.
+    fn substitute(&mut self) {
+        let size = self.free.len();
         for row in 0..size {
             let mut entry = -self.slope[self.free[row]];
             for inner in 0..row {
@@ -296,7 +333,6 @@ impl QuadraticModel {
             }
             self.move_to[self.free[row]] = entry / self.factor[row * self.scales + row];
         }
-        Some(())
     }
 
     /// Returns the fraction of `move_to` that stays inside the box, and the bound that limits it.
@@ -333,12 +369,13 @@ impl QuadraticModel {
     /// Returns the scale on an active bound from which the model decreases most steeply into the
     /// box; `None` if there is none, so that the minimum is reached.
     fn worst_active_bound(&self) -> Option<usize> {
-        let scale = self
+        let largest_slope = self
             .slope
             .iter()
             .fold(0.0_f64, |most, slope| most.max(slope.abs()));
         let mut worst = None;
-        let mut greatest = 1e-14 * scale;
+        // Smaller slopes are rounding errors.
+        let mut greatest = 1e-14 * largest_slope;
         for scale in 0..self.scales {
             if self.is_free[scale] || self.low[scale] >= self.high[scale] {
                 continue;

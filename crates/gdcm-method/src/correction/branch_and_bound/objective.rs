@@ -1,7 +1,9 @@
-//! The objective as a function of the scales, after the constraints are eliminated.
+//! The objective as a function of the scales, after the constraints are eliminated:
+//! `F(s) = constant + sum of terms f(s_to - s_from)` (formulas in [`super`]).
 
 use super::rounded::Rounded;
 use super::term::Term;
+use crate::correction::connected_pieces::connected_pieces;
 
 /// Value, gradient and Hessian (row by row) with respect to the scales, with bounds on the rounding
 /// error of value and gradient.
@@ -32,18 +34,12 @@ impl Expansion {
         self.hessian.fill(0.0);
     }
 
-    /// Adds the slope and curvature of a term to gradient and Hessian; the value is added
-    /// separately.
-    pub(crate) fn add(&mut self, term: &Term, slope: Rounded, curvature: f64) {
-        let scales = self.gradient.len();
-        let from = term.from;
-        let to = term.to;
-        self.add_to_gradient(to, slope);
-        self.add_to_gradient(from, -slope);
-        self.hessian[to * scales + to] += curvature;
-        self.hessian[from * scales + from] += curvature;
-        self.hessian[to * scales + from] -= curvature;
-        self.hessian[from * scales + to] -= curvature;
+    /// Adds the slope `f'(u)` and the curvature `f''(u)` of a term in `u = s_to - s_from` to
+    /// gradient and Hessian; the value is added separately.
+    pub(crate) fn add_derivatives(&mut self, term: &Term, slope: Rounded, curvature: f64) {
+        self.add_to_gradient(term.to, slope);
+        self.add_to_gradient(term.from, -slope);
+        add_curvature(&mut self.hessian, self.gradient.len(), term, curvature);
     }
 
     fn add_to_gradient(&mut self, scale: usize, slope: Rounded) {
@@ -55,6 +51,16 @@ impl Expansion {
         self.gradient[scale] = sum.value;
         self.gradient_error[scale] = sum.error;
     }
+}
+
+/// Adds the curvature of a term in `s_to - s_from` to a Hessian, scales x scales, row by row.
+pub(super) fn add_curvature(hessian: &mut [f64], scales: usize, term: &Term, curvature: f64) {
+    let from = term.from;
+    let to = term.to;
+    hessian[to * scales + to] += curvature;
+    hessian[from * scales + from] += curvature;
+    hessian[to * scales + from] -= curvature;
+    hessian[from * scales + to] -= curvature;
 }
 
 /// Treatment of negative curvature.
@@ -130,7 +136,7 @@ impl Objective {
         let sum: f64 = self
             .terms
             .iter()
-            .map(|term| term.function.at(term.difference(scales)).value.value)
+            .map(|term| term.function.evaluate(term.difference(scales)).value.value)
             .sum();
         self.constant.value + sum
     }
@@ -174,41 +180,17 @@ impl Differentiable for Objective {
     fn expand(&self, scales: &[f64], curvature: Curvature, into: &mut Expansion) {
         into.clear(self.constant);
         for term in &self.terms {
-            let at = term.function.at(term.difference(scales));
+            let at = term.function.evaluate(term.difference(scales));
             into.value.add(at.value);
             let bend = match curvature {
                 Curvature::True => at.curvature,
                 Curvature::Magnitude => at.curvature.abs(),
             };
-            into.add(term, at.slope, bend);
+            into.add_derivatives(term, at.slope, bend);
         }
     }
 
     fn work(&self) -> u64 {
         self.terms.len() as u64
     }
-}
-
-/// Finds the connected components of a graph with `count` nodes and the given edges; each lists its
-/// nodes in ascending order.
-pub(crate) fn connected_pieces(
-    count: usize,
-    edges: impl Iterator<Item = [usize; 2]>,
-) -> Vec<Vec<usize>> {
-    let mut piece_of: Vec<usize> = (0..count).collect();
-    for [a, b] in edges {
-        let kept = piece_of[a];
-        let merged = piece_of[b];
-        for piece in &mut piece_of {
-            if *piece == merged {
-                *piece = kept;
-            }
-        }
-    }
-    let mut pieces = vec![Vec::new(); count];
-    for (node, &piece) in piece_of.iter().enumerate() {
-        pieces[piece].push(node);
-    }
-    pieces.retain(|piece| !piece.is_empty());
-    pieces
 }

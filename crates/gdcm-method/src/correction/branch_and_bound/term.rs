@@ -1,5 +1,13 @@
-//! Terms of the objective: functions of a difference of scales, with bounds on their rounding
+//! Terms of the objective: functions of a difference `u` of scales, with bounds on their rounding
 //! errors.
+//!
+//! ```text
+//! f(u) = W (u - c)^2                              gains compared in dB, and delays
+//! f(u) = R1 (e^u - c1)^2 + R2 (e^-u - c2)^2       gains compared as ratios
+//! ```
+//!
+//! `R1` and `c1` are the weight and the centre of the `forward` exponential, `R2` and `c2` those of
+//! the `backward` exponential, which is a function of `-u`.
 
 use super::derivatives::{Derivatives, Range};
 use super::exponential::Exponential;
@@ -60,7 +68,7 @@ impl Function {
     }
 
     /// Evaluates the function at `u`.
-    pub(crate) fn at(&self, u: f64) -> Derivatives {
+    pub(crate) fn evaluate(&self, u: f64) -> Derivatives {
         match self {
             Function::Quadratic {
                 weight,
@@ -83,11 +91,11 @@ impl Function {
                 forward, backward, ..
             } => {
                 let z = u.exp();
-                let ahead = forward.at(u, z);
+                let ahead = forward.evaluate(u, z);
                 if backward.is_zero() {
                     ahead
                 } else {
-                    ahead.plus_mirrored(backward.at(-u, 1.0 / z))
+                    ahead.plus_mirrored(backward.evaluate(-u, 1.0 / z))
                 }
             }
         }
@@ -132,8 +140,8 @@ impl Function {
     pub(crate) fn slopes(&self, over: Interval) -> Range {
         match self {
             Function::Quadratic { .. } => {
-                let down = self.at(over.low).slope;
-                let up = self.at(over.high).slope;
+                let down = self.evaluate(over.low).slope;
+                let up = self.evaluate(over.high).slope;
                 let size = down.value.abs().max(up.value.abs());
                 Range {
                     least: down.value - down.error,
@@ -239,7 +247,7 @@ fn is_surely_convex(forward: &Exponential, backward: &Exponential, u: f64) -> bo
         -backward.weight * backward.centre / z,
         2.0 * backward.weight / (z * z),
     ];
-    let relative = 4.0 * forward.relative(u).max(backward.relative(u));
+    let relative = 4.0 * forward.relative_error(u).max(backward.relative_error(u));
     let least: f64 = parts.iter().map(|part| part - relative * part.abs()).sum();
     least > 0.0
 }

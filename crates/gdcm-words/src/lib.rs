@@ -6,7 +6,7 @@
 //! terminal, the window, the report and the exported files. It computes nothing except the numbers
 //! in its sentences.
 //!
-//! Sentences: [`remark`], [`leads`] and [`solution_details`] for a condition; [`caution`],
+//! Sentences: [`remark`], [`conflict_text`], [`leads`] and [`solution_details`] for a condition; [`caution`],
 //! [`convention_doubt`] and [`channel_time_skew`] for suspected faults; [`missing_results`] for
 //! results that do not exist; [`coupling_remark`], [`couplings`], [`assessment`], [`schedule`],
 //! [`uncertainty`] for a study; [`decision_differences`] and [`dataset_differences`]. Settings:
@@ -26,6 +26,7 @@
 pub mod assessment;
 pub mod caution;
 pub mod channel_time_skew;
+pub mod conflict_text;
 pub mod convention_doubt;
 pub mod coupling_remark;
 pub mod couplings;

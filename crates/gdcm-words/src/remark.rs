@@ -10,6 +10,7 @@ use gdcm_study::results::remark::{
 };
 
 use crate::caution::caution_text;
+use crate::conflict_text::{agreement_text, conflict_text, miss_text, remedy_text};
 use crate::convention_doubt::doubt_text;
 use crate::coupling_remark::coupling_remark_text;
 use crate::schedule::schedule_caution_text;
@@ -29,7 +30,7 @@ pub fn remark_text(remark: &Remark, dataset: &Dataset) -> String {
         }
         Remark::GainsRemedy(remedy) => {
             let (inputs, outputs) = dataset.names_of_channels();
-            remedy.words(&inputs, &outputs)
+            remedy_text(remedy, &inputs, &outputs)
         }
         Remark::DelaysMatched { held, is_exact } => {
             let accuracy = if *is_exact {
@@ -43,7 +44,7 @@ pub fn remark_text(remark: &Remark, dataset: &Dataset) -> String {
         Remark::DelayMissed {
             miss,
             band_top_rad_s,
-        } => miss_text(miss, *band_top_rad_s, dataset),
+        } => named_miss_text(miss, *band_top_rad_s, dataset),
         Remark::CommonLead { lead_s } => format!(
             "All held responses need about {} ms of lead. First check the time alignment of the \
             records, and the integration and sampling delay of the simulation, then the servo and \
@@ -73,7 +74,7 @@ pub fn remark_text(remark: &Remark, dataset: &Dataset) -> String {
         }
         Remark::LoopAgrees(conflict) => {
             let (inputs, outputs) = dataset.names_of_channels();
-            conflict.agreement_words(&inputs, &outputs)
+            agreement_text(conflict, &inputs, &outputs)
         }
         Remark::CoherenceUsed { responses } => {
             format!("J, G and D of {responses} responses are weighted by coherence.")
@@ -128,20 +129,20 @@ fn missed_targets_text(missed: &MissedTargets, dataset: &Dataset) -> String {
         } => {
             let texts: Vec<String> = misses
                 .iter()
-                .map(|miss| miss_text(miss, *band_top_rad_s, dataset))
+                .map(|miss| named_miss_text(miss, *band_top_rad_s, dataset))
                 .collect();
             texts.join(" ")
         }
         MissedTargets::Conflict(conflict) => {
             let (inputs, outputs) = dataset.names_of_channels();
-            conflict.words(&inputs, &outputs)
+            conflict_text(conflict, &inputs, &outputs)
         }
     }
 }
 
-fn miss_text(miss: &Unmatched, band_top_rad_s: f64, dataset: &Dataset) -> String {
+fn named_miss_text(miss: &Unmatched, band_top_rad_s: f64, dataset: &Dataset) -> String {
     let (inputs, outputs) = dataset.names_of_channels();
-    miss.words(band_top_rad_s, &inputs, &outputs)
+    miss_text(miss, band_top_rad_s, &inputs, &outputs)
 }
 
 fn needed_lead_text(needed: &[NeededLead], held: usize, dataset: &Dataset) -> String {

@@ -5,6 +5,8 @@ use gdcm_method::correction::branch_and_bound::search::Limit;
 use gdcm_method::correction::sensitivity::{kkt_residual, sensitivities};
 use gdcm_study::{ConditionAnalysis, PhaseCorrection, Study};
 
+use crate::conflict_text::miss_text;
+
 /// Lists the details of the solution: other minima, the phase error at the upper end of the band
 /// due to each missed delay, and the sensitivity to constraints and active bounds.
 pub fn details(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
@@ -29,7 +31,7 @@ pub fn details(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
     }
     let band_top = study.settings.band.max();
     for miss in &result.delays.unmatched {
-        details.push(miss.words(band_top, &inputs, &outputs));
+        details.push(miss_text(miss, band_top, &inputs, &outputs));
     }
     for (problem, solution) in [
         (&result.gain_problem, &result.gains),

@@ -95,7 +95,8 @@ const CRATES: &[(&str, ModuleTable)] = &[
             ("setting_words", &[]),
             ("schedule", &[]),
             ("conflict_text", &[]),
-            ("solution_details", &["conflict_text"]),
+            ("sensitivity", &[]),
+            ("solution_details", &["conflict_text", "sensitivity"]),
             ("coupling_remark", &[]),
             (
                 "remark",

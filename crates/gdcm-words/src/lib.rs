@@ -6,7 +6,7 @@
 //! terminal, the window, the report and the exported files. It computes nothing except the numbers
 //! in its sentences.
 //!
-//! Sentences: [`remark`], [`conflict_text`], [`leads`] and [`solution_details`] for a condition; [`caution`],
+//! Sentences: [`remark`], [`conflict_text`], [`leads`], [`solution_details`] and [`sensitivity`] for a condition; [`caution`],
 //! [`convention_doubt`] and [`channel_time_skew`] for suspected faults; [`missing_results`] for
 //! results that do not exist; [`coupling_remark`], [`couplings`], [`assessment`], [`schedule`],
 //! [`uncertainty`] for a study; [`decision_differences`] and [`dataset_differences`]. Settings:
@@ -38,6 +38,7 @@ pub mod missing_results;
 pub mod remark;
 pub mod requirements;
 pub mod schedule;
+pub mod sensitivity;
 pub mod setting_words;
 pub mod solution_details;
 pub mod table;

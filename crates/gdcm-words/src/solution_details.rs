@@ -6,6 +6,7 @@ use gdcm_method::correction::sensitivity::{kkt_residual, sensitivities};
 use gdcm_study::{ConditionAnalysis, PhaseCorrection, Study};
 
 use crate::conflict_text::miss_text;
+use crate::sensitivity::sensitivity_text;
 
 /// Lists the details of the solution: other minima, the phase error at the upper end of the band
 /// due to each missed delay, and the sensitivity to constraints and active bounds.
@@ -39,7 +40,7 @@ pub fn details(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
     ] {
         for sensitivity in sensitivities(problem, solution) {
             if sensitivity.share_per_unit.abs() > NOTABLE {
-                details.push(sensitivity.words(&inputs, &outputs));
+                details.push(sensitivity_text(&sensitivity, &inputs, &outputs));
             }
         }
     }

@@ -11,6 +11,7 @@ use gdcm_study::results::remark_kind::RemarkKind;
 use gdcm_study::results::uncertainty::Uncertainty;
 use gdcm_study::{ConditionAnalysis, Study};
 
+use crate::lead_price::pair_price_text;
 use crate::remark::remark_text;
 
 /// Describes the lead of responses and channels: "P from LAT needs 65 ms of lead over the band: 24
@@ -84,7 +85,7 @@ fn wanted_lead_words(
         part(output),
         part(input)
     );
-    if let Some(words) = price.and_then(|price| price.pair_words(pair)) {
+    if let Some(words) = price.and_then(|price| pair_price_text(price, pair)) {
         text.push_str(&format!("; {words}"));
     }
     Some(text)

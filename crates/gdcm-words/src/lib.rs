@@ -6,7 +6,7 @@
 //! terminal, the window, the report and the exported files. It computes nothing except the numbers
 //! in its sentences.
 //!
-//! Sentences: [`remark`], [`conflict_text`], [`leads`], [`solution_details`] and [`sensitivity`] for a condition; [`caution`],
+//! Sentences: [`remark`], [`conflict_text`], [`leads`], [`lead_price`], [`solution_details`] and [`sensitivity`] for a condition; [`caution`],
 //! [`convention_doubt`] and [`channel_time_skew`] for suspected faults; [`missing_results`] for
 //! results that do not exist; [`coupling_remark`], [`couplings`], [`assessment`], [`schedule`],
 //! [`uncertainty`] for a study; [`decision_differences`] and [`dataset_differences`]. Settings:
@@ -33,6 +33,7 @@ pub mod couplings;
 pub mod dataset_differences;
 pub mod decision_differences;
 pub mod derivation;
+pub mod lead_price;
 pub mod leads;
 pub mod missing_results;
 pub mod remark;

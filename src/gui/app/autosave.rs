@@ -1,4 +1,8 @@
 //! Thread that keeps unsaved decisions in a recovery file.
+//!
+//! [`Autosave`] sends tasks to the thread, whose state is the [`Keeper`]. Decisions first wait as
+//! pending, so that a drag does not write the file at each step; the oldest pending decision sets
+//! the time at which the newest are written. After an error they remain pending for a retry.
 
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};

@@ -1,12 +1,12 @@
 //! Background jobs of the window: the continuously updated analysis ("live analysis") and all
-//! others. One table, [`BackgroundJobs::start`], lists every kind of job with its tools, its
-//! trigger and its destination.
+//! others. The functions called by [`BackgroundJobs::start`] list every kind of job with its tools,
+//! its trigger and its destination.
 //!
 //! The kinds share a thread pool. Order of urgency, and its reasons:
 //!
 //! | class  | kinds                                  | reason                              |
 //! |--------|----------------------------------------|-------------------------------------|
-//! | answer | live analysis                          | follows every drag                  |
+//! | live   | live analysis                          | follows every drag                  |
 //! | short  | curves, modes                          | first picture of the condition      |
 //! | short  | assessment, conditions, requirements   | tables and plots in visible views   |
 //! | short  | test input, record history, simulation | time responses in visible views     |
@@ -36,7 +36,7 @@ use super::job_pool::{JobPool, LaneClass};
 use super::job_queue::JobQueue;
 use super::threads::ReplySender;
 use crate::executor::Pool;
-use crate::gui::state::results::Background;
+use crate::gui::state::background::Background;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::views::need::Need;
@@ -84,7 +84,7 @@ impl BackgroundJobs {
             known: KnownModels::default(),
         };
         let mut kinds = JobKinds::new(&pool, replies);
-        add_live_answer(&mut kinds, &engines);
+        add_live_analysis(&mut kinds, &engines);
         add_short_kinds(&mut kinds, &engines);
         add_long_kinds(&mut kinds, &engines);
         let kinds = Rc::new(kinds.into_kinds());
@@ -138,14 +138,14 @@ fn cores() -> Box<dyn Executor> {
 
 fn no_tools() {}
 
-fn add_live_answer(kinds: &mut JobKinds<'_>, engines: &Engines) {
-    let answers = JobKind::new(
-        |app| app.work.asked.iter().cloned().collect(),
-        GdcmApp::answered,
+fn add_live_analysis(kinds: &mut JobKinds<'_>, engines: &Engines) {
+    let analyses = JobKind::new(
+        |app| app.work.live_job.iter().cloned().collect(),
+        GdcmApp::show_analysis,
     )
     .with_report(|queue, background| background.analysis = queue.progress())
-    .with_withdrawal(GdcmApp::answer_stopped);
-    kinds.add(LaneClass::Answer, engines.sharing(), answers);
+    .with_withdrawal(GdcmApp::live_analysis_stopped);
+    kinds.add(LaneClass::Live, engines.sharing(), analyses);
 }
 
 /// Adds the kinds whose jobs usually end within a second, the most urgent first.
@@ -212,7 +212,7 @@ fn add_long_kinds(kinds: &mut JobKinds<'_>, engines: &Engines) {
     .with_report(|queue, background| background.time_histories = queue.progress());
     kinds.add(LaneClass::Long, cores, time_histories);
     let reports = JobKind::new(
-        |app| app.work.reporting.iter().cloned().collect(),
+        |app| app.work.report_job.iter().cloned().collect(),
         GdcmApp::report_written,
     )
     .with_report(|queue, background| background.report = queue.progress())
@@ -222,7 +222,7 @@ fn add_long_kinds(kinds: &mut JobKinds<'_>, engines: &Engines) {
         |app| uncertainty_job(&app.state).into_iter().collect(),
         |app, job, uncertainty| app.state.results.uncertainty = Some((job, uncertainty)),
     )
-    .with_report(|queue, background| background.bars = queue.progress());
+    .with_report(|queue, background| background.error_bars = queue.progress());
     kinds.add(LaneClass::Long, engines.sharing(), bars);
     let identifications = JobKind::new(
         |app| app.state.records.by_urgency(app.state.condition().id()),

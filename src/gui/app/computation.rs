@@ -1,4 +1,14 @@
-//! Requests for results, and the replies from the threads.
+//! Live analysis: the results follow every change of the study and of the displayed condition.
+//!
+//! 1. After each frame, `request_results` compares both with the newest request. If they differ, it
+//!    gives the new request a number (`Results::requested`).
+//! 2. `start_live_analysis` makes an [`AnalysisJob`] for the request. `want_jobs`
+//!    (`background_jobs.rs`) passes it to its queue, also after each frame.
+//! 3. The job sends the result of the displayed condition (`Results::first`) before the results of
+//!    the others.
+//! 4. `show_analysis` stores the whole analysis and its request number (`Results::received`), and
+//!    wants the jobs that complete it: curves, error bars, proofs.
+//! 5. `take_proof` receives a proof and starts the job again, with the same request number.
 
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
@@ -6,35 +16,36 @@ use std::sync::mpsc::Receiver;
 use gdcm_method::correction::Solution;
 use gdcm_method::correction::problem::ProblemError;
 use gdcm_model::dataset::ConditionId;
+use gdcm_study::Study;
 use gdcm_study::jobs::analysis_jobs::ProofJob;
 use gdcm_study::jobs::curve_jobs::CurvesJob;
 use gdcm_study::stages::condition_curves::ConditionCurves;
-use gdcm_study::{Analysis, Study};
 
 use super::GdcmApp;
-use super::analysis_job::{AnalysisJob, Proof};
+use super::analysis_job::{AnalysisJob, Proof, TimedAnalysis};
 use super::background_jobs::BackgroundJobs;
+use super::faults::Fault;
 use super::report_job::ReportJob;
-use super::threads::{Fault, Reply, ReplySender};
-use crate::gui::state::notices::Bar;
+use super::threads::{Reply, ReplySender};
+use crate::gui::state::notices::MessageBar;
 use crate::gui::views::need::Need;
 
 /// Requested and received results of the computation.
 pub(super) struct Computation {
-    /// Last job of the live analysis.
-    pub(super) asked: Option<AnalysisJob>,
+    /// Job of the live analysis that is running, waiting or complete.
+    pub(super) live_job: Option<AnalysisJob>,
     pub(super) jobs: BackgroundJobs,
     /// Proofs that are not yet part of the results.
-    pub(super) proven: Vec<Proof>,
+    pub(super) new_proofs: Vec<Proof>,
     /// Jobs needed by the visible views in addition to the live analysis.
     pub(super) needs: Vec<Need>,
     /// Study and condition in the newest request.
-    pub(super) requested: Option<(Study, ConditionId)>,
+    pub(super) newest_request: Option<(Study, ConditionId)>,
     /// Report that is being written.
-    pub(super) reporting: Option<ReportJob>,
+    pub(super) report_job: Option<ReportJob>,
     pub(super) replies: ReplySender,
     /// Replies from threads.
-    pub(super) received: Receiver<Reply>,
+    pub(super) reply_receiver: Receiver<Reply>,
 }
 
 impl GdcmApp {
@@ -45,47 +56,47 @@ impl GdcmApp {
 
     /// Requests the results for the current study and condition, unless they have been requested
     /// already.
-    pub(super) fn request(&mut self) {
+    pub(super) fn request_results(&mut self) {
         let now = self.now();
         let study = &self.state.study;
         let condition = self.state.condition().id();
-        if let Some((requested, at)) = &self.work.requested
-            && *at == condition
+        if let Some((requested, shown)) = &self.work.newest_request
+            && *shown == condition
             && needs_same_results(requested, study)
         {
             return;
         }
-        self.work.requested = Some((study.clone(), condition));
+        self.work.newest_request = Some((study.clone(), condition));
         let results = &mut self.state.results;
         results.requested += 1;
         results.stopped = false;
         results.waiting_since.get_or_insert(now);
-        self.ask();
+        self.start_live_analysis();
     }
 
     /// Starts the live analysis for the latest request, with all available proofs.
-    pub(super) fn ask(&mut self) {
-        let Some((study, condition)) = self.work.requested.clone() else {
+    pub(super) fn start_live_analysis(&mut self) {
+        let Some((study, condition)) = self.work.newest_request.clone() else {
             return;
         };
-        let number = match &self.work.asked {
+        let number = match &self.work.live_job {
             Some(job) => job.number + 1,
             None => 0,
         };
-        self.work.asked = Some(AnalysisJob {
+        self.work.live_job = Some(AnalysisJob {
             number,
-            generation: self.state.results.requested,
+            request: self.state.results.requested,
             study,
             condition,
-            proofs: self.work.proven.clone(),
+            proofs: self.work.new_proofs.clone(),
             replies: self.work.replies.clone(),
         });
     }
 
     /// Records that the live analysis was stopped, by the user or by a fault; the displayed results
     /// remain.
-    pub(super) fn answer_stopped(&mut self) {
-        self.work.proven.clear();
+    pub(super) fn live_analysis_stopped(&mut self) {
+        self.work.new_proofs.clear();
         let results = &mut self.state.results;
         results.stopped = results.is_behind();
         results.waiting_since = None;
@@ -93,23 +104,23 @@ impl GdcmApp {
 
     /// Requests a stopped computation again.
     pub(super) fn compute_again(&mut self) {
-        self.work.requested = None;
+        self.work.newest_request = None;
         self.state
-            .bars
-            .retain(|bar| !matches!(bar, Bar::Fault { .. }));
+            .message_bars
+            .retain(|bar| !matches!(bar, MessageBar::Fault { .. }));
         self.work.jobs.resume();
     }
 
     /// Applies the replies from the threads.
-    pub(super) fn receive(&mut self) {
-        while let Ok(reply) = self.work.received.try_recv() {
+    pub(super) fn receive_replies(&mut self) {
+        while let Ok(reply) = self.work.reply_receiver.try_recv() {
             reply(self);
         }
         let now = self.now();
         let results = &mut self.state.results;
         results.background = self.work.jobs.running_work();
-        for (problem, _) in &self.work.proven {
-            results.background.proofs.push(Arc::clone(problem));
+        for proof in &self.work.new_proofs {
+            results.background.proofs.push(Arc::clone(&proof.problem));
         }
         if results.background.is_busy() {
             results.background_since.get_or_insert(now);
@@ -119,17 +130,16 @@ impl GdcmApp {
     }
 
     /// Shows an analysis and requests the jobs needed to complete it.
-    pub(super) fn answered(&mut self, job: AnalysisJob, answer: (Arc<Analysis>, f64)) {
-        let (analysis, elapsed_ms) = answer;
+    pub(super) fn show_analysis(&mut self, job: AnalysisJob, timed: TimedAnalysis) {
         let now = self.now();
         let results = &mut self.state.results;
         // A rerun after an optimality proof has the request number of the original job; its short
         // computing time must not replace the original one.
-        if results.received != job.generation {
-            results.elapsed_ms = elapsed_ms;
+        if results.received != job.request {
+            results.elapsed_ms = timed.elapsed_ms;
         }
-        results.received = job.generation;
-        results.analysis = Some(analysis);
+        results.received = job.request;
+        results.analysis = Some(timed.analysis);
         results.first = None;
         results.stopped &= results.is_behind();
         results.waiting_since = if results.is_waiting() {
@@ -138,8 +148,8 @@ impl GdcmApp {
             None
         };
         self.work
-            .proven
-            .retain(|(problem, _)| !job.has_proof_of(problem));
+            .new_proofs
+            .retain(|proof| !job.has_proof_of(&proof.problem));
         self.want_jobs();
     }
 
@@ -147,8 +157,11 @@ impl GdcmApp {
     /// because the live analysis has already reported it.
     pub(super) fn take_proof(&mut self, job: ProofJob, proof: Result<Arc<Solution>, ProblemError>) {
         if let Ok(solution) = proof {
-            self.work.proven.push((job.problem, solution));
-            self.ask();
+            self.work.new_proofs.push(Proof {
+                problem: job.problem,
+                solution,
+            });
+            self.start_live_analysis();
         }
     }
 
@@ -173,9 +186,9 @@ impl GdcmApp {
             fault.words(),
         );
         self.state
-            .bars
-            .retain(|bar| !matches!(bar, Bar::Fault { .. }));
-        self.state.bars.push(Bar::Fault { sentence });
+            .message_bars
+            .retain(|bar| !matches!(bar, MessageBar::Fault { .. }));
+        self.state.message_bars.push(MessageBar::Fault { sentence });
     }
 }
 

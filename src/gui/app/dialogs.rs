@@ -29,6 +29,7 @@ pub(super) enum PendingAction {
 
 /// Open desktop dialog, and actions postponed until the engineer answers a question.
 pub(super) struct Dialogs {
+    /// Whether a desktop dialog is open; there is at most one.
     pub(super) dialog_open: bool,
     /// Action postponed until the engineer confirms that unsaved decisions may be lost.
     pub(super) postponed: Option<PendingAction>,
@@ -39,6 +40,7 @@ pub(super) struct Dialogs {
     /// Treatment of existing files: replaced only during a command for which the engineer has
     /// confirmed it.
     pub(super) existing: Existing,
+    /// Whether the window is closing: the engineer has already been asked about unsaved decisions.
     pub(super) closing: bool,
 }
 

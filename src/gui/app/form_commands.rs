@@ -23,7 +23,7 @@ impl GdcmApp {
             }
             FormCommand::Refuse(why) => self.notify_error(why),
             FormCommand::DismissNotice => self.state.notice = None,
-            FormCommand::CloseBar(bar) => self.state.bars.retain(|shown| *shown != bar),
+            FormCommand::CloseBar(bar) => self.state.message_bars.retain(|shown| *shown != bar),
             FormCommand::Overwrite => self.overwrite(),
             FormCommand::SaveAndGoOn => self.save_and_go_on(),
             FormCommand::DiscardAndGoOn => {
@@ -59,7 +59,7 @@ impl GdcmApp {
         self.state.forms.existing.clear();
         if let Some(command) = self.dialogs.overwriting.take() {
             self.dialogs.existing = Existing::Replace;
-            self.carry_out_one(command);
+            self.carry_out_command(command);
             self.dialogs.existing = Existing::Keep;
         }
     }

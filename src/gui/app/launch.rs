@@ -1,8 +1,7 @@
 //! Starts the program: from the command line to a window on the screen.
 
 use std::error::Error;
-use std::ops::RangeInclusive;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
 use std::thread::JoinHandle;
@@ -21,10 +20,11 @@ use gdcm_study::Engine;
 use gdcm_study::stages::engine::LIVE_PROOF;
 
 use super::autosave::Autosave;
+use super::faults::{Fault, caught, record_panic};
 use super::recovery::{LAST_WAIT, end_words};
-use super::threads::{Fault, caught};
 use super::window::PREFERENCES;
-use super::{EngineMaker, GdcmApp, threads};
+use super::zoom_repair::repair_zoom;
+use super::{EngineMaker, GdcmApp};
 use crate::executor::{Pool, start_threads};
 use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::commands::file::FileCommand;
@@ -113,7 +113,7 @@ pub fn open(path: Option<PathBuf>) -> ExitCode {
     {
         eprintln!("caution: {caution}");
     }
-    std::panic::set_hook(Box::new(threads::note));
+    std::panic::set_hook(Box::new(record_panic));
     let opening = Arc::new(OnceLock::new());
     let outcome = caught(|| run(reading, models, &opening));
     match ending(outcome, opening.get(), &command) {
@@ -297,7 +297,7 @@ fn create_window(
     } else {
         last_opened(&setup)
     };
-    let mut app = GdcmApp::with(&creation.egui_ctx, opened, setup)?;
+    let mut app = GdcmApp::with_setup(&creation.egui_ctx, opened, setup)?;
     if let Some(path) = last {
         app.dispatch(FileCommand::Open(path));
     }
@@ -316,35 +316,6 @@ fn last_opened(setup: &Setup) -> Option<PathBuf> {
     recent_files(setup.directory.as_deref()?)
         .into_iter()
         .find(|path| file_exists(path))
-}
-
-/// Usable zoom factors.
-const ZOOM: RangeInclusive<f64> = 0.2..=5.0;
-
-/// Replaces an unusable zoom factor in the preferences with 1; returns a caution about it.
-fn repair_zoom(preferences: &Path) -> Option<String> {
-    const KEY: &str = "zoom_factor:";
-    let text = std::fs::read_to_string(preferences).ok()?;
-    let start = text.find(KEY)? + KEY.len();
-    let end = start + text[start..].find([',', ')'])?;
-    let stored = &text[start..end];
-    if let Ok(zoom) = stored.trim().parse::<f64>()
-        && ZOOM.contains(&zoom)
-    {
-        return None;
-    }
-    let problem = format!(
-        "{}: expected a zoom factor from {} to {}, found {}",
-        sanitized_path(preferences),
-        ZOOM.start(),
-        ZOOM.end(),
-        sanitized(stored)
-    );
-    let repaired = format!("{}1.0{}", &text[..start], &text[end..]);
-    Some(match std::fs::write(preferences, repaired) {
-        Ok(()) => format!("{problem}; it was reset to 1"),
-        Err(error) => format!("{problem}; it cannot be repaired: {error}"),
-    })
 }
 
 /// Returns why no window can be opened, as far as can be detected in advance: on Linux, if neither
@@ -443,33 +414,5 @@ mod tests {
         let example = load(None);
         assert!(example.opened.is_ok());
         assert_eq!(example.trouble, None);
-    }
-
-    #[test]
-    fn an_unusable_zoom_factor_is_replaced_with_a_message_and_other_preferences_stay() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("app.ron");
-        let text = |zoom: &str| {
-            format!(
-                "{{\"egui\": \"(options:(sync:true,zoom_factor:{zoom},reduce_texture_memory:false))\"}}"
-            )
-        };
-        for (stored, kept) in [
-            ("0.0", "1.0"),
-            ("NaN", "1.0"),
-            ("5.5", "1.0"),
-            ("0.2", "0.2"),
-            ("1.25", "1.25"),
-        ] {
-            std::fs::write(&path, text(stored)).unwrap();
-            let caution = repair_zoom(&path);
-            assert_eq!(caution.is_some(), stored != kept, "{stored}: {caution:?}");
-            if let Some(caution) = caution {
-                assert!(caution.contains(stored), "{caution}");
-                assert!(caution.contains("from 0.2 to 5"), "{caution}");
-            }
-            assert_eq!(std::fs::read_to_string(&path).unwrap(), text(kept));
-        }
-        assert_eq!(repair_zoom(&folder.path().join("none.ron")), None);
     }
 }

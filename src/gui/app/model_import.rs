@@ -21,6 +21,7 @@ use super::threads::ReplySender;
 use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::state::assembling::{AssemblyState, Reading};
 use crate::gui::state::forms::FormKind;
+use crate::gui::widgets::counts::counted;
 
 /// Number of bytes read between two progress reports.
 const REPORT_EVERY: u64 = 16 << 20;
@@ -54,20 +55,20 @@ impl ReadingReport {
         let number = self.number;
         self.replies.send(move |app| {
             if app.readers.models.is_newest(number)
-                && let Some(bench) = &mut app.state.assembling
+                && let Some(import) = &mut app.state.assembling
             {
-                change(&mut bench.reading);
+                change(&mut import.reading);
             }
         });
     }
 }
 
 impl FolderProgress for ReadingReport {
-    fn reading(&self, number: usize, of: usize, name: &str) {
+    fn reading(&self, number: usize, total: usize, name: &str) {
         self.reported.set(0);
         let reading = Reading {
             number,
-            of,
+            total,
             name: name.to_owned(),
             taken: 0,
         };
@@ -92,12 +93,12 @@ impl FolderProgress for ReadingReport {
 
 impl GdcmApp {
     /// Carries out a command of the import view.
-    pub(super) fn assemble(&mut self, command: AssemblingCommand) {
-        let bench = self
+    pub(super) fn carry_out_assembling(&mut self, command: AssemblingCommand) {
+        let import = self
             .state
             .assembling
             .get_or_insert_with(AssemblyState::default);
-        let headings = bench.assembly().rules().headings.clone();
+        let headings = import.assembly().rules().headings.clone();
         match command {
             AssemblingCommand::Open => {}
             AssemblingCommand::Close => {
@@ -115,20 +116,20 @@ impl GdcmApp {
                 self.read_models(Sources::More(paths));
             }
             AssemblingCommand::StopReading => self.readers.models.stop(),
-            AssemblingCommand::Change(rules) => bench.change(*rules),
-            AssemblingCommand::Undo => bench.undo(),
-            AssemblingCommand::Redo => bench.redo(),
-            AssemblingCommand::Select(part) => bench.selected = part,
-            AssemblingCommand::Sort(column) => bench.sorting = bench.sorting.clicked(column),
-            AssemblingCommand::ShowResponse(place) => bench.preview.response = place,
+            AssemblingCommand::Change(rules) => import.change(*rules),
+            AssemblingCommand::Undo => import.undo(),
+            AssemblingCommand::Redo => import.redo(),
+            AssemblingCommand::Select(part) => import.selected = part,
+            AssemblingCommand::Sort(column) => import.sorting = import.sorting.clicked(column),
+            AssemblingCommand::ShowResponse(place) => import.preview.response = place,
             AssemblingCommand::LoadRules(path) => self.take_rules(path),
             AssemblingCommand::SaveRules(path) => self.save_rules(path),
             AssemblingCommand::MakeDataset(path) => self.make_dataset(path),
         }
-        if let Some(bench) = &self.state.assembling
-            && bench.assembly().rules().headings != headings
+        if let Some(import) = &self.state.assembling
+            && import.assembly().rules().headings != headings
         {
-            self.read_models(Sources::Again(bench.sources.clone()));
+            self.read_models(Sources::Again(import.sources.clone()));
         }
     }
 
@@ -150,19 +151,19 @@ impl GdcmApp {
             let found = read_models(sources.paths(), &headings, &report);
             (sources, found)
         };
-        if let Some(bench) = &mut self.state.assembling {
-            bench.reading = Some(Reading::default());
+        if let Some(import) = &mut self.state.assembling {
+            import.reading = Some(Reading::default());
         }
         self.in_thread("the reading of models", read, move |app, read| {
             if !app.readers.models.is_newest(number) {
                 return;
             }
-            let Some(bench) = &mut app.state.assembling else {
+            let Some(import) = &mut app.state.assembling else {
                 return;
             };
-            bench.reading = None;
+            import.reading = None;
             let Some((sources, found)) = read else { return };
-            if let Some(found) = app.unless_error(found) {
+            if let Some(found) = app.value_or_notify(found) {
                 app.take_models(sources, found);
             }
         });
@@ -170,16 +171,16 @@ impl GdcmApp {
 
     /// Adds the models that were read to the import.
     fn take_models(&mut self, sources: Sources, found: FoundModels) {
-        let Some(bench) = &mut self.state.assembling else {
+        let Some(import) = &mut self.state.assembling else {
             return;
         };
         let paths = match sources {
             Sources::More(paths) => paths,
             Sources::Again(_) if self.readers.models.is_stopped() => {
-                return self.done("stopped: the models read before are kept".to_owned());
+                return self.notify_done("stopped: the models read before are kept".to_owned());
             }
             Sources::Again(paths) => {
-                bench.forget_models();
+                import.forget_models();
                 paths
             }
         };
@@ -189,45 +190,49 @@ impl GdcmApp {
         };
         let models = found.models.len();
         let files = found.files;
-        bench.unused.extend(found.unused_words());
-        bench.add(&name, found.models);
-        bench.faults.extend(found.faults);
-        bench.ignored.extend(found.ignored);
-        bench.tables.extend(found.tables);
-        bench.unsaid.extend(found.unsaid);
-        if bench.dataset_path.is_empty()
+        import.unused.extend(found.unused_words());
+        import.add(&name, found.models);
+        import.faults.extend(found.faults);
+        import.ignored.extend(found.ignored);
+        import.tables.extend(found.tables);
+        import.unsaid.extend(found.unsaid);
+        if import.dataset_path.is_empty()
             && let Some(first) = paths.first()
         {
-            bench.dataset_path = format!("{}.json.gz", first.with_extension("").display());
-            bench.rules_path = rules_path(Path::new(&bench.dataset_path))
+            import.dataset_path = format!("{}.json.gz", first.with_extension("").display());
+            import.rules_path = rules_path(Path::new(&import.dataset_path))
                 .display()
                 .to_string();
         }
         let mut new = paths;
-        new.retain(|path| !bench.sources.contains(path));
-        bench.sources.extend(new);
-        self.done(format!("{models} models in {files} files"));
+        new.retain(|path| !import.sources.contains(path));
+        import.sources.extend(new);
+        self.notify_done(format!(
+            "{} in {}",
+            counted(models, "model"),
+            counted(files, "file")
+        ));
     }
 
     /// Reads rules from a file.
     fn take_rules(&mut self, path: PathBuf) {
         let path = self.files.at_home(path);
-        let Some((rules, cautions)) = self.unless_error(load_rules(&path)) else {
+        let Some((rules, cautions)) = self.value_or_notify(load_rules(&path)) else {
             return;
         };
-        if let Some(bench) = &mut self.state.assembling {
-            bench.change(rules);
+        if let Some(import) = &mut self.state.assembling {
+            import.change(rules);
         }
         let mut message = format!("applied the rules in {}", sanitized_path(&path));
         for caution in cautions {
             message.push_str(&format!("; {caution}"));
         }
-        self.done(message);
+        self.notify_done(message);
     }
 
     fn import_rules(&self) -> Option<Rules> {
-        let bench = self.state.assembling.as_ref()?;
-        Some(bench.assembly().rules().clone())
+        let import = self.state.assembling.as_ref()?;
+        Some(import.assembly().rules().clone())
     }
 
     /// Writes the rules to a file; asks before overwriting.
@@ -237,7 +242,7 @@ impl GdcmApp {
         };
         let path = self.files.at_home(path);
         let saved = self.write_all(&[], |outputs| add_rules(&rules, &path, outputs));
-        self.saved_to(
+        self.notify_saved(
             saved,
             &path,
             FormKind::Models,
@@ -247,17 +252,17 @@ impl GdcmApp {
 
     /// Writes the dataset and its rules, and opens the dataset; asks before overwriting.
     fn make_dataset(&mut self, path: PathBuf) {
-        let Some(bench) = &self.state.assembling else {
+        let Some(import) = &self.state.assembling else {
             return;
         };
         let path = self.files.at_home(path);
-        let folder = relative_folder(sources_folder(&bench.sources), &path);
-        let Some(dataset) = bench.assembly().dataset(&folder) else {
+        let folder = relative_folder(sources_folder(&import.sources), &path);
+        let Some(dataset) = import.assembly().dataset(&folder) else {
             return self.notify_error(
                 "complete the marked items before the dataset can be made".to_owned(),
             );
         };
-        let rules = bench.assembly().rules().clone();
+        let rules = import.assembly().rules().clone();
         let beside = rules_path(&path);
         let written = self.write_all(&[&path, &beside], |outputs| {
             add_dataset(&dataset, &path, outputs)?;
@@ -269,7 +274,7 @@ impl GdcmApp {
                 self.state.assembling = None;
                 self.open(path, None);
             }
-            Err(error) => self.written(
+            Err(error) => self.notify_written(
                 Err(error),
                 FormKind::Models,
                 AssemblingCommand::MakeDataset(path).into(),

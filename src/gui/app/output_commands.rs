@@ -10,7 +10,7 @@ impl GdcmApp {
         match command {
             OutputCommand::CopyTable(kind) => {
                 self.ctx.copy_text(table_of(&self.state, kind).text());
-                self.done(format!("copied the table of {}", kind.name()));
+                self.notify_done(format!("copied the table of {}", kind.name()));
             }
             OutputCommand::AskSaveTable(kind) => {
                 self.ask_save_table(kind.name(), table_of(&self.state, kind).into())

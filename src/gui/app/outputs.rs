@@ -22,6 +22,7 @@ use crate::gui::state::forms::FormKind;
 use crate::gui::state::view::View;
 use crate::gui::views::figure_button::tables_in_place;
 use crate::gui::views::figures::{figure_name, figure_of};
+use crate::gui::widgets::counts::counted;
 
 impl GdcmApp {
     /// Writes the corrections of the conditions selected in the form.
@@ -41,11 +42,11 @@ impl GdcmApp {
         );
         let absent = self.absent_bars(analysis.uncertainty.is_some());
         let message = format!(
-            "exported {} conditions to {}{absent}",
-            chosen.len(),
+            "exported {} to {}{absent}",
+            counted(chosen.len(), "condition"),
             sanitized_path(&folder)
         );
-        self.written(
+        self.notify_written(
             written.map(|()| message),
             FormKind::Export,
             Command::Output(OutputCommand::Export),
@@ -89,7 +90,7 @@ impl GdcmApp {
                 remarks_suffix(&remarks)
             )
         });
-        self.written(
+        self.notify_written(
             message,
             FormKind::ExportAs,
             Command::Output(OutputCommand::ExportAs(format, path.clone())),
@@ -99,8 +100,8 @@ impl GdcmApp {
     /// Returns the complete analysis of the current study, with optimality proofs and the error
     /// bars computed so far. Reports an error if it is incomplete.
     fn complete_results(&mut self) -> Option<Arc<Analysis>> {
-        let analysis = self.unless_error(self.analysis_to_write("export"))?;
-        match self.state.analysis_with_bars() {
+        let analysis = self.value_or_notify(self.analysis_to_write("export"))?;
+        match self.state.analysis_with_error_bars() {
             Some(with_bars) if with_bars.study == analysis.study => Some(Arc::new(with_bars)),
             _ => Some(analysis),
         }
@@ -110,7 +111,7 @@ impl GdcmApp {
     fn absent_bars(&self, are_present: bool) -> &'static str {
         let background = &self.state.results.background;
         // If the error bars are still being computed, only other work was stopped.
-        let were_stopped = background.stopped && background.bars.is_none();
+        let were_stopped = background.stopped && background.error_bars.is_none();
         if are_present {
             ""
         } else if were_stopped {
@@ -162,7 +163,7 @@ impl GdcmApp {
             },
         };
         self.ctx.copy_text(csv_text(&tables));
-        self.done(format!(
+        self.notify_done(format!(
             "copied the numbers of {}{}",
             view.name(),
             self.absent_bars_of(view)
@@ -214,7 +215,7 @@ impl GdcmApp {
             self.absent_bars_of(view)
         );
         let again = Command::Output(OutputCommand::SaveFigure(view, width, path.clone()));
-        self.written(written.map(|()| message), FormKind::SaveFigure, again);
+        self.notify_written(written.map(|()| message), FormKind::SaveFigure, again);
     }
 
     /// Returns the figure of a view; reports an error if the view has none yet.
@@ -245,7 +246,7 @@ impl GdcmApp {
     pub(super) fn save_table(&mut self, table: Arc<Table>, path: PathBuf) {
         let path = self.files.at_home(path);
         let written = save_tables(std::slice::from_ref(&*table), &path, self.outputs());
-        self.saved_to(
+        self.notify_saved(
             written,
             &path,
             FormKind::SaveTable,
@@ -274,7 +275,7 @@ impl GdcmApp {
 
     /// Reports the written files, or why none was written. If files exist, asks whether the command
     /// `again` may overwrite them.
-    pub(super) fn written(
+    pub(super) fn notify_written(
         &mut self,
         written: Result<String, FileError>,
         form: FormKind,
@@ -283,7 +284,7 @@ impl GdcmApp {
         match written {
             Ok(message) => {
                 self.state.forms.shown = None;
-                self.done(message);
+                self.notify_done(message);
             }
             Err(FileError::Exists { paths }) => self.ask_to_overwrite(&paths, form, again),
             Err(error) => self.notify_error(error.to_string()),
@@ -292,14 +293,14 @@ impl GdcmApp {
 
     /// Reports a single saved file, or the error. If the file exists, asks whether the command
     /// `again` may overwrite it.
-    pub(super) fn saved_to(
+    pub(super) fn notify_saved(
         &mut self,
         saved: Result<(), FileError>,
         path: &Path,
         form: FormKind,
         again: Command,
     ) {
-        self.written(
+        self.notify_written(
             saved.map(|()| format!("saved {}", sanitized_path(path))),
             form,
             again,

@@ -21,7 +21,7 @@ use crate::gui::state::records_page::RecordsPage;
 
 impl GdcmApp {
     /// Carries out a command about flight records.
-    pub(super) fn records(&mut self, command: RecordsCommand) {
+    pub(super) fn carry_out_records(&mut self, command: RecordsCommand) {
         let condition = self.state.condition().id();
         let records = &mut self.state.records;
         match command {
@@ -59,6 +59,7 @@ impl GdcmApp {
             RecordsCommand::SetLayout(index, layout) => self.set_layout(condition, index, layout),
             RecordsCommand::TakeDatasetUnits => self.take_dataset_units(),
             RecordsCommand::ShowUnclear => self.show_unclear(),
+            // Every other command changes the records of the displayed condition; see `apply_edit`.
             edit => self.edit_records(condition, edit),
         }
     }

@@ -11,6 +11,7 @@ use gdcm_sysid::identification::{Identification, IdentificationError};
 
 use super::GdcmApp;
 use crate::gui::state::records_page::RecordsPage;
+use crate::gui::widgets::counts::counted;
 
 impl GdcmApp {
     /// Returns the identification band \[rad/s\] of a condition: its own band if one is set,
@@ -27,7 +28,7 @@ impl GdcmApp {
     /// Requests identification in these conditions; replaces a waiting job for the same condition.
     pub(super) fn identify_conditions(&mut self, conditions: &[ConditionId]) {
         if self.state.records.running.is_empty() {
-            self.state.records.asked = 0;
+            self.state.records.requested_count = 0;
         }
         let mut refusal = None;
         for id in conditions {
@@ -54,9 +55,9 @@ impl GdcmApp {
     /// Stops running and waiting identification jobs; they can be started again.
     pub(super) fn stop_identifying(&mut self) {
         let unfinished = std::mem::take(&mut self.state.records.running).len();
-        let requested = self.state.records.asked;
+        let requested = self.state.records.requested_count;
         if requested > 1 && unfinished > 0 {
-            self.done(format!(
+            self.notify_done(format!(
                 "stopped identifying after {} of {requested} conditions",
                 requested.saturating_sub(unfinished)
             ));
@@ -73,9 +74,9 @@ impl GdcmApp {
             return;
         }
         self.state.records.running.retain(|other| *other != job);
-        let requested = self.state.records.asked;
+        let requested = self.state.records.requested_count;
         if self.state.records.running.is_empty() && requested > 1 {
-            self.done(format!(
+            self.notify_done(format!(
                 "finished: models of {requested} conditions identified"
             ));
             self.state.records.page = RecordsPage::Conditions;
@@ -100,13 +101,14 @@ impl GdcmApp {
         let before = self.state.study.clone();
         self.decide(&Edit::TakeModels(adopted));
         if self.state.study != before {
+            let models = counted(models, "model");
             let conditions = if names.len() == 1 {
                 "condition"
             } else {
                 "conditions"
             };
             let names = names.join(", ");
-            self.done(format!("adopted {models} models in {conditions} {names}"));
+            self.notify_done(format!("adopted {models} in {conditions} {names}"));
         }
     }
 

@@ -15,6 +15,7 @@ use super::record_reading::{AddedFiles, OwnRecords, ReadRecords};
 use crate::gui::state::condition_records::{AddedRecord, ConditionRecords};
 use crate::gui::state::requirements_page::RequirementsPage;
 use crate::gui::state::view::View;
+use crate::gui::widgets::counts::counted;
 
 /// State of the window when a reading began.
 struct ReadingStart {
@@ -117,7 +118,7 @@ impl GdcmApp {
                 return;
             }
             app.state.records.reading = None;
-            if let Some(found) = found.and_then(|found| app.unless_error(found)) {
+            if let Some(found) = found.and_then(|found| app.value_or_notify(found)) {
                 app.take_records(found, start);
             }
             // Create an entry, even without records, to prevent a repeated search.
@@ -152,7 +153,7 @@ impl GdcmApp {
         if !added.is_empty() {
             self.store_added_records(added, start);
         } else if own_count > 0 {
-            self.done(counted_records(own_count));
+            self.notify_done(counted(own_count, "record"));
         }
     }
 
@@ -209,10 +210,10 @@ impl GdcmApp {
             counts.conditions += 1;
         }
         if !before.conditions.is_empty() {
-            let label = format!("add {}", counted_records(counts.new + counts.read_again));
+            let label = format!("add {}", counted(counts.new + counts.read_again, "record"));
             self.record_edited(label, before);
         }
-        self.done(counts.words());
+        self.notify_done(counts.words());
     }
 }
 
@@ -243,25 +244,17 @@ impl AddedCounts {
         };
         let mut parts = Vec::new();
         if self.new > 0 {
-            parts.push(format!("{}{conditions} added", counted_records(self.new)));
+            parts.push(format!("{}{conditions} added", counted(self.new, "record")));
         }
         if self.read_again > 0 {
-            parts.push(format!("{} read again", counted_records(self.read_again)));
+            parts.push(format!("{} read again", counted(self.read_again, "record")));
         }
         if self.known > 0 && parts.is_empty() {
-            let known = counted_records(self.known);
+            let known = counted(self.known, "record");
             parts.push(format!("nothing added: {known} already loaded"));
         } else if self.known > 0 {
             parts.push(format!("{} already loaded", self.known));
         }
         parts.join("; ")
-    }
-}
-
-fn counted_records(count: usize) -> String {
-    if count == 1 {
-        "1 record".to_owned()
-    } else {
-        format!("{count} records")
     }
 }

@@ -20,7 +20,7 @@ impl GdcmApp {
         let path = self.files.at_home(path);
         let mut settings = RequirementSettings::clone(&self.state.study.requirements);
         let read = read_table_into(&mut settings, table, &path);
-        let Some(cautions) = self.unless_error(read) else {
+        let Some(cautions) = self.value_or_notify(read) else {
             return;
         };
         self.state.forms.shown = None;
@@ -52,7 +52,7 @@ impl GdcmApp {
         let path = self.files.at_home(path);
         let tolerances = &self.state.study.requirements.tolerances;
         let written = self.write_all(&[], |outputs| add_tolerances(tolerances, &path, outputs));
-        self.saved_to(
+        self.notify_saved(
             written,
             &path,
             FormKind::WriteTolerances,

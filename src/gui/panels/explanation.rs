@@ -1,88 +1,18 @@
-//! Sheets over the middle of the window: the derivation of a value, with the menus that open it,
-//! and the cost of a decision.
+//! Derivation of a value: its sheet, the labels and menus that open it, and the cost of constraining
+//! or releasing the response.
 
-use std::collections::BTreeSet;
+use egui::{CursorIcon, Grid, Label, Response, RichText, Sense, Ui, WidgetText};
 
-use egui::{
-    Align, Area, CursorIcon, Frame, Grid, Id, Label, Layout, Margin, Order, Rect, Response,
-    RichText, Role, ScrollArea, Sense, Stroke, Ui, WidgetText, vec2,
-};
-
-use gdcm_method::correction::Channel;
 use gdcm_model::dataset::Pair;
-use gdcm_study::decisions::signs::SignRole;
-use gdcm_study::{ConditionAnalysis, Edit};
 use gdcm_words::derivation::{Derivation, ExplainTarget, derivation};
 use gdcm_words::sensitivity::toggle_text;
 
 use crate::gui::commands::command::Command;
 use crate::gui::commands::output::OutputCommand;
 use crate::gui::commands::selection::SelectionCommand;
-use crate::gui::state::sheet::Sheet;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{Asks, QUESTION, entries_ui, named};
-use crate::gui::widgets::focus::take_escape;
-use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, TITLE_SIZE, medium};
-
-/// Draws a sheet over `centre`; returns whether the engineer has closed it.
-pub fn sheet_ui(
-    ui: &Ui,
-    centre: Rect,
-    sheet: Sheet,
-    palette: &Palette,
-    add: impl FnOnce(&mut Ui),
-) -> bool {
-    let (is_right, width) = sheet.place();
-    let width = width.min(centre.width());
-    let place = if is_right {
-        centre.with_min_x(centre.right() - width)
-    } else {
-        centre.with_max_x(centre.left() + width)
-    };
-    let id = Id::unique(("sheet", sheet.title()));
-    let mut is_closed = false;
-    let shown = Area::new(id)
-        .order(Order::Middle)
-        .fixed_pos(place.min)
-        .show(ui.ctx(), |ui| {
-            let stroke = Stroke::new(1.0, palette.line);
-            Frame::new()
-                .fill(palette.panel)
-                .stroke(stroke)
-                .inner_margin(Margin::same(12))
-                .show(ui, |ui| {
-                    ui.set_min_size(place.size() - vec2(26.0, 26.0));
-                    ui.set_max_size(place.size() - vec2(26.0, 26.0));
-                    ui.horizontal(|ui| {
-                        ui.label(RichText::new(sheet.title()).font(medium(BODY_SIZE)));
-                        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                            is_closed =
-                                named(ui.small_button("×"), Role::Button, "Close the sheet")
-                                    .clicked();
-                        });
-                    });
-                    ScrollArea::vertical()
-                        .auto_shrink([false, false])
-                        .show(ui, |ui| add(ui));
-                });
-        });
-    // `is_new`: in its first frame the sheet still receives the click that opened it, which must
-    // not close it.
-    let is_new = ui
-        .ctx()
-        .data_mut(|data| !std::mem::replace(data.get_temp_mut_or_default::<bool>(id), true));
-    let is_pressed_beside = ui.input(|input| {
-        let place = input.pointer.interact_pos();
-        input.pointer.any_pressed()
-            && place.is_some_and(|place| !shown.response.rect.contains(place))
-    });
-    let is_under_popup = egui::Popup::is_any_open(ui.ctx());
-    is_closed |= take_escape(ui.ctx()) || (is_pressed_beside && !is_new && !is_under_popup);
-    if is_closed {
-        ui.ctx().data_mut(|data| data.remove::<bool>(id));
-    }
-    is_closed
-}
+use crate::gui::widgets::controls::{Asks, QUESTION, entries_ui};
+use crate::gui::widgets::palette::{Palette, SMALL_SIZE, TITLE_SIZE, medium};
 
 /// Draws the derivation of a value in a sheet, updated with the results while it is open.
 pub fn derivation_sheet_ui(
@@ -91,11 +21,11 @@ pub fn derivation_sheet_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let Some(asked) = &state.display.selection.asked else {
+    let Some(asked) = &state.display.selection.explained else {
         return;
     };
     let found = state
-        .analysis_with_bars()
+        .analysis_with_error_bars()
         .and_then(|analysis| derivation(&analysis, asked));
     match &found {
         Some(found) => {
@@ -200,32 +130,6 @@ pub fn question_menu_ui(
         });
         entries_ui(ui, entries, commands);
     });
-}
-
-/// Returns the label and the command that reverse a channel in the models of a role, or undo the
-/// reversal.
-pub fn turn_entry(state: &State, channel: Channel, role: Option<SignRole>) -> (String, Command) {
-    let (inputs, outputs) = state.dataset().names_of_channels();
-    let name = channel.name(&inputs, &outputs);
-    let label = if role.is_some() {
-        format!("Reverse sign of {name}")
-    } else {
-        format!("Undo sign reversal of {name}")
-    };
-    (label, Edit::SetSign { channel, of: role }.into())
-}
-
-/// Returns the responses and channels of conflicting gain constraints, and the channels whose sign
-/// or unit is doubtful.
-pub fn gain_conflict_marks(shown: &ConditionAnalysis) -> (BTreeSet<Pair>, BTreeSet<Channel>) {
-    let mut pairs = BTreeSet::new();
-    let mut channels = BTreeSet::new();
-    for conflict in &shown.gains.conflicts {
-        pairs.extend(conflict.entries.iter().copied());
-        channels.extend(conflict.channels());
-    }
-    channels.extend(shown.doubts.iter().map(|doubt| doubt.channel));
-    (pairs, channels)
 }
 
 /// Describes the cost of constraining or releasing a response; empty until the costs of this result

@@ -12,7 +12,7 @@ use gdcm_study::decisions::dataset_differences::Difference;
 use gdcm_words::dataset_differences::dataset_difference_text;
 
 use super::form::{Form, contents_ui};
-use super::help::keys_page_ui;
+use super::keys_page::keys_page_ui;
 use super::path_forms::path_ui;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::command_palette::command_palette_ui;

@@ -1,5 +1,7 @@
 //! Constraint matrix: every response with G, D and J, constrained or free.
 
+use std::collections::BTreeSet;
+
 use egui::{
     Align2, Color32, FontId, Key, Pos2, Rect, Response, RichText, Role, ScrollArea, Sense, Stroke,
     StrokeKind, Ui, WidgetInfo, pos2, vec2,
@@ -16,26 +18,35 @@ use gdcm_study::{ConditionAnalysis, Edit};
 use gdcm_words::ExplainTarget;
 use gdcm_words::caution::undefined_text;
 
-use super::explanation::{gain_conflict_marks, question_menu_ui, turn_entry};
+use super::explanation::question_menu_ui;
 use super::response_card::{card_grid_ui, is_not_reduced};
+use super::sign_reversal::sign_reversal_entry;
 use super::table_menu::table_menu_ui;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::selection::SelectionCommand;
-use crate::gui::state::results::Sureness;
 use crate::gui::state::tables::TableKind;
+use crate::gui::state::value_uncertainty::ValueUncertainty;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::check_ui;
-use crate::gui::widgets::controls::{entries_ui, named_switch, painted_text};
+use crate::gui::widgets::controls::{AT_RIGHT_END, entries_ui, named_switch, painted_text};
 use crate::gui::widgets::focus::{Region, region_ui};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium, small};
 
-/// Minimum and maximum cell height \[pt\].
-const CELL_HEIGHTS: [f32; 2] = [34.0, 44.0];
+/// Height of the title line \[pt\].
+const TITLE_HEIGHT: f32 = 20.0;
+/// Minimum cell height \[pt\].
+const LEAST_CELL_HEIGHT: f32 = 34.0;
+/// Maximum cell height \[pt\].
+const MOST_CELL_HEIGHT: f32 = 44.0;
 /// Gap between two cells \[pt\].
 const GAP: f32 = 3.0;
+/// Minimum distance between the left edges of two cells \[pt\].
 const LEAST_CELL_WIDTH: f32 = 58.0;
+/// Width of the output names beside the rows \[pt\].
 const ROW_LABEL_WIDTH: f32 = 28.0;
+/// Height of the input names above the columns \[pt\].
 const HEADER_HEIGHT: f32 = 20.0;
+/// Size of the box that constrains or releases a response \[pt\].
 const LOCK_SIZE: f32 = 13.0;
 /// J at which an underline spans its cell.
 const FULL_COST: f64 = 60.0;
@@ -50,7 +61,8 @@ pub fn matrix_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let (rect, heading) = ui.allocate_exact_size(vec2(ui.available_width(), 20.0), Sense::hover());
+    let (rect, heading) =
+        ui.allocate_exact_size(vec2(ui.available_width(), TITLE_HEIGHT), Sense::hover());
     painted_text(
         ui,
         rect,
@@ -62,10 +74,10 @@ pub fn matrix_ui(
     key_ui(ui, rect, palette);
     table_menu_ui(ui, &heading, TableKind::Matrix, commands);
     let outputs = state.dataset().outputs().len();
-    let pitch = (room - 20.0 - HEADER_HEIGHT) / outputs as f32;
+    let pitch = (room - TITLE_HEIGHT - HEADER_HEIGHT) / outputs as f32;
     let grid = CellGrid {
-        room: room - 20.0,
-        cell_height: (pitch - GAP).clamp(CELL_HEIGHTS[0], CELL_HEIGHTS[1]),
+        room: room - TITLE_HEIGHT,
+        cell_height: (pitch - GAP).clamp(LEAST_CELL_HEIGHT, MOST_CELL_HEIGHT),
     };
     region_ui(ui, Region::Matrix, |ui| {
         grid.ui(ui, state, palette, commands)
@@ -81,7 +93,7 @@ fn key_ui(ui: &Ui, row: Rect, palette: &Palette) {
         ("before", palette.quiet_mark),
     ] {
         let upto = row.with_max_x(right);
-        let place = painted_text(ui, upto, -0.01, words, small(), palette.dim_text);
+        let place = painted_text(ui, upto, AT_RIGHT_END, words, small(), palette.dim_text);
         let mark = Rect::from_center_size(pos2(place.left() - 9.0, row.center().y), vec2(9.0, 3.0));
         ui.painter().rect_filled(mark, 1.5, color);
         right = mark.left() - 10.0;
@@ -90,7 +102,7 @@ fn key_ui(ui: &Ui, row: Rect, palette: &Palette) {
         painted_text(
             ui,
             row.with_max_x(right),
-            -0.01,
+            AT_RIGHT_END,
             "J",
             small(),
             palette.dim_text,
@@ -106,31 +118,35 @@ struct CellGrid {
 }
 
 impl CellGrid {
+    /// Draws channel names and cells. A matrix larger than the available space scrolls separately,
+    /// so that verdict and export keep their places.
     fn ui(&self, ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
         let outputs = state.dataset().outputs();
         let inputs = state.dataset().inputs();
-        let width = ((ui.available_width() - ROW_LABEL_WIDTH + GAP) / inputs.len() as f32)
+        let column_pitch = ((ui.available_width() - ROW_LABEL_WIDTH + GAP) / inputs.len() as f32)
             .max(LEAST_CELL_WIDTH);
-        let pitch = self.cell_height + GAP;
+        let row_pitch = self.cell_height + GAP;
         let size = vec2(
-            ROW_LABEL_WIDTH + width * inputs.len() as f32 - GAP,
-            HEADER_HEIGHT + pitch * outputs.len() as f32,
+            ROW_LABEL_WIDTH + column_pitch * inputs.len() as f32 - GAP,
+            HEADER_HEIGHT + row_pitch * outputs.len() as f32,
         );
         let (in_conflict, blamed) = state.shown().map(gain_conflict_marks).unwrap_or_default();
         let focus = state.display.selection.pair;
-        // A matrix larger than the available space scrolls separately, so that verdict and export
-        // keep their places.
         ScrollArea::both()
             .id_salt("constraint matrix")
             .max_height(self.room)
             .show(ui, |ui| {
                 let (area, _) = ui.allocate_exact_size(size, Sense::hover());
+                let places = CellPlaces {
+                    area,
+                    column_pitch,
+                    row_pitch,
+                    cell_height: self.cell_height,
+                };
                 for (input, channel) in inputs.iter().enumerate() {
-                    let x =
-                        area.left() + ROW_LABEL_WIDTH + width * input as f32 + 0.5 * (width - GAP);
                     ChannelName {
                         name: &channel.name,
-                        place: pos2(x, area.top() + 0.5 * HEADER_HEIGHT),
+                        place: places.input_name(input),
                         align: Align2::CENTER_CENTER,
                         is_blamed: blamed.contains(&Channel::Input(input)),
                         is_focused: input == focus.input,
@@ -138,30 +154,65 @@ impl CellGrid {
                     .paint(ui, palette);
                 }
                 for (output, channel) in outputs.iter().enumerate() {
-                    let top = area.top() + HEADER_HEIGHT + pitch * output as f32;
                     ChannelName {
                         name: &channel.name,
-                        place: pos2(
-                            area.left() + ROW_LABEL_WIDTH - 8.0,
-                            top + 0.5 * self.cell_height,
-                        ),
+                        place: places.output_name(output),
                         align: Align2::RIGHT_CENTER,
                         is_blamed: blamed.contains(&Channel::Output(output)),
                         is_focused: output == focus.output,
                     }
                     .paint(ui, palette);
                     for input in 0..inputs.len() {
-                        let left = area.left() + ROW_LABEL_WIDTH + width * input as f32;
-                        let rect = Rect::from_min_size(
-                            pos2(left, top),
-                            vec2(width - GAP, self.cell_height),
-                        );
                         let pair = Pair { output, input };
-                        Cell::new(state, pair, in_conflict.contains(&pair))
-                            .ui(ui, rect, palette, commands);
+                        Cell::new(state, pair, in_conflict.contains(&pair)).ui(
+                            ui,
+                            places.cell(pair),
+                            palette,
+                            commands,
+                        );
                     }
                 }
             });
+    }
+}
+
+/// Places of cells and names on the screen; outputs are rows, inputs are columns.
+struct CellPlaces {
+    /// Area of all cells with the names above and beside them.
+    area: Rect,
+    /// Distance between the left edges of two cells \[pt\].
+    column_pitch: f32,
+    /// Distance between the upper edges of two cells \[pt\].
+    row_pitch: f32,
+    cell_height: f32,
+}
+
+impl CellPlaces {
+    fn left(&self, input: usize) -> f32 {
+        self.area.left() + ROW_LABEL_WIDTH + self.column_pitch * input as f32
+    }
+
+    fn top(&self, output: usize) -> f32 {
+        self.area.top() + HEADER_HEIGHT + self.row_pitch * output as f32
+    }
+
+    fn cell(&self, pair: Pair) -> Rect {
+        Rect::from_min_size(
+            pos2(self.left(pair.input), self.top(pair.output)),
+            vec2(self.column_pitch - GAP, self.cell_height),
+        )
+    }
+
+    /// Centre of an input name.
+    fn input_name(&self, input: usize) -> Pos2 {
+        let center = self.left(input) + 0.5 * (self.column_pitch - GAP);
+        pos2(center, self.area.top() + 0.5 * HEADER_HEIGHT)
+    }
+
+    /// Right end of an output name.
+    fn output_name(&self, output: usize) -> Pos2 {
+        let right = self.area.left() + ROW_LABEL_WIDTH - 8.0;
+        pos2(right, self.top(output) + 0.5 * self.cell_height)
     }
 }
 
@@ -194,6 +245,7 @@ impl ChannelName<'_> {
     }
 }
 
+/// Cell of a response.
 struct Cell<'a> {
     pair: Pair,
     name: String,
@@ -204,7 +256,7 @@ struct Cell<'a> {
     in_conflict: bool,
     shown: Option<&'a ConditionAnalysis>,
     state: &'a State,
-    sureness: Sureness<'a>,
+    value_uncertainty: ValueUncertainty<'a>,
 }
 
 impl<'a> Cell<'a> {
@@ -218,7 +270,7 @@ impl<'a> Cell<'a> {
             in_conflict,
             shown: state.shown(),
             state,
-            sureness: state.sureness(),
+            value_uncertainty: state.value_uncertainty(),
         }
     }
 
@@ -348,8 +400,10 @@ impl<'a> Cell<'a> {
             return;
         };
         let change = shown.cost[self.pair];
-        let gain_half = self.sureness.half(Scalar::Gain(self.pair));
-        let delay_half = self.sureness.half(shown.wanted_delay(self.pair));
+        let gain_half = self.value_uncertainty.half_width(Scalar::Gain(self.pair));
+        let delay_half = self
+            .value_uncertainty
+            .half_width(shown.wanted_delay(self.pair));
         let middle = rect.top() + 0.5 * rect.height();
         let upper = CellValue {
             half: rect.with_max_y(middle),
@@ -432,7 +486,7 @@ impl<'a> Cell<'a> {
         } else {
             Some(SignRole::Identified)
         };
-        turn_entry(self.state, channel, role)
+        sign_reversal_entry(self.state, channel, role)
     }
 
     /// Draws four aligned rows. The derivation of every value is in the submenu
@@ -525,4 +579,17 @@ fn paint_cost_bar(ui: &Ui, half: Rect, cost: f64, color: Color32) {
         ui.painter()
             .add(egui::Shape::convex_polygon(points, color, Stroke::NONE));
     }
+}
+
+/// Returns the responses and channels of conflicting gain constraints, and the channels whose sign
+/// or unit is doubtful.
+pub fn gain_conflict_marks(shown: &ConditionAnalysis) -> (BTreeSet<Pair>, BTreeSet<Channel>) {
+    let mut pairs = BTreeSet::new();
+    let mut channels = BTreeSet::new();
+    for conflict in &shown.gains.conflicts {
+        pairs.extend(conflict.entries.iter().copied());
+        channels.extend(conflict.channels());
+    }
+    channels.extend(shown.doubts.iter().map(|doubt| doubt.channel));
+    (pairs, channels)
 }

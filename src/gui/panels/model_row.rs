@@ -19,8 +19,9 @@ use crate::gui::commands::output::OutputCommand;
 use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::{
-    Asks, ROW_HEIGHT, elided_among, entries_ui, named, named_switch, painted_text, row_text,
+    AT_RIGHT_END, Asks, ROW_HEIGHT, entries_ui, named, named_switch, painted_text, row_text,
 };
+use crate::gui::widgets::elision::elided_among;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium};
 
 /// Right edges of the trim columns \[pt from the row's left edge\].
@@ -398,7 +399,7 @@ impl<'a> ModelRow<'a> {
                 palette.text
             };
             let upto = rect.with_max_x(rect.left() + end);
-            let place = painted_text(ui, upto, -0.01, offset, body(), color);
+            let place = painted_text(ui, upto, AT_RIGHT_END, offset, body(), color);
             if !self.kept && offset != "·" {
                 ui.painter()
                     .hline(place.x_range(), place.center().y, Stroke::new(1.0, color));

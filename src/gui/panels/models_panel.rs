@@ -12,7 +12,9 @@ use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::tables::TableKind;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{Asks, ROW_HEIGHT, chevron, named, named_switch, painted_text};
+use crate::gui::widgets::controls::{
+    AT_RIGHT_END, Asks, ROW_HEIGHT, chevron, named, named_switch, painted_text,
+};
 use crate::gui::widgets::focus::{Region, region_ui};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium, small};
 
@@ -162,10 +164,10 @@ fn fold_ui(
     if let Some(order) = order {
         words = format!("order {order} · {words}");
     }
-    let place = painted_text(ui, row, -0.01, &words, small(), palette.dim_text);
+    let place = painted_text(ui, row, AT_RIGHT_END, &words, small(), palette.dim_text);
     if order.is_some() {
         let star = row.with_max_x(place.left() - 3.0);
-        painted_text(ui, star, -0.01, "★", small(), palette.identified);
+        painted_text(ui, star, AT_RIGHT_END, "★", small(), palette.identified);
     }
     table_menu_ui(
         ui,
@@ -227,7 +229,7 @@ fn heads_ui(ui: &mut Ui, trims: Option<&TrimColumns>, palette: &Palette) {
     if let Some(trims) = trims {
         for (head, end) in trims.heads.iter().zip(TRIM_ENDS) {
             let upto = row.with_max_x(row.left() + end);
-            painted_text(ui, upto, -0.01, head, small(), palette.dim_text);
+            painted_text(ui, upto, AT_RIGHT_END, head, small(), palette.dim_text);
         }
     }
     painted_text(ui, row, -1.0, "discontinuity", small(), palette.dim_text);

@@ -17,7 +17,8 @@ use gdcm_words::leads::lead_words;
 use gdcm_words::remark::remark_text;
 use gdcm_words::solution_details::details;
 
-use super::explanation::{turn_entry, value_label_ui};
+use super::explanation::value_label_ui;
+use super::sign_reversal::sign_reversal_entry;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::view::View;
@@ -161,7 +162,7 @@ fn remarks_ui(
                 .asks(Edit::Fit(pair, false), commands);
         }
         if let Some(sign) = remark.suggested_sign() {
-            let (label, turn) = turn_entry(state, sign.channel, sign.role);
+            let (label, turn) = sign_reversal_entry(state, sign.channel, sign.role);
             let button = Button::new(label).small();
             button_ui(ui, button, EVERYWHERE, turn, commands);
         }

@@ -8,7 +8,7 @@ use egui::{
 
 use gdcm_model::dataset::BundleKind;
 
-use super::conditions_panel::cost_picture_ui;
+use super::condition_rows::{PICTURE_HEAD, cost_picture_height, cost_picture_ui};
 use super::phase_sketch::phase_sketch_ui;
 use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::commands::command::Command;
@@ -17,17 +17,25 @@ use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::state::window_state::State;
 use crate::gui::views::frequency_curves::bode_curves;
-use crate::gui::widgets::controls::{Asks, button_ui, elided, named, painted_text};
+use crate::gui::widgets::controls::{Asks, button_ui, named, painted_text};
+use crate::gui::widgets::counts::counted;
+use crate::gui::widgets::elision::elided;
 use crate::gui::widgets::palette::{
     BODY_SIZE, DISPLAY_SIZE, Palette, SMALL_SIZE, TITLE_SIZE, body, medium, small,
 };
 
-/// Widths of the cards, of the open study, and of the gap between them \[pt\].
-const WIDTHS: [f32; 3] = [600.0, 460.0, 64.0];
+/// Width of the column with the ways to begin \[pt\].
+const WAYS_WIDTH: f32 = 600.0;
+/// Width of the card of the open study \[pt\].
+const STUDY_WIDTH: f32 = 460.0;
+/// Gap between the ways to begin and the open study \[pt\].
+const GAP: f32 = 64.0;
+/// Maximum height of the page \[pt\].
+const MOST_HEIGHT: f32 = 450.0;
 /// Line height in multi-line text \[pt\].
 const LINE: f32 = 20.0;
-/// Height of a card on the start page \[pt\].
-const WAY: f32 = 72.0;
+/// Height of the card of a way to begin \[pt\].
+const WAY_HEIGHT: f32 = 72.0;
 
 /// Way to begin, drawn as a card.
 struct Way {
@@ -38,6 +46,7 @@ struct Way {
     icon: fn(&Ui, Rect, Color32),
 }
 
+/// Returns the ways to begin, the most frequent first.
 fn ways() -> [Way; 3] {
     [
         Way {
@@ -94,16 +103,16 @@ pub fn example_line_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Comman
 /// on the right the open study, if there is room.
 pub fn start_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let area = ui.available_rect_before_wrap().shrink(24.0);
-    let [left, right, gap] = WIDTHS;
-    let has_both = area.width() >= left + right + gap;
+    let both = WAYS_WIDTH + STUDY_WIDTH + GAP;
+    let has_both = area.width() >= both;
     let width = if has_both {
-        left + right + gap
+        both
     } else {
-        left.min(area.width())
+        WAYS_WIDTH.min(area.width())
     };
-    let height = 450.0_f32.min(area.height());
+    let height = MOST_HEIGHT.min(area.height());
     let page = Rect::from_center_size(area.center(), vec2(width, height));
-    let column = page.with_max_x(page.left() + left.min(width));
+    let column = page.with_max_x(page.left() + WAYS_WIDTH.min(width));
     ui.scope_builder(UiBuilder::new().max_rect(column), |ui| {
         ScrollArea::vertical()
             .id_salt("start")
@@ -119,7 +128,7 @@ pub fn start_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mu
             });
     });
     if has_both {
-        let card = page.with_min_x(page.right() - right);
+        let card = page.with_min_x(page.right() - STUDY_WIDTH);
         ui.scope_builder(UiBuilder::new().max_rect(card), |ui| {
             open_ui(ui, state, palette, commands)
         });
@@ -161,7 +170,7 @@ fn ways_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
 }
 
 fn way_ui(ui: &mut Ui, way: Way, is_primary: bool, palette: &Palette, commands: &mut Vec<Command>) {
-    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), WAY), Sense::hover());
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), WAY_HEIGHT), Sense::hover());
     ui.painter().rect(
         rect,
         8.0,
@@ -345,8 +354,10 @@ impl StudyWords {
         Self {
             title: state.dataset().name().to_owned(),
             content: format!(
-                "{}: {count} conditions, {models} physics models.",
-                state.study_name
+                "{}: {}, {}.",
+                state.study_name,
+                counted(count, "condition"),
+                counted(models, "physics model")
             ),
             back: "Continue",
         }
@@ -354,11 +365,8 @@ impl StudyWords {
 }
 
 fn picture_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
-    let rows = state.dataset().conditions().len().min(12);
-    let (area, _) = ui.allocate_exact_size(
-        vec2(ui.available_width(), 18.0 + 17.0 * rows as f32),
-        Sense::hover(),
-    );
+    let size = vec2(ui.available_width(), cost_picture_height(state));
+    let (area, _) = ui.allocate_exact_size(size, Sense::hover());
     let map = area.with_max_x(area.left() + 0.44 * area.width());
     cost_picture_ui(ui, map, state, palette);
     let pair = state.display.selection.pair;
@@ -369,7 +377,7 @@ fn picture_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
         state.dataset().pair_name(pair),
         state.condition().id()
     );
-    let head = plot.with_max_y(plot.top() + 18.0);
+    let head = plot.with_max_y(plot.top() + PICTURE_HEAD);
     painted_text(ui, head, 0.0, &title, small(), palette.dim_text);
     let band = state.study.settings.band;
     phase_sketch_ui(ui, plot.with_min_y(head.bottom()), &curves, band, palette);

@@ -21,6 +21,7 @@ use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::views::used_couplings;
+use crate::gui::widgets::counts::counted;
 
 /// Verdict on gain and phase of the constrained responses, in the displayed condition and in all
 /// conditions, with the next steps.
@@ -316,6 +317,7 @@ fn unstable_in_band(state: &State) -> usize {
     }
 }
 
+/// Caution about the couplings in use, in a few words.
 struct CouplingCaution {
     kind: RemarkKind,
     words: String,
@@ -363,19 +365,18 @@ fn coupling_caution(state: &State) -> Option<CouplingCaution> {
     let cautions = coupling_cautions(used_couplings(state)?).len();
     let unstable = unstable_in_band(state);
     if unstable > 0 {
-        let poles = if unstable == 1 { "pole" } else { "poles" };
+        let poles = counted(unstable, "pole");
         return Some(CouplingCaution {
             kind: RemarkKind::Trouble,
-            words: format!("Couplings: {unstable} {poles} unstable in the band"),
+            words: format!("Couplings: {poles} unstable in the band"),
         });
     }
     if cautions == 0 {
         return None;
     }
-    let noun = if cautions == 1 { "caution" } else { "cautions" };
     Some(CouplingCaution {
         kind: RemarkKind::Caution,
-        words: format!("Couplings: {cautions} {noun}"),
+        words: format!("Couplings: {}", counted(cautions, "caution")),
     })
 }
 

@@ -6,7 +6,7 @@ use egui_plot::{PlotPoint, PlotTransform, PlotUi};
 
 use super::bode_scene::InvalidRegion;
 use super::layers::DrawnItem;
-use crate::gui::widgets::controls::elided;
+use crate::gui::widgets::elision::elided;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 /// Distance between hatching lines \[pt\].

@@ -70,7 +70,7 @@ impl<'a> PaneLines<'a> {
             labels.push(EndLabel {
                 y: end.y,
                 text: line.label.clone(),
-                color: palette.name_of(color),
+                color: palette.label_color(color),
             });
             // The note continues the label on paper; here it is a label of its own.
             let note = line.note.trim_start_matches([',', ':', ' ']);

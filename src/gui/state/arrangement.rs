@@ -11,7 +11,8 @@ use super::view::{View, ViewGroup};
 pub struct Arrangement {
     /// Group in front.
     group: ViewGroup,
-    /// View shown by each group, in group order.
+    /// View shown by each group, indexed by `ViewGroup as usize`. The name is part of the stored
+    /// preferences.
     of_groups: [View; 4],
     /// View beside the view in front.
     beside: Option<View>,
@@ -111,8 +112,9 @@ impl Arrangement {
         self.view() == view || self.beside() == Some(view) || self.dock() == Some(view)
     }
 
-    /// Returns this stored arrangement; `None` unless every group shows one of its own views.
-    pub fn if_whole(self) -> Option<Self> {
+    /// Returns this stored arrangement; `None` unless every group shows one of its own views, which
+    /// may have changed between versions.
+    pub fn if_valid(self) -> Option<Self> {
         for group in ViewGroup::ALL {
             if self.of_groups[group as usize].facts().group != group {
                 return None;
@@ -182,13 +184,13 @@ mod tests {
         assert_eq!(
             serde_json::from_str::<Arrangement>(&text)
                 .unwrap()
-                .if_whole(),
+                .if_valid(),
             Some(arrangement)
         );
         let mixed = Arrangement {
             of_groups: [View::Poles; 4],
             ..Arrangement::default()
         };
-        assert_eq!(mixed.if_whole(), None);
+        assert_eq!(mixed.if_valid(), None);
     }
 }

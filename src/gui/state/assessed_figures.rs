@@ -41,7 +41,7 @@ impl CostPart {
     }
 
     /// Returns the function that extracts this part from a change in J.
-    pub fn of(self) -> fn(CostChange) -> f64 {
+    pub fn extractor(self) -> fn(CostChange) -> f64 {
         match self {
             Self::Total => CostChange::total,
             Self::Magnitude => CostChange::magnitude,

@@ -10,7 +10,10 @@ use gdcm_study::Analysis;
 /// Evidence for every schedule form, kept until the analysis changes.
 #[derive(Debug, Default)]
 pub struct CachedEvidence {
+    /// Analysis to which the evidence belongs.
     pub analysis: Option<Arc<Analysis>>,
+    /// Scheduled conditions, and the comparison of the forms over them; `None` if it failed.
     pub found: Option<(Vec<ConditionId>, FormComparison)>,
+    /// Comparison of the degrees for scheduled leads.
     pub leads: Vec<LeadDegreeFit>,
 }

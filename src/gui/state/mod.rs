@@ -1,10 +1,15 @@
-//! Window state: document, display, results.
+//! Window state: the study, what is displayed of it, and its results.
+//!
+//! Begin with [`window_state`]; its `State` contains everything else. [`shown_results`] says which
+//! results are shown, [`display`] holds the display options of all views.
 
 pub mod arrangement;
 pub mod assembling;
 pub mod assembly_columns;
 pub mod assessed_figures;
+pub mod background;
 pub mod channels_view;
+mod condition_identification;
 pub mod condition_records;
 pub mod curve_display;
 pub mod display;
@@ -27,7 +32,9 @@ pub mod requirements_page;
 pub mod results;
 pub mod selection;
 pub mod sheet;
+pub mod shown_results;
 pub mod tables;
+pub mod value_uncertainty;
 pub mod view;
 pub mod wanted_dataset;
 pub mod window_state;

@@ -1,9 +1,10 @@
-//! Computed results, and the work in progress on them.
+//! Computed results with their jobs, and the state of the requests for them.
+//!
+//! Most results may be older than the displayed study: read them through the methods of `State` in
+//! `shown_results.rs`, which return a result only where it is still valid.
 
 use std::sync::Arc;
 
-use gdcm_method::correction::Problem;
-use gdcm_method::uncertainty::{Bar as ErrorBar, Scalar};
 use gdcm_model::dataset::{ConditionId, Dataset};
 use gdcm_model::simulation::Validation;
 use gdcm_study::jobs::analysis_jobs::{
@@ -23,84 +24,23 @@ use gdcm_study::results::uncertainty::Uncertainty;
 use gdcm_study::stages::condition_curves::ConditionCurves;
 use gdcm_study::{Analysis, AssessmentTable, ConditionAnalysis};
 
-/// Uncertainty of the values in the displayed condition.
-#[derive(Clone, Copy, Debug)]
-pub struct Sureness<'a> {
-    pub condition: ConditionId,
-    pub uncertainty: Option<&'a Uncertainty>,
-}
+use super::background::{Background, error_bar_progress};
 
-impl<'a> Sureness<'a> {
-    /// Returns the error bar of a value with its confidence level; `None` if it is not available.
-    pub fn bar(&self, scalar: Scalar) -> Option<(&'a ErrorBar, f64)> {
-        let uncertainty = self.uncertainty?;
-        Some((uncertainty.bar(self.condition, scalar)?, uncertainty.level))
-    }
-
-    /// Returns the half-width of a value's error bar: a ratio, or \[s\] for delays.
-    pub fn half(&self, scalar: Scalar) -> Option<f64> {
-        let (bar, level) = self.bar(scalar)?;
-        bar.half_width(level)
-    }
-
-    /// Returns the confidence level, common to all error bars.
-    pub fn level(&self) -> Option<f64> {
-        self.uncertainty.map(|uncertainty| uncertainty.level)
-    }
-}
+/// Age \[s\] from which results for older settings are marked as stale.
+const STALE_AFTER_S: f64 = 0.15;
+/// Duration \[s\] after which background work is displayed: most jobs end before a display could be
+/// read.
+const BACKGROUND_AFTER_S: f64 = 0.5;
 
 /// Result of the displayed condition, available before the results of the other conditions.
 #[derive(Clone, Debug)]
 pub struct FirstResult {
     /// Number of the request that produced the result.
-    pub generation: u64,
+    pub request: u64,
     /// Dataset to which the result belongs.
     pub dataset: Arc<Dataset>,
     pub condition: ConditionId,
     pub outcome: Result<ConditionAnalysis, ConditionFailure>,
-}
-
-/// Background work in progress, including the analysis of the current settings.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Background {
-    /// Progress of the analysis of the current settings: steps done, total.
-    pub analysis: Option<(usize, usize)>,
-    /// Problems whose optimality proof is running or waiting.
-    pub proofs: Vec<Arc<Problem>>,
-    /// Whether the costs of constraining and releasing responses are being computed.
-    pub toggles: bool,
-    /// Progress of the response curves: models done, total.
-    pub curves: Option<(usize, usize)>,
-    /// Progress of the error bars: steps done, total. Each model contributes its response, and the
-    /// analysis with this model as the representative.
-    pub bars: Option<(usize, usize)>,
-    /// Progress of the responses to all records: steps done, total.
-    pub time_histories: Option<(usize, usize)>,
-    /// Progress of the couplings: steps done, total.
-    pub couplings: Option<(usize, usize)>,
-    /// Number of jobs that the visible views wait for.
-    pub views: usize,
-    /// Progress of the report: conditions done, total.
-    pub report: Option<(usize, usize)>,
-    /// Progress of the identification: parts done, total.
-    pub identification: Option<(usize, usize)>,
-    /// Whether some work was stopped, by the engineer or by a fault.
-    pub stopped: bool,
-}
-
-impl Background {
-    /// Returns whether anything is in progress.
-    pub fn is_busy(&self) -> bool {
-        !self.proofs.is_empty()
-            || self.toggles
-            || self.curves.is_some()
-            || self.bars.is_some()
-            || self.time_histories.is_some()
-            || self.couplings.is_some()
-            || self.views > 0
-            || self.report.is_some()
-            || self.identification.is_some()
-    }
 }
 
 /// Computed results; never saved.
@@ -157,12 +97,6 @@ pub struct Results {
     pub stopped: bool,
 }
 
-/// Age \[s\] from which results for older settings are marked as stale.
-const STALE_AFTER_S: f64 = 0.15;
-/// Duration \[s\] after which background work is displayed: most jobs end before a display could be
-/// read.
-const BACKGROUND_AFTER_S: f64 = 0.5;
-
 impl Results {
     /// Returns whether results for the newest request are pending.
     pub fn is_waiting(&self) -> bool {
@@ -179,9 +113,9 @@ impl Results {
     }
 
     /// Returns the message that explains missing error bars.
-    pub fn absence_of_bars(&self) -> String {
-        match self.background.bars {
-            Some(progress) if !self.is_behind() => bar_words(progress),
+    pub fn absence_of_error_bars(&self) -> String {
+        match self.background.error_bars {
+            Some(steps) if !self.is_behind() => error_bar_progress(steps),
             None if self.background.stopped => {
                 "Error bars: stopped. Choose Compute, below, to continue".to_owned()
             }
@@ -198,14 +132,14 @@ impl Results {
     /// of all conditions.
     pub fn first_is_ahead(&self) -> bool {
         match &self.first {
-            Some(first) => self.analysis.is_some() && first.generation > self.received,
+            Some(first) => self.analysis.is_some() && first.request > self.received,
             None => false,
         }
     }
 
     /// Returns whether background work has lasted long enough at `now` \[s, window clock\] to be
     /// displayed.
-    pub fn is_background_told(&self, now: f64) -> bool {
+    pub fn shows_background(&self, now: f64) -> bool {
         match self.background_since {
             Some(since) => now - since > BACKGROUND_AFTER_S,
             None => false,
@@ -220,15 +154,5 @@ impl Results {
             None => false,
         };
         self.stopped || is_late
-    }
-}
-
-/// Describes the progress of the error bars: completed steps, total.
-pub fn bar_words(progress: (usize, usize)) -> String {
-    let (done, total) = progress;
-    if total == 0 {
-        "error bars …".to_owned()
-    } else {
-        format!("error bars, {done} of {total} steps …")
     }
 }

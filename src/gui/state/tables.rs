@@ -8,7 +8,7 @@ use gdcm_model::units::s_to_ms;
 use gdcm_plot::figure::all_channels;
 use gdcm_words::Table;
 
-use super::results::Sureness;
+use super::value_uncertainty::ValueUncertainty;
 use super::window_state::State;
 
 /// Table that can be copied and saved.
@@ -186,7 +186,7 @@ fn model_row(state: &State, bundle: BundleKind, model: &Model) -> Row {
 /// Returns the title of a table with error bars: subject, condition and confidence level.
 fn title_with_bars(state: &State, kind: TableKind) -> String {
     let mut subject = kind.name().to_owned();
-    if let Some(level) = state.sureness().level() {
+    if let Some(level) = state.value_uncertainty().level() {
         subject.push_str(&format!(", ± of {:.0} %", 100.0 * level));
     }
     title(state, &subject)
@@ -202,8 +202,8 @@ struct HalfWidths {
 }
 
 impl HalfWidths {
-    fn new(sure: &Sureness<'_>, scalar: Scalar) -> Self {
-        let Some((bar, level)) = sure.bar(scalar) else {
+    fn new(uncertainty: &ValueUncertainty<'_>, scalar: Scalar) -> Self {
+        let Some((bar, level)) = uncertainty.error_bar(scalar) else {
             return Self::default();
         };
         Self {
@@ -232,19 +232,19 @@ fn matrix(state: &State) -> Table {
 }
 
 fn response_row(state: &State, pair: Pair) -> Row {
-    let sure = state.sureness();
+    let uncertainty = state.value_uncertainty();
     let shown = state.shown();
     let settings = &state.study.settings;
     let (output, input) = state.dataset().channel_names(pair);
     let cost = shown.and_then(|shown| shown.cost[pair]);
     let before = cost.map(|cost| cost.uncorrected);
     let after = cost.map(|cost| cost.corrected);
-    let gain = HalfWidths::new(&sure, Scalar::Gain(pair));
+    let gain = HalfWidths::new(&uncertainty, Scalar::Gain(pair));
     let delay = match shown {
-        Some(shown) => HalfWidths::new(&sure, shown.wanted_delay(pair)),
+        Some(shown) => HalfWidths::new(&uncertainty, shown.wanted_delay(pair)),
         None => HalfWidths::default(),
     };
-    let net_gain = HalfWidths::new(&sure, Scalar::NetGain(pair));
+    let net_gain = HalfWidths::new(&uncertainty, Scalar::NetGain(pair));
     let wanted_delay_s = shown.and_then(|shown| shown.wanted_delay_s(pair));
     let values = [
         ("G [-]", shown.and_then(|shown| shown.wanted_gain(pair))),
@@ -291,15 +291,15 @@ fn channels(state: &State) -> Table {
 }
 
 fn channel_row(state: &State, channel: Channel) -> Row {
-    let sure = state.sureness();
+    let uncertainty = state.value_uncertainty();
     let correction = state.shown().map(|shown| &shown.correction);
     let (inputs, outputs) = state.dataset().names_of_channels();
     let side = match channel {
         Channel::Input(_) => "input",
         Channel::Output(_) => "output",
     };
-    let gain = HalfWidths::new(&sure, Scalar::ChannelGain(channel));
-    let delay = HalfWidths::new(&sure, Scalar::ChannelDelay(channel));
+    let gain = HalfWidths::new(&uncertainty, Scalar::ChannelGain(channel));
+    let delay = HalfWidths::new(&uncertainty, Scalar::ChannelDelay(channel));
     let values = [
         ("k [-]", correction.map(|found| found.gain(channel))),
         ("k ± [%]", gain.whole),

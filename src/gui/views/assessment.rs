@@ -265,7 +265,7 @@ fn change_table_ui(
     let text = assessment_text_table(state, table);
     let pairs = assessed_pairs(state);
     let conditions = state.dataset().conditions();
-    let part = state.display.judging.assessed.part.of();
+    let part = state.display.judging.assessed.part.extractor();
     let color = |row: usize, column: usize| {
         // The first column holds response names.
         let condition = conditions.get(column.checked_sub(1)?)?;

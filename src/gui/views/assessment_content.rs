@@ -43,7 +43,7 @@ pub fn assessment_text_table(state: &State, table: &AssessmentTable) -> Table {
         (state.dataset(), table),
         &assessed_pairs(state),
         &conditions,
-        part.of(),
+        part.extractor(),
     )
 }
 

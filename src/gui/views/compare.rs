@@ -14,7 +14,7 @@ use super::variants::variant_analysis;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::choices::toggle_ui;
+use crate::gui::widgets::choices::Toggle;
 use crate::gui::widgets::controls::{is_entered, named, text_field_ui};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 use crate::gui::widgets::tables::{TableLook, table_ui};
@@ -94,7 +94,12 @@ fn variant_ui(ui: &mut Ui, variant: &Variant, is_overlaid: bool, commands: &mut 
             let label = format!("Overlay variant {name}");
             let hint = "Draws the variant's corrected model in the Bode view (dotted) and its net \
                 gains (hollow squares)";
-            if toggle_ui(ui, ("Overlay", &label), is_overlaid, hint) {
+            let toggle = Toggle {
+                text: "Overlay",
+                name: &label,
+                hint,
+            };
+            if toggle.ui(ui, is_overlaid) {
                 let overlaid = if is_overlaid { None } else { Some(name) };
                 commands.push(DisplayCommand::Overlay(overlaid).into());
             }

@@ -10,7 +10,7 @@ use gdcm_words::uncertainty::bar_remark_texts;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::choices::toggle_ui;
+use crate::gui::widgets::choices::Toggle;
 
 /// Returns the uncertainty of gains and delays; `None` if error bars are hidden or not available.
 pub fn shown_uncertainty(state: &State) -> Option<&Uncertainty> {
@@ -57,7 +57,12 @@ pub fn error_bars_switch_ui(ui: &mut Ui, state: &State, name: &str, commands: &m
         physics model. Thin: with the unknown trim of the flight. Bands: confidence of the \
         schedule, and prediction for another condition"
     );
-    if toggle_ui(ui, ("bars", name), shown, &hint) {
+    let toggle = Toggle {
+        text: "bars",
+        name,
+        hint: &hint,
+    };
+    if toggle.ui(ui, shown) {
         commands.push(DisplayCommand::ShowBars(!shown).into());
     }
 }

@@ -39,7 +39,7 @@ pub fn evidence_view_ui(
     commands: &mut Vec<Command>,
 ) {
     let Some(uncertainty) = state.uncertainty().cloned() else {
-        ui.label(RichText::new(state.results.absence_of_bars()).color(palette.dim_text));
+        ui.label(RichText::new(state.results.absence_of_error_bars()).color(palette.dim_text));
         return;
     };
     let page = EvidencePage {

@@ -22,7 +22,7 @@ pub fn figure_of(state: &State, view: View) -> Option<Figure> {
         None => false,
     };
     let analysis = if needs_bars || !state.display.gains.hide_bars {
-        state.analysis_with_bars()
+        state.analysis_with_error_bars()
     } else {
         state.analysis().cloned()
     };

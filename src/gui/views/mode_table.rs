@@ -11,10 +11,10 @@ use gdcm_study::ConditionAnalysis;
 use gdcm_study::jobs::curve_jobs::ConditionModes;
 use gdcm_words::Table;
 
-use crate::gui::state::modes_cache::{CachedModes, MadeOf};
+use crate::gui::state::modes_cache::{CachedModes, ModesInputs};
 use crate::gui::state::window_state::State;
 
-impl MadeOf {
+impl ModesInputs {
     fn new(state: &State, modes: &Arc<ConditionModes>) -> Self {
         let mut couplings = None;
         if let Some(shown) = state.shown()
@@ -57,19 +57,19 @@ impl CachedModes {
             *self = Self::default();
             return;
         };
-        let made_of = MadeOf::new(state, modes);
-        if let Some(known) = &self.made_of
-            && known.is_same(&made_of)
+        let inputs = ModesInputs::new(state, modes);
+        if let Some(known) = &self.inputs
+            && known.is_same(&inputs)
         {
             return;
         }
-        (self.table, self.jumping) = modes_table(state, modes, made_of.reference);
+        (self.table, self.outliers) = modes_table(state, modes, inputs.reference);
         self.shifts = match state.shown() {
             Some(shown) => ConditionAnalysis::pole_shifts(shown),
             None => Vec::new(),
         };
         self.zeros.clear();
-        if let Some((pair, models)) = &made_of.zeros_of {
+        if let Some((pair, models)) = &inputs.zeros_of {
             for id in models {
                 let zeros = match modes.condition.model(id.bundle, &id.name) {
                     Some(model) => finite_zeros(&model.dynamics, *pair),
@@ -78,7 +78,7 @@ impl CachedModes {
                 self.zeros.push((id.clone(), zeros));
             }
         }
-        self.made_of = Some(made_of);
+        self.inputs = Some(inputs);
     }
 }
 
@@ -206,7 +206,7 @@ fn modes_table(
         "outlier in",
     ];
     let mut table = Table::new(title, columns);
-    let mut jumping = Vec::new();
+    let mut outliers = Vec::new();
     let reference_modes = modes.bundle(kind)[reference].as_deref().unwrap_or_default();
     for track in modes.tracks(kind, reference) {
         let Some(mode) = reference_modes.get(track.reference) else {
@@ -231,9 +231,9 @@ fn modes_table(
             jumps.join(", "),
         ]);
         let first = track.jumps.first();
-        jumping.push(first.map(|&model| state.model_id(kind, &models[model].name)));
+        outliers.push(first.map(|&model| state.model_id(kind, &models[model].name)));
     }
-    (table, jumping)
+    (table, outliers)
 }
 
 fn three_decimals(value: f64) -> String {

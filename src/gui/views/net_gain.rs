@@ -21,7 +21,7 @@ use crate::gui::plot::{FigureScene, figure_ui};
 use crate::gui::state::pair_set::PairSet;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::choices::{choice_ui, toggle_ui};
+use crate::gui::widgets::choices::{Toggle, choice_ui};
 use crate::gui::widgets::controls::{named, restore_panel_size};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
@@ -53,13 +53,18 @@ pub fn net_gain_header_ui(
     let shown = state.display.gains.show_evidence;
     let hint = "Evidence for the degree of the schedule: significant differences at equal \
         airspeed, and the error of each form";
-    if toggle_ui(ui, ("evidence", "evidence"), shown, hint) {
+    let toggle = Toggle {
+        text: "evidence",
+        name: "evidence",
+        hint,
+    };
+    if toggle.ui(ui, shown) {
         commands.push(DisplayCommand::ShowEvidence(!shown).into());
     }
     error_bars_switch_ui(ui, state, "error bars", commands);
     if let Some((variant, _)) = overlaid_analysis(state) {
         let button = ui.small_button(
-            RichText::new(format!("□ {variant} ×")).color(palette.name_of(palette.corrected)),
+            RichText::new(format!("□ {variant} ×")).color(palette.label_color(palette.corrected)),
         );
         let name = format!("Overlaid variant {variant}");
         let hint = "Hollow squares: net gains of this variant. Click: remove them";

@@ -228,13 +228,15 @@ impl FigureWords for PoleWords<'_> {
 
 /// Draws the mode table; a click isolates the first model whose pole is an outlier of the mode.
 fn modes_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
-    let CachedModes { table, jumping, .. } = &state.display.poles.modes;
+    let CachedModes {
+        table, outliers, ..
+    } = &state.display.poles.modes;
     let look = TableLook {
-        color: &|row, _| match jumping.get(row) {
+        color: &|row, _| match outliers.get(row) {
             Some(Some(_)) => Some(palette.warning),
             _ => None,
         },
-        selected: &|row| match jumping.get(row) {
+        selected: &|row| match outliers.get(row) {
             Some(Some(id)) => Some(id) == state.display.selection.hovered.as_ref(),
             _ => false,
         },
@@ -242,7 +244,7 @@ fn modes_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Ve
     let mut sorting = state.display.poles.modes_sorting;
     let click = table_ui(ui, table, &mut sorting, &look, palette, commands);
     if let Some(click) = click
-        && let Some(Some(id)) = jumping.get(click.row)
+        && let Some(Some(id)) = outliers.get(click.row)
     {
         commands.push(SelectionCommand::Isolate(id.clone()).into());
     }

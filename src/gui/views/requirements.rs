@@ -25,7 +25,7 @@ use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::state::requirements_page::RequirementsPage;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::choices::page_tab_ui;
+use crate::gui::widgets::choices::{PageWords, page_tab_ui};
 use crate::gui::widgets::controls::restore_panel_size;
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::tables::{TableClick, TableLook, table_grid_ui};
@@ -63,7 +63,12 @@ pub fn requirements_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Com
         ),
     ];
     for (page, name, purpose) in pages {
-        let (_, is_clicked) = page_tab_ui(ui, page == shown, name, (name, purpose));
+        let words = PageWords {
+            name,
+            short_name: name,
+            purpose,
+        };
+        let (_, is_clicked) = page_tab_ui(ui, page == shown, words);
         if is_clicked {
             commands.push(DisplayCommand::ShowRequirements(page).into());
         }

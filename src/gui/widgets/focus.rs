@@ -30,15 +30,22 @@ pub enum Region {
 /// Regions and selected rows of the last frames, kept in egui's memory.
 #[derive(Clone, Default)]
 struct Regions {
-    parts: BTreeMap<Region, Part>,
-    /// Selected rows, and the pass in which they were drawn: the focus enters an unvisited region
-    /// at its selected row.
-    selected: (u64, Vec<Id>),
+    drawn: BTreeMap<Region, DrawnRegion>,
+    selected: SelectedRows,
 }
 
+/// Selected rows: the focus enters an unvisited region at its selected row.
 #[derive(Clone, Default)]
-struct Part {
-    /// Pass in which the region was last drawn.
+struct SelectedRows {
+    /// egui pass in which the rows were drawn.
+    pass: u64,
+    rows: Vec<Id>,
+}
+
+/// A region as last drawn.
+#[derive(Clone, Default)]
+struct DrawnRegion {
+    /// egui pass in which the region was last drawn.
     pass: u64,
     /// Focusable controls, in Tab order.
     controls: Vec<Id>,
@@ -48,6 +55,7 @@ struct Part {
     place: Option<Rect>,
 }
 
+/// Key of [`Regions`] in egui's memory.
 fn key() -> Id {
     Id::unique("regions")
 }
@@ -74,22 +82,23 @@ pub fn region_ui<R>(ui: &mut Ui, region: Region, add: impl FnOnce(&mut Ui) -> R)
         .filter(|focused| controls.contains(focused));
     let pass = ctx.cumulative_pass_nr();
     ctx.data_mut(|data| {
-        let part = data
+        let known = data
             .get_temp_mut_or_default::<Regions>(key())
-            .parts
+            .drawn
             .entry(region)
             .or_default();
-        if part.pass != pass {
-            part.controls.clear();
-            part.place = None;
+        // The first piece in this pass replaces what the previous pass recorded.
+        if known.pass != pass {
+            known.controls.clear();
+            known.place = None;
         }
-        part.pass = pass;
-        part.controls.extend(controls);
-        part.place = match part.place {
+        known.pass = pass;
+        known.controls.extend(controls);
+        known.place = match known.place {
             Some(others) => Some(others.union(place)),
             None => Some(place),
         };
-        part.visited = focused.or(part.visited);
+        known.visited = focused.or(known.visited);
     });
     if let Some(focused) = focused
         && let Some(response) = ctx.read_response(focused)
@@ -104,11 +113,12 @@ pub fn region_ui<R>(ui: &mut Ui, region: Region, add: impl FnOnce(&mut Ui) -> R)
 pub fn begin_with(ctx: &Context, row: Id) {
     let pass = ctx.cumulative_pass_nr();
     ctx.data_mut(|data| {
-        let (last, rows) = &mut data.get_temp_mut_or_default::<Regions>(key()).selected;
-        if std::mem::replace(last, pass) != pass {
-            rows.clear();
+        let selected = &mut data.get_temp_mut_or_default::<Regions>(key()).selected;
+        if selected.pass != pass {
+            selected.pass = pass;
+            selected.rows.clear();
         }
-        rows.push(row);
+        selected.rows.push(row);
     });
 }
 
@@ -116,7 +126,7 @@ pub fn begin_with(ctx: &Context, row: Id) {
 pub fn region_place(ctx: &Context, region: Region) -> Option<Rect> {
     let place = ctx.data_mut(|data| {
         data.get_temp_mut_or_default::<Regions>(key())
-            .parts
+            .drawn
             .get(&region)?
             .place
     });
@@ -128,39 +138,41 @@ pub fn region_place(ctx: &Context, region: Region) -> Option<Rect> {
 pub fn leave_region(ctx: &Context, forward: bool) {
     let focused = ctx.memory(|memory| memory.focused());
     let regions = ctx.data_mut(|data| data.get_temp_mut_or_default::<Regions>(key()).clone());
-    let parts: Vec<&Part> = regions
-        .parts
+    let targets: Vec<&DrawnRegion> = regions
+        .drawn
         .values()
-        .filter(|part| !part.controls.is_empty())
+        .filter(|target| !target.controls.is_empty())
         .collect();
-    let Some(last) = parts.len().checked_sub(1) else {
+    let Some(last) = targets.len().checked_sub(1) else {
         return;
     };
-    let here = parts
+    let here = targets
         .iter()
-        .position(|part| focused.is_some_and(|focused| part.controls.contains(&focused)));
+        .position(|target| focused.is_some_and(|focused| target.controls.contains(&focused)));
     let next = match (here, forward) {
         (None, true) => 0,
         (None, false) => last,
-        (Some(here), true) => (here + 1) % parts.len(),
-        (Some(here), false) => (here + last) % parts.len(),
+        (Some(here), true) => (here + 1) % targets.len(),
+        // One step back: `last` is the number of regions minus 1.
+        (Some(here), false) => (here + last) % targets.len(),
     };
-    let part = parts[next];
-    let visited = part
+    let target = targets[next];
+    let visited = target
         .visited
-        .filter(|visited| part.controls.contains(visited));
-    let selected = part
+        .filter(|visited| target.controls.contains(visited));
+    let selected = target
         .controls
         .iter()
-        .find(|control| regions.selected.1.contains(control));
+        .find(|control| regions.selected.rows.contains(control));
     if let Some(id) = visited
         .or(selected.copied())
-        .or(part.controls.first().copied())
+        .or(target.controls.first().copied())
     {
         ctx.memory_mut(|memory| memory.request_focus(id));
     }
 }
 
+/// Key, in egui's memory, of whether a control had the focus after the last frame.
 fn had_focus() -> Id {
     Id::unique("had anything the focus")
 }

@@ -2,6 +2,8 @@
 
 pub mod choices;
 pub mod controls;
+pub mod counts;
+pub mod elision;
 pub mod fields;
 pub mod focus;
 pub mod palette;

@@ -165,7 +165,7 @@ impl Palette {
     }
 
     /// Returns the palette that matches `visuals`.
-    pub fn of(visuals: &Visuals) -> Self {
+    pub fn from_visuals(visuals: &Visuals) -> Self {
         if visuals.dark_mode {
             Self::dark()
         } else {
@@ -200,19 +200,21 @@ impl Palette {
 
     /// Returns the colour of a value of J in a heat map; constant beyond the last of
     /// [`HEAT_COSTS`].
-    pub fn heat_of(&self, cost: f64) -> Color32 {
-        let cost = (cost as f32).clamp(HEAT_COSTS[0], HEAT_COSTS[4]);
+    pub fn heat_color(&self, cost: f64) -> Color32 {
+        const LAST: usize = HEAT_COSTS.len() - 1;
+        let cost = (cost as f32).clamp(HEAT_COSTS[0], HEAT_COSTS[LAST]);
+        // Index of the upper end of the interval that contains the cost, from 1 to `LAST`.
         let above = HEAT_COSTS
             .iter()
             .position(|end| cost < *end)
-            .unwrap_or(4)
+            .unwrap_or(LAST)
             .max(1);
         let part = (cost - HEAT_COSTS[above - 1]) / (HEAT_COSTS[above] - HEAT_COSTS[above - 1]);
         self.heat[above - 1].lerp_to_gamma(self.heat[above], part)
     }
 
     /// Returns the colour of a name beside a curve of colour `curve`.
-    pub fn name_of(&self, curve: Color32) -> Color32 {
+    pub fn label_color(&self, curve: Color32) -> Color32 {
         self.towards_text(curve, 0.3)
     }
 
@@ -399,7 +401,7 @@ mod tests {
                 theme.corrected,
                 theme.rejected,
             ];
-            for name in curves.map(|color| theme.name_of(color)) {
+            for name in curves.map(|color| theme.label_color(color)) {
                 assert!(
                     contrast(name, theme.background) >= OF_TEXT,
                     "{name:?} of {theme:?}"
@@ -412,12 +414,12 @@ mod tests {
     fn a_greater_cost_stands_out_more_from_the_ground() {
         for palette in [Palette::dark(), Palette::light()] {
             let costs = [0.0, 5.0, 10.0, 20.0, 30.0, 45.0, 60.0, 90.0, 110.0];
-            let contrasts = costs.map(|cost| contrast(palette.heat_of(cost), palette.panel));
+            let contrasts = costs.map(|cost| contrast(palette.heat_color(cost), palette.panel));
             assert!(
                 contrasts.is_sorted_by(|less, more| less < more),
                 "{palette:?}"
             );
-            assert_eq!(palette.heat_of(1e9), palette.heat[4]);
+            assert_eq!(palette.heat_color(1e9), palette.heat[4]);
         }
     }
 

@@ -11,18 +11,33 @@ use gdcm_words::Table;
 use super::controls::{entries_ui, named};
 use super::palette::{Palette, SMALL_SIZE};
 
-/// Sort column, and whether the order is descending; `None` for the original order.
+/// Order of a table's rows; the default is the original order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Sorting(Option<(usize, bool)>);
+pub struct Sorting {
+    key: Option<SortKey>,
+}
+
+/// Column by which a table is sorted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct SortKey {
+    column: usize,
+    is_descending: bool,
+}
 
 impl Sorting {
     /// Returns the order after a click on a column's heading: ascending, descending, original.
     pub fn clicked(self, column: usize) -> Self {
-        Self(match self.0 {
-            Some((sorted, false)) if sorted == column => Some((column, true)),
-            Some((sorted, true)) if sorted == column => None,
-            _ => Some((column, false)),
-        })
+        let is_descending = match self.key {
+            Some(key) if key.column == column && key.is_descending => return Self::default(),
+            Some(key) => key.column == column,
+            None => false,
+        };
+        Self {
+            key: Some(SortKey {
+                column,
+                is_descending,
+            }),
+        }
     }
 
     /// Returns the sorted row indices: numbers by value, text alphabetically, empty cells last.
@@ -37,10 +52,10 @@ impl Sorting {
     /// column.
     pub fn order_of(self, rows: usize, cell: impl Fn(usize, usize) -> String) -> Vec<usize> {
         let mut order: Vec<usize> = (0..rows).collect();
-        let Some((column, falling)) = self.0 else {
+        let Some(key) = self.key else {
             return order;
         };
-        let cells: Vec<String> = order.iter().map(|&row| cell(row, column)).collect();
+        let cells: Vec<String> = order.iter().map(|&row| cell(row, key.column)).collect();
         order.sort_by(|a, b| {
             let a = &cells[*a];
             let b = &cells[*b];
@@ -48,7 +63,7 @@ impl Sorting {
                 (Some(a), Some(b)) => a.total_cmp(&b),
                 _ => a.cmp(b),
             };
-            let compared = if falling {
+            let compared = if key.is_descending {
                 compared.reverse()
             } else {
                 compared
@@ -60,9 +75,9 @@ impl Sorting {
 
     /// Returns the sort mark in the heading of a column.
     pub fn mark(self, column: usize) -> &'static str {
-        match self.0 {
-            Some((sorted, false)) if sorted == column => " ▲",
-            Some((sorted, true)) if sorted == column => " ▼",
+        match self.key {
+            Some(key) if key.column == column && key.is_descending => " ▼",
+            Some(key) if key.column == column => " ▲",
             _ => "",
         }
     }

@@ -297,7 +297,7 @@ fn how_a_figure_of_a_cell_was_computed_is_told_with_its_numbers() {
     let asked = state(&window)
         .display
         .selection
-        .asked
+        .explained
         .clone()
         .expect("the figure is explained");
     let told = derivation(state(&window).analysis().unwrap(), &asked).unwrap();

@@ -72,7 +72,7 @@ fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_la
     let before = identified_models(&window);
     window.get_by_label("Identify").click();
     wait_until(&mut window, "the first model or the models", |window| {
-        let running = state(window).records.running(CONDITION_10_ID);
+        let running = state(window).records.job_of(CONDITION_10_ID);
         running.is_none_or(|job| job.news().first_model.is_some())
     });
     wait_until(&mut window, "the models", |window| {
@@ -96,7 +96,7 @@ fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_la
         found.cost
     );
     for page in RecordsPage::ALL {
-        click(&mut window, &format!("Page {}", page.words().0));
+        click(&mut window, &format!("Page {}", page.words().name));
         assert_eq!(state(&window).records.page, page);
     }
     let table = condition_table(state(&window));
@@ -316,7 +316,7 @@ fn records_are_chosen_held_out_and_left_out_and_an_identification_is_stopped() {
     );
     window.get_by_label("Identify").click();
     window.run_steps(2);
-    assert!(state(&window).records.running(CONDITION_10_ID).is_some());
+    assert!(state(&window).records.job_of(CONDITION_10_ID).is_some());
     window.get_by_label("Stop identifying").click();
     window.run_steps(3);
     assert!(state(&window).records.running.is_empty());

@@ -33,7 +33,7 @@ pub(super) fn harness(curves: Vec<BodeCurve>) -> Harness<'static, Model> {
                     hidden_roles: Some(&model.hidden_roles),
                     ..BodeScene::new("LON → Q", &model.curves, model.band)
                 };
-                let palette = Palette::of(ui.visuals());
+                let palette = Palette::from_visuals(ui.visuals());
                 for event in bode_ui(ui, &scene, &mut model.view, &palette) {
                     if let BodeEvent::BandDragged { min, max } = event {
                         model.band = (min, max);

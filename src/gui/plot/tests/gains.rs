@@ -86,7 +86,7 @@ fn harness(model: Model) -> Harness<'static, Model> {
                     &Numbers,
                 )
             };
-            let palette = Palette::of(ui.visuals());
+            let palette = Palette::from_visuals(ui.visuals());
             model
                 .events
                 .extend(figure_ui(ui, &scene, &mut model.view, &palette));

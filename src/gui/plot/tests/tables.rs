@@ -43,7 +43,7 @@ fn overview_harness(curves: Vec<BodeCurve>) -> Harness<'static, Model> {
                     band: (0.5, 12.0),
                     message: None,
                 };
-                let palette = Palette::of(ui.visuals());
+                let palette = Palette::from_visuals(ui.visuals());
                 let events = overview_ui(ui, &scene, &mut model.overview, &palette);
                 model.pairs.extend(events);
             },

@@ -15,7 +15,7 @@ use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::commands::command::Command;
 use crate::gui::plot::quantity::BodeQuantity;
 use crate::gui::plot::{BodeCurve, BodeScene, CurveId, Role, bode_ui};
-use crate::gui::state::assembling::{AssemblyState, Preview};
+use crate::gui::state::assembling::{AssemblyState, DrawnPreview, Preview};
 use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::palette::Palette;
 
@@ -45,14 +45,14 @@ pub(super) fn preview_ui(
         .collect();
     response_choice_ui(ui, &names, response, commands);
     update_curves(&mut assembly.preview, &found, response, band);
-    let Some((_, _, curves)) = &assembly.preview.drawn else {
+    let Some(drawn) = &assembly.preview.drawn else {
         return;
     };
     let scene = BodeScene {
         quantity: BodeQuantity::RESPONSE_OF_FOUND_MODEL,
         unit: FrequencyUnit::default(),
         message: Some("This response cannot be computed: the model is incomplete or inconsistent"),
-        ..BodeScene::new(&names[response], curves, band)
+        ..BodeScene::new(&names[response], &drawn.curves, band)
     };
     bode_ui(ui, &scene, &mut assembly.preview.view, palette);
 }
@@ -74,14 +74,18 @@ fn response_choice_ui(ui: &mut Ui, names: &[String], shown: usize, commands: &mu
 fn update_curves(preview: &mut Preview, found: &FoundModel, response: usize, band: (f64, f64)) {
     let key = found.key();
     let mut is_same_model = false;
-    if let Some((drawn_key, drawn_response, _)) = &preview.drawn {
-        is_same_model = *drawn_key == key;
-        if is_same_model && *drawn_response == response {
+    if let Some(drawn) = &preview.drawn {
+        is_same_model = drawn.model == key;
+        if is_same_model && drawn.response == response {
             return;
         }
     }
     let curves = curve(found, response, band).into_iter().collect();
-    preview.drawn = Some((key, response, curves));
+    preview.drawn = Some(DrawnPreview {
+        model: key,
+        response,
+        curves,
+    });
     // A different model may have other frequencies, so `request_fit` also fits the frequency axis.
     if is_same_model {
         preview.view.request_refit();

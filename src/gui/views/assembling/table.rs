@@ -8,9 +8,8 @@ use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::commands::command::Command;
 use crate::gui::state::assembling::AssemblyState;
 use crate::gui::state::assembly_columns::COLUMNS;
-use crate::gui::widgets::controls::{
-    Asks, ROW_HEIGHT, elided_among, named, named_switch, painted_text,
-};
+use crate::gui::widgets::controls::{Asks, ROW_HEIGHT, named, named_switch, painted_text};
+use crate::gui::widgets::elision::elided_among;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE, small};
 
 /// Index of the column in which incomplete models are marked.

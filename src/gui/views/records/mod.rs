@@ -119,9 +119,8 @@ fn page_tabs_ui(ui: &mut Ui, displayed: RecordsPage, commands: &mut Vec<Command>
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
             for page in RecordsPage::ALL {
-                let (name, short_name, purpose) = page.words();
                 let is_displayed = page == displayed;
-                let (tab, is_clicked) = page_tab_ui(ui, is_displayed, short_name, (name, purpose));
+                let (tab, is_clicked) = page_tab_ui(ui, is_displayed, page.words());
                 if tab.gained_focus() {
                     tab.scroll_to_me(None);
                 }

@@ -35,7 +35,7 @@ pub(super) fn outcome_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command
         )));
         remedies_ui(ui, vec![study_band_remedy()], commands);
     }
-    if let Some(job) = state.records.running(state.condition().id()) {
+    if let Some(job) = state.records.job_of(state.condition().id()) {
         progress_ui(ui, page, job);
         return;
     }
@@ -68,8 +68,8 @@ fn progress_ui(ui: &mut Ui, page: Page<'_>, job: &IdentifyJob) {
     let mut share = 0.0;
     let mut words = String::new();
     if !news.step.is_empty() {
-        let (done, total) = state.results.background.identification.unwrap_or((0, 0));
-        share = done as f32 / total.max(1) as f32;
+        let steps = state.results.background.identification.unwrap_or_default();
+        share = steps.done as f32 / steps.total.max(1) as f32;
         words = news.step;
     } else if let Some(earlier) = state.records.under_way() {
         words = format!("Waits for condition {}", earlier.condition);

@@ -8,8 +8,9 @@ use gdcm_sysid::records::{LaidOutRecord, LayoutProblem};
 use super::page::Page;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::records::RecordsCommand;
-use crate::gui::widgets::choices::list_ui;
-use crate::gui::widgets::controls::{Asks, elided_among, named, named_switch};
+use crate::gui::widgets::choices::DropDown;
+use crate::gui::widgets::controls::{Asks, named, named_switch};
+use crate::gui::widgets::elision::elided_among;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 
 /// Width of all columns except the names \[pt\].
@@ -207,8 +208,12 @@ fn kind_ui(
         ui.label(palette.small(format!("{}: a", row.table.name)));
         let chosen = row.guess.kind;
         let kinds = RecordKind::ALL.map(|kind| (kind, kind == chosen, kind.word().to_owned()));
-        let field = (90.0, chosen.word());
-        if let Some(kind) = list_ui(ui, "Manoeuvre of the record", field, kinds) {
+        let list = DropDown {
+            name: "Manoeuvre of the record",
+            width: 90.0,
+            text: chosen.word(),
+        };
+        if let Some(kind) = list.ui(ui, kinds) {
             commands.push(RecordsCommand::SetKind(index, kind).into());
         }
         if row.table.part_s.is_some() && ui.small_button("Remove part").clicked() {

@@ -11,7 +11,8 @@ use super::frame_cache::cached;
 use super::page::Page;
 use crate::gui::plot::chart::{Chart, ChartAxis, ChartBand, ChartLine, ChartMarks, ChartSpan};
 use crate::gui::plot::chart_view::chart_ui;
-use crate::gui::widgets::controls::{named, painted_text, text_width};
+use crate::gui::widgets::controls::{named, painted_text};
+use crate::gui::widgets::elision::text_width;
 use crate::gui::widgets::palette::{Palette, small};
 
 /// Substitute band \[rad/s\] for an identification without a job.
@@ -59,7 +60,7 @@ pub(super) fn response_ui(ui: &mut Ui, page: Page<'_>) {
 fn drawn_response(ui: &Ui, page: Page<'_>) -> Option<Arc<DrawnResponse>> {
     let Page { state, records, .. } = page;
     let pair = state.display.selection.pair;
-    if let Some(job) = state.records.running(state.condition().id())
+    if let Some(job) = state.records.job_of(state.condition().id())
         && let Some(model) = job.news().first_model
     {
         let band = job.request.options.band;

@@ -1,27 +1,24 @@
-//! Bars at the top of the window: menus, and messages below them.
+//! Menu bar: menus, undo and redo, the document title, the search field and the theme switch.
 
 use egui::{
-    Align, Button, CollapsingHeader, Frame, Key, KeyboardShortcut, Label, Layout, Margin, MenuBar,
-    Modifiers, Rect, RichText, Role, ScrollArea, Sense, Stroke, StrokeKind, ThemePreference, Ui,
-    pos2, vec2,
+    Button, Key, KeyboardShortcut, MenuBar, Modifiers, Rect, RichText, Role, Sense, Stroke,
+    StrokeKind, ThemePreference, Ui, pos2, vec2,
 };
 
 use crate::gui::commands::command::Command;
 use crate::gui::commands::command_table::command_table;
-use crate::gui::commands::computing::ComputingCommand;
 use crate::gui::commands::entry::Menu;
 use crate::gui::commands::file::FileCommand;
 use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::layout::LayoutCommand;
-use crate::gui::commands::output::OutputCommand;
 use crate::gui::commands::study::StudyCommand;
 use crate::gui::state::forms::FormKind;
-use crate::gui::state::notices::Bar;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::{
-    Asks, button_ui, elided, in_line_ui, named, painted_text, text_width,
+    AT_RIGHT_END, Asks, button_ui, in_line_ui, named, painted_text,
 };
-use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium, small};
+use crate::gui::widgets::elision::{elided, text_width};
+use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
 
 /// Draws the menus, undo and redo, the document title, and the search field for commands.
 pub fn menu_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
@@ -74,7 +71,7 @@ fn search_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) -> f32
     painted_text(ui, inner, 0.0, "Find a command", body(), palette.dim_text);
     let keys = KeyboardShortcut::new(Modifiers::COMMAND, Key::K);
     let keys = ui.ctx().format_shortcut(&keys);
-    painted_text(ui, inner, -0.01, &keys, small(), palette.dim_text);
+    painted_text(ui, inner, AT_RIGHT_END, &keys, small(), palette.dim_text);
     named(response, Role::Button, "Find a command")
         .asks(FormCommand::ShowForm(Some(FormKind::Palette)), commands);
     rect.left()
@@ -204,7 +201,7 @@ fn title_ui(ui: &mut Ui, bar: Rect, room: Rect, state: &State, palette: &Palette
     }
     let place = Rect::from_min_size(pos2(left, bar.top()), vec2(whole, bar.height()));
     painted_text(ui, place, 0.0, &name, medium(BODY_SIZE), palette.text);
-    painted_text(ui, place, -0.01, &study, body(), palette.dim_text);
+    painted_text(ui, place, AT_RIGHT_END, &study, body(), palette.dim_text);
     let response = ui.interact(place, ui.scope_id().with("document"), Sense::hover());
     let is_saved = if state.unsaved {
         "Unsaved decisions"
@@ -217,121 +214,4 @@ fn title_ui(ui: &mut Ui, bar: Rect, room: Rect, state: &State, palette: &Palette
         format!("{}, {study}", state.dataset().name()),
     );
     response.on_hover_text(format!("{}\n{is_saved}", state.dataset().description()));
-}
-
-/// Draws every message bar, oldest first.
-pub fn bars_ui(ui: &mut Ui, bars: &[Bar], palette: &Palette, commands: &mut Vec<Command>) {
-    for bar in bars {
-        let frame = Frame::new()
-            .fill(palette.raised)
-            .inner_margin(Margin::symmetric(10, 5));
-        frame
-            .corner_radius(3.0)
-            .show(ui, |ui| bar_ui(ui, bar, palette, commands));
-    }
-}
-
-fn bar_ui(ui: &mut Ui, bar: &Bar, palette: &Palette, commands: &mut Vec<Command>) {
-    row_ui(ui, &bar_sentence(bar), bar_buttons(bar), palette, commands);
-    if let Bar::Differences { sentences, .. } = bar {
-        list_ui(ui, sentences);
-    }
-}
-
-fn bar_sentence(bar: &Bar) -> String {
-    match bar {
-        Bar::Fault { sentence } | Bar::Recovery { sentence, .. } => sentence.clone(),
-        Bar::Changed { name } => format!("{name} has changed on disk."),
-        Bar::Differences { name, sentences } => {
-            let number = counted(sentences.len(), "difference");
-            format!("{name} was reloaded: {number}.")
-        }
-    }
-}
-
-fn bar_buttons(bar: &Bar) -> Vec<(&'static str, Command)> {
-    let close = Command::Form(FormCommand::CloseBar(bar.clone()));
-    match bar {
-        Bar::Fault { sentence } => vec![
-            (
-                "Compute again",
-                Command::Computing(ComputingCommand::Compute),
-            ),
-            (
-                "Copy this message",
-                Command::Output(OutputCommand::CopyText(sentence.clone())),
-            ),
-            ("Close message", close),
-        ],
-        Bar::Recovery { offer, .. } => vec![
-            (
-                "Restore",
-                Command::File(FileCommand::RestoreRecovery(*offer)),
-            ),
-            (
-                "Discard",
-                Command::File(FileCommand::DiscardRecovery(*offer)),
-            ),
-            ("Later", close),
-        ],
-        Bar::Changed { .. } => vec![
-            ("Reload", Command::File(FileCommand::Reload)),
-            (
-                "Keep the open dataset",
-                Command::File(FileCommand::KeepOpen),
-            ),
-        ],
-        Bar::Differences { .. } => vec![("Close list", close)],
-    }
-}
-
-/// "1 difference", "3 differences".
-pub(super) fn counted(count: usize, noun: &str) -> String {
-    let ending = if count == 1 { "" } else { "s" };
-    format!("{count} {noun}{ending}")
-}
-
-/// Draws a wrapping sentence with its buttons beside it.
-fn row_ui(
-    ui: &mut Ui,
-    sentence: &str,
-    buttons: Vec<(&str, Command)>,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
-    ui.with_layout(Layout::right_to_left(Align::Min), |ui| {
-        for (text, command) in buttons.into_iter().rev() {
-            button_ui(ui, Button::new(text).small(), "", command, commands);
-        }
-        ui.with_layout(Layout::left_to_right(Align::Min), |ui| {
-            ui.label(palette.small_warning("●"));
-            ui.add(Label::new(sentence).wrap());
-        });
-    });
-}
-
-/// Draws the first few sentences and folds the others, so that the plots keep their space.
-fn list_ui(ui: &mut Ui, sentences: &[String]) {
-    const SHOWN: usize = 4;
-    let (first, rest) = sentences.split_at(sentences.len().min(SHOWN));
-    for sentence in first {
-        sentence_ui(ui, sentence);
-    }
-    if rest.is_empty() {
-        return;
-    }
-    let header = RichText::new(format!("{} more", rest.len())).size(SMALL_SIZE);
-    CollapsingHeader::new(header)
-        .id_salt("differences")
-        .show(ui, |ui| {
-            ScrollArea::vertical().max_height(160.0).show(ui, |ui| {
-                for sentence in rest {
-                    sentence_ui(ui, sentence);
-                }
-            });
-        });
-}
-
-fn sentence_ui(ui: &mut Ui, sentence: &str) {
-    ui.label(RichText::new(format!("    {sentence}")).size(SMALL_SIZE));
 }

@@ -9,6 +9,7 @@ use gdcm_study::results::required_bandwidth::BandwidthFinding;
 use gdcm_study::results::requirement_role::RequirementRole;
 use gdcm_study::results::requirements::Requirements;
 use gdcm_words::Table;
+use gdcm_words::missing_results::no_bandwidth_text;
 
 use super::condition_messages::{ConditionMessage, shared_messages};
 use super::text::{decimals_or_dash, indented, line};
@@ -104,15 +105,14 @@ impl AbsentReason<'_> {
 /// its roles, unless it applies to all.
 fn absent_reasons<'a>(response: &ResponseBandwidths<'a>, quantity: &str) -> Vec<AbsentReason<'a>> {
     let findings = response.findings;
-    let reasons: BTreeSet<&String> = findings
-        .iter()
-        .filter_map(|finding| finding.absent.get(quantity))
-        .collect();
+    let reason_of =
+        |finding: &BandwidthFinding| finding.absent.get(quantity).map(no_bandwidth_text);
+    let reasons: BTreeSet<String> = findings.iter().filter_map(reason_of).collect();
     let mut absent = Vec::new();
     for reason in reasons {
         let without: Vec<&BandwidthFinding> = findings
             .iter()
-            .filter(|finding| finding.absent.get(quantity) == Some(reason))
+            .filter(|finding| reason_of(finding).as_ref() == Some(&reason))
             .collect();
         let roles: Vec<&str> = without.iter().map(|finding| finding.role.name()).collect();
         let roles = if without.len() == findings.len() {

@@ -6,11 +6,13 @@ use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::{BundleKind, Condition, Dataset};
 use gdcm_model::message_text::sanitized;
 use gdcm_model::units::{number, s_to_ms, signed};
+use gdcm_study::results::condition_remarks::condition_remarks;
+use gdcm_study::results::remark_kind::RemarkKind;
 use gdcm_study::{Analysis, ConditionAnalysis};
 use gdcm_words::Table;
 use gdcm_words::caution::failure_text;
-use gdcm_words::condition_remarks::remarks;
-use gdcm_words::remark::RemarkKind;
+use gdcm_words::remark::remark_text;
+use gdcm_words::solution_details::proof_text;
 
 use super::schedule_summary::shown_pairs;
 use super::text::{detail, detail_list, fixed_digits, indented, line};
@@ -199,18 +201,17 @@ fn trouble_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let mut text = String::new();
     // Unmatched responses come first, followed by the reasons and remedies.
     let mut label = "not matched";
-    // Doubts about signs and units are printed above all conditions; cautions are collected in
-    // their own section.
-    let own_remarks = remarks(&analysis.study, result, None);
-    for remark in own_remarks.iter().skip(result.doubts.len()) {
-        if remark.kind == RemarkKind::Trouble {
-            text += &detail(label, &sanitized(&remark.text));
+    // Cautions are collected in their own section.
+    for remark in condition_remarks(&analysis.study, result, None) {
+        if remark.kind() == RemarkKind::Trouble {
+            let sentence = remark_text(&remark, &analysis.study.dataset);
+            text += &detail(label, &sanitized(&sentence));
             label = "why";
         }
     }
     let outcome = &result.gains.proof.outcome;
     if matches!(outcome, Outcome::NotProven { .. }) {
-        text += &detail("not proven", &sanitized(&outcome.words()));
+        text += &detail("not proven", &sanitized(&proof_text(*outcome)));
     }
     text
 }

@@ -89,7 +89,7 @@ pub(super) fn read_histories(
             .zip(&records)
             .filter(|(id, _)| **id == condition.id())
             .map(|(_, record)| record);
-        let histories = HistoryRecords::of(condition.id(), own, preparation.clone());
+        let histories = HistoryRecords::from_used(condition.id(), own, preparation.clone());
         if !histories.records.is_empty() {
             conditions.push(histories);
         }

@@ -249,7 +249,7 @@ impl Identifications<'_> {
                 .into_iter()
                 .map(|entry| relative_entry(entry, &self.arguments.records, &destination.path));
             let offered = self.arguments.take.offered();
-            let models = AdoptedModels::of(found, offered, entries.collect());
+            let models = AdoptedModels::from_identification(found, offered, entries.collect());
             destination.adopt(condition, &models)?;
         }
         self.lines += &task.outcome(file, found);

@@ -59,7 +59,7 @@ use gdcm_io::{Existing, Opened, load_any};
 use gdcm_model::message_text::sanitized_path;
 use gdcm_study::decisions::setting::SETTINGS;
 use gdcm_study::decisions::setting_row::Kind;
-use gdcm_words::decisions::dataset_difference_text;
+use gdcm_words::dataset_differences::dataset_difference_text;
 
 use crate::executor::start_threads;
 use arguments::{Arguments, Command};

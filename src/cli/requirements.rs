@@ -7,13 +7,16 @@ use gdcm_io::files::requirements_file::{
 };
 use gdcm_io::output_set::{OutputSet, make_directory};
 use gdcm_method::requirements::ModeVerdict;
+use gdcm_model::dataset::Dataset;
 use gdcm_model::message_text::{sanitized, sanitized_path};
 use gdcm_study::Study;
+use gdcm_study::results::missing_finding::MissingFinding;
 use gdcm_study::results::required_modes::KnownPoles;
 use gdcm_study::results::requirement_role::RequirementRole;
-use gdcm_study::results::requirements::{MissingFinding, Requirements};
+use gdcm_study::results::requirements::Requirements;
 use gdcm_study::results::time_histories::TimeHistories;
 use gdcm_words::Table;
+use gdcm_words::missing_results::{missing_reason_text, reversed_phase_text};
 use gdcm_words::time_histories::{history_cost_table, output_weights_text, share_table};
 
 use super::bandwidth_summary::bandwidth_section;
@@ -55,11 +58,11 @@ pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Fail
     let results = RequirementResults {
         requirements: &requirements,
         time_histories: &histories,
-        dataset: analysis.study.dataset.name(),
+        dataset: &analysis.study.dataset,
         sha256: &loaded.sha256,
     };
     write_requirements(results, out, outputs)?;
-    report_cautions(&requirements);
+    report_cautions(&requirements, &analysis.study.dataset);
     report_missing(&requirements, &histories);
     let files = format!(
         "{} in {}",
@@ -93,11 +96,10 @@ fn tolerance_line(
     Ok(line("Tolerances", &words))
 }
 
-fn report_cautions(requirements: &Requirements) {
-    let messages = requirements
-        .cautions
-        .iter()
-        .map(|caution| ConditionMessage::new(caution.condition, caution.text.clone()));
+fn report_cautions(requirements: &Requirements, dataset: &Dataset) {
+    let messages = requirements.cautions.iter().map(|caution| {
+        ConditionMessage::new(caution.condition, reversed_phase_text(caution, dataset))
+    });
     for message in shared_messages(messages) {
         caution_for(&message.conditions, &message.text);
     }
@@ -117,7 +119,8 @@ fn report_missing(requirements: &Requirements, histories: &TimeHistories) {
     }
     missing.sort_by_key(|finding| finding.condition.is_some());
     let messages = missing.into_iter().map(|finding| {
-        let words = format!("no {}: {}", finding.what, finding.why);
+        let why = missing_reason_text(&finding.why);
+        let words = format!("no {}: {why}", finding.what);
         ConditionMessage::new(finding.condition, words)
     });
     for message in shared_messages(messages) {
@@ -195,10 +198,10 @@ fn history_section(histories: &TimeHistories) -> String {
     const HEADING: &str = "Time history";
     if histories.records.is_empty() {
         let why = match histories.missing.first() {
-            Some(finding) => finding.why.as_str(),
-            None => "no record was compared",
+            Some(finding) => missing_reason_text(&finding.why),
+            None => "no record was compared".to_owned(),
         };
-        return line(HEADING, &sanitized(why));
+        return line(HEADING, &sanitized(&why));
     }
     let mut table = share_table(histories);
     let count = table.rows.len();

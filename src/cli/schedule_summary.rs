@@ -10,7 +10,7 @@ use gdcm_study::results::uncertainty::Uncertainty;
 use gdcm_study::{Analysis, AssessedCorrection, AssessmentTable, Study};
 use gdcm_words::Table;
 use gdcm_words::assessment::not_assessed_text;
-use gdcm_words::schedule::delayed_channel_text;
+use gdcm_words::schedule::{delayed_channel_text, schedule_caution_text};
 use gdcm_words::uncertainty::{
     difference_text, differences_summary, scatter_table, second_variable_text,
 };
@@ -51,7 +51,7 @@ pub(super) fn schedule_section(analysis: &Analysis) -> String {
     let dataset = &analysis.study.dataset;
     let (inputs, outputs) = dataset.names_of_channels();
     for caution in &schedule.cautions {
-        let words = caution.words(&inputs, &outputs);
+        let words = schedule_caution_text(caution, &inputs, &outputs);
         if let ScheduleCaution::CostsMore(cost) = caution {
             keep_coded_caution(Some(caution.code()), &[cost.condition], &words);
         }

@@ -3,11 +3,13 @@
 
 use gdcm_model::dataset::{ConditionId, Dataset, Pair};
 use gdcm_model::message_text::sanitized;
+use gdcm_study::results::condition_remarks::condition_remarks;
+use gdcm_study::results::remark::Remark;
+use gdcm_study::results::remark_kind::RemarkKind;
 use gdcm_study::{Analysis, ConditionAnalysis};
 use gdcm_words::Table;
-use gdcm_words::condition_remarks::remarks;
 use gdcm_words::leads::lead_limit_words;
-use gdcm_words::remark::{Remark, RemarkKind, Repeated};
+use gdcm_words::remark::{lead_ms_text, lead_offer_texts, raised_gain_text, remark_text};
 
 use super::condition_messages::{ConditionMessage, shared_messages};
 use super::terminal::keep_caution;
@@ -20,21 +22,13 @@ struct RemarkRow {
     remarks: Vec<Remark>,
 }
 
-impl RemarkRow {
-    /// Returns the tabulated facts of the remarks.
-    fn facts(&self) -> impl Iterator<Item = &Repeated> {
-        self.remarks
-            .iter()
-            .filter_map(|remark| remark.repeated.as_ref())
-    }
-}
-
 /// Returns the remarks of recurring kinds as a table, and each other caution once with its
 /// conditions; also adds them to the JSON object.
 pub(super) fn cautions_section(analysis: &Analysis) -> String {
     let mut rows: Vec<RemarkRow> = Vec::new();
     let mut others: Vec<ConditionMessage> = Vec::new();
-    for condition in analysis.study.dataset.conditions() {
+    let dataset = &analysis.study.dataset;
+    for condition in dataset.conditions() {
         let Some(result) = analysis.condition(condition.id()) else {
             continue;
         };
@@ -43,10 +37,11 @@ pub(super) fn cautions_section(analysis: &Analysis) -> String {
             remarks: Vec::new(),
         };
         for caution in condition_cautions(analysis, result) {
-            if caution.repeated.is_some() {
+            if caution.is_recurring() {
                 row.remarks.push(caution);
             } else {
-                others.push(ConditionMessage::new(row.condition, caution.text));
+                let text = remark_text(&caution, dataset);
+                others.push(ConditionMessage::new(row.condition, text));
             }
         }
         if let Some(words) = lead_limit_words(result) {
@@ -61,10 +56,10 @@ pub(super) fn cautions_section(analysis: &Analysis) -> String {
         && let [alone] = &row.remarks[..]
     {
         // A single remark on a single condition needs no table.
-        let message = ConditionMessage::new(row.condition, alone.text.clone());
+        let message = ConditionMessage::new(row.condition, remark_text(alone, dataset));
         others.insert(0, message);
     } else if !rows.is_empty() {
-        text += &repeated_table(&analysis.study.dataset, &rows);
+        text += &repeated_table(dataset, &rows);
     }
     for message in shared_messages(others) {
         keep_caution(&message.conditions, &message.text);
@@ -76,10 +71,10 @@ pub(super) fn cautions_section(analysis: &Analysis) -> String {
 /// Returns the cautions about a condition, without the doubts about signs and units, which are
 /// printed before all conditions.
 fn condition_cautions(analysis: &Analysis, result: &ConditionAnalysis) -> Vec<Remark> {
-    remarks(&analysis.study, result, None)
+    condition_remarks(&analysis.study, result, None)
         .into_iter()
-        .skip(result.doubts.len())
-        .filter(|remark| remark.kind == RemarkKind::Caution)
+        .filter(|remark| remark.kind() == RemarkKind::Caution)
+        .filter(|remark| !matches!(remark, Remark::ConventionDoubt(_)))
         .collect()
 }
 
@@ -87,7 +82,7 @@ fn condition_cautions(analysis: &Analysis, result: &ConditionAnalysis) -> Vec<Re
 /// column for each response that needs lead or moves away from flight, and columns for other
 /// repeated remarks.
 fn repeated_table(dataset: &Dataset, rows: &[RemarkRow]) -> String {
-    let facts: Vec<&Repeated> = rows.iter().flat_map(RemarkRow::facts).collect();
+    let facts: Vec<&Remark> = rows.iter().flat_map(|row| &row.remarks).collect();
     let pairs: Vec<Pair> = dataset
         .on_axis()
         .pairs()
@@ -102,7 +97,7 @@ fn repeated_table(dataset: &Dataset, rows: &[RemarkRow]) -> String {
     headings.extend(columns.iter().map(|column| column.heading.to_owned()));
     let mut table = Table::new("", headings);
     for row in rows {
-        let facts: Vec<&Repeated> = row.facts().collect();
+        let facts: Vec<&Remark> = row.remarks.iter().collect();
         let mut cells = vec![row.condition.to_string()];
         cells.extend(pairs.iter().map(|pair| pair_cell(&facts, *pair)));
         for column in &columns {
@@ -120,11 +115,11 @@ fn repeated_table(dataset: &Dataset, rows: &[RemarkRow]) -> String {
 }
 
 /// Explains the cell entries of the response columns.
-fn pair_sentences(facts: &[&Repeated]) -> Vec<&'static str> {
+fn pair_sentences(facts: &[&Remark]) -> Vec<&'static str> {
     let mut sentences = Vec::new();
     if facts
         .iter()
-        .any(|fact| matches!(fact, Repeated::NeedsLead(_)))
+        .any(|fact| matches!(fact, Remark::NeedsLead { .. }))
     {
         sentences.push(
             "held responses need lead [ms]: the physics model lags, which no delay can correct",
@@ -132,7 +127,7 @@ fn pair_sentences(facts: &[&Repeated]) -> Vec<&'static str> {
     }
     if facts
         .iter()
-        .any(|fact| matches!(fact, Repeated::Farther(_)))
+        .any(|fact| matches!(fact, Remark::HeldFarther(_)))
     {
         sentences.push(
             "* marks a response that is farther from flight (larger J) than without a correction",
@@ -143,19 +138,19 @@ fn pair_sentences(facts: &[&Repeated]) -> Vec<&'static str> {
 
 /// Returns whether the table has an entry for a response: it needs a lead, or the correction moves
 /// it away from flight.
-fn has_entry(facts: &[&Repeated], pair: Pair) -> bool {
+fn has_entry(facts: &[&Remark], pair: Pair) -> bool {
     needed_lead_ms(facts, pair).is_some() || is_farther(facts, pair)
 }
 
 /// Returns the lead \[ms\] that a response needs; `None` if it needs none.
-fn needed_lead_ms<'a>(facts: &[&'a Repeated], pair: Pair) -> Option<&'a str> {
+fn needed_lead_ms(facts: &[&Remark], pair: Pair) -> Option<String> {
     for fact in facts {
-        let Repeated::NeedsLead(needed) = fact else {
+        let Remark::NeedsLead { needed, .. } = fact else {
             continue;
         };
-        for (needing, lead_ms) in needed {
-            if *needing == pair {
-                return Some(lead_ms);
+        for response in needed {
+            if response.pair == pair {
+                return Some(lead_ms_text(response.lead_s));
             }
         }
     }
@@ -163,19 +158,20 @@ fn needed_lead_ms<'a>(facts: &[&'a Repeated], pair: Pair) -> Option<&'a str> {
 }
 
 /// Returns whether the correction moves a response away from flight.
-fn is_farther(facts: &[&Repeated], pair: Pair) -> bool {
-    facts
-        .iter()
-        .any(|fact| matches!(fact, Repeated::Farther(pairs) if pairs.contains(&pair)))
+fn is_farther(facts: &[&Remark], pair: Pair) -> bool {
+    facts.iter().any(|fact| match fact {
+        Remark::HeldFarther(responses) => responses.iter().any(|response| response.pair == pair),
+        _ => false,
+    })
 }
 
 /// Formats the lead that a response needs, with a star if the response moves away from flight.
-fn pair_cell(facts: &[&Repeated], pair: Pair) -> String {
-    let lead_ms = needed_lead_ms(facts, pair).unwrap_or(NO_ENTRY);
+fn pair_cell(facts: &[&Remark], pair: Pair) -> String {
+    let lead_ms = needed_lead_ms(facts, pair).unwrap_or_else(|| NO_ENTRY.to_owned());
     if is_farther(facts, pair) {
         format!("{lead_ms} *")
     } else {
-        lead_ms.to_owned()
+        lead_ms
     }
 }
 
@@ -187,12 +183,12 @@ struct RemarkColumn {
     heading: &'static str,
     sentence: &'static str,
     /// Returns the cell of a remark; `None` if the remark does not belong in the column.
-    format: fn(&Repeated, &Dataset) -> Option<String>,
+    format: fn(&Remark, &Dataset) -> Option<String>,
 }
 
 impl RemarkColumn {
     /// Returns the cell of the first remark that belongs in the column.
-    fn cell(&self, facts: &[&Repeated], dataset: &Dataset) -> Option<String> {
+    fn cell(&self, facts: &[&Remark], dataset: &Dataset) -> Option<String> {
         facts.iter().find_map(|fact| (self.format)(fact, dataset))
     }
 }
@@ -216,25 +212,27 @@ const COLUMNS: [RemarkColumn; 3] = [
     },
 ];
 
-fn common_lead(fact: &Repeated, _: &Dataset) -> Option<String> {
+fn common_lead(fact: &Remark, _: &Dataset) -> Option<String> {
     match fact {
-        Repeated::CommonLead(lead_ms) => Some(lead_ms.clone()),
+        Remark::CommonLead { lead_s } => Some(lead_ms_text(*lead_s)),
         _ => None,
     }
 }
 
-fn raised_gain(fact: &Repeated, dataset: &Dataset) -> Option<String> {
+fn raised_gain(fact: &Remark, dataset: &Dataset) -> Option<String> {
     match fact {
-        Repeated::RaisedGain(most_db, pair) => {
-            Some(format!("{most_db} ({})", dataset.pair_name(*pair)))
-        }
+        Remark::GainRaised { rise_db, pair } => Some(format!(
+            "{} ({})",
+            raised_gain_text(*rise_db),
+            dataset.pair_name(*pair)
+        )),
         _ => None,
     }
 }
 
-fn cost_with_leads(fact: &Repeated, _: &Dataset) -> Option<String> {
+fn cost_with_leads(fact: &Remark, _: &Dataset) -> Option<String> {
     match fact {
-        Repeated::LeadsOffered([without, with]) => Some(format!("{without} → {with}")),
+        Remark::LeadsOffered(offer) => Some(lead_offer_texts(offer).join(" → ")),
         _ => None,
     }
 }

@@ -10,13 +10,13 @@ use gdcm_model::dataset::Dataset;
 use gdcm_model::message_text::{sanitized, sanitized_path};
 use gdcm_model::units::six_digits;
 use gdcm_study::results::convention_doubt::ConventionDoubt;
+use gdcm_study::results::coupling_remarks::analysis_coupling_remarks;
+use gdcm_study::results::remark_kind::RemarkKind;
 use gdcm_study::{Analysis, AssessedCorrection, AssessmentTable, PhaseCorrection};
 use gdcm_words::assessment::{held_out_verdict, not_assessed_text};
 use gdcm_words::convention_doubt::doubt_text;
-use gdcm_words::couplings::{
-    analysis_coupling_remarks, coupling_cost_table, coupling_matrix_tables, couplings_heading,
-};
-use gdcm_words::remark::RemarkKind;
+use gdcm_words::coupling_remark::coupling_remark_text;
+use gdcm_words::couplings::{coupling_cost_table, coupling_matrix_tables, couplings_heading};
 
 use super::condition_summary::condition_section;
 use super::schedule_summary::{evidence_section, nominal_choice, schedule_section};
@@ -147,14 +147,15 @@ fn couplings_section(analysis: &Analysis) -> String {
         }
     }
     for remark in &remarks {
-        let label = match remark.kind {
+        let sentence = coupling_remark_text(remark, &analysis.study.dataset);
+        let label = match remark.kind() {
             RemarkKind::Good => "couplings",
             RemarkKind::Caution | RemarkKind::Trouble => {
-                keep_caution(&[], &remark.text);
+                keep_caution(&[], &sentence);
                 "caution"
             }
         };
-        text += &detail(label, &sanitized(&remark.text));
+        text += &detail(label, &sanitized(&sentence));
     }
     text
 }

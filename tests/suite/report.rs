@@ -179,7 +179,7 @@ fn requirements_are_those_of_the_command_and_time_histories_stand_where_there_ar
     let (inputs, outputs) = FEW.dataset.names_of_channels();
     let [inputs, outputs]: [Vec<&str>; 2] =
         [&inputs, &outputs].map(|of| of.iter().map(String::as_str).collect());
-    let records = [HistoryRecords::of(
+    let records = [HistoryRecords::from_used(
         ConditionId(3),
         &records,
         Preparation::of(&inputs, &outputs),

@@ -19,6 +19,7 @@ use gdcm_study::results::requirement_role::RequirementRole;
 use gdcm_study::results::requirements::{Requirements, SummaryFinding};
 use gdcm_study::results::time_histories::TimeHistories;
 
+use crate::missing_results::no_bandwidth_text;
 use crate::table::Table;
 use crate::time_histories::{cost_cells, cost_heads, output_weights_text, percent_rounded_down};
 
@@ -59,31 +60,32 @@ pub fn bandwidth_table(requirements: &Requirements, dataset: &Dataset) -> Table 
 
 /// Returns the cautions about a bandwidth, or the reason why it has no value.
 fn bandwidth_remark(finding: &BandwidthFinding) -> String {
-    let mut words = Vec::new();
+    let mut words: Vec<String> = Vec::new();
     let absent = finding
         .absent
         .get("omega_bw_rad_s")
         .or_else(|| finding.absent.get("phase_delay_s"));
     if let Some(why) = absent {
-        words.push(why.as_str());
+        words.push(no_bandwidth_text(why));
     }
     if let Some(rule) = finding.rule
         && (finding.gain_limited || words.is_empty())
     {
-        words.push(match rule {
+        let text = match rule {
             BandwidthRule::Gain => "gain-limited, which the standard warns against",
             BandwidthRule::Phase => "from the phase margin",
             BandwidthRule::PhaseGainUnknown => "from the phase margin; the gain margin is unknown",
-        });
+        };
+        words.push(text.to_owned());
     }
     if !finding.rests_above_band.is_empty() {
-        words.push("depends on the model above the band");
+        words.push("depends on the model above the band".to_owned());
     }
     if !finding.rests_below_band.is_empty() {
-        words.push("depends on the model below the band");
+        words.push("depends on the model below the band".to_owned());
     }
     if finding.phase_delay_of_line {
-        words.push("τ_p from the least-squares line");
+        words.push("τ_p from the least-squares line".to_owned());
     }
     words.join("; ")
 }

@@ -7,7 +7,7 @@ use gdcm_io::files::study_file::open_study_of;
 use gdcm_io::reading_budget::ReadingBudget;
 use gdcm_io::{FileError, LoadedDataset, Opened, embedded_example, load_any};
 use gdcm_model::message_text::sanitized_path;
-use gdcm_study::decisions::differences::Difference;
+use gdcm_study::decisions::dataset_differences::Difference;
 
 use super::GdcmApp;
 use super::dialogs::PendingAction;

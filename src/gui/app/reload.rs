@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use gdcm_io::files::dataset_file::load_dataset_within;
 use gdcm_io::{LoadedDataset, Opened};
-use gdcm_words::decisions::dataset_difference_text;
+use gdcm_words::dataset_differences::dataset_difference_text;
 
 use super::GdcmApp;
 use super::disk_watch::ChangedFile;

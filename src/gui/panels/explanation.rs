@@ -5,6 +5,7 @@ use egui::{CursorIcon, Grid, Label, Response, RichText, Sense, Ui, WidgetText};
 
 use gdcm_model::dataset::Pair;
 use gdcm_words::derivation::{Derivation, ExplainTarget, derivation};
+use gdcm_words::sensitivity::toggle_text;
 
 use crate::gui::commands::command::Command;
 use crate::gui::commands::output::OutputCommand;
@@ -141,10 +142,13 @@ pub fn toggle_costs(state: &State, pair: Pair) -> Vec<String> {
     let (gain, delay) = toggles.of_pair(pair);
     let mut costs = Vec::new();
     if let Some(toggle) = gain {
-        costs.push(format!("Gains: {}", toggle.words(&inputs, &outputs)));
+        costs.push(format!("Gains: {}", toggle_text(toggle, &inputs, &outputs)));
     }
     if let Some(toggle) = delay {
-        costs.push(format!("Delays: {}", toggle.words(&inputs, &outputs)));
+        costs.push(format!(
+            "Delays: {}",
+            toggle_text(toggle, &inputs, &outputs)
+        ));
     }
     costs
 }

@@ -8,8 +8,8 @@ use egui::{Context, Id, Label, Modal, RichText, Role, ScrollArea, Ui};
 use gdcm_io::files::export_contents::ExportContents;
 use gdcm_model::dataset::{Condition, ConditionId};
 use gdcm_study::Edit;
-use gdcm_study::decisions::differences::Difference;
-use gdcm_words::decisions::dataset_difference_text;
+use gdcm_study::decisions::dataset_differences::Difference;
+use gdcm_words::dataset_differences::dataset_difference_text;
 
 use super::form::{Form, contents_ui};
 use super::keys_page::keys_page_ui;

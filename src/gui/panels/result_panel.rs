@@ -9,6 +9,7 @@ use gdcm_model::units::s_to_ms;
 use gdcm_study::ConditionAnalysis;
 use gdcm_words::ExplainTarget;
 use gdcm_words::leads::servo_words;
+use gdcm_words::solution_details::proof_text;
 
 use super::table_menu::table_menu_ui;
 use crate::gui::commands::command::Command;
@@ -111,7 +112,7 @@ fn proof_ui(
     let response = named(response, Role::Button, words);
     response
         .on_hover_cursor(CursorIcon::PointingHand)
-        .on_hover_text(outcome.words())
+        .on_hover_text(proof_text(outcome))
         .asks(LayoutCommand::ShowSheet(Some(Sheet::Reasons)), commands);
 }
 

@@ -9,10 +9,10 @@ use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::statistics::median;
 use gdcm_model::units::{number, s_to_ms, signed, six_digits, telling, told_apart};
 use gdcm_study::results::analysis::ConditionFailure;
+use gdcm_study::results::coupling_remarks::coupling_cautions;
+use gdcm_study::results::remark_kind::RemarkKind;
 use gdcm_study::{ConditionAnalysis, PhaseCorrection};
 use gdcm_words::caution::failure_text;
-use gdcm_words::couplings::coupling_cautions;
-use gdcm_words::remark::RemarkKind;
 
 use super::advice::{Advice, Step, joined};
 use super::reasons::remarks_shown;
@@ -362,7 +362,7 @@ fn coupling_caution(state: &State) -> Option<CouplingCaution> {
             words: "No couplings could be found".to_owned(),
         });
     }
-    let cautions = coupling_cautions(used_couplings(state)?, state.dataset()).len();
+    let cautions = coupling_cautions(used_couplings(state)?).len();
     let unstable = unstable_in_band(state);
     if unstable > 0 {
         let poles = counted(unstable, "pole");

@@ -137,7 +137,9 @@ impl ConditionRecords {
         for ((_, row), record_use) in self.used_rows().zip(&found.record_uses) {
             entries.push(row.entry(record_use, channels));
         }
-        Some(Arc::new(AdoptedModels::of(found, offered, entries)))
+        Some(Arc::new(AdoptedModels::from_identification(
+            found, offered, entries,
+        )))
     }
 
     /// Returns these records from the history, to replace the records `now`. Models identified in

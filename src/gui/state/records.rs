@@ -135,7 +135,7 @@ impl RecordsState {
     pub fn history_records(&self) -> Vec<HistoryRecords> {
         let mut histories = Vec::new();
         for (id, records) in &self.conditions {
-            let history = HistoryRecords::of(*id, &records.rows, records.preparation());
+            let history = HistoryRecords::from_used(*id, &records.rows, records.preparation());
             if !history.records.is_empty() {
                 histories.push(history);
             }

@@ -11,12 +11,12 @@ use gdcm_study::jobs::analysis_jobs::{
     AssessmentJob, CouplingsJob, Toggles, TogglesJob, UncertaintyJob, VariantJob,
 };
 use gdcm_study::jobs::curve_jobs::{AcrossCurves, AcrossJob, ConditionModes, CurvesJob, ModesJob};
-use gdcm_study::jobs::identification_jobs::SimulationJob;
+use gdcm_study::jobs::identification_jobs::{SimulationFailure, SimulationJob};
 use gdcm_study::jobs::requirement_jobs::{
     RecordHistoryJob, RequirementsJob, TestAnswersJob, TimeHistoriesJob,
 };
-use gdcm_study::results::analysis::ConditionFailure;
-use gdcm_study::results::condition_answers::{RecordHistory, TestAnswers};
+use gdcm_study::results::analysis::{ConditionFailure, NoResult};
+use gdcm_study::results::condition_answers::{NoRecordHistory, RecordHistory, TestAnswers};
 use gdcm_study::results::couplings_assessment::AssessedCouplings;
 use gdcm_study::results::requirements::Requirements;
 use gdcm_study::results::time_histories::TimeHistories;
@@ -68,14 +68,17 @@ pub struct Results {
     /// Requirements, with their job; see `State::requirements`.
     pub requirements: Option<(RequirementsJob, Arc<Requirements>)>,
     /// Responses to the test input, with their job; see `State::test_answers`.
-    pub test_answers: Option<(TestAnswersJob, Result<Arc<TestAnswers>, String>)>,
+    pub test_answers: Option<(TestAnswersJob, Result<Arc<TestAnswers>, NoResult>)>,
     /// Comparison of a record with the tolerances, with its job; see `State::record_history`.
-    pub record_history: Option<(RecordHistoryJob, Result<Arc<RecordHistory>, String>)>,
+    pub record_history: Option<(
+        RecordHistoryJob,
+        Result<Arc<RecordHistory>, NoRecordHistory>,
+    )>,
     /// Models' responses to all records, with their job; see `State::time_histories`.
     pub time_histories: Option<(TimeHistoriesJob, Arc<TimeHistories>)>,
     pub variants: Vec<(VariantJob, Arc<Analysis>)>,
     /// Comparisons of models with a record in the time domain, or the reasons for their absence.
-    pub simulations: Vec<(SimulationJob, Result<Arc<Validation>, String>)>,
+    pub simulations: Vec<(SimulationJob, Result<Arc<Validation>, SimulationFailure>)>,
     pub background: Background,
     /// Start time of the background work \[s, window clock\].
     pub background_since: Option<f64>,

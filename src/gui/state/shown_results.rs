@@ -33,9 +33,9 @@ use gdcm_model::dataset::Dataset;
 use gdcm_study::jobs::analysis_jobs::Toggles;
 use gdcm_study::jobs::curve_jobs::{AcrossCurves, ConditionModes};
 use gdcm_study::jobs::requirement_jobs::RecordHistoryJob;
-use gdcm_study::results::analysis::ConditionFailure;
+use gdcm_study::results::analysis::{ConditionFailure, NoResult};
 use gdcm_study::results::assessment_table::AssessmentChoice;
-use gdcm_study::results::condition_answers::{RecordHistory, TestAnswers};
+use gdcm_study::results::condition_answers::{NoRecordHistory, RecordHistory, TestAnswers};
 use gdcm_study::results::couplings_assessment::AssessedCouplings;
 use gdcm_study::results::requirements::Requirements;
 use gdcm_study::results::time_histories::TimeHistories;
@@ -185,7 +185,7 @@ impl State {
     /// Returns the responses of the models to the test input in the displayed condition, or the
     /// reason for their absence. Until they are ready, returns the responses from an older analysis
     /// in the same condition.
-    pub fn test_answers(&self) -> Option<&Result<Arc<TestAnswers>, String>> {
+    pub fn test_answers(&self) -> Option<&Result<Arc<TestAnswers>, NoResult>> {
         let (job, answers) = self.results.test_answers.as_ref()?;
         if !self.is_shown_dataset(&job.analysis.study.dataset)
             || job.condition != self.condition().id()
@@ -201,7 +201,7 @@ impl State {
     pub fn record_history(
         &self,
         job: &RecordHistoryJob,
-    ) -> Option<&Result<Arc<RecordHistory>, String>> {
+    ) -> Option<&Result<Arc<RecordHistory>, NoRecordHistory>> {
         let (known, history) = self.results.record_history.as_ref()?;
         if known.condition != job.condition || known.record != job.record {
             return None;

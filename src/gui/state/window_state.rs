@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use gdcm_model::dataset::{BundleKind, Condition, Dataset, ModelId};
 use gdcm_study::Study;
-use gdcm_study::decisions::differences::Difference;
+use gdcm_study::decisions::dataset_differences::Difference;
 use gdcm_study::decisions::history::History;
 
 use super::assembling::AssemblyState;

@@ -98,7 +98,7 @@ fn drawn_curve(curves: &[BodeCurve], role: Role) -> Option<&BodeCurve> {
 /// Returns the region above the band in which the corrected model is not valid and only shows the
 /// gain added by leads; `None` without leads (M15.6).
 ///
-/// The words are those of `LeadPrice::limit_words`, but with the band that is being edited and in
+/// The words are those of `lead_price::limit_text`, but with the band that is being edited and in
 /// the displayed unit.
 fn invalid_region(state: &State, curves: &[BodeCurve]) -> Option<InvalidRegion> {
     let leads = &state.shown()?.compensated.as_ref()?.leads;

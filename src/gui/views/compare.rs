@@ -7,7 +7,7 @@ use gdcm_model::units::signed;
 use gdcm_study::decisions::study::Variant;
 use gdcm_study::{Analysis, Edit};
 use gdcm_words::Table;
-use gdcm_words::decisions::decision_differences;
+use gdcm_words::decision_differences::decision_differences;
 
 use super::net_gain_pairs::net_gain_pairs;
 use super::variants::variant_analysis;

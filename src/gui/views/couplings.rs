@@ -6,12 +6,12 @@ use gdcm_model::units::telling;
 use gdcm_plot::figure::Figure;
 use gdcm_study::CouplingCorrection;
 use gdcm_study::decisions::setting;
+use gdcm_study::results::coupling_remarks::coupling_remarks;
 use gdcm_study::results::couplings_assessment::CouplingsAssessment;
+use gdcm_study::results::remark_kind::RemarkKind;
 use gdcm_words::Table;
-use gdcm_words::couplings::{
-    coupling_cost_table, coupling_matrix_tables, coupling_remarks, pole_table,
-};
-use gdcm_words::remark::RemarkKind;
+use gdcm_words::coupling_remark::{coupling_remark_text, no_poles_text};
+use gdcm_words::couplings::{coupling_cost_table, coupling_matrix_tables, pole_table};
 
 use super::couplings_use::are_couplings_used;
 use super::figures::figure_request;
@@ -190,11 +190,12 @@ impl CouplingsWords<'_> {
     fn remarks_ui(&self, ui: &mut Ui) {
         ui.add_space(6.0);
         for remark in coupling_remarks(self.assessment, self.state.dataset()) {
-            let words = match remark.kind {
-                RemarkKind::Good => RichText::new(&remark.text).color(self.palette.text),
-                _ => RichText::new(format!("⚠ {}", remark.text)).color(self.palette.warning),
+            let text = coupling_remark_text(&remark, self.state.dataset());
+            let words = match remark.kind() {
+                RemarkKind::Good => RichText::new(text).color(self.palette.text),
+                _ => RichText::new(format!("⚠ {text}")).color(self.palette.warning),
             };
-            let words = match remark.kind {
+            let words = match remark.kind() {
                 RemarkKind::Trouble => words.font(medium(BODY_SIZE)),
                 _ => words,
             };
@@ -204,7 +205,7 @@ impl CouplingsWords<'_> {
         if let Some(condition) = self.assessment.conditions.get(&self.state.condition().id())
             && let Err(why) = &condition.poles
         {
-            let words = format!("No poles for this condition: {why}");
+            let words = format!("No poles for this condition: {}", no_poles_text(why));
             ui.add(Label::new(self.palette.dim(words)).wrap());
         }
     }

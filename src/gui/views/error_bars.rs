@@ -5,6 +5,7 @@ use egui::Ui;
 use gdcm_method::uncertainty::{Bar, Scalar};
 use gdcm_model::units::s_to_ms;
 use gdcm_study::results::uncertainty::Uncertainty;
+use gdcm_words::uncertainty::bar_remark_texts;
 
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
@@ -22,7 +23,7 @@ pub fn shown_uncertainty(state: &State) -> Option<&Uncertainty> {
 
 /// Describes an error bar: "± 3.3 % (90 %): trim 78 %, identification 22 % of the variance".
 pub fn error_bar_words(bar: &Bar, scalar: Scalar, level: f64) -> String {
-    let remarks = bar.remarks().join(", ");
+    let remarks = bar_remark_texts(bar).join(", ");
     let Some(half) = bar.half_width(level) else {
         return format!("no error bar: {remarks}");
     };

@@ -7,6 +7,7 @@ use gdcm_model::units::{number, s_to_ms, signed, telling};
 use gdcm_plot::figure::{Figure, FigureKind, FigureRequest, all_channels};
 use gdcm_study::PhaseCorrection;
 use gdcm_words::Table;
+use gdcm_words::lead_price::limit_text;
 
 use super::frequency_curves::condition_source;
 use crate::gui::commands::command::Command;
@@ -92,7 +93,7 @@ pub fn leads_table(state: &State) -> Option<Table> {
     let (inputs, outputs) = state.dataset().names_of_channels();
     let top = leads.design.band_top_rad_s();
     let title = match &price {
-        Some(price) => price.limit_words(),
+        Some(price) => limit_text(price),
         None => "No channel has a lead filter".to_owned(),
     };
     let above = match &price {

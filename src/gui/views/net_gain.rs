@@ -7,6 +7,7 @@ use gdcm_plot::figure::condition_source::schedule_words;
 use gdcm_plot::figure::gains::{Across, GainQuantity, add_variant, net_gain_figure, quieten};
 use gdcm_plot::figure::{Figure, MarkId};
 use gdcm_study::decisions::setting;
+use gdcm_words::setting_words::setting_words;
 
 use super::error_bars::{error_bars_switch_ui, shown_uncertainty};
 use super::gain_plots::{GainPlots, gain_command};
@@ -220,7 +221,7 @@ fn schedule_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
                 if !(setting.control.applies)(&state.study) {
                     continue;
                 }
-                ui.label(palette.dim(setting.control.label));
+                ui.label(palette.dim(setting_words(setting).label));
                 let mut controls = SettingControls {
                     ui,
                     state,

@@ -6,6 +6,7 @@ use gdcm_plot::figure::{FigureKind, OverTime};
 use gdcm_study::Analysis;
 use gdcm_study::jobs::requirement_jobs::{RecordHistoryJob, TestAnswersJob, TimeHistoriesJob};
 use gdcm_study::results::time_histories::HistoryRecord;
+use gdcm_words::missing_results::{no_record_history_text, no_result_text};
 
 use super::need::Need;
 use crate::gui::state::requirements_page::RequirementsPage;
@@ -77,10 +78,19 @@ pub fn over_time_need(state: &State) -> Option<Need> {
 pub fn over_time(state: &State) -> Option<Result<OverTime, String>> {
     match record_job(state) {
         Some(job) => {
-            let found = state.record_history(&job)?.clone();
-            Some(found.map(|history| OverTime::Record(history, state.display.selection.pair.input)))
+            let found = match state.record_history(&job)? {
+                Ok(history) => Ok(OverTime::Record(
+                    Arc::clone(history),
+                    state.display.selection.pair.input,
+                )),
+                Err(why) => Err(no_record_history_text(why)),
+            };
+            Some(found)
         }
-        None => Some(state.test_answers()?.clone().map(OverTime::Test)),
+        None => Some(match state.test_answers()? {
+            Ok(answers) => Ok(OverTime::Test(Arc::clone(answers))),
+            Err(why) => Err(no_result_text(why)),
+        }),
     }
 }
 

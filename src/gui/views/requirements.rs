@@ -5,11 +5,12 @@ use std::sync::Arc;
 
 use egui::{CollapsingHeader, Label, Panel, ScrollArea, Ui};
 
-use gdcm_model::dataset::ConditionId;
+use gdcm_model::dataset::{ConditionId, Dataset};
 use gdcm_plot::figure::Color;
 use gdcm_study::jobs::requirement_jobs::RequirementsJob;
 use gdcm_study::results::requirements::Requirements;
 use gdcm_words::Table;
+use gdcm_words::missing_results::{missing_reason_text, reversed_phase_text};
 
 use super::bandwidth::{bandwidth_inputs_ui, bandwidth_plots_ui, bandwidth_row_commands};
 use super::histories::histories_ui;
@@ -117,7 +118,7 @@ pub fn requirements_view_ui(
         requirements: &requirements,
         palette,
     };
-    view.reservations_ui(ui);
+    view.reservations_ui(ui, state.dataset());
     match state.display.judging.requirements_page {
         RequirementsPage::Bandwidth => {
             bandwidth_inputs_ui(ui, state, palette, commands);
@@ -154,19 +155,21 @@ struct RequirementsView<'a> {
 impl RequirementsView<'_> {
     /// Draws a line for each kind of missing result, and the reservations about the available
     /// results.
-    fn reservations_ui(&self, ui: &mut Ui) {
+    fn reservations_ui(&self, ui: &mut Ui, dataset: &Dataset) {
         let mut lines = Vec::new();
         for missing in &self.requirements.missing {
             let condition = match missing.condition {
                 Some(id) => format!("Condition {id}: "),
                 None => String::new(),
             };
-            lines.push(format!("{condition}no {}: {}", missing.what, missing.why));
+            let why = missing_reason_text(&missing.why);
+            lines.push(format!("{condition}no {}: {why}", missing.what));
         }
         for caution in &self.requirements.cautions {
             lines.push(format!(
                 "⚠ Condition {}: {}",
-                caution.condition, caution.text
+                caution.condition,
+                reversed_phase_text(caution, dataset)
             ));
         }
         for line in lines {
@@ -212,13 +215,13 @@ impl RequirementsView<'_> {
     }
 
     /// Returns why a table has no rows.
-    fn absence_of_rows(&self, state: &State) -> &str {
+    fn absence_of_rows(&self, state: &State) -> String {
         if state.display.judging.requirements_page == RequirementsPage::Modes
             && let Some(why) = self.requirements.no_modes(state.condition().id())
         {
-            return why;
+            return missing_reason_text(why);
         }
-        "No condition has a result"
+        "No condition has a result".to_owned()
     }
 
     /// Returns the commands for a click on a row.

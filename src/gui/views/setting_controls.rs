@@ -6,6 +6,7 @@ use gdcm_method::correction::delta::GainSource;
 use gdcm_study::PhaseCorrection;
 use gdcm_study::decisions::setting;
 use gdcm_study::decisions::setting_row::{Kind, Setting, Value};
+use gdcm_words::setting_words::setting_words;
 
 use crate::gui::commands::command::Command;
 use crate::gui::commands::form::FormCommand;
@@ -69,7 +70,9 @@ impl SettingControls<'_, '_> {
 
     /// Draws the caption; for the phase correction, with a summary as tooltip.
     pub fn caption_ui(&mut self, setting: &Setting) {
-        let label = self.ui.label(self.palette.dim(setting.control.caption));
+        let label = self
+            .ui
+            .label(self.palette.dim(setting_words(setting).caption));
         if *setting == setting::PHASE {
             label.on_hover_text(LEADS_IN_SHORT);
         }
@@ -82,8 +85,8 @@ impl SettingControls<'_, '_> {
     /// Draws several settings in a line, each except the first with its caption in front.
     pub fn controls_ui(&mut self, line: &[&'static Setting]) {
         for (place, setting) in line.iter().enumerate() {
-            if place > 0 && !setting.control.caption.is_empty() {
-                self.small_ui(setting.control.caption);
+            if place > 0 && !setting_words(setting).caption.is_empty() {
+                self.small_ui(setting_words(setting).caption);
             }
             self.control_ui(setting);
         }
@@ -120,10 +123,11 @@ impl SettingControls<'_, '_> {
             (Kind::Choice { words, .. }, Value::Choice(index)) => {
                 let mut chosen = index;
                 let mut choices = Vec::new();
-                for (index, [_, text, hint]) in words.iter().enumerate() {
+                let meanings = setting_words(setting).meanings;
+                for (index, ([_, text], hint)) in words.iter().zip(meanings).enumerate() {
                     choices.push((index, *text, *hint));
                 }
-                choice_ui(self.ui, setting.control.label, &mut chosen, &choices);
+                choice_ui(self.ui, setting_words(setting).label, &mut chosen, &choices);
                 if chosen != index {
                     self.set(setting, Value::Choice(chosen));
                 }
@@ -133,14 +137,17 @@ impl SettingControls<'_, '_> {
     }
 
     fn flag_ui(&mut self, setting: &'static Setting, mut flag: bool) {
-        let response = self.ui.checkbox(&mut flag, setting.control.label);
-        if response.on_hover_text(setting.help).changed() {
+        let response = self.ui.checkbox(&mut flag, setting_words(setting).label);
+        if response
+            .on_hover_text(setting_words(setting).help)
+            .changed()
+        {
             self.set(setting, flag);
         }
     }
 
     fn number_ui(&mut self, setting: &'static Setting, value: f64, range: [f64; 2]) {
-        let field = number_field(setting, setting.control.label, range);
+        let field = number_field(setting, setting_words(setting).label, range);
         let entered = field.ui(self.ui, setting.unit.scale * value);
         self.apply(setting, entered);
     }
@@ -162,7 +169,7 @@ impl SettingControls<'_, '_> {
             return;
         };
         let mut value = now;
-        let label = setting.control.label;
+        let label = setting_words(setting).label;
         let field = NumberField {
             step: 0.01 * now.max(0.01),
             width: TYPED_WIDTH,
@@ -171,7 +178,7 @@ impl SettingControls<'_, '_> {
         let (slider, typed) = self
             .ui
             .horizontal(|ui| {
-                let caption = ui.label(self.palette.dim(setting.control.caption));
+                let caption = ui.label(self.palette.dim(setting_words(setting).caption));
                 ui.add_space((LABEL_WIDTH - caption.rect.width()).max(0.0));
                 let gap = ui.spacing().item_spacing.x;
                 ui.spacing_mut().slider_width =
@@ -193,7 +200,7 @@ impl SettingControls<'_, '_> {
         if slider.drag_stopped() || slider.lost_focus() {
             self.commands.push(StudyCommand::EndEdit.into());
         }
-        slider.on_hover_text(setting.help);
+        slider.on_hover_text(setting_words(setting).help);
         self.apply(setting, typed);
     }
 
@@ -212,14 +219,16 @@ impl SettingControls<'_, '_> {
             response,
             Role::CheckBox,
             counts,
-            format!("{} counts", setting.control.caption),
+            format!("{} counts", setting_words(setting).caption),
         );
-        let clicked = response.on_hover_text(setting.help).changed();
+        let clicked = response
+            .on_hover_text(setting_words(setting).help)
+            .changed();
         let shown = match value {
             Value::Number(value) => value,
             _ => initial,
         };
-        let field = number_field(setting, setting.control.label, range);
+        let field = number_field(setting, setting_words(setting).label, range);
         let entered = self
             .ui
             .add_enabled_ui(counts, |ui| field.ui(ui, shown))
@@ -238,7 +247,7 @@ impl SettingControls<'_, '_> {
         let Some(Value::Number(number)) = self.shown_value(setting, value) else {
             return self.small_ui("…");
         };
-        let field = number_field(setting, setting.control.label, range);
+        let field = number_field(setting, setting_words(setting).label, range);
         let typed = field.ui(self.ui, setting.unit.scale * number);
         let switched = self.automatic_ui(setting, value);
         if typed.value.is_none() {
@@ -265,7 +274,6 @@ impl SettingControls<'_, '_> {
     fn range_ui(&mut self, setting: &'static Setting, value: Value) {
         let Kind::Range {
             range: [least, most],
-            ends: [low_name, high_name],
             nothing,
             ..
         } = setting.kind
@@ -275,6 +283,7 @@ impl SettingControls<'_, '_> {
         let Some(Value::Range([lower, upper])) = self.shown_value(setting, value) else {
             return self.small_ui("…");
         };
+        let [low_name, high_name] = setting_words(setting).ends;
         let low = self.end_ui(setting, low_name, [least, upper], lower);
         self.small_ui("–");
         let high = self.end_ui(setting, high_name, [lower, most], upper);
@@ -325,7 +334,7 @@ impl SettingControls<'_, '_> {
     fn automatic_ui(&mut self, setting: &Setting, value: Value) -> Option<Automatic> {
         let mut is_automatic = value == Value::Nothing;
         let response = self.ui.checkbox(&mut is_automatic, "auto");
-        let name = format!("{} automatic", setting.control.caption);
+        let name = format!("{} automatic", setting_words(setting).caption);
         let hint = "On: from the quantiles of each condition. Off: set by hand, the same for every condition";
         let response =
             named_switch(response, Role::CheckBox, is_automatic, name).on_hover_text(hint);
@@ -362,7 +371,7 @@ fn number_field(
         digits: setting.control.digits,
         ..NumberField::new(
             name,
-            setting.help,
+            setting_words(setting).help,
             setting.unit.scale * least..=setting.unit.scale * most,
         )
     }

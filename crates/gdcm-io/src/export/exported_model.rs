@@ -8,6 +8,7 @@ use gdcm_model::dataset::{
 use gdcm_model::units::{number, telling};
 use gdcm_study::{Analysis, AssessedCorrection, ConditionAnalysis, CouplingCorrection};
 use gdcm_words::caution::failure_text;
+use gdcm_words::lead_price::price_text;
 
 use super::{ExportRequest, ExportedRole};
 use crate::export_fault::ExportFault;
@@ -21,7 +22,9 @@ pub(super) fn exported_models(
     let dataset = &analysis.study.dataset;
     analysis
         .asked_couplings()
-        .map_err(|why| ExportFault::NoCouplings { why })?;
+        .map_err(|error| ExportFault::NoCouplings {
+            why: error.words(&dataset.names_of_channels().0),
+        })?;
     let Some(id) = request.condition else {
         return dataset
             .conditions()
@@ -251,7 +254,7 @@ fn exported_model(
         contents,
         band_top_rad_s,
         price: price.map(|price| DescribedPrice {
-            words: price.words(&inputs, &outputs),
+            words: price_text(&price, &inputs, &outputs),
             price,
         }),
         couplings: couplings_words(analysis, dynamics),

@@ -20,6 +20,7 @@ use std::path::Path;
 use gdcm_method::correction::Pade;
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::{Analysis, AssessedCorrection};
+use gdcm_words::lead_price::price_text;
 
 use self::scheduled::Scheduled;
 use crate::export_fault::ExportFault;
@@ -137,7 +138,7 @@ impl<'e> Export<'e> {
         match schedule.lead_price() {
             Some(price) => {
                 let (inputs, outputs) = self.analysis.study.dataset.names_of_channels();
-                vec![price.words(&inputs, &outputs)]
+                vec![price_text(&price, &inputs, &outputs)]
             }
             None => Vec::new(),
         }
@@ -155,7 +156,9 @@ impl<'e> Export<'e> {
         };
         let couplings = analysis
             .asked_couplings()
-            .map_err(|why| ExportFault::NoCouplings { why })?;
+            .map_err(|error| ExportFault::NoCouplings {
+                why: error.words(&analysis.study.dataset.names_of_channels().0),
+            })?;
         Ok(Scheduled {
             schedule,
             dataset: &analysis.study.dataset,

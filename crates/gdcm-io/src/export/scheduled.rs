@@ -7,6 +7,8 @@ use gdcm_method::schedule::{Regression, Schedule, ScheduledQuantity};
 use gdcm_model::dataset::Dataset;
 use gdcm_model::message_text::shortened;
 use gdcm_plot::figure::all_channels;
+use gdcm_words::lead_price::price_text;
+use gdcm_words::schedule::schedule_caution_text;
 
 use super::ExportSource;
 use super::program_text::{comment, number};
@@ -148,10 +150,10 @@ impl Scheduled<'_> {
             notes.push("delays are not scheduled in this study: they are zero here".to_owned());
         }
         if let Some(price) = self.schedule.lead_price() {
-            notes.push(price.words(&inputs, &outputs));
+            notes.push(price_text(&price, &inputs, &outputs));
         }
         for caution in &self.schedule.cautions {
-            notes.push(caution.words(&inputs, &outputs));
+            notes.push(schedule_caution_text(caution, &inputs, &outputs));
         }
         notes
     }

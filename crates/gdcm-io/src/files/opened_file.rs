@@ -5,7 +5,7 @@ use std::io::Read;
 use std::path::Path;
 
 use gdcm_study::Study;
-use gdcm_study::decisions::differences::Difference;
+use gdcm_study::decisions::dataset_differences::Difference;
 
 use super::dataset_file::{DatasetOrigin, LoadedDataset, dataset_from};
 use super::study_file::{OpenedStudy, study_from};

@@ -1,16 +1,22 @@
 //! Requirement files (M17): `requirements.json` and `requirements.csv`, which hold the same values.
 
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
+use serde_json::Value;
 
 use gdcm_method::requirements::BandwidthRule;
-use gdcm_model::dataset::ConditionId;
+use gdcm_model::dataset::{ConditionId, Dataset};
 use gdcm_study::results::required_bandwidth::BandwidthFinding;
 use gdcm_study::results::required_modes::{ModeFinding, ModeNumbers};
 use gdcm_study::results::requirements::{Requirements, SummaryFinding};
 use gdcm_study::results::time_histories::{HistoryFinding, TimeHistories, ToleranceFinding};
+use gdcm_words::missing_results::{
+    missing_reason_text, no_bandwidth_text, no_mode_value_text, no_summary_text,
+    reversed_phase_text,
+};
 
 use crate::csv_text::write_records;
 use crate::file_error::FileError;
@@ -51,7 +57,7 @@ struct DatasetName<'a> {
 pub struct RequirementResults<'a> {
     pub requirements: &'a Requirements,
     pub time_histories: &'a TimeHistories,
-    pub dataset: &'a str,
+    pub dataset: &'a Dataset,
     /// SHA-256 of the dataset's file.
     pub sha256: &'a str,
 }
@@ -76,17 +82,71 @@ pub fn write_requirements(
         version: VERSION,
         software: concat!("gdcm ", env!("CARGO_PKG_VERSION")),
         dataset: DatasetName {
-            name: dataset,
+            name: dataset.name(),
             sha256,
         },
         requirements,
         time_histories,
     };
-    outputs.add(&json, |file| write_pretty(&document, file))?;
+    outputs.add(&json, |file| {
+        write_pretty(&with_sentences(&document, results)?, file)
+    })?;
     outputs.add(&table, |file| {
         write_rows(requirements, time_histories, file)
     })?;
     outputs.persist()
+}
+
+/// Converts the contents of `requirements.json`, and replaces the codes of missing values and
+/// cautions by sentences.
+fn with_sentences(
+    document: &RequirementsDocument<'_>,
+    results: RequirementResults<'_>,
+) -> io::Result<Value> {
+    let mut value = serde_json::to_value(document)?;
+    for (index, finding) in results.requirements.bandwidth.iter().enumerate() {
+        let entry = &mut value["bandwidth"][index];
+        replace_absent(entry, &finding.absent, no_bandwidth_text);
+    }
+    for (index, finding) in results.requirements.modes.iter().enumerate() {
+        let models = [
+            ("identified", Some(&finding.identified)),
+            ("physics", finding.physics.as_ref()),
+            ("corrected", finding.corrected.as_ref()),
+        ];
+        for (role, numbers) in models {
+            if let Some(numbers) = numbers {
+                let entry = &mut value["modes"][index][role];
+                replace_absent(entry, &numbers.absent, |why| no_mode_value_text(*why));
+            }
+        }
+    }
+    for (index, finding) in results.requirements.summary.iter().enumerate() {
+        let entry = &mut value["summary"][index];
+        replace_absent(entry, &finding.absent, |why| no_summary_text(*why));
+    }
+    for (index, missing) in results.requirements.missing.iter().enumerate() {
+        value["missing"][index]["why"] = missing_reason_text(&missing.why).into();
+    }
+    for (index, phase) in results.requirements.cautions.iter().enumerate() {
+        value["cautions"][index]["text"] = reversed_phase_text(phase, results.dataset).into();
+    }
+    for (index, missing) in results.time_histories.missing.iter().enumerate() {
+        let why = missing_reason_text(&missing.why);
+        value["time_histories"]["missing"][index]["why"] = why.into();
+    }
+    Ok(value)
+}
+
+/// Replaces the codes of the missing values of a finding by sentences.
+fn replace_absent<T, S: Into<Value>>(
+    entry: &mut Value,
+    absent: &BTreeMap<&'static str, T>,
+    text: impl Fn(&T) -> S,
+) {
+    for (name, why) in absent {
+        entry["absent"][*name] = text(why).into();
+    }
 }
 
 /// Column names of the CSV file, separated by blanks.
@@ -189,7 +249,8 @@ fn bandwidth_rows(finding: &BandwidthFinding) -> Vec<Vec<String>> {
 /// Returns the reason why a quantity is missing; otherwise remarks on how it was determined.
 fn bandwidth_remark(finding: &BandwidthFinding, name: &'static str, is_known: bool) -> String {
     if !is_known {
-        return finding.absent.get(name).cloned().unwrap_or_default();
+        let why = finding.absent.get(name);
+        return why.map(no_bandwidth_text).unwrap_or_default();
     }
     let mut remarks: Vec<String> = Vec::new();
     if name == "omega_bw_rad_s" && finding.gain_limited {
@@ -244,7 +305,10 @@ fn model_mode_rows(finding: &ModeFinding, role: &str, numbers: &ModeNumbers) -> 
     };
     let mut rows = Vec::new();
     for (name, value) in numbers.quantities() {
-        let why = numbers.absent.get(name).copied().unwrap_or_default();
+        let why = match numbers.absent.get(name) {
+            Some(why) => no_mode_value_text(*why),
+            None => "",
+        };
         rows.push(subject.row(name, value, None, why.to_owned()));
     }
     rows
@@ -261,8 +325,11 @@ fn summary_rows(finding: &SummaryFinding) -> Vec<Vec<String>> {
     };
     let mut rows = Vec::new();
     for (name, value) in finding.quantities() {
-        let why = finding.absent.get(name).cloned().unwrap_or_default();
-        rows.push(subject.row(name, value, None, why));
+        let why = match finding.absent.get(name) {
+            Some(why) => no_summary_text(*why),
+            None => "",
+        };
+        rows.push(subject.row(name, value, None, why.to_owned()));
     }
     rows
 }

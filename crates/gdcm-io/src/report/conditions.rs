@@ -9,12 +9,14 @@ use gdcm_model::units::{number, s_to_ms, signed};
 use gdcm_plot::figure::all_channels;
 use gdcm_plot::figure::condition_source::condition_words;
 use gdcm_plot::figure::gains::class_names;
+use gdcm_study::results::condition_remarks::condition_remarks;
+use gdcm_study::results::remark_kind::RemarkKind;
 use gdcm_study::{Analysis, ConditionAnalysis, Engine, Study};
 use gdcm_words::Table;
 use gdcm_words::caution::{failure_text, undefined_text};
-use gdcm_words::condition_remarks::{details, remarks};
 use gdcm_words::leads::lead_words;
-use gdcm_words::remark::RemarkKind;
+use gdcm_words::remark::remark_text;
+use gdcm_words::solution_details::details;
 
 use super::CancellationOnly;
 use super::condition_plots::add_condition_plots;
@@ -70,11 +72,12 @@ fn add_result(page: &mut Page, analysis: &Analysis, result: &ConditionAnalysis) 
     page.facts(facts(analysis, result));
     let study = &analysis.study;
     let mut lines = Vec::new();
-    for remark in remarks(study, result, None) {
-        lines.push(match remark.kind {
-            RemarkKind::Good => remark.text,
-            RemarkKind::Caution => format!("Caution: {}", remark.text),
-            RemarkKind::Trouble => format!("Not matched: {}", remark.text),
+    for remark in condition_remarks(study, result, None) {
+        let text = remark_text(&remark, &study.dataset);
+        lines.push(match remark.kind() {
+            RemarkKind::Good => text,
+            RemarkKind::Caution => format!("Caution: {text}"),
+            RemarkKind::Trouble => format!("Not matched: {text}"),
         });
     }
     page.heading_within("Matched and unmatched responses, with reasons");

@@ -4,10 +4,11 @@ use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_plot::figure::axis::FrequencyUnit;
 use gdcm_plot::figure::poles::couplings_figure;
 use gdcm_study::results::analysis::Analysis;
+use gdcm_study::results::coupling_remarks::analysis_coupling_remarks;
 use gdcm_study::stages::engine::Engine;
+use gdcm_words::coupling_remark::coupling_remark_text;
 use gdcm_words::couplings::{
-    analysis_coupling_remarks, coupling_cost_table, coupling_matrix_tables, couplings_heading,
-    pole_table,
+    coupling_cost_table, coupling_matrix_tables, couplings_heading, pole_table,
 };
 
 use super::CancellationOnly;
@@ -53,7 +54,7 @@ pub(super) fn add_couplings(page: &mut Page, analysis: &Analysis) {
         without them.",
     );
     let remarks = analysis_coupling_remarks(analysis).into_iter();
-    page.list(remarks.map(|remark| remark.text));
+    page.list(remarks.map(|remark| coupling_remark_text(&remark, &analysis.study.dataset)));
     let Some(assessment) = &analysis.coupling_assessment else {
         return;
     };

@@ -11,6 +11,7 @@ use gdcm_study::results::requirements::Requirements;
 use gdcm_study::results::time_histories::TimeHistories;
 use gdcm_study::{Engine, Study};
 use gdcm_words::Table;
+use gdcm_words::missing_results::{missing_reason_text, no_bandwidth_text, reversed_phase_text};
 use gdcm_words::requirements::{RequirementsOverview, bandwidth_table, mode_table, summary_table};
 use gdcm_words::time_histories::{record_table, share_table};
 
@@ -61,11 +62,13 @@ pub(super) fn add_requirements(
     }
     let mut remarks = ConditionRemarks::default();
     for missing in &requirements.missing {
-        let words = format!("no {}: {}", missing.what, missing.why);
+        let why = missing_reason_text(&missing.why);
+        let words = format!("no {}: {why}", missing.what);
         remarks.add(missing.condition, words);
     }
     for caution in &requirements.cautions {
-        remarks.add(Some(caution.condition), caution.text.clone());
+        let words = reversed_phase_text(caution, &analysis.study.dataset);
+        remarks.add(Some(caution.condition), words);
     }
     page.list(remarks.lines());
     Ok(())
@@ -94,11 +97,11 @@ fn add_bandwidth(page: &mut Page, requirements: &Requirements, study: &Study) {
     let mut remarks = ConditionRemarks::default();
     for finding in &requirements.bandwidth {
         if !is_known(finding) {
-            let why = finding.absent.get("omega_bw_rad_s").cloned();
+            let why = finding.absent.get("omega_bw_rad_s");
             let words = format!(
                 "{}: {}",
                 dataset.pair_name(finding.pair),
-                why.unwrap_or_default()
+                why.map(no_bandwidth_text).unwrap_or_default()
             );
             remarks.add(Some(finding.condition), words);
         }
@@ -150,7 +153,7 @@ fn add_histories(page: &mut Page, histories: &TimeHistories) {
     }
     let mut remarks = ConditionRemarks::default();
     for missing in &histories.missing {
-        remarks.add(missing.condition, missing.why.clone());
+        remarks.add(missing.condition, missing_reason_text(&missing.why));
     }
     page.list(remarks.lines());
 }

@@ -11,7 +11,8 @@ use gdcm_plot::figure::condition_source::quantity_symbol;
 use gdcm_plot::figure::gains::{Across, GainAxes, Measure, channels_figure, net_gain_figure};
 use gdcm_study::{Analysis, Study};
 use gdcm_words::Table;
-use gdcm_words::schedule::delayed_channel_text;
+use gdcm_words::lead_price::price_text;
+use gdcm_words::schedule::{delayed_channel_text, schedule_caution_text};
 
 use super::page::{PAIRS_DRAWN, Page};
 use super::study::schedule_words;
@@ -121,10 +122,11 @@ fn add_schedule_remarks(page: &mut Page, analysis: &Analysis, schedule: &Schedul
     let (inputs, outputs) = dataset.names_of_channels();
     let mut lines = Vec::new();
     if let Some(price) = schedule.lead_price() {
-        lines.push(format!("Leads: {}.", price.words(&inputs, &outputs)));
+        lines.push(format!("Leads: {}.", price_text(&price, &inputs, &outputs)));
     }
     for caution in &schedule.cautions {
-        lines.push(format!("Caution: {}.", caution.words(&inputs, &outputs)));
+        let text = schedule_caution_text(caution, &inputs, &outputs);
+        lines.push(format!("Caution: {text}."));
     }
     for delayed in analysis.unscheduled_delays() {
         lines.push(format!(

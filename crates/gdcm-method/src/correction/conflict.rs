@@ -65,6 +65,19 @@ pub enum ConflictKind {
     Unclear,
 }
 
+impl ConflictKind {
+    /// Returns the stable code, for programs and tests.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::AboveUpper { .. } => "above-upper-bound",
+            Self::BelowLower { .. } => "below-lower-bound",
+            Self::TooFarApart { .. } => "too-far-apart",
+            Self::Loop { .. } => "loop",
+            Self::Unclear => "unclear",
+        }
+    }
+}
+
 impl Conflict {
     /// Lists the channels whose bounds take part in the conflict; empty for a loop.
     pub fn channels(&self) -> Vec<Channel> {

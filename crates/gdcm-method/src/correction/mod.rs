@@ -26,7 +26,6 @@ pub mod channels;
 mod components;
 pub mod conflict;
 mod conflict_search;
-mod conflict_text;
 mod connected_pieces;
 mod constraints;
 pub mod corrected_model;

@@ -61,6 +61,11 @@ impl Remedy {
             free,
         }))
     }
+
+    /// Returns whether no single change is sufficient.
+    pub fn is_empty(&self) -> bool {
+        self.upper.is_none() && self.lower.is_none() && self.free.is_empty()
+    }
 }
 
 /// Finds the conflicting entries whose release alone makes all other entries feasible.

@@ -14,9 +14,8 @@
 use nalgebra::{DMatrix, DVector};
 
 use gdcm_model::dataset::Pair;
-use gdcm_model::units::number;
 
-use super::channels::{Channel, pair_name};
+use super::channels::Channel;
 use super::connected_pieces::connected_pieces;
 use super::problem::{Entry, Problem};
 use super::quantity::Quantity;
@@ -60,62 +59,6 @@ impl Sensitivity {
             }
         }
         10_f64.powi(-MOST_POWERS)
-    }
-
-    /// Describes the sensitivity: the constraint, and the change that would lower the objective by
-    /// how much.
-    pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
-        let name = match self.constraint {
-            ActiveConstraint::Held(pair) => pair_name(pair, inputs, outputs),
-            ActiveConstraint::LowerBound(channel) | ActiveConstraint::UpperBound(channel) => {
-                let symbol = if self.quantity.is_gain() { "k" } else { "τ" };
-                format!("{symbol}_{}", channel.name(inputs, outputs))
-            }
-        };
-        let step = self.step();
-        // `min(100.0)`: an objective close to zero would become negative even for the minimum step.
-        let percent = (100.0 * step * self.share_per_unit.abs()).min(100.0);
-        let change = if self.quantity.is_gain() {
-            self.gain_change_words(&number(step))
-        } else {
-            self.delay_change_words(&number(step))
-        };
-        format!("{name} is {change} would lower the objective by about {percent:.2} %.")
-    }
-
-    /// Describes the constraint on a gain, and the change by `step` dB that lowers the objective.
-    fn gain_change_words(&self, step: &str) -> String {
-        let change = if self.per_unit > 0.0 {
-            "lowering"
-        } else {
-            "raising"
-        };
-        match self.constraint {
-            ActiveConstraint::Held(_) => format!("held: {change} its gain by {step} dB"),
-            ActiveConstraint::LowerBound(_) => {
-                format!("on its lower bound: {change} the bound by {step} dB")
-            }
-            ActiveConstraint::UpperBound(_) => {
-                format!("on its upper bound: {change} the bound by {step} dB")
-            }
-        }
-    }
-
-    /// Describes the constraint on a delay, and the change by `step` ms that lowers the objective.
-    fn delay_change_words(&self, step: &str) -> String {
-        match self.constraint {
-            ActiveConstraint::Held(_) if self.per_unit > 0.0 => {
-                format!("held: {step} ms less delay")
-            }
-            ActiveConstraint::Held(_) => format!("held: {step} ms more delay"),
-            ActiveConstraint::LowerBound(_) if self.quantity == Quantity::Delay => {
-                format!("0: {step} ms of lead")
-            }
-            ActiveConstraint::LowerBound(_) => format!("at its maximum lead: {step} ms more"),
-            ActiveConstraint::UpperBound(_) => {
-                format!("on its upper bound: raising the bound by {step} ms")
-            }
-        }
     }
 }
 

@@ -4,7 +4,6 @@
 use gdcm_model::dataset::Pair;
 
 use super::branch_and_bound::search::ProofBudget;
-use super::channels::pair_name;
 use super::problem::{Problem, ProblemError};
 use super::solution::{Outcome, Solution};
 use super::solve::solve;
@@ -37,32 +36,6 @@ impl Toggle {
             0.0
         } else {
             change / self.before
-        }
-    }
-
-    /// Describes the cost of constraining the entry: the present cost if it is constrained,
-    /// otherwise the cost that would result.
-    pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
-        let pair = pair_name(self.pair, inputs, outputs);
-        // `+ 0.0`: no change would otherwise be formatted as -0.0.
-        let percent = 100.0 * self.share() + 0.0;
-        if self.held_now {
-            if self.after <= self.before {
-                let saved = 0.0 - percent;
-                format!("holding {pair} costs {saved:.1} % of the objective")
-            } else {
-                format!(
-                    "releasing {pair} would raise the objective by {percent:.1} %, because other \
-                    responses could then be held more closely"
-                )
-            }
-        } else if self.matched_after {
-            format!("holding {pair} would change the objective by {percent:+.1} %")
-        } else {
-            format!(
-                "{pair} cannot be held in addition to the held responses; the attempt would \
-                change the objective by {percent:+.1} %"
-            )
         }
     }
 }

@@ -66,7 +66,7 @@ mod tests;
 pub use coupling_matrices::{CoupledModelError, CouplingMatrices};
 pub use fit::fit_couplings;
 pub use jackknife::{CouplingBars, LEAST_CONDITIONS, LeftOutFit};
-pub use pole_shifts::PoleShift;
+pub use pole_shifts::{PoleShift, PoleShiftError};
 pub use problem::{CouplingCondition, CouplingKind, CouplingProblem};
 pub use response_effects::LoopMargin;
 pub use unknown::Unknown;

@@ -5,6 +5,7 @@ use gdcm_method::correction::lead_price::ABOVE_BAND;
 use gdcm_method::correction::{Channel, ChannelCorrection, LeadPrice};
 use gdcm_model::dataset::Pair;
 use gdcm_model::response::GainDelay;
+use gdcm_words::lead_price::{limit_text, pair_price_text};
 
 use super::axis::{Axis, Range};
 use super::condition_source::ConditionSource;
@@ -131,7 +132,7 @@ impl PairLeads {
     /// Returns `: ` and the cost of the leads in the response; empty without leads.
     fn price_words(&self) -> String {
         let price = self.price.as_ref();
-        match price.and_then(|price| price.pair_words(self.pair)) {
+        match price.and_then(|price| pair_price_text(price, self.pair)) {
             Some(words) => format!(": {words}"),
             None => String::new(),
         }
@@ -172,7 +173,7 @@ fn with_limit(panel: Panel, price: &LeadPrice) -> Panel {
     let ground = Band {
         range: Range::new(price.limit_rad_s, price.above_rad_s()),
         color: BEYOND,
-        key: price.limit_words(),
+        key: limit_text(price),
     };
     panel
         .over(ground)

@@ -7,6 +7,7 @@ use gdcm_model::dataset::Dataset;
 use gdcm_model::units::number;
 use gdcm_study::results::condition_answers::{QuantityHistory, RecordHistory, TestAnswers};
 use gdcm_study::results::requirement_role::RequirementRole;
+use gdcm_words::missing_results::{no_test_answer_text, not_in_history_text};
 
 use super::axis::Axis;
 use super::drawing::{Color, Hue, Stroke};
@@ -55,6 +56,7 @@ pub fn test_answers_figure(answers: &TestAnswers, dataset: &Dataset) -> Figure {
     let mut caption = "Linear models, starting at rest; no flight data.".to_owned();
     for (role, answer) in &answers.models {
         if let Err(why) = answer {
+            let why = no_test_answer_text(why);
             caption.push_str(&format!(" No {} model: {why}.", role.name()));
         }
     }
@@ -116,7 +118,7 @@ pub fn record_history_figure(history: &RecordHistory, dataset: &Dataset, input: 
     let missing: String = history
         .missing
         .iter()
-        .map(|why| format!(" {why}."))
+        .map(|why| format!(" {}.", not_in_history_text(why)))
         .collect();
     let caption = format!(
         "Windows of at most 10 s, each starting from an estimated state; attitudes are integrals \

@@ -47,14 +47,14 @@ impl Study {
     pub(crate) fn set_sign(
         &mut self,
         channel: Channel,
-        of: Option<SignRole>,
+        role: Option<SignRole>,
     ) -> Result<(), EditRefusal> {
         if !Channel::of_dataset(&self.dataset).any(|known| known == channel) {
             return Err(EditRefusal::NoChannel { channel });
         }
         let mut signs = self.signs.clone();
         signs.remove(&channel);
-        signs.extend(of.map(|of| (channel, of)));
+        signs.extend(role.map(|role| (channel, role)));
         self.rebuild(self.taken.clone(), signs)
     }
 

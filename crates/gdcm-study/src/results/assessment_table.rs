@@ -43,7 +43,7 @@ impl AssessedCorrection {
     ///
     /// # Errors
     /// [`ScheduleError`] where the requested schedule does not exist.
-    pub fn of(
+    pub fn correction(
         self,
         analysis: &Analysis,
         result: &ConditionAnalysis,
@@ -238,7 +238,7 @@ pub fn assessed(
     };
     let correction = choice
         .correction
-        .of(analysis, result)
+        .correction(analysis, result)
         .map_err(NotAssessed::NoSchedule)?;
     let (model, models) = if is_nominal {
         (nominal.as_str(), &result.comparison.nominal)

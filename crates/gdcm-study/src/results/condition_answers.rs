@@ -4,16 +4,20 @@
 
 use nalgebra::DMatrix;
 
+use gdcm_method::requirements::test_input::TestInputError;
+use gdcm_method::requirements::tolerance::ToleranceError;
 use gdcm_method::requirements::{RecordCheck, TestInput, Tolerance, ToleranceTable};
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::executor::{Executor, each};
-use gdcm_model::simulation::{FlightRecord, Segment, Validation, validate};
+use gdcm_model::simulation::{FlightRecord, Segment, Validation, ValidationError, validate};
 use gdcm_sysid::identification::Preparation;
 use gdcm_sysid::spectra::preparation::segments_of;
+use gdcm_sysid::spectra::preparation_settings::PreparationError;
 
-use super::analysis::Analysis;
+use super::analysis::{Analysis, NoResult};
+use super::missing_finding::NoRoleModel;
 use super::record_comparison::{RecordComparison, common_windows, comparison_preparation};
-use super::requirement_role::RequirementRole;
+use super::requirement_role::{RequirementRole, RoleModelError};
 use super::time_histories::HistoryRecord;
 use crate::shared::Shared;
 
@@ -50,8 +54,65 @@ pub struct RecordHistory {
     pub flight: Shared<FlightRecord>,
     /// Result for each applicable row of the tolerance table.
     pub quantities: Vec<QuantityHistory>,
-    /// The reasons in words why other quantities are not compared.
-    pub missing: Vec<String>,
+    /// Why other models or quantities are not compared.
+    pub missing: Vec<NotInHistory>,
+}
+
+/// Why a comparison of a record lacks a model or a quantity.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NotInHistory {
+    NoRoleModel(NoRoleModel),
+    NotSimulated {
+        role: RequirementRole,
+        why: ValidationError,
+    },
+    /// A row of the tolerance table is not applicable.
+    ToleranceNotApplied(ToleranceError),
+}
+
+impl NotInHistory {
+    /// Returns the stable code, for programs and tests.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NoRoleModel(_) => "no-role-model",
+            Self::NotSimulated { .. } => "not-simulated",
+            Self::ToleranceNotApplied(_) => "tolerance-not-applied",
+        }
+    }
+}
+
+/// Why a record is not compared with the models of a condition.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NoRecordHistory {
+    NoResult(NoResult),
+    NotPrepared(PreparationError),
+}
+
+impl NoRecordHistory {
+    /// Returns the stable code, for programs and tests.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NoResult(why) => why.code(),
+            Self::NotPrepared(_) => "record-not-prepared",
+        }
+    }
+}
+
+/// Why a model has no response to a test input.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NoTestAnswer {
+    NoModel(RoleModelError),
+    NotSimulated(TestInputError),
+}
+
+impl NoTestAnswer {
+    /// Returns the stable code, for programs and tests.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NoModel(_) => "no-role-model",
+            Self::NotSimulated(_) => "not-simulated",
+        }
+    }
 }
 
 /// A record to compare with a condition's models.
@@ -67,23 +128,25 @@ impl RecordHistory {
     /// tolerances.
     ///
     /// # Errors
-    /// The reason in words why there is no comparison.
+    /// [`NoRecordHistory`] without a result of the condition, and if the record cannot be prepared.
     pub(crate) fn new(
         analysis: &Analysis,
         compared: &ComparedRecord<'_>,
         executor: &dyn Executor,
-    ) -> Result<Self, String> {
-        let result = analysis.result(compared.condition)?;
+    ) -> Result<Self, NoRecordHistory> {
+        let result = analysis
+            .result(compared.condition)
+            .map_err(NoRecordHistory::NoResult)?;
         let record = compared.record;
         let preparation = comparison_preparation(compared.preparation);
         let segments =
-            segments_of(&record.flight, &preparation).map_err(|error| error.to_string())?;
+            segments_of(&record.flight, &preparation).map_err(NoRecordHistory::NotPrepared)?;
         let mut missing = Vec::new();
         let mut models = Vec::new();
         for role in RequirementRole::ALL {
             match analysis.role_model(result, role) {
                 Ok(model) => models.push((role, model)),
-                Err(why) => missing.push(format!("{} model: {why}", role.name())),
+                Err(why) => missing.push(NotInHistory::NoRoleModel(NoRoleModel { role, why })),
             }
         }
         let settings = common_windows(models.iter().map(|(_, model)| model), &segments);
@@ -91,12 +154,12 @@ impl RecordHistory {
         for (role, model) in &models {
             match validate(model, &segments, &settings, executor) {
                 Ok(validation) => validations.push((*role, validation)),
-                Err(why) => missing.push(format!("{} model: {why}", role.name())),
+                Err(why) => missing.push(NotInHistory::NotSimulated { role: *role, why }),
             }
         }
         let comparison = RecordComparison::new(&analysis.study.dataset, compared.tolerances);
         for why in &comparison.not_applied {
-            missing.push(why.to_string());
+            missing.push(NotInHistory::ToleranceNotApplied(why.clone()));
         }
         Ok(Self {
             condition: compared.condition,
@@ -148,30 +211,30 @@ pub struct TestAnswers {
     pub sample_time_s: f64,
     /// The input at every sample, in its unit.
     pub signal: Vec<f64>,
-    /// Outputs of each model, samples x outputs, in their units; otherwise the reason in words.
-    pub models: Vec<(RequirementRole, Result<DMatrix<f64>, String>)>,
+    /// Outputs of each model, samples x outputs, in their units.
+    pub models: Vec<(RequirementRole, Result<DMatrix<f64>, NoTestAnswer>)>,
 }
 
 impl TestAnswers {
     /// Simulates a condition's models with a test input in an input channel.
     ///
     /// # Errors
-    /// The reason in words why the condition has no result.
+    /// [`NoResult`] without a result of the condition.
     pub(crate) fn new(
         analysis: &Analysis,
         condition: ConditionId,
         input: usize,
         test: TestInput,
         executor: &dyn Executor,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, NoResult> {
         let result = analysis.result(condition)?;
         let sample_time_s = LEAST_SHOWN_S.max(SHOWN * test.duration_s) / STEPS as f64;
         let answers = each(executor, &RequirementRole::ALL, |role| {
             let model = analysis
                 .role_model(result, *role)
-                .map_err(|error| error.to_string())?;
+                .map_err(NoTestAnswer::NoModel)?;
             test.answer(&model, input, sample_time_s, STEPS + 1)
-                .map_err(|error| error.to_string())
+                .map_err(NoTestAnswer::NotSimulated)
         });
         Ok(Self {
             condition,

@@ -9,7 +9,7 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use gdcm_method::correction::leads::ChannelLeads;
 use gdcm_method::correction::{Channel, ChannelCorrection, Pade};
@@ -78,7 +78,51 @@ pub struct BandwidthFinding {
     pub reversed_phase_deg: Option<f64>,
     /// Reasons for absent values by the name of the metric; "interval" for all intervals.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    pub absent: BTreeMap<&'static str, String>,
+    pub absent: BTreeMap<&'static str, NoBandwidth>,
+}
+
+/// Why a bandwidth, a phase delay or an interval is missing.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NoBandwidth {
+    NetGainNotPositive,
+    /// The physics model has no matrices to which couplings can be applied.
+    NotCoupled,
+    NoAttitudeResponse(AttitudeResponseError),
+    NoMetric(NoMetric),
+    /// No interval: the bundles contain no other model from which to compute a spread.
+    NoOtherModel,
+    /// No interval: the schedule is not refitted for each swap of models.
+    ScheduleNotRefitted,
+    /// No interval: the standard deviations of the identified model do not extend to this frequency.
+    DeviationsTooNarrow,
+    /// No interval: the measured response has no standard deviations.
+    MeasuredWithoutDeviations,
+    /// No interval: the identified model has no standard deviations.
+    ModelWithoutDeviations,
+}
+
+impl NoBandwidth {
+    /// Returns the stable code, for programs and tests.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NetGainNotPositive => "net-gain-not-positive",
+            Self::NotCoupled => "not-coupled",
+            Self::NoAttitudeResponse(_) => "no-attitude-response",
+            Self::NoMetric(_) => "no-metric",
+            Self::NoOtherModel => "no-other-model",
+            Self::ScheduleNotRefitted => "schedule-not-refitted",
+            Self::DeviationsTooNarrow => "deviations-too-narrow",
+            Self::MeasuredWithoutDeviations => "measured-without-deviations",
+            Self::ModelWithoutDeviations => "model-without-deviations",
+        }
+    }
+}
+
+/// Writes the code, which the export replaces by a sentence.
+impl Serialize for NoBandwidth {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.code())
+    }
 }
 
 /// Names of the metrics that [`metrics`] returns.
@@ -157,12 +201,12 @@ impl BandwidthFinding {
                     }
                 }
                 Err(why) => {
-                    self.absent.insert(name, why.to_string());
+                    self.absent.insert(name, NoBandwidth::NoMetric(why));
                 }
             }
         }
         if let Err(why) = bandwidth.phase_delay_s {
-            self.absent.insert(DEPARTURE, why.to_string());
+            self.absent.insert(DEPARTURE, NoBandwidth::NoMetric(why));
         }
     }
 
@@ -356,18 +400,22 @@ impl<'a> ConditionBandwidths<'a> {
     }
 
     /// Returns a role's bandwidth, or why it has none.
-    fn bandwidth(&self, pair: Pair, role: RequirementRole) -> Result<MeasuredBandwidth, String> {
+    fn bandwidth(
+        &self,
+        pair: Pair,
+        role: RequirementRole,
+    ) -> Result<MeasuredBandwidth, NoBandwidth> {
         let correction = match self.asked.correction(role) {
             None => PairCorrection::NONE,
             Some(correction) => PairCorrection::from_correction(correction, pair)
-                .ok_or("the net gain is not positive")?,
+                .ok_or(NoBandwidth::NetGainNotPositive)?,
         };
         let model = match role {
             RequirementRole::Identified => &self.identified,
             _ => self.physics_model(role, self.physics)?,
         };
         self.measure(model, pair, correction, Evaluation::Exact)
-            .map_err(|error| error.to_string())
+            .map_err(NoBandwidth::NoAttitudeResponse)
     }
 
     /// Returns the physics model for a role: with the couplings, if the role has a correction.
@@ -375,13 +423,11 @@ impl<'a> ConditionBandwidths<'a> {
         &self,
         role: RequirementRole,
         index: usize,
-    ) -> Result<&EvaluatedModel<'a>, &'static str> {
+    ) -> Result<&EvaluatedModel<'a>, NoBandwidth> {
         if role == RequirementRole::Physics || self.asked.result.coupled.is_none() {
             return Ok(&self.plain[&index]);
         }
-        self.coupled
-            .get(&index)
-            .ok_or("the physics model has no matrices to which couplings can be applied")
+        self.coupled.get(&index).ok_or(NoBandwidth::NotCoupled)
     }
 
     /// Computes a response's bandwidth and phase delay under a correction.
@@ -436,29 +482,20 @@ impl<'a> ConditionBandwidths<'a> {
         let why = match finding.role {
             RequirementRole::Physics | RequirementRole::Corrected => {
                 self.add_swap_intervals(finding, bandwidth, level);
-                "the bundles contain no other model from which to compute a spread"
+                NoBandwidth::NoOtherModel
             }
-            RequirementRole::Scheduled => "the schedule is not refitted for each swap of models",
+            RequirementRole::Scheduled => NoBandwidth::ScheduleNotRefitted,
             RequirementRole::Identified => {
                 finding.add_deviation_intervals(bandwidth, level);
                 match (&*self.identified.dynamics, self.identified.bands) {
-                    (_, Some(_)) => {
-                        "the standard deviations of the identified model do not \
-                        extend to this frequency"
-                    }
-                    (Dynamics::Measured(_), None) => {
-                        "the measured response has no standard \
-                        deviations"
-                    }
-                    (Dynamics::StateSpace(_), None) => {
-                        "the identified model has no standard \
-                        deviations"
-                    }
+                    (_, Some(_)) => NoBandwidth::DeviationsTooNarrow,
+                    (Dynamics::Measured(_), None) => NoBandwidth::MeasuredWithoutDeviations,
+                    (Dynamics::StateSpace(_), None) => NoBandwidth::ModelWithoutDeviations,
                 }
             }
         };
         if finding.interval.is_empty() && metrics(bandwidth).iter().any(Result::is_ok) {
-            finding.absent.insert("interval", why.to_owned());
+            finding.absent.insert("interval", why);
         }
     }
 

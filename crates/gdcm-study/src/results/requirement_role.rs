@@ -88,8 +88,10 @@ impl Analysis {
     ) -> Result<StateSpace, RoleModelError> {
         let correction = match role {
             RequirementRole::Physics | RequirementRole::Identified => None,
-            RequirementRole::Corrected => Some(AssessedCorrection::Own.of(self, result)?),
-            RequirementRole::Scheduled => Some(AssessedCorrection::Scheduled.of(self, result)?),
+            RequirementRole::Corrected => Some(AssessedCorrection::Own.correction(self, result)?),
+            RequirementRole::Scheduled => {
+                Some(AssessedCorrection::Scheduled.correction(self, result)?)
+            }
         };
         let model = continuous(result.representative_model(role.bundle()))?;
         let pade = Pade::default();

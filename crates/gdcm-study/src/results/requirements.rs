@@ -3,7 +3,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use serde::Serialize;
+use serde::ser::SerializeStruct;
+use serde::{Serialize, Serializer};
 
 use gdcm_method::requirements::summary::{Summary, SummarySource};
 use gdcm_model::dataset::{ConditionId, Pair};
@@ -13,6 +14,7 @@ use gdcm_model::response::GainDelay;
 use super::analysis::Analysis;
 use super::asked_condition::AskedCondition;
 use super::assessment_table::AssessedCorrection;
+use super::missing_finding::{MissingFinding, MissingReason};
 use super::required_bandwidth::{BandwidthFinding, bandwidth_findings};
 use super::required_modes::{KnownPoles, ModeFinding, mode_findings};
 use super::requirement_role::RequirementRole;
@@ -36,7 +38,7 @@ pub struct SummaryFinding {
     /// Mean share of the band inside the MUAD envelopes over all responses: 0 to 1.
     pub muad_share_all: Option<f64>,
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    pub absent: BTreeMap<&'static str, String>,
+    pub absent: BTreeMap<&'static str, NoSummary>,
 }
 
 impl SummaryFinding {
@@ -51,24 +53,52 @@ impl SummaryFinding {
     }
 }
 
-/// A missing result, in one condition or in all.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct MissingFinding {
-    /// The condition; `None` for all conditions.
-    pub condition: Option<ConditionId>,
-    /// Missing item: "all", "scheduled" or "modes".
-    pub what: &'static str,
-    pub why: String,
+/// Why a summary cost is missing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum NoSummary {
+    /// No on-axis response of the two models can be compared.
+    NoOnAxisResponse,
+    /// No response of the two models can be compared.
+    NoResponse,
 }
 
-/// A caution about the results of a condition.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct RequirementCaution {
+impl NoSummary {
+    /// Returns the stable code, for programs and tests.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::NoOnAxisResponse => "no-on-axis-response",
+            Self::NoResponse => "no-response",
+        }
+    }
+}
+
+/// A response of a condition whose phase at the lowest frequency of the band suggests a reversed
+/// channel in the models of these roles.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ReversedPhase {
     pub condition: ConditionId,
-    pub text: String,
+    pub pair: Pair,
+    pub roles: Vec<RequirementRole>,
 }
 
-/// Qualification requirements on every condition's models, in the export's format.
+impl ReversedPhase {
+    /// Stable code, for programs and tests.
+    pub const CODE: &'static str = "reversed-phase";
+}
+
+/// Writes the condition, and the code as the text, which the export replaces by a sentence.
+impl Serialize for ReversedPhase {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut caution = serializer.serialize_struct("ReversedPhase", 2)?;
+        caution.serialize_field("condition", &self.condition)?;
+        caution.serialize_field("text", Self::CODE)?;
+        caution.end()
+    }
+}
+
+/// Qualification requirements on every condition's models, in the export's format, with codes where
+/// the export writes sentences.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Requirements {
     /// Comparison band \[rad/s\].
@@ -83,18 +113,18 @@ pub struct Requirements {
     /// The summary costs of every condition and role.
     pub summary: Vec<SummaryFinding>,
     pub missing: Vec<MissingFinding>,
-    pub cautions: Vec<RequirementCaution>,
+    pub cautions: Vec<ReversedPhase>,
 }
 
 impl Requirements {
     /// Returns why a condition has no modes to compare; `None` where it has modes.
-    pub fn no_modes(&self, condition: ConditionId) -> Option<&str> {
+    pub fn no_modes(&self, condition: ConditionId) -> Option<&MissingReason> {
         self.missing
             .iter()
             .find(|missing| {
                 missing.condition == Some(condition) && matches!(missing.what, "modes" | "all")
             })
-            .map(|missing| missing.why.as_str())
+            .map(|missing| &missing.why)
     }
 
     /// Returns the bandwidth of a response of a condition's model.
@@ -139,7 +169,7 @@ pub fn requirements_of(
         requirements.missing.push(MissingFinding {
             condition: None,
             what: "scheduled",
-            why: error.to_string(),
+            why: MissingReason::NoSchedule(*error),
         });
     }
     for condition in found {
@@ -165,7 +195,7 @@ fn condition_requirements(
             found.missing.push(MissingFinding {
                 condition: Some(id),
                 what: "all",
-                why,
+                why: MissingReason::NoResult(why),
             });
             return found;
         }
@@ -173,7 +203,9 @@ fn condition_requirements(
     let asked = AskedCondition {
         analysis,
         result,
-        scheduled: AssessedCorrection::Scheduled.of(analysis, result).ok(),
+        scheduled: AssessedCorrection::Scheduled
+            .correction(analysis, result)
+            .ok(),
     };
     found.bandwidth = bandwidth_findings(&asked);
     match mode_findings(&asked, known) {
@@ -181,7 +213,7 @@ fn condition_requirements(
         Err(why) => found.missing.push(MissingFinding {
             condition: Some(id),
             what: "modes",
-            why,
+            why: MissingReason::NoModes(why),
         }),
     }
     for role in asked.roles() {
@@ -189,7 +221,7 @@ fn condition_requirements(
             found.summary.push(summary_finding(&asked, role));
         }
     }
-    found.cautions = reversed_phases(analysis, &found.bandwidth);
+    found.cautions = reversed_phases(&found.bandwidth);
     found
 }
 
@@ -224,51 +256,31 @@ fn summary_finding(asked: &AskedCondition<'_>, role: RequirementRole) -> Summary
     for (name, value) in finding.quantities() {
         if value.is_none() {
             let why = if name.ends_with("on_axis") {
-                "no on-axis response of the two models can be compared"
+                NoSummary::NoOnAxisResponse
             } else {
-                "no response of the two models can be compared"
+                NoSummary::NoResponse
             };
-            finding.absent.insert(name, why.to_owned());
+            finding.absent.insert(name, why);
         }
     }
     finding
 }
 
-/// A response whose phase indicates a reversed channel, with the affected models.
-struct ReversedPhase<'a> {
-    pair: Pair,
-    condition: ConditionId,
-    roles: Vec<&'a str>,
-}
-
 /// Returns a caution for each response whose phase indicates a reversed channel.
-fn reversed_phases(analysis: &Analysis, findings: &[BandwidthFinding]) -> Vec<RequirementCaution> {
-    let mut reversed: Vec<ReversedPhase<'_>> = Vec::new();
+fn reversed_phases(findings: &[BandwidthFinding]) -> Vec<ReversedPhase> {
+    let mut reversed: Vec<ReversedPhase> = Vec::new();
     for finding in findings {
         if finding.reversed_phase_deg.is_none() {
             continue;
         }
-        let role = finding.role.name();
         match reversed.iter_mut().find(|known| known.pair == finding.pair) {
-            Some(known) => known.roles.push(role),
+            Some(known) => known.roles.push(finding.role),
             None => reversed.push(ReversedPhase {
-                pair: finding.pair,
                 condition: finding.condition,
-                roles: vec![role],
+                pair: finding.pair,
+                roles: vec![finding.role],
             }),
         }
     }
     reversed
-        .into_iter()
-        .map(|phase| RequirementCaution {
-            condition: phase.condition,
-            text: format!(
-                "{} ({}): the phase of the attitude at the lowest frequency of the band lies \
-                within 45 deg of +90 deg, which suggests that the stick or the output has the \
-                opposite sign; the bandwidth is then wrong",
-                analysis.study.dataset.pair_name(phase.pair),
-                phase.roles.join(", ")
-            ),
-        })
-        .collect()
 }

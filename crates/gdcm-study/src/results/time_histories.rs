@@ -28,11 +28,11 @@ use gdcm_sysid::records::LaidOutRecord;
 use gdcm_sysid::spectra::preparation::segments_of;
 
 use super::analysis::{Analysis, ConditionAnalysis};
+use super::missing_finding::{MissingFinding, MissingReason, NoRoleModel, NotCompared};
 use super::record_comparison::{
     AppliedTolerance, RecordComparison, Trend, common_windows, comparison_preparation,
 };
 use super::requirement_role::{RequirementRole, RoleModelError};
-use super::requirements::MissingFinding;
 use crate::execution::Execution;
 use crate::shared::Shared;
 
@@ -57,7 +57,7 @@ pub struct HistoryRecords {
 
 impl HistoryRecords {
     /// Collects those `records` of a condition that are in use, with their preparation.
-    pub fn of<'r>(
+    pub fn from_used<'r>(
         condition: ConditionId,
         records: impl IntoIterator<Item = &'r LaidOutRecord>,
         preparation: Preparation,
@@ -314,7 +314,8 @@ pub fn time_histories_of(
     let mut missing = without_records(analysis, records);
     let comparison = RecordComparison::new(&analysis.study.dataset, tolerances);
     for why in &comparison.not_applied {
-        missing.push(missing_history(None, why.to_string()));
+        let why = MissingReason::ToleranceNotApplied(why.clone());
+        missing.push(missing_history(None, why));
     }
     let prepared = prepare_records(analysis, records, execution, &mut missing)?;
     let models = role_models(analysis, &prepared, &mut missing);
@@ -327,13 +328,13 @@ pub fn time_histories_of(
         match found {
             Ok(finding) => findings.push(finding),
             Err(why) => {
-                let record = &simulation.prepared.record.flight.name;
-                let role = simulation.role.name();
                 let id = simulation.prepared.result.condition.id();
-                missing.push(missing_history(
-                    Some(id),
-                    format!("{role} model, record \"{record}\": {why}"),
-                ));
+                let why = MissingReason::NotCompared {
+                    role: simulation.role,
+                    record: simulation.prepared.record.flight.name.clone(),
+                    why,
+                };
+                missing.push(missing_history(Some(id), why));
             }
         }
     }
@@ -344,7 +345,7 @@ pub fn time_histories_of(
     })
 }
 
-fn missing_history(condition: Option<ConditionId>, why: String) -> MissingFinding {
+fn missing_history(condition: Option<ConditionId>, why: MissingReason) -> MissingFinding {
     MissingFinding {
         condition,
         what: WHAT,
@@ -356,10 +357,7 @@ fn missing_history(condition: Option<ConditionId>, why: String) -> MissingFindin
 /// records.
 fn without_records(analysis: &Analysis, records: &[HistoryRecords]) -> Vec<MissingFinding> {
     if records.iter().all(|condition| condition.records.is_empty()) {
-        return vec![missing_history(
-            None,
-            "no flight record was given".to_owned(),
-        )];
+        return vec![missing_history(None, MissingReason::NoRecord)];
     }
     let mut missing = Vec::new();
     for id in analysis.study.dataset.ids() {
@@ -369,7 +367,7 @@ fn without_records(analysis: &Analysis, records: &[HistoryRecords]) -> Vec<Missi
         if analysis.condition(id).is_some() && !has_records {
             missing.push(missing_history(
                 Some(id),
-                "no flight record of this condition was given".to_owned(),
+                MissingReason::NoRecordOfCondition,
             ));
         }
     }
@@ -409,7 +407,10 @@ fn prepare_records<'a>(
             }),
             Err(why) => missing.push(missing_history(
                 Some(condition.condition),
-                format!("record \"{}\": {why}", record.flight.name),
+                MissingReason::RecordNotPrepared {
+                    record: record.flight.name.clone(),
+                    why,
+                },
             )),
         }
     }
@@ -439,7 +440,7 @@ fn role_models(
                 Err(RoleModelError::NoSchedule(_)) => {}
                 Err(why) => missing.push(missing_history(
                     Some(id),
-                    format!("{} model: {why}", role.name()),
+                    MissingReason::NoRoleModel(NoRoleModel { role, why }),
                 )),
             }
         }
@@ -472,11 +473,11 @@ fn simulations<'a>(
 }
 
 /// Simulates a model with a record and compares the response with the tolerances, or returns the
-/// reason in words why that is impossible.
+/// reason why that is impossible.
 fn finding(
     comparison: &RecordComparison<'_>,
     simulation: &Simulation<'_>,
-) -> Result<HistoryFinding, String> {
+) -> Result<HistoryFinding, NotCompared> {
     let PreparedRecord {
         result,
         record,
@@ -488,7 +489,7 @@ fn finding(
         &simulation.settings,
         &Sequential,
     )
-    .map_err(|error| error.to_string())?;
+    .map_err(NotCompared::NotSimulated)?;
     let windows = &validation.windows;
     let moved = comparison.moved_input(segments);
     let mut tolerances = Vec::new();
@@ -538,11 +539,11 @@ fn tolerance_finding(
     row: &AppliedTolerance<'_>,
     windows: &[ValidationWindow],
     moved: Option<usize>,
-) -> Result<ToleranceFinding, String> {
+) -> Result<ToleranceFinding, NotCompared> {
     let channel = &row.channel;
-    let checks = RecordCheck::of_windows(windows, channel).map_err(|error| error.to_string())?;
-    let check = checks.first().ok_or("there are no samples to compare")?;
-    let worst = check.worst().ok_or("there are no samples to compare")?;
+    let checks = RecordCheck::of_windows(windows, channel).map_err(NotCompared::NotChecked)?;
+    let check = checks.first().ok_or(NotCompared::NoSamples)?;
+    let worst = check.worst().ok_or(NotCompared::NoSamples)?;
     let correlation = check.correlation();
     let on_axis = comparison.is_on_axis(channel.output, moved);
     Ok(ToleranceFinding {

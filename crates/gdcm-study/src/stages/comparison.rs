@@ -57,7 +57,7 @@ impl ComparisonInput<'_> {
                 measured: self.metrics.bundle(kind).measured(),
                 band_top: omega.last().copied().unwrap_or_default(),
             };
-            cautions.extend(bundle.all());
+            cautions.extend(bundle.find());
         }
         cautions
     }

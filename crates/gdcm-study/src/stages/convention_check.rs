@@ -1,4 +1,18 @@
 //! Search for apparent sign and unit differences between the two bundles.
+//!
+//! ```text
+//! phi  phase difference of a response between identified and physics model
+//! G    ratio of their gains (M6)
+//!
+//! sign  the weighted majority of frequencies has |phi| within 20 deg of half a turn. Attributed to
+//!       the channel of the response with the larger share of responses with
+//!       sum W cos phi < 0
+//! unit  |ln G| > ln 5. Attributed to the channel of the response with the nearer median of ln G;
+//!       all such responses of the channel agree within a factor of 2 of their median
+//! ```
+//!
+//! Every response with a difference counts once, for its output or for its input; the output is
+//! chosen where both are equally likely.
 
 use std::collections::BTreeSet;
 use std::f64::consts::PI;

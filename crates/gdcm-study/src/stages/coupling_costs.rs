@@ -33,12 +33,18 @@ use crate::results::assessment_table::{
 };
 use crate::results::couplings_assessment::{
     AssessedCouplings, AxisCost, ConditionCouplings, CouplingCost, CouplingCosts,
-    CouplingsAssessment, UnstablePole,
+    CouplingsAssessment, NoPoles, RefusedModel, UnstablePole,
 };
 use crate::results::fitted_couplings::{CoupledCondition, FittedCouplings};
 
 /// Name of the step in progress reports.
 const LEAVING_OUT: &str = "couplings without each condition";
+/// Shares of the work in progress reports; together 1. Each of the two analyses.
+const ANALYSIS_SHARE: f64 = 0.1;
+/// Fits without each condition in turn.
+const LEFT_OUT_SHARE: f64 = 0.6;
+/// Effects on the conditions.
+const EFFECTS_SHARE: f64 = 0.2;
 
 /// Numbers of frequencies of the singular values: below the band, and from its lower end to ten
 /// times its upper end (2 % apart for the band of the example).
@@ -56,10 +62,10 @@ impl Engine {
         progress: &dyn Progress,
     ) -> Result<Option<AssessedCouplings>, Cancelled> {
         let shares = Shares::new(progress);
-        let portion = Portion::new(&shares, 0.1, LEAVING_OUT);
+        let portion = Portion::new(&shares, ANALYSIS_SHARE, LEAVING_OUT);
         let without = self.analyze(&with_couplings(study, CouplingCorrection::None), &portion)?;
         portion.finish()?;
-        let portion = Portion::new(&shares, 0.1, LEAVING_OUT);
+        let portion = Portion::new(&shares, ANALYSIS_SHARE, LEAVING_OUT);
         let with = self.analyze(&with_couplings(study, couplings), &portion)?;
         portion.finish()?;
         let fitted = match &with.couplings {
@@ -70,7 +76,7 @@ impl Engine {
         let left_out = self.leave_out_each(&without, &with, &fitted, &shares)?;
         let grid = margin_grid(study.settings.band);
         let results: Vec<&ConditionAnalysis> = with.conditions.values().flatten().collect();
-        let share = 0.2 / results.len().max(1) as f64;
+        let share = EFFECTS_SHARE / results.len().max(1) as f64;
         let effects = each(self.executor(), &results, |result| {
             let effect = condition_effect(&with.study, result, &grid, progress)?;
             shares.advance(share, LEAVING_OUT)?;
@@ -126,7 +132,7 @@ impl Engine {
         if ids.len() < LEAST_CONDITIONS {
             return Ok(Vec::new());
         }
-        let share = 0.6 / ids.len() as f64;
+        let share = LEFT_OUT_SHARE / ids.len() as f64;
         let found = each(self.executor(), ids, |condition| {
             let held_out = Edit::SetHeldOut {
                 condition,
@@ -298,12 +304,11 @@ fn condition_effect(
 /// Poles of a condition's kept physics models, without and with couplings.
 struct ConditionPoles {
     /// Poles of the representative, or why they are unavailable.
-    representative: Result<Vec<PoleShift>, String>,
+    representative: Result<Vec<PoleShift>, NoPoles>,
     /// Newly unstable poles of every kept model.
     unstable: Vec<UnstablePole>,
-    /// Names of the other kept models with matrices for which the feedback loop cannot be closed,
-    /// each with the reason.
-    refused: Vec<(String, String)>,
+    /// The other kept models with matrices for which the feedback loop cannot be closed.
+    refused: Vec<RefusedModel>,
 }
 
 /// Computes the poles of the kept physics models.
@@ -317,7 +322,7 @@ fn condition_poles(
     let band = study.settings.band;
     let rejected = &study.choice(id).physics.rejected;
     let mut poles = ConditionPoles {
-        representative: Err(String::new()),
+        representative: Ok(Vec::new()),
         unstable: Vec::new(),
         refused: Vec::new(),
     };
@@ -347,7 +352,10 @@ fn condition_poles(
         } else if let Err(why) = shifts
             && model.state_space().is_some()
         {
-            poles.refused.push((model.name.clone(), why));
+            poles.refused.push(RefusedModel {
+                model: model.name.clone(),
+                why,
+            });
         }
     }
     Ok(poles)
@@ -358,16 +366,14 @@ fn pole_shifts(
     result: &ConditionAnalysis,
     coupled: &CoupledCondition,
     model: &Model,
-) -> Result<Vec<PoleShift>, String> {
-    let matrices = model
-        .state_space()
-        .ok_or("the physics representative is a measured response: it has no poles")?;
+) -> Result<Vec<PoleShift>, NoPoles> {
+    let matrices = model.state_space().ok_or(NoPoles::Measured)?;
     let airspeed_kt = result.condition.flight_state().airspeed_kt;
     coupled
         .fitted
         .matrices()
         .pole_shifts(matrices, airspeed_kt, Pade::default())
-        .map_err(|error| error.to_string())
+        .map_err(NoPoles::Failed)
 }
 
 /// Sum of J over responses.

@@ -100,11 +100,11 @@ fn bar_source<'a>(
 ) -> BarSource<'a> {
     let figures = representative_figures(result);
     let reported = ReportedErrors::new(analysis, result);
-    let told = figures.map(|scalar, _| reported.of_scalar(result, scalar));
+    let reported = figures.map(|scalar, _| reported.of_scalar(result, scalar));
     BarSource {
         figures,
         spread: &substitutions.spread,
-        reported: told,
+        reported,
         delay_bounds_s: [
             result.delay_problem.bounds.lower,
             result.delay_problem.bounds.upper,

@@ -7,6 +7,7 @@ use gdcm_model::units::{s_to_ms, six_digits};
 
 use super::{Context, Derivation};
 use crate::leads::servo_words;
+use crate::solution_details::proof_text;
 
 /// An objective as an equation, with the units of its value.
 struct Objective {
@@ -262,7 +263,7 @@ impl Optimum<'_> {
             "{defined} responses fitted, α = {}",
             six_digits(self.problem.alpha)
         ));
-        rests_on.push(self.solution.proof.outcome.words());
+        rests_on.push(proof_text(self.solution.proof.outcome));
         rests_on
     }
 

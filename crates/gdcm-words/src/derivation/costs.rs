@@ -256,7 +256,7 @@ pub(super) fn change(
     let change = assessed.changes.get(pair)?.as_ref()?;
     let correction = choice
         .correction
-        .of(context.analysis, context.result)
+        .correction(context.analysis, context.result)
         .ok()?;
     let mut with_numbers = vec![format!(
         "{} ({})",

@@ -7,8 +7,9 @@ use egui::{Color32, Grid, Label, RichText, ScrollArea, Ui};
 use gdcm_method::correction::Pade;
 use gdcm_model::dataset::{BundleKind, StateSpace};
 use gdcm_model::simulation::Validation;
-use gdcm_study::jobs::identification_jobs::SimulationJob;
+use gdcm_study::jobs::identification_jobs::{SimulationFailure, SimulationJob};
 use gdcm_sysid::identification::Identification;
+use gdcm_words::missing_results::simulation_failure_text;
 
 use super::frame_cache::cached;
 use super::page::Page;
@@ -25,7 +26,7 @@ pub(super) struct Simulated<'a> {
     pub(super) model: TimeModel,
     pub(super) color: Color32,
     /// Response of the model, or the reason for its absence; `None` while it is being computed.
-    pub(super) result: Option<&'a Result<Arc<Validation>, String>>,
+    pub(super) result: Option<&'a Result<Arc<Validation>, SimulationFailure>>,
 }
 
 impl Simulated<'_> {
@@ -53,8 +54,8 @@ impl Simulated<'_> {
     pub(super) fn absence_ui(&self, ui: &mut Ui, state: &State, palette: &Palette) {
         let (words, color) = match self.result {
             Some(Ok(_)) => return,
-            Some(Err(why)) => (why.as_str(), palette.warning),
-            None => (state.results.absence(), palette.dim_text),
+            Some(Err(why)) => (simulation_failure_text(why), palette.warning),
+            None => (state.results.absence().to_owned(), palette.dim_text),
         };
         let words = format!("{} model: {words}", self.model.name());
         ui.add(Label::new(RichText::new(words).size(SMALL_SIZE).color(color)).wrap());

@@ -5,9 +5,10 @@ use nalgebra::{DMatrix, Scalar};
 use serde_json::{Value, json};
 
 use gdcm_method::couplings::PoleShift;
+use gdcm_study::results::coupling_remarks::analysis_coupling_remarks;
 use gdcm_study::results::couplings_assessment::{AxisCost, CouplingCost, CouplingsAssessment};
 use gdcm_study::{Analysis, ConditionAnalysis};
-use gdcm_words::couplings::analysis_coupling_remarks;
+use gdcm_words::coupling_remark::coupling_remark_text;
 
 use super::channel_names::{rows_of, without_empty};
 
@@ -32,7 +33,7 @@ pub(super) fn couplings(analysis: &Analysis) -> Value {
     }
     let mut words = Vec::new();
     for remark in analysis_coupling_remarks(analysis) {
-        words.push(remark.text);
+        words.push(coupling_remark_text(&remark, &analysis.study.dataset));
     }
     let couplings = json!({
         "conditions": conditions,

@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use gdcm_method::schedule::{Schedule, ScheduleCaution, ScheduleKind, ScheduledQuantity};
+use gdcm_words::schedule::schedule_caution_text;
 
 use super::channel_names::{ChannelNames, without_empty};
 
@@ -34,7 +35,11 @@ pub(super) fn schedule_json(names: &ChannelNames<'_>, schedule: &Schedule) -> Va
     let mut cautions = Vec::new();
     let mut caution_notes = Vec::new();
     for caution in &schedule.cautions {
-        cautions.push(caution.words(&names.inputs, &names.outputs));
+        cautions.push(schedule_caution_text(
+            caution,
+            &names.inputs,
+            &names.outputs,
+        ));
         caution_notes.push(schedule_caution(names, caution));
     }
     let members = json!({
@@ -88,7 +93,7 @@ fn schedule_table(names: &ChannelNames<'_>, schedule: &Schedule) -> Value {
 /// Returns a caution about the schedule: its code and text; if it concerns a single condition, also
 /// the condition and the values.
 fn schedule_caution(names: &ChannelNames<'_>, caution: &ScheduleCaution) -> Value {
-    let text = caution.words(&names.inputs, &names.outputs);
+    let text = schedule_caution_text(caution, &names.inputs, &names.outputs);
     match caution {
         ScheduleCaution::CostsMore(cost) => json!({
             "code": caution.code(),

@@ -9,6 +9,7 @@ use gdcm_method::correction::sensitivity::{
 };
 use gdcm_method::correction::{Outcome, Problem, Quantity, Solution};
 use gdcm_study::ConditionAnalysis;
+use gdcm_words::conflict_text::{agreement_text, conflict_text, miss_text};
 
 use super::channel_names::{ChannelNames, without_empty};
 
@@ -21,7 +22,7 @@ pub(super) fn gain_solution(names: &ChannelNames<'_>, result: &ConditionAnalysis
             "target": entry.target,
             "wanted": entry.delta,
             "short_db": entry.excess,
-            "why": entry.why.words(&names.inputs, &names.outputs),
+            "why": conflict_text(&entry.why, &names.inputs, &names.outputs),
         });
         unmatched.push(names.response_entries(entry.pair, figures));
     }
@@ -43,10 +44,13 @@ pub(super) fn delay_solution(names: &ChannelNames<'_>, result: &ConditionAnalysi
     let band_top_rad_s = names.analysis.study.settings.band.max();
     let mut unmatched = Vec::new();
     for entry in &delays.unmatched {
-        let mut why = entry.words(band_top_rad_s, &names.inputs, &names.outputs);
+        let mut why = miss_text(entry, band_top_rad_s, &names.inputs, &names.outputs);
         // `is_lone_lead`: if a single response needs lead, its own description already states this.
         if !entry.why.is_lone_lead() {
-            why = format!("{why} {}", entry.why.words(&names.inputs, &names.outputs));
+            why = format!(
+                "{why} {}",
+                conflict_text(&entry.why, &names.inputs, &names.outputs)
+            );
         }
         let figures = json!({
             "target_s": entry.target,
@@ -76,12 +80,12 @@ pub(super) fn delay_solution(names: &ChannelNames<'_>, result: &ConditionAnalysi
 fn explanation(names: &ChannelNames<'_>, problem: &Problem, solution: &Solution) -> Value {
     let mut conflicts = Vec::new();
     for conflict in &solution.conflicts {
-        let words = conflict.words(&names.inputs, &names.outputs);
+        let words = conflict_text(conflict, &names.inputs, &names.outputs);
         conflicts.push(conflict_json(names, conflict, words));
     }
     let mut agreeing = Vec::new();
     for conflict in &solution.agreeing {
-        let words = conflict.agreement_words(&names.inputs, &names.outputs);
+        let words = agreement_text(conflict, &names.inputs, &names.outputs);
         agreeing.push(conflict_json(names, conflict, words));
     }
     let remedy = solution.remedy.as_ref().map(|remedy| {

@@ -11,7 +11,7 @@ use gdcm_study::Analysis;
 use gdcm_study::results::uncertainty::{
     AirspeedDifference, PairScatter, ScheduleBands, SecondVariableTest, Uncertainty,
 };
-use gdcm_words::uncertainty::{difference_text, second_variable_text};
+use gdcm_words::uncertainty::{bar_remark_texts, difference_text, second_variable_text};
 
 use super::channel_names::{ChannelNames, is_empty_value, rows_of, without_empty};
 
@@ -97,7 +97,7 @@ fn bar_json(scalar: Scalar, bar: &Bar, level: f64, left_in_band: Option<f64>) ->
         ),
         ("degrees_of_freedom", json!(bar.degrees_of_freedom())),
         ("left_in_band", json!(left_in_band)),
-        ("remarks", json!(bar.remarks())),
+        ("remarks", json!(bar_remark_texts(bar))),
     ] {
         if !is_empty_value(&value) {
             members.insert(name.to_owned(), value);

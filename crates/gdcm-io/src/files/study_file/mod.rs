@@ -6,7 +6,7 @@ mod text;
 use std::path::{Path, PathBuf};
 
 use gdcm_study::Study;
-use gdcm_study::decisions::differences::{Difference, Inventory};
+use gdcm_study::decisions::dataset_differences::{Difference, Inventory};
 
 use self::paths::{path_text, referenced_path, settled_or_absolute, slashed};
 use self::text::{DatasetReference, FORMAT, StudyText, decisions_of};
@@ -165,7 +165,7 @@ fn save(
     path_text: impl FnOnce(&Path) -> Result<String, FileError>,
 ) -> Result<(), FileError> {
     let sha256 = loaded.sha256.clone();
-    let holds = Some(Inventory::of(study.file_dataset()));
+    let holds = Some(Inventory::from_dataset(study.file_dataset()));
     let reference = match &loaded.origin {
         DatasetOrigin::EmbeddedExample => DatasetReference {
             path: None,

@@ -12,7 +12,7 @@ use gdcm_model::whole_number::whole;
 use gdcm_study::Study;
 use gdcm_study::decisions::adopted_models::AdoptedModels;
 use gdcm_study::decisions::choices::{BundleChoice, ConditionChoice};
-use gdcm_study::decisions::differences::Inventory;
+use gdcm_study::decisions::dataset_differences::Inventory;
 use gdcm_study::decisions::named_decisions::Decisions;
 use gdcm_study::decisions::requirement_settings::RequirementSettings;
 use gdcm_study::decisions::settings::{ResponseNames, Settings};
@@ -217,7 +217,7 @@ fn present_decisions(
     dataset: &Dataset,
 ) -> Result<Decisions, ContentError> {
     settings.complete_delay_scheduling();
-    let start = Settings::of(dataset);
+    let start = Settings::for_dataset(dataset);
     settings
         .with_responses(|_, _| start.ignored.clone())
         .check()

@@ -538,11 +538,10 @@ fn a_schedule_that_overshoots_says_where_and_the_assessment_claims_nothing_betwe
     let analysis = only(&json(NEAR), std::slice::from_ref(&wild));
     let schedule = analysis.schedule.as_ref().unwrap();
     assert!(schedule.interpolation_fails());
-    let said = schedule.cautions[0].words(&["I0".into(), "I1".into()], &["O0".into(), "O1".into()]);
-    assert!(
-        said.contains("between 60.0 and 120.0 kt the gain of"),
-        "{said}"
-    );
+    let ScheduleCaution::Overshoot { between_kt, .. } = schedule.cautions[0] else {
+        panic!("{:?}", schedule.cautions)
+    };
+    assert_eq!(between_kt.map(|kt| (10.0 * kt).round()), [600.0, 1200.0]);
     let table = setting::SCHEDULE.to(ScheduleKind::Table);
     assert!(
         !only(&json(NEAR), &[wild, table])

@@ -3,6 +3,7 @@
 use gdcm_method::correction::sensitivity::{ActiveConstraint, Sensitivity, sensitivities};
 use gdcm_method::correction::toggles::toggles;
 use gdcm_method::correction::{Bounds, Channel, Problem, ProofBudget, Quantity};
+use gdcm_words::sensitivity::sensitivity_text;
 
 use super::instances::{delay_instances, gain_instances};
 use super::solved;
@@ -109,7 +110,7 @@ fn sensitivities_are_put_into_words() {
     // The five held entries of Table 2; the wide bounds of this instance are not active.
     assert_eq!(all.len(), 5);
     for sensitivity in all {
-        let words = sensitivity.words(&inputs, &outputs);
+        let words = sensitivity_text(&sensitivity, &inputs, &outputs);
         let change = if sensitivity.per_unit > 0.0 {
             "lowering"
         } else {
@@ -137,7 +138,7 @@ fn no_constraint_is_said_to_cost_more_than_the_whole_objective() {
         };
         (
             sensitivity.step(),
-            sensitivity.words(&["LON".to_owned()], &[]),
+            sensitivity_text(&sensitivity, &["LON".to_owned()], &[]),
         )
     };
     let (step, of_much) = words(1.2156);

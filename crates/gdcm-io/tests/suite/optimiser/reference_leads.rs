@@ -10,6 +10,7 @@ use gdcm_method::correction::solve::solve;
 use gdcm_method::correction::{Bounds, Outcome, Problem, ProofBudget};
 use gdcm_model::dataset::{Band, Pair, PairTable};
 use gdcm_model::response::{FrequencyGrid, LeadOrder};
+use gdcm_words::conflict_text::{conflict_text, miss_text};
 
 use super::instances::{numbers, table};
 use super::solved;
@@ -205,8 +206,8 @@ fn a_bound_on_the_gain_of_the_filters_is_met_and_explained() {
     };
     let inputs = names("u", 4);
     let outputs = names("y", 6);
-    let told = solution.unmatched[0].words(12.0, &inputs, &outputs)
-        + &solution.conflicts[0].words(&inputs, &outputs);
+    let told = miss_text(&solution.unmatched[0], 12.0, &inputs, &outputs)
+        + &conflict_text(&solution.conflicts[0], &inputs, &outputs);
     for part in [
         "of lead that it needs",
         "R_max limits",

@@ -1,62 +1,105 @@
-//! Descriptions of conflicts and remedies. This module contains all sentences about them; the facts
-//! are in [`ConflictKind`] and [`Remedy`].
+//! Sentences about constrained responses that miss their targets, the conflicts that cause this, and
+//! the remedies. The facts are in [`Unmatched`], [`ConflictKind`] and [`Remedy`].
 
+use gdcm_method::correction::channels::{pair_name, pair_names};
+use gdcm_method::correction::conflict::{Conflict, ConflictKind};
+use gdcm_method::correction::remedy::Remedy;
+use gdcm_method::correction::solution::Unmatched;
+use gdcm_method::correction::{Channel, Quantity};
 use gdcm_model::units::{s_to_ms, telling, told_apart};
 
-use super::channels::{Channel, pair_name, pair_names};
-use super::conflict::{Conflict, ConflictKind};
-use super::quantity::Quantity;
-use super::remedy::Remedy;
-
-impl Conflict {
-    /// Describes the conflict and its possible resolutions, with the given channel names.
-    pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
-        ConflictText {
-            conflict: self,
-            inputs,
-            outputs,
-        }
-        .sentence()
+/// Describes the conflict and its possible resolutions, with the given channel names.
+pub fn conflict_text(conflict: &Conflict, inputs: &[String], outputs: &[String]) -> String {
+    ConflictText {
+        conflict,
+        inputs,
+        outputs,
     }
+    .sentence()
+}
 
-    /// Describes a loop whose deviation is within the tolerance; empty for any other conflict.
-    pub fn agreement_words(&self, inputs: &[String], outputs: &[String]) -> String {
-        let ConflictKind::Loop { mismatch } = self.kind else {
-            return String::new();
-        };
+/// Describes a loop whose deviation is within the tolerance; empty for any other conflict.
+pub fn agreement_text(conflict: &Conflict, inputs: &[String], outputs: &[String]) -> String {
+    let ConflictKind::Loop { mismatch } = conflict.kind else {
+        return String::new();
+    };
+    format!(
+        "{} form a loop: their {} agree to {}, which is accepted; each is held at its nearest \
+        consistent value.",
+        pair_names(&conflict.entries, inputs, outputs),
+        loop_values(conflict.quantity),
+        mismatch_size(conflict.quantity, mismatch)
+    )
+}
+
+/// Describes the remedies; empty if there are none.
+pub fn remedy_text(remedy: &Remedy, inputs: &[String], outputs: &[String]) -> String {
+    let unit = if remedy.quantity.is_gain() { "" } else { " s" };
+    let mut ways = Vec::new();
+    if let Some(upper) = remedy.upper {
+        ways.push(format!("an upper bound of {upper}{unit}"));
+    }
+    if let Some(lower) = remedy.lower {
+        ways.push(format!("a lower bound of {lower}{unit}"));
+    }
+    for &pair in &remedy.free {
+        ways.push(format!("releasing {}", pair_name(pair, inputs, outputs)));
+    }
+    if ways.is_empty() {
+        String::new()
+    } else {
         format!(
-            "{} form a loop: their {} agree to {}, which is accepted; each is held at its nearest \
-            consistent value.",
-            pair_names(&self.entries, inputs, outputs),
-            loop_values(self.quantity),
-            mismatch_size(self.quantity, mismatch)
+            "Any one of these changes allows all responses to be held: {}.",
+            ways.join("; ")
         )
     }
 }
 
-impl Remedy {
-    /// Describes the remedies; empty if there are none.
-    pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
-        let unit = if self.quantity.is_gain() { "" } else { " s" };
-        let mut ways = Vec::new();
-        if let Some(upper) = self.upper {
-            ways.push(format!("an upper bound of {upper}{unit}"));
-        }
-        if let Some(lower) = self.lower {
-            ways.push(format!("a lower bound of {lower}{unit}"));
-        }
-        for &pair in &self.free {
-            ways.push(format!("releasing {}", pair_name(pair, inputs, outputs)));
-        }
-        if ways.is_empty() {
-            String::new()
-        } else {
-            format!(
-                "Any one of these changes allows all responses to be held: {}.",
-                ways.join("; ")
-            )
-        }
+/// Describes the deviation of a constrained response; for a delay including the phase error that
+/// remains at `omega_top` \[rad/s\], the upper end of the band.
+pub fn miss_text(
+    miss: &Unmatched,
+    omega_top: f64,
+    inputs: &[String],
+    outputs: &[String],
+) -> String {
+    let pair = pair_name(miss.pair, inputs, outputs);
+    match miss.quantity {
+        Quantity::Gain(_) => gain_miss_text(miss, &pair),
+        Quantity::SignedDelay if miss.delta < 0.0 => lead_miss_text(miss, &pair, omega_top),
+        Quantity::Delay | Quantity::SignedDelay => delay_miss_text(miss, &pair, omega_top),
     }
+}
+
+fn gain_miss_text(miss: &Unmatched, pair: &str) -> String {
+    let (target, delta) = told_apart(miss.target, miss.delta, 3);
+    let sign = if miss.excess > 0.0 { "+" } else { "" };
+    let excess = telling(miss.excess, 1);
+    format!("{pair} is held at {target} instead of {delta} ({sign}{excess} dB).")
+}
+
+fn lead_miss_text(miss: &Unmatched, pair: &str, omega_top: f64) -> String {
+    let (target, delta) = told_apart(s_to_ms(-miss.target), s_to_ms(-miss.delta), 1);
+    let left = telling(miss.phase_left_deg(omega_top).abs(), 0);
+    format!(
+        "{pair} gets {target} of the {delta} ms of lead that it needs; a phase error of \
+        {left}° remains at {omega_top} rad/s."
+    )
+}
+
+fn delay_miss_text(miss: &Unmatched, pair: &str, omega_top: f64) -> String {
+    let excess_ms = 1e3 * miss.excess;
+    let size_ms = telling(excess_ms.abs(), 1);
+    let why = if miss.why.is_lone_lead() && miss.why.entries == [miss.pair] {
+        let lead_ms = telling(excess_ms, 1);
+        format!("{pair} needs {lead_ms} ms of lead, which a delay cannot provide")
+    } else if excess_ms > 0.0 {
+        format!("{pair} gets {size_ms} ms more delay than it needs")
+    } else {
+        format!("{pair} lacks {size_ms} ms of delay")
+    };
+    let left = telling(miss.phase_left_deg(omega_top).abs(), 0);
+    format!("{why}; a phase error of {left}° remains at {omega_top} rad/s.")
 }
 
 /// Returns the name of the values that are compared around a loop.

@@ -6,6 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId};
 
+use super::edit_refusal::EditRefusal;
+
 /// A difference between a dataset and the dataset with which a study was made, or a decision that
 /// does not apply to the dataset.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,8 +39,30 @@ pub enum Difference {
     NotApplied {
         /// Label of the decision: "reject nominal (condition 10)".
         decision: String,
-        why: String,
+        why: NotApplied,
     },
+}
+
+/// Why a decision does not apply to a dataset.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NotApplied {
+    Refused(EditRefusal),
+    /// The dataset lacks a channel of a requirement setting, which the study keeps.
+    KeptForAnotherDataset,
+    NoResponse,
+    NoChannel,
+}
+
+impl NotApplied {
+    /// Returns the stable code, for programs and tests.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Refused(_) => "edit-refused",
+            Self::KeptForAnotherDataset => "kept-for-another-dataset",
+            Self::NoResponse => "no-response",
+            Self::NoChannel => "no-channel",
+        }
+    }
 }
 
 /// Inventory of a dataset, small enough to be stored in a study file. It is compared with the
@@ -48,7 +72,7 @@ pub struct Inventory(pub Vec<ConditionInventory>);
 
 impl Inventory {
     /// Creates the inventory of a dataset, with a fingerprint of every model.
-    pub fn of(dataset: &Dataset) -> Self {
+    pub fn from_dataset(dataset: &Dataset) -> Self {
         let conditions = dataset.conditions().iter();
         Self(
             conditions
@@ -67,7 +91,7 @@ impl Inventory {
 
     /// Lists the differences between the dataset of this inventory and `dataset`.
     pub fn differences(&self, dataset: &Dataset) -> Vec<Difference> {
-        let inventory_now = Inventory::of(dataset);
+        let inventory_now = Inventory::from_dataset(dataset);
         let before = self.by_id();
         let now = inventory_now.by_id();
         let ids: BTreeSet<ConditionId> = before.keys().chain(now.keys()).copied().collect();

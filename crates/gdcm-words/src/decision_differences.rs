@@ -1,4 +1,4 @@
-//! Differences between two sets of decisions, and between two states of a dataset, in words.
+//! Differences between two sets of decisions, in words.
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -7,7 +7,6 @@ use gdcm_method::correction::Channel;
 use gdcm_model::dataset::{BundleKind, ConditionId, PairTable};
 use gdcm_study::Study;
 use gdcm_study::decisions::choices::BundleChoice;
-use gdcm_study::decisions::differences::Difference;
 use gdcm_study::decisions::setting::SETTINGS;
 
 /// A decision that differs between two studies.
@@ -201,29 +200,5 @@ fn representative_words(choice: &BundleChoice) -> String {
     match &choice.pinned {
         Some(model) => model.clone(),
         None => "the medoid".to_owned(),
-    }
-}
-
-/// Describes a difference between a dataset and an earlier state of it, with which a study was
-/// made.
-pub fn dataset_difference_text(difference: &Difference) -> String {
-    match difference {
-        Difference::AnotherFile { expected, found } => format!(
-            "the dataset has changed since the study was saved, and the study does not record the \
-            earlier contents: expected SHA-256 {expected}, found {found}"
-        ),
-        Difference::ConditionAdded(id) => format!("condition {id} was added"),
-        Difference::ConditionRemoved(id) => format!("condition {id} was removed"),
-        Difference::AirspeedChanged {
-            condition,
-            before_kt,
-            now_kt,
-        } => format!("condition {condition} is at {now_kt} kt; it was at {before_kt} kt"),
-        Difference::ModelAdded(id) => format!("{id} was added"),
-        Difference::ModelRemoved(id) => format!("{id} was removed"),
-        Difference::ModelChanged(id) => format!("{id} has changed"),
-        Difference::NotApplied { decision, why } => {
-            format!("a decision no longer applies: {decision}: {why}")
-        }
     }
 }

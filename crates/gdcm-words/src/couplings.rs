@@ -10,6 +10,7 @@ use gdcm_method::couplings::coupling_shares::{
 };
 use gdcm_method::couplings::{LEAST_CONDITIONS, LoopMargin, PoleShift, Unknown};
 use gdcm_model::dataset::{Channel, ConditionId, Dataset, Pair};
+use gdcm_model::number_format::counted;
 use gdcm_model::number_format::with_minus_sign;
 use gdcm_model::units::{number, signed, telling};
 use gdcm_study::results::couplings_assessment::{
@@ -233,7 +234,7 @@ pub fn coupling_cautions(assessment: &CouplingsAssessment, dataset: &Dataset) ->
                 "In {}, all held responses need lead, which no channel provides. The feedback \
             compensates for it, with large entries and large pole shifts. Correct the phase by \
             leads first.",
-                counted(assessment.want_leads)
+                counted(assessment.want_leads, "condition")
             ),
         ));
     }
@@ -244,7 +245,7 @@ pub fn coupling_cautions(assessment: &CouplingsAssessment, dataset: &Dataset) ->
             format!(
                 "The couplings are fitted to {}; error bars, and J of conditions left out, \
                 require three.",
-                counted(conditions)
+                counted(conditions, "condition")
             ),
         ));
     }
@@ -368,12 +369,6 @@ fn ringing_words(assessment: &CouplingsAssessment) -> Option<String> {
         telling(margin.omega_rad_s, 1),
         telling(margin.least, 2)
     ))
-}
-
-/// Counts conditions: "1 condition", "11 conditions".
-fn counted(conditions: usize) -> String {
-    let plural = if conditions == 1 { "" } else { "s" };
-    format!("{conditions} condition{plural}")
 }
 
 /// Returns whether the unit of a channel belongs to an angular rate.
@@ -557,7 +552,7 @@ pub fn couplings_heading(assessment: &CouplingsAssessment) -> String {
     format!(
         "{} fitted to {}; the normal equations of the last solution are satisfied to {:.0e}",
         assessment.couplings.name(),
-        counted(assessment.fitted.problem.conditions.len()),
+        counted(assessment.fitted.problem.conditions.len(), "condition"),
         assessment.fitted.fit.residual
     )
 }

@@ -12,6 +12,7 @@ use gdcm_model::assembly::declarations::ChannelDeclarations;
 use gdcm_model::assembly::{Assembly, FileScope, FoundModel, Rules, proposed_rules};
 use gdcm_model::dataset::Dataset;
 use gdcm_model::message_text::{sanitized, sanitized_path};
+use gdcm_model::number_format::counted;
 use gdcm_model::units::number;
 use gdcm_study::results::analysis::ConditionFailure;
 use gdcm_words::Table;
@@ -22,7 +23,7 @@ use super::failure::Failure;
 use super::found_models::{found_models, given_headings};
 use super::model_arguments::AssembleArguments;
 use super::terminal::{caution, coded_caution, error, print};
-use super::text::{counted, indented};
+use super::text::indented;
 
 /// Assembles a dataset from the models in files and folders.
 pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {

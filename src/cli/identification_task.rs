@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::{Band, BundleKind, ConditionId, Dataset};
 use gdcm_model::message_text::sanitized_path;
+use gdcm_model::number_format::counted;
 use gdcm_model::simulation::Signal;
 use gdcm_study::jobs::identification_jobs::IdentificationRequest;
 use gdcm_study::results::channel_time_skew::ChannelTimeSkew;
@@ -19,7 +20,6 @@ use super::failure::Failure;
 use super::flight_records::record_table;
 use super::identify_arguments::IdentifyArguments;
 use super::progress::TerminalProgress;
-use super::text::counted;
 use crate::executor::Pool;
 
 /// Name of the file with the identified models.

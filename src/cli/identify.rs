@@ -9,6 +9,7 @@ use gdcm_io::output_set::{OutputSet, make_directory};
 use gdcm_model::dataset::Band;
 use gdcm_model::dataset::condition::ConditionRecord;
 use gdcm_model::message_text::sanitized_path;
+use gdcm_model::number_format::counted;
 use gdcm_study::decisions::adopted_models::AdoptedModels;
 use gdcm_sysid::identification::{
     CautionNote, Hold, Identification, IdentificationError, Preparation,
@@ -29,7 +30,7 @@ use super::identify_arguments::IdentifyArguments;
 use super::record_remedies::apply_record_remedies;
 use super::requested_channels::{requested_band, requested_channels, requested_preparation};
 use super::terminal::{caution, caution_for, note, print};
-use super::text::{counted, listed_paths};
+use super::text::listed_paths;
 
 /// Identifies models from flight records and writes them; with `--into`, also a copy of the dataset
 /// that contains them.

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use gdcm_io::report::{ReportSource, ReportSubject, report as compose_report, save_report};
 use gdcm_model::message_text::sanitized_path;
+use gdcm_model::number_format::counted;
 use gdcm_study::results::required_modes::KnownPoles;
 
 use super::failure::Failure;
@@ -13,7 +14,6 @@ use super::result_arguments::ReportArguments;
 use super::study_analysis::{ErrorBars, StudyAnalysis, analyze_study};
 use super::study_options::CommandStudy;
 use super::terminal::print;
-use super::text::counted;
 
 /// Analyses a study and writes the full report.
 pub(super) fn report(arguments: &ReportArguments) -> Result<(), Failure> {

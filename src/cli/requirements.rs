@@ -9,6 +9,7 @@ use gdcm_io::output_set::{OutputSet, make_directory};
 use gdcm_method::requirements::ModeVerdict;
 use gdcm_model::dataset::Dataset;
 use gdcm_model::message_text::{sanitized, sanitized_path};
+use gdcm_model::number_format::counted;
 use gdcm_study::Study;
 use gdcm_study::results::missing_finding::MissingFinding;
 use gdcm_study::results::required_modes::KnownPoles;
@@ -28,7 +29,7 @@ use super::result_arguments::RequirementsArguments;
 use super::study_analysis::{ErrorBars, StudyAnalysis, analyze_study};
 use super::study_options::CommandStudy;
 use super::terminal::{caution_for, note, print};
-use super::text::{counted, decimals_or_dash, indented, indented_untitled, line};
+use super::text::{decimals_or_dash, indented, indented_untitled, line};
 
 /// Writes the tolerance table if requested; analyses the study, writes the requirements, and prints
 /// a short table.

@@ -138,15 +138,6 @@ pub(super) fn decimals_or_dash(value: Option<f64>, digits: usize) -> String {
     }
 }
 
-/// Returns a count with its noun: "1 model", "3 models".
-pub(super) fn counted(count: usize, noun: &str) -> String {
-    if count == 1 {
-        format!("1 {noun}")
-    } else {
-        format!("{count} {noun}s")
-    }
-}
-
 /// Joins paths with commas.
 pub(super) fn listed_paths(paths: &[PathBuf]) -> String {
     let paths: Vec<String> = paths.iter().map(|path| sanitized_path(path)).collect();

@@ -7,6 +7,7 @@ use nalgebra::Complex;
 use gdcm_method::couplings::Unknown;
 use gdcm_method::couplings::coupling_shares::{FeedbackShare, MixingShare};
 use gdcm_model::dataset::{ConditionId, Dataset};
+use gdcm_model::number_format::counted;
 use gdcm_model::number_format::with_minus_sign;
 use gdcm_model::units::{number, signed, telling};
 use gdcm_study::results::coupling_remark::{
@@ -85,12 +86,12 @@ pub fn coupling_remark_text(remark: &CouplingRemark, dataset: &Dataset) -> Strin
             "In {}, all held responses need lead, which no channel provides. The feedback \
             compensates for it, with large entries and large pole shifts. Correct the phase by \
             leads first.",
-            counted(*conditions)
+            counted(*conditions, "condition")
         ),
         CouplingRemark::FewConditions { conditions } => format!(
             "The couplings are fitted to {}; error bars, and J of conditions left out, require \
             three.",
-            counted(*conditions)
+            counted(*conditions, "condition")
         ),
         CouplingRemark::NotFedBack { outputs } => not_fed_back_words(dataset, outputs),
         CouplingRemark::EntriesUndetermined(unknowns) => undetermined_words(dataset, unknowns),
@@ -327,12 +328,6 @@ fn pole_words(pole: Complex<f64>) -> String {
         String::new()
     };
     format!("{}{imaginary} rad/s", signed(pole.re, 3))
-}
-
-/// Counts conditions: "1 condition", "11 conditions".
-pub(crate) fn counted(conditions: usize) -> String {
-    let plural = if conditions == 1 { "" } else { "s" };
-    format!("{conditions} condition{plural}")
 }
 
 #[cfg(test)]

@@ -4,13 +4,13 @@ use nalgebra::{Complex, DMatrix};
 
 use gdcm_method::couplings::PoleShift;
 use gdcm_model::dataset::{Channel, Dataset};
+use gdcm_model::number_format::counted;
 use gdcm_model::number_format::with_minus_sign;
 use gdcm_model::units::{number, telling};
 use gdcm_study::results::couplings_assessment::{
     AxisCost, CouplingCost, CouplingEntry, CouplingsAssessment,
 };
 
-use crate::coupling_remark::counted;
 use crate::table::Table;
 
 /// Returns the heading: "mixing and feedback fitted to 11 conditions; the normal equations of the
@@ -19,7 +19,7 @@ pub fn couplings_heading(assessment: &CouplingsAssessment) -> String {
     format!(
         "{} fitted to {}; the normal equations of the last solution are satisfied to {:.0e}",
         assessment.couplings.name(),
-        counted(assessment.fitted.problem.conditions.len()),
+        counted(assessment.fitted.problem.conditions.len(), "condition"),
         assessment.fitted.fit.residual
     )
 }

@@ -14,6 +14,7 @@ use gdcm_io::import::model_files::FoundModels;
 use gdcm_io::{FolderProgress, read_models};
 use gdcm_model::assembly::Rules;
 use gdcm_model::message_text::sanitized_path;
+use gdcm_model::number_format::counted;
 
 use super::GdcmApp;
 use super::dialogs::DialogPurpose;
@@ -21,7 +22,6 @@ use super::threads::ReplySender;
 use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::state::assembling::{AssemblyState, Reading};
 use crate::gui::state::forms::FormKind;
-use crate::gui::widgets::counts::counted;
 
 /// Number of bytes read between two progress reports.
 const REPORT_EVERY: u64 = 16 << 20;

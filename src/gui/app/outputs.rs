@@ -11,6 +11,7 @@ use gdcm_io::export::{ExportFormat, ExportRequest, ExportSource, export_contents
 use gdcm_io::files::corrections_file::write_results;
 use gdcm_io::output_set::OutputSet;
 use gdcm_model::message_text::sanitized_path;
+use gdcm_model::number_format::counted;
 use gdcm_plot::figure::{ColumnWidth, Figure, FigureFormat, FigureKind};
 use gdcm_study::Analysis;
 use gdcm_words::Table;
@@ -22,7 +23,6 @@ use crate::gui::state::forms::FormKind;
 use crate::gui::state::view::View;
 use crate::gui::views::figure_button::tables_in_place;
 use crate::gui::views::figures::{figure_name, figure_of};
-use crate::gui::widgets::counts::counted;
 
 impl GdcmApp {
     /// Writes the corrections of the conditions selected in the form.

@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use gdcm_model::dataset::ConditionId;
+use gdcm_model::number_format::counted;
 use gdcm_study::Edit;
 use gdcm_study::decisions::adopted_models::{AdoptedModels, OfferedModels};
 use gdcm_study::jobs::identification_jobs::IdentifyJob;
@@ -11,7 +12,6 @@ use gdcm_sysid::identification::{Identification, IdentificationError};
 
 use super::GdcmApp;
 use crate::gui::state::records_page::RecordsPage;
-use crate::gui::widgets::counts::counted;
 
 impl GdcmApp {
     /// Returns the identification band \[rad/s\] of a condition: its own band if one is set,

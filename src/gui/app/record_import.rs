@@ -7,6 +7,7 @@ use std::sync::atomic::AtomicBool;
 
 use gdcm_io::{DatasetOrigin, FileError};
 use gdcm_model::dataset::ConditionId;
+use gdcm_model::number_format::counted;
 use gdcm_sysid::records::{LaidOutRecord, RecordChannels, leave_out_copies};
 
 use super::GdcmApp;
@@ -15,7 +16,6 @@ use super::record_reading::{AddedFiles, OwnRecords, ReadRecords};
 use crate::gui::state::condition_records::{AddedRecord, ConditionRecords};
 use crate::gui::state::requirements_page::RequirementsPage;
 use crate::gui::state::view::View;
-use crate::gui::widgets::counts::counted;
 
 /// State of the window when a reading began.
 struct ReadingStart {

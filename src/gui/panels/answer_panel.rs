@@ -4,6 +4,7 @@
 use egui::{Button, Frame, Margin, Panel, Rect, RichText, Role, ScrollArea, Sense, Ui, pos2, vec2};
 
 use gdcm_method::correction::delta::GainSource;
+use gdcm_model::number_format::counted;
 use gdcm_model::units::number;
 use gdcm_study::PhaseCorrection;
 use gdcm_study::decisions::setting;
@@ -16,7 +17,6 @@ use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::{AT_RIGHT_END, Asks, chevron, named_switch, painted_text};
-use crate::gui::widgets::counts::counted;
 use crate::gui::widgets::elision::elided;
 use crate::gui::widgets::focus::{Region, region_ui, take_escape};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium, small};

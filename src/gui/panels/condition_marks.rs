@@ -3,13 +3,13 @@
 use egui::{Rect, RichText, Stroke, Ui};
 
 use gdcm_model::dataset::{Condition, ConditionId};
+use gdcm_model::number_format::counted;
 use gdcm_study::Edit;
 use gdcm_words::caution::failure_text;
 
 use crate::gui::commands::command::Command;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::{entries_ui, painted_text};
-use crate::gui::widgets::counts::counted;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium, small};
 
 /// Open tasks of a condition, and its role in the schedule.

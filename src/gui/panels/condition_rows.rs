@@ -8,6 +8,7 @@ use egui::{
 use gdcm_method::fidelity::Cost;
 use gdcm_model::dataset::condition::FlightState;
 use gdcm_model::dataset::{Condition, ConditionId};
+use gdcm_model::number_format::counted;
 use gdcm_model::number_format::decimals;
 use gdcm_plot::figure::gains::Classes;
 
@@ -19,7 +20,6 @@ use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::state::mapped_cost::MappedCost;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::{AT_RIGHT_END, Asks, RowLook, entries_ui, named, painted_text};
-use crate::gui::widgets::counts::counted;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium, small};
 
 /// Rows of conditions with their cells of the cost map, as laid out in the current frame.

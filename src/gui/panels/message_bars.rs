@@ -5,6 +5,8 @@ use egui::{
     Align, Button, CollapsingHeader, Frame, Label, Layout, Margin, RichText, ScrollArea, Ui,
 };
 
+use gdcm_model::number_format::counted;
+
 use crate::gui::commands::command::Command;
 use crate::gui::commands::computing::ComputingCommand;
 use crate::gui::commands::file::FileCommand;
@@ -12,7 +14,6 @@ use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::output::OutputCommand;
 use crate::gui::state::notices::MessageBar;
 use crate::gui::widgets::controls::button_ui;
-use crate::gui::widgets::counts::counted;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 /// Draws every message bar, oldest first.

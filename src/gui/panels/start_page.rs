@@ -7,6 +7,7 @@ use egui::{
 };
 
 use gdcm_model::dataset::BundleKind;
+use gdcm_model::number_format::counted;
 
 use super::condition_rows::{PICTURE_HEAD, cost_picture_height, cost_picture_ui};
 use super::phase_sketch::phase_sketch_ui;
@@ -18,7 +19,6 @@ use crate::gui::commands::records::RecordsCommand;
 use crate::gui::state::window_state::State;
 use crate::gui::views::frequency_curves::bode_curves;
 use crate::gui::widgets::controls::{Asks, button_ui, named, painted_text};
-use crate::gui::widgets::counts::counted;
 use crate::gui::widgets::elision::elided;
 use crate::gui::widgets::palette::{
     BODY_SIZE, DISPLAY_SIZE, Palette, SMALL_SIZE, TITLE_SIZE, body, medium, small,

@@ -3,6 +3,7 @@
 use egui::{Align, Button, Color32, Label, Layout, RichText, Ui};
 
 use gdcm_model::dataset::BundleKind;
+use gdcm_model::number_format::counted;
 use gdcm_words::assessment::not_assessed_text;
 
 use crate::gui::commands::command::Command;
@@ -13,7 +14,6 @@ use crate::gui::state::notices::{Notice, NoticeKind};
 use crate::gui::state::records::RecordsState;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::button_ui;
-use crate::gui::widgets::counts::counted;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 /// Draws the computation status on the left. On the right: the description of the element under the

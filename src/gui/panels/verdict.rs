@@ -6,6 +6,7 @@ use gdcm_method::correction::conflict::ConflictKind;
 use gdcm_method::correction::solution::Solution;
 use gdcm_method::schedule::ScheduleCaution;
 use gdcm_model::dataset::{ConditionId, Pair};
+use gdcm_model::number_format::counted;
 use gdcm_model::statistics::median;
 use gdcm_model::units::{number, s_to_ms, signed, six_digits, telling, told_apart};
 use gdcm_study::results::analysis::ConditionFailure;
@@ -21,7 +22,6 @@ use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::views::used_couplings;
-use crate::gui::widgets::counts::counted;
 
 /// Verdict on gain and phase of the constrained responses, in the displayed condition and in all
 /// conditions, with the next steps.

@@ -2,13 +2,14 @@
 
 use egui::{Align, Button, CornerRadius, Frame, Layout, Margin, RichText, Role, Sense, Ui, vec2};
 
+use gdcm_model::number_format::counted;
+
 use super::advice::{Step, export};
 use super::verdict::{Verdict, VerdictRow};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::sheet::Sheet;
 use crate::gui::widgets::controls::{AT_RIGHT_END, Asks, named, painted_text};
-use crate::gui::widgets::counts::counted;
 use crate::gui::widgets::elision::{elided, text_width};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, TITLE_SIZE, body, medium, small};
 

@@ -2,7 +2,6 @@
 
 pub mod choices;
 pub mod controls;
-pub mod counts;
 pub mod elision;
 pub mod fields;
 pub mod focus;

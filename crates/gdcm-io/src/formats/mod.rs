@@ -13,7 +13,6 @@
 //!
 //! A new format is an `Importer` in a file of its own in this folder, and an entry in `FORMATS`.
 
-mod counted;
 mod folders;
 mod foreign_formats;
 mod json_tree;

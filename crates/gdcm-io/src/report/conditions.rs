@@ -3,6 +3,7 @@
 use gdcm_method::correction::{Channel, Outcome};
 use gdcm_method::fidelity::SUGGESTION_RATIO;
 use gdcm_model::dataset::{BundleKind, Condition, ModelId, Pair};
+use gdcm_model::number_format::counted;
 use gdcm_model::number_format::{compact, decimals};
 use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_model::units::{number, s_to_ms, signed};
@@ -22,7 +23,7 @@ use super::CancellationOnly;
 use super::condition_plots::add_condition_plots;
 use super::page::{CONDITIONS_DRAWN, PAIRS_LISTED, Page};
 use super::shown_models::models_shown;
-use super::wording::{MISSING, counted, names};
+use super::wording::{MISSING, names};
 
 /// Adds a subsection for each condition: representatives, gains and delays with their basis, and
 /// plots.

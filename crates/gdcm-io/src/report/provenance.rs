@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 
 use gdcm_model::dataset::model::Provenance;
 use gdcm_model::dataset::{BundleKind, Channel};
+use gdcm_model::number_format::counted;
 use gdcm_study::Study;
 use gdcm_words::Table;
 
 use super::page::Page;
-use super::wording::{counted, names};
+use super::wording::names;
 use super::{PROGRAM, ReportSource};
 
 /// Adds the section on the files of the study and the dataset.

@@ -1,5 +1,7 @@
 //! Parts of sentences and table cells in the report.
 
+use gdcm_model::number_format::counted;
+
 /// Maximum number of names in a list within a sentence.
 pub(super) const NAMES_SHOWN: usize = 12;
 
@@ -15,15 +17,6 @@ pub(super) fn names<S: AsRef<str>>(all: &[S]) -> String {
         return shown;
     }
     format!("{shown} and {} more", all.len() - NAMES_SHOWN)
-}
-
-/// Returns a count with its noun: "1 model", "3 models".
-pub(super) fn counted(count: usize, noun: &str) -> String {
-    if count == 1 {
-        format!("1 {noun}")
-    } else {
-        format!("{count} {noun}s")
-    }
 }
 
 /// Returns a count with its noun and verb: "1 model is", "3 models are".

@@ -7,7 +7,7 @@ use gdcm_method::couplings::CoupledModelError;
 use gdcm_method::requirements::tolerance::{ToleranceCheckError, ToleranceError};
 use gdcm_method::schedule::ScheduleError;
 use gdcm_model::dataset::ConditionId;
-use gdcm_model::response::eigenvalues::ModesError;
+use gdcm_model::response::mode::ModesError;
 use gdcm_model::simulation::ValidationError;
 use gdcm_sysid::spectra::preparation_settings::PreparationError;
 

@@ -10,10 +10,10 @@
 //! A frame is accepted if another frame begins where it ends. After a damaged frame, all frames
 //! predicted from it are omitted up to the next intra frame, which leaves a gap.
 
+use gdcm_model::number_format::counted;
 use gdcm_sysid::records::{ModeSpan, RecordColumn};
 
 use crate::file_error::FileError;
-use crate::formats::counted::counted;
 use crate::formats::logs::blackbox_frames::{PackedBytes, Predecessors};
 use crate::formats::logs::blackbox_heading::Heading;
 use crate::formats::logs::meanings::{BETAFLIGHT, assign_documented_meanings};

@@ -13,8 +13,9 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use gdcm_model::number_format::counted;
+
 use crate::file_error::FileError;
-use crate::formats::counted::counted;
 use crate::formats::logs::array;
 use crate::formats::logs::dataflash_messages::{
     FieldKind, Layouts, MessageLayout, SampleFields, Topics,

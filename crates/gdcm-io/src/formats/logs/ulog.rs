@@ -13,10 +13,10 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use gdcm_model::number_format::counted;
 use gdcm_sysid::records::ModeSpan;
 
 use crate::file_error::FileError;
-use crate::formats::counted::counted;
 use crate::formats::logs::array;
 use crate::formats::logs::meanings::{PX4, assign_documented_meanings};
 use crate::formats::logs::mode_spans::{mode_spans, modes_note};

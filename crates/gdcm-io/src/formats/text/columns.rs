@@ -1,6 +1,7 @@
 //! Tables of numbers in columns, written by programs or by hand.
 
-use crate::formats::counted::counted;
+use gdcm_model::number_format::counted;
+
 use crate::formats::text::cell_number::cell_number;
 use crate::formats::text::encoding::refuse_binary;
 use crate::formats::text::heading::{Heading, is_mostly_numbers, names_one_more_column};

@@ -1,6 +1,7 @@
 //! Column names and units, from the lines before the numbers.
 
-use crate::formats::counted::counted;
+use gdcm_model::number_format::counted;
+
 use crate::formats::text::cell_number::has_number;
 use crate::formats::text::heading_units::{is_unit, name_and_unit};
 use crate::formats::text::layout::Layout;

@@ -1,6 +1,7 @@
 //! Values in MATLAB or Octave statements: numbers, strings, matrices, cell arrays and models.
 
-use crate::formats::counted::counted;
+use gdcm_model::number_format::counted;
+
 use crate::formats::strides::first_index_fastest;
 use crate::formats::text::literal_functions::{Call, Function};
 use crate::formats::text::matlab_scanner::{

@@ -332,7 +332,8 @@ fn delays_of_held_responses_are_exported_unless_that_is_not_wanted() {
     );
     // 50 ms at 12 rad/s are 34.4 degrees.
     assert!(
-        out.contains("left out, up to 34.377 deg at 12 rad/s") && !out.contains("delays exact"),
+        out.contains("phase error of up to 34.377 deg at 12 rad/s")
+            && !out.contains("delays exact"),
         "{out}"
     );
     for contains in &contains {

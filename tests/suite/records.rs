@@ -678,7 +678,7 @@ fn a_record_in_which_a_channel_is_late_or_turned_is_named_with_the_option_that_p
     fn contrast(said: &str) -> f64 {
         let after = said
             .split_once("contradict")
-            .and_then(|(_, after)| after.split_once("(F "));
+            .and_then(|(_, after)| after.split_once("(F = "));
         after.map_or(0.0, |(_, number)| {
             number.split_once(';').unwrap().0.parse::<f64>().unwrap()
         })
@@ -950,7 +950,7 @@ fn a_part_outside_the_clock_of_a_record_is_refused_with_its_span_and_one_from_it
     let desk = desk_of_prbs();
     let identified = |more: &[&str]| desk.gdcm(&[&PRBS[..], more].concat());
     desk.refusal(&[&PRBS[..], &["--part", "5:34", "--out", "none"]].concat())
-        .assert_code("no-samples", &["--part", "5:34 s", "42.30 s", "+5:+34"]);
+        .assert_code("no-samples", &["--part", "5:34", "42.30 s", "+5:+34"]);
     let ended = identified(&["--part", "5:34", "--out", "none"]);
     assert_eq!(ended.status, 2, "{ended:?}");
     let line = ended

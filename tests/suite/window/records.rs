@@ -585,7 +585,7 @@ fn a_part_counts_from_the_start_of_the_record_too_and_one_without_samples_is_ref
     type_into(&mut window, "Part of the record", "5 34");
     let told = state(&window).notice.clone().expect("it is refused");
     assert!(
-        told.kind == NoticeKind::Trouble && told.text.contains("it runs from 42.30 s to 81.30 s"),
+        told.kind == NoticeKind::Trouble && told.text.contains("runs from 42.30 s to 81.30 s"),
         "{}",
         told.text
     );

@@ -603,7 +603,7 @@ fn couplings_that_cannot_be_fitted_are_refused_in_words_and_leave_the_models_as_
     assert!(
         refusal
             .to_string()
-            .starts_with("no coupling fit: none of the 0 conditions"),
+            .starts_with("no coupling fit: none of the conditions (0)"),
         "{refusal}"
     );
     let result = analysis.condition(ConditionId(1)).unwrap();

@@ -186,7 +186,7 @@ fn the_schedule_of_the_example_holds_the_mean_signed_delay_of_each_channel() {
         _ => None,
     });
     let apart_ms = apart.expect("NX in condition 4").map(|s| (1e3 * s).round());
-    assert_eq!(apart_ms, [69.0, -1.0]);
+    assert_eq!(apart_ms, [69.0, -17.0]);
 }
 
 fn output_named(name: &str) -> CorrectedChannel {

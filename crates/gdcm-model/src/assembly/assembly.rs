@@ -14,7 +14,7 @@ use super::question_scope::set_scopes;
 use super::rules::Rules;
 use crate::dataset::Dataset;
 use crate::dataset::channel::ChannelSide;
-use crate::dataset::unchecked_dataset::DatasetDraft;
+use crate::dataset::dataset_draft::DatasetDraft;
 use crate::names::RowRole;
 
 /// Caution about models whose channels were matched by position, because their files do not name
@@ -284,7 +284,7 @@ mod tests {
     use crate::assembly::found_model::Facts;
     use crate::assembly::proposed_rules::proposed_rules;
     use crate::assembly::test_models::{at_airspeed, found_model, measured_model};
-    use crate::dataset::unchecked_dataset::ModelDraft;
+    use crate::dataset::dataset_draft::ModelDraft;
     use crate::names::ChannelRule;
 
     #[test]

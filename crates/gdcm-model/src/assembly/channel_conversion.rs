@@ -3,8 +3,8 @@
 use nalgebra::DMatrix;
 
 use super::channel_match::ChannelUse;
+use crate::dataset::dataset_draft::{BandsDraft, ModelDraft, ResponseArray, ResponseDraft};
 use crate::dataset::state_space::Timing;
-use crate::dataset::unchecked_dataset::{BandsDraft, ModelDraft, ResponseArray, ResponseDraft};
 
 /// File channels of a model, one entry per dataset channel; `None` if the model lacks the channel.
 #[derive(Clone, Copy)]

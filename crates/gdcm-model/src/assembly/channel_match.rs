@@ -7,7 +7,7 @@ use crate::dataset::channel::ChannelSide;
 use crate::names::channel_alias::same_channel;
 use crate::names::signed_name::sign_between;
 use crate::names::{ChannelRule, SignedName};
-use crate::units::number;
+use crate::number_format::number;
 use crate::units::physical_unit::conversion_factor;
 
 /// A file channel matched to a dataset channel.

@@ -9,11 +9,11 @@ use super::part::Part;
 use super::problem_search::parts_by_condition;
 use super::rules::Rules;
 use crate::dataset::condition::{ConditionRecord, FlightState};
+use crate::dataset::dataset_draft::{ConditionDraft, DatasetDraft, ModelDraft};
 use crate::dataset::model::{Origin, Provenance};
-use crate::dataset::unchecked_dataset::{ConditionDraft, DatasetDraft, ModelDraft};
 use crate::dataset::{Channel, ConditionId};
 use crate::names::{ChannelRule, RowRole};
-use crate::units::number;
+use crate::number_format::number;
 
 /// Builds the draft of a dataset. Models that are left out, or that have no condition or role, are
 /// skipped.

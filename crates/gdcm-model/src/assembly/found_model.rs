@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::dataset::condition::ConditionRecord;
-use crate::dataset::unchecked_dataset::{ModelDraft, ResponseDraft};
+use crate::dataset::dataset_draft::{ModelDraft, ResponseDraft};
 use crate::names::response_name::ResponseNameError;
 use crate::names::{KnownChannels, ResponseName};
 use crate::number_format::counted;

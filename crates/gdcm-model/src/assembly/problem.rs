@@ -4,11 +4,11 @@ use std::fmt;
 
 use super::file_scope::FileScope;
 use crate::dataset::channel::ChannelSide;
-use crate::dataset::unchecked_dataset::ResponseDraft;
+use crate::dataset::dataset_draft::ResponseDraft;
 use crate::names::RowRole;
 use crate::names::response_name::ResponseNameError;
 use crate::number_format::counted;
-use crate::units::number;
+use crate::number_format::number;
 
 /// A missing or contradictory fact about a model, a condition or the dataset.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

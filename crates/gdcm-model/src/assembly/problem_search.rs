@@ -7,7 +7,7 @@ use super::problem::{GridSpan, Problem, ProblemKind};
 use super::row::Row;
 use super::rules::Rules;
 use crate::names::RowRole;
-use crate::units::number;
+use crate::number_format::number;
 
 /// A model that is not left out, and its index among all models.
 #[derive(Clone, Copy)]

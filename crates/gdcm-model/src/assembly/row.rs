@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::names::RowRole;
-use crate::units::number;
+use crate::number_format::number;
 
 /// The place of a model in the dataset; `None` for an unknown value.
 #[derive(Clone, Debug, Default, PartialEq)]

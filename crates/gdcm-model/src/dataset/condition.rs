@@ -1,10 +1,11 @@
 //! A flight condition with its two bundles of models and its flight records; their checks.
 
-pub use super::condition_record::{ChannelRemedy, ConditionRecord, RecordKind};
+pub use super::channel_remedy::ChannelRemedy;
+pub use super::condition_record::{ConditionRecord, RecordKind};
 
 use super::model::Model;
 use super::model_id::{BundleKind, ConditionId};
-use crate::units::number;
+use crate::number_format::number;
 
 /// Identification and flight state of a condition: name, airspeed, altitude, weight.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,12 +46,13 @@ impl FlightState {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Condition {
     flight_state: FlightState,
-    /// Physics models, then identified models.
+    /// Physics models, then identified models: indexed by [`BundleKind`].
     bundles: [Vec<Model>; 2],
+    /// Index of the nominal model among the physics models.
     nominal: usize,
     records: Vec<ConditionRecord>,
-    /// Indices of the physics and the identified models, sorted by name for binary search: linear
-    /// look-ups would be slow for thousands of models.
+    /// For each bundle, the indices of its models, sorted by name for binary search: linear look-ups
+    /// would be slow for thousands of models.
     by_name: [Vec<usize>; 2],
 }
 

@@ -117,7 +117,7 @@ impl FoundModel {
     /// Returns the model with missing channel names taken from the variable name or file name, by
     /// the alias table.
     pub fn with_names_of_file(mut self) -> Self {
-        [self.inputs, self.outputs] = self.labels_with_name(KnownChannels::Field).labels;
+        [self.inputs, self.outputs] = self.labels_with_name(KnownChannels::AliasTable).labels;
         self
     }
 
@@ -171,7 +171,7 @@ impl NamedLabels {
     /// Fills in missing channel names. If a name in the text is in the alias table but not in the
     /// dataset, it is kept, so that no other channel takes its place.
     fn fill(&mut self, found: ResponseName, text: &str) {
-        let aliased = ResponseName::find(text, KnownChannels::Field).unwrap_or_default();
+        let aliased = ResponseName::find(text, KnownChannels::AliasTable).unwrap_or_default();
         let input = found.input.or(aliased.input);
         let output = found.output.or(aliased.output);
         for (labels, name) in self.labels.iter_mut().zip([input, output]) {

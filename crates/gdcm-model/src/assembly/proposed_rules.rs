@@ -53,7 +53,7 @@ impl<'m> LabelledModel<'m> {
     fn new(found: &'m FoundModel) -> Self {
         Self {
             found,
-            labels: found.labels_with_name(KnownChannels::Field).labels,
+            labels: found.labels_with_name(KnownChannels::AliasTable).labels,
         }
     }
 

@@ -33,14 +33,14 @@ pub(super) struct Agreement {
 /// Computes the fit \[%\] and Theil's coefficient of each output.
 pub(super) fn agreement(windows: &[ValidationWindow]) -> Agreement {
     let measured = windows.iter().map(|window| &window.measured);
-    let means = means(measured.clone());
+    let means = column_means(measured.clone());
     let errors: Vec<DMatrix<f64>> = windows
         .iter()
         .map(|window| &window.measured - &window.simulated)
         .collect();
-    let error = sums(errors.iter(), |_, e| e * e);
-    let power = sums(measured, |o, y| (y - means[o]).powi(2));
-    let simulated = sums(windows.iter().map(|window| &window.simulated), |o, y| {
+    let error = column_sums(errors.iter(), |_, e| e * e);
+    let power = column_sums(measured, |o, y| (y - means[o]).powi(2));
+    let simulated = column_sums(windows.iter().map(|window| &window.simulated), |o, y| {
         (y - means[o]).powi(2)
     });
     // Sums replace rms and standard deviation: all run over the same samples, so that the number of
@@ -59,9 +59,11 @@ pub(super) fn agreement(windows: &[ValidationWindow]) -> Agreement {
 }
 
 /// Returns the standard deviation of each column over all `parts`; 1 for a constant column.
-pub(super) fn deviations<'a>(parts: impl Iterator<Item = &'a DMatrix<f64>> + Clone) -> Vec<f64> {
-    let means = means(parts.clone());
-    let squares = sums(parts.clone(), |o, y| (y - means[o]).powi(2));
+pub(super) fn column_deviations<'a>(
+    parts: impl Iterator<Item = &'a DMatrix<f64>> + Clone,
+) -> Vec<f64> {
+    let means = column_means(parts.clone());
+    let squares = column_sums(parts.clone(), |o, y| (y - means[o]).powi(2));
     let samples: usize = parts.map(DMatrix::nrows).sum();
     let mut deviations = Vec::with_capacity(squares.len());
     for square in squares {
@@ -76,16 +78,16 @@ pub(super) fn deviations<'a>(parts: impl Iterator<Item = &'a DMatrix<f64>> + Clo
 }
 
 /// Returns the mean of each column over all `parts`.
-fn means<'a>(parts: impl Iterator<Item = &'a DMatrix<f64>> + Clone) -> Vec<f64> {
+fn column_means<'a>(parts: impl Iterator<Item = &'a DMatrix<f64>> + Clone) -> Vec<f64> {
     let samples: usize = parts.clone().map(DMatrix::nrows).sum();
-    sums(parts, |_, y| y)
+    column_sums(parts, |_, y| y)
         .iter()
         .map(|sum| sum / samples.max(1) as f64)
         .collect()
 }
 
 /// Sums `term(column, value)` over all samples of all `parts`, for each column.
-fn sums<'a>(
+fn column_sums<'a>(
     parts: impl Iterator<Item = &'a DMatrix<f64>>,
     term: impl Fn(usize, f64) -> f64,
 ) -> Vec<f64> {

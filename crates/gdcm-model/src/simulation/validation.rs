@@ -3,9 +3,9 @@
 use super::first_order_hold::FirstOrderHold;
 use super::flight_record::Segment;
 use super::low_pass::LowPass;
-use super::output_agreement::{Agreement, ValidationWindow, agreement, deviations};
+use super::output_agreement::{Agreement, ValidationWindow, agreement, column_deviations};
 use super::validation_settings::{
-    TIME_CONSTANTS, ValidationSettings, window_count, window_s, window_start,
+    TIME_CONSTANTS, ValidationSettings, window_count, window_length_s, window_start,
 };
 use super::window_simulation::best_simulation;
 use crate::dataset::StateSpace;
@@ -42,12 +42,12 @@ pub fn validate(
         return Err(ValidationError::NoWindow);
     }
     let window_s =
-        window_s(model, settings.longest_window_s).ok_or(ValidationError::NotSimulated)?;
+        window_length_s(model, settings.longest_window_s).ok_or(ValidationError::NotSimulated)?;
     let filtered = each(executor, segments, |segment| match settings.low_pass {
         Some(omega) => LowPass::applied(omega, segment),
         None => segment.clone(),
     });
-    let std = deviations(filtered.iter().map(|segment| &segment.outputs));
+    let std = column_deviations(filtered.iter().map(|segment| &segment.outputs));
     let windows = each(executor, &filtered, |segment| {
         simulated_windows(model, segment, window_s, &std)
     });

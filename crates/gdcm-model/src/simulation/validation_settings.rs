@@ -55,7 +55,7 @@ impl ValidationSettings {
     ) -> Self {
         let mut shortest_s = self.longest_window_s;
         for model in models {
-            let Some(own_s) = window_s(model, self.longest_window_s) else {
+            let Some(own_s) = window_length_s(model, self.longest_window_s) else {
                 continue;
             };
             let is_compared = segments
@@ -74,7 +74,7 @@ impl ValidationSettings {
 
 /// Returns the window length \[s\]: `longest_s`, or less for an unstable model. `None` if the poles
 /// cannot be computed.
-pub(super) fn window_s(model: &StateSpace, longest_s: f64) -> Option<f64> {
+pub(super) fn window_length_s(model: &StateSpace, longest_s: f64) -> Option<f64> {
     let fastest = poles(model)?.iter().map(|pole| pole.re).fold(0.0, f64::max);
     Some(if fastest > 0.0 {
         longest_s.min(TIME_CONSTANTS / fastest)

@@ -152,6 +152,7 @@ fn pick_table(array: &ResponseArray, uses: ChannelUses<'_>, scaling: Scaling) ->
                 (Some(output), Some(input))
                     if output.index < output_count && input.index < input_count =>
                 {
+                    // The last index runs fastest: `count` values of each response.
                     let start = (output.index * input_count + input.index) * count;
                     let known = &array.values[start..start + count];
                     match scaling {

@@ -1,4 +1,5 @@
-//! Joining of measured responses from several files into a single model.
+//! Joining of measured responses from several files into a single model. A measured model consists
+//! of one or more parts ([`Part`]), which have the same name and together give its responses.
 
 use std::ops::Range;
 

@@ -15,6 +15,7 @@ pub mod dataset_draft;
 mod draft_checks;
 pub mod draft_fault;
 mod dynamics;
+mod flight_state;
 pub mod limits;
 pub mod location;
 pub mod measured_response;

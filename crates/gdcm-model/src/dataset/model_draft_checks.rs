@@ -229,6 +229,7 @@ impl ModelBuilder {
             self.outputs,
             self.inputs,
             |Pair { output, input }| {
+                // The last index runs fastest: `count` values of each response.
                 let start = (output * self.inputs + input) * count;
                 array.values[start..start + count].to_vec()
             },

@@ -61,15 +61,18 @@ impl ChannelMatcher<'_> {
                 && self.labels.iter().all(|label| label.name.is_none()),
             ..ChannelMatch::default()
         };
+        // Step 1.
         if found.by_position && self.labels.len() != self.rules.len() {
             return self.wrong_count();
         }
         for (place, rule) in self.rules.iter().enumerate() {
+            // Steps 1 and 2.
             let index = if found.by_position {
                 Some(place)
             } else {
                 self.find(rule, &mut found.problems)
             };
+            // Steps 3 and 4.
             let used = index.map(|index| {
                 let used = self.converted(index, rule, &mut found);
                 self.signed(used, rule, &mut found.problems)

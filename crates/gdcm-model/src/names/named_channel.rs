@@ -25,7 +25,7 @@ pub enum KnownChannels<'r> {
     AliasTable,
 }
 
-/// Canonical names of the channels that can be recognised.
+/// Canonical names of the [`KnownChannels`], computed once for all words of a text.
 enum KnownNames {
     Dataset {
         inputs: BTreeSet<String>,
@@ -82,6 +82,7 @@ pub(super) struct Sides {
 }
 
 impl Sides {
+    /// Returns whether both an input and an output have the name.
     pub(super) fn are_both(self) -> bool {
         self.output && self.input
     }

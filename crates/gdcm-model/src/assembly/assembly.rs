@@ -158,8 +158,10 @@ fn prefix_file(file: &mut String, folder: &str) {
 mod tests {
     use super::*;
     use crate::assembly::found_model::Facts;
+    use crate::assembly::position_caution::PositionCaution;
     use crate::assembly::proposed_rules::proposed_rules;
     use crate::assembly::test_models::{at_airspeed, found_model, measured_model};
+    use crate::dataset::channel::ChannelSide;
     use crate::dataset::dataset_draft::ModelDraft;
     use crate::names::ChannelRule;
 
@@ -278,7 +280,7 @@ mod tests {
         let both = vec![ChannelSide::Input, ChannelSide::Output];
         assert_eq!(
             cautions,
-            [AssemblyCaution {
+            [PositionCaution {
                 sides: both.clone(),
                 parts: vec![0, 1]
             }]

@@ -49,8 +49,8 @@ fn offset_pattern(words: &str, coordinate: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::names::NameFacts;
     use crate::names::name_pattern::{PatternError, read_name, unread_offsets};
+    use crate::names::{NameFacts, RowRole};
 
     fn read(name: &str) -> NameFacts {
         read_name(name, standard_patterns())

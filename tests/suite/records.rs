@@ -10,7 +10,7 @@ use gdcm_io::import::record_files::{example_records, records_of_bytes};
 use gdcm_io::{embedded_example, load_dataset};
 use gdcm_model::dataset::condition::RecordKind;
 use gdcm_model::dataset::{BundleKind, ConditionId};
-use gdcm_model::names::name_pattern::standard_patterns;
+use gdcm_model::names::standard_patterns;
 use gdcm_sysid::records::record_guess::RecordGuess;
 use gdcm_sysid::records::{RecordChannels, RecordLayout, TimeWish};
 

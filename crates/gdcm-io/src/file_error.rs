@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use gdcm_method::requirements::tolerance::ToleranceError;
 use gdcm_model::dataset::band::BandError;
+use gdcm_model::dataset::draft_fault::{DraftError, DraftFault};
 use gdcm_model::dataset::location::Location;
-use gdcm_model::dataset::unchecked_dataset::{DraftError, DraftFault};
 use gdcm_model::message_text::{quoted, sanitized, sanitized_path};
 use gdcm_study::decisions::edit_refusal::EditRefusal;
 

@@ -1,4 +1,4 @@
-//! Conversion of numbers to text: the only place where digits, signs and exponents are chosen.
+//! Conversion of numbers to text: the formats shared by messages, files, plots and the window.
 //!
 //! Text for messages, files and tables in a terminal uses a hyphen as minus sign; text in plots,
 //! windows and sentences uses a true minus sign.

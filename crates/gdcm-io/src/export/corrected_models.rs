@@ -6,8 +6,8 @@ use nalgebra::DMatrix;
 
 use gdcm_model::assembly::FoundModel;
 use gdcm_model::assembly::found_model::Facts;
+use gdcm_model::dataset::dataset_draft::ModelDraft;
 use gdcm_model::dataset::model::Origin;
-use gdcm_model::dataset::unchecked_dataset::ModelDraft;
 use gdcm_model::dataset::{Channel, Dataset};
 
 use super::exported_model::{ExportedModel, contents_of_models, exported_models};

@@ -9,7 +9,7 @@ use gdcm_model::assembly::found_model::Facts;
 use gdcm_model::assembly::{ChannelLabel, FoundModel};
 use gdcm_model::dataset::Model;
 use gdcm_model::dataset::condition::ConditionRecord;
-use gdcm_model::dataset::unchecked_dataset::ModelDraft;
+use gdcm_model::dataset::dataset_draft::ModelDraft;
 use gdcm_model::names::channel_rule::ChannelRule;
 use gdcm_model::response::pole_estimate::PoleEstimate;
 use gdcm_model::units::neper_to_db;

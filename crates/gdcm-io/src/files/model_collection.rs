@@ -9,10 +9,10 @@ use serde_json::Value;
 use gdcm_model::assembly::found_model::Facts;
 use gdcm_model::assembly::{ChannelLabel, FoundModel};
 use gdcm_model::dataset::Channel;
+use gdcm_model::dataset::dataset_draft::ModelDraft;
 use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_MODELS_IN_ALL};
 use gdcm_model::dataset::model::{Origin, Provenance};
 use gdcm_model::dataset::state_space::Timing;
-use gdcm_model::dataset::unchecked_dataset::ModelDraft;
 use gdcm_model::whole_number::whole;
 
 use super::dataset_file::{LabelText, ModelText};

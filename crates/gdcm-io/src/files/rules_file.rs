@@ -11,7 +11,7 @@ use gdcm_model::assembly::{RowRule, Rules, UnitRule};
 use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_PAIRS};
 use gdcm_model::dataset::location::Location;
 use gdcm_model::names::channel_rule::ChannelRule;
-use gdcm_model::names::name_pattern::{NamePattern, standard_patterns};
+use gdcm_model::names::{NamePattern, standard_patterns};
 use gdcm_model::whole_number::whole;
 
 use crate::file_error::{ContentError, ContentFault, FileError};

@@ -8,7 +8,7 @@ use nalgebra::Complex;
 use gdcm_model::dataset::PairTable;
 use gdcm_model::dataset::model::ModelBands;
 use gdcm_model::response::FrequencyResponse;
-use gdcm_model::response::curve_values::interpolate_values;
+use gdcm_model::response::interpolation::interpolate_values;
 
 use crate::correction::Channels;
 use crate::correction::leads::LeadDesign;

@@ -2,7 +2,7 @@
 //! below a threshold is left out, the others are weighted by `W` ([`coherence_weight`]).
 
 use gdcm_model::dataset::{Dynamics, Pair, PairTable};
-use gdcm_model::response::curve_values::coherence_at;
+use gdcm_model::response::interpolation::coherence_at;
 
 /// The frequencies of a response with sufficient coherence, each with its weight.
 #[derive(Clone, Debug, PartialEq)]

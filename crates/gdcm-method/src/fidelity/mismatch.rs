@@ -9,7 +9,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use gdcm_model::response::curve_values::centred_unwrap;
+use gdcm_model::response::phase_unwrapping::centred_unwrap;
 use gdcm_model::response::polar_response::PolarCurve;
 use gdcm_model::response::{GainDelay, wrap};
 use gdcm_model::statistics::{median, weighted_median};

@@ -15,8 +15,9 @@ use nalgebra::Complex;
 
 use gdcm_model::dataset::{Band, Channel};
 use gdcm_model::message_text::quoted;
-use gdcm_model::response::curve_values::{between, unwrap};
-use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::response::frequency_grid::log_spaced;
+use gdcm_model::response::interpolation::between;
+use gdcm_model::response::phase_unwrapping::unwrap;
 use gdcm_model::response::wrap;
 use gdcm_model::units::physical_unit::PhysicalUnit;
 use gdcm_model::units::{number, ratio_to_db};

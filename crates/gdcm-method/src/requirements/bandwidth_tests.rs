@@ -10,7 +10,7 @@ use gdcm_model::dataset::model::ModelBands;
 use gdcm_model::dataset::state_space::Timing;
 use gdcm_model::dataset::{Band, Channel, Dynamics, Pair, PairTable, StateSpace};
 use gdcm_model::response::GainDelay;
-use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::response::frequency_grid::log_spaced;
 
 use super::attitude_response::{
     AttitudeResponse, AttitudeResponseError, ResponseAt, search_frequencies,

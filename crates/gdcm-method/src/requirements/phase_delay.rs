@@ -8,7 +8,7 @@
 
 use std::f64::consts::PI;
 
-use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::response::frequency_grid::log_spaced;
 use gdcm_model::statistics::mean;
 
 use super::attitude_response::AttitudeResponse;

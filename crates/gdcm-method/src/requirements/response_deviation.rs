@@ -17,7 +17,7 @@
 
 use gdcm_model::dataset::Pair;
 use gdcm_model::dataset::model::ModelBands;
-use gdcm_model::response::curve_values::between;
+use gdcm_model::response::interpolation::between;
 
 use super::attitude_response::AttitudeResponse;
 use crate::uncertainty::{Bar, IdentificationSource, VarianceComponent};

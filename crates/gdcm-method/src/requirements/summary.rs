@@ -205,7 +205,7 @@ impl Summary {
 mod tests {
     use nalgebra::DMatrix;
 
-    use gdcm_model::response::frequency_response::log_spaced;
+    use gdcm_model::response::frequency_grid::log_spaced;
     use gdcm_model::units::db_to_ratio;
 
     use super::*;

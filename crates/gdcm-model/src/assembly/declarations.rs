@@ -1,4 +1,7 @@
 //! Units, factors and signs that the engineer declares for channels.
+//!
+//! [`ChannelDeclarations`] are declared for the models in a scope ([`ScopedDeclarations`]); those that
+//! apply to a single model are merged into its [`ModelDeclarations`].
 
 use std::collections::BTreeMap;
 
@@ -51,6 +54,7 @@ impl ChannelDeclarations {
         }
     }
 
+    /// Renames a channel.
     pub(super) fn rename(&mut self, old: &str, new: &str) {
         rename_key(&mut self.units, old, new);
         rename_key(&mut self.factors, old, new);
@@ -92,13 +96,14 @@ pub(super) fn applicable_declarations<'d>(
 
 /// All units, factors and signs declared for the channels of a single model.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct DeclaredChannels<'r> {
+pub struct ModelDeclarations<'r> {
     /// Factors between units without a fixed ratio.
     pub conversions: &'r [UnitRule],
+    /// Merged declarations of all scopes that include the model.
     pub channels: ChannelDeclarations,
 }
 
-impl DeclaredChannels<'_> {
+impl ModelDeclarations<'_> {
     /// Returns the declared sign. Without a sign but with a declared factor, returns 1, because the
     /// factor includes the sign; `None` without either.
     pub fn sign_of(&self, channel: &str) -> Option<f64> {

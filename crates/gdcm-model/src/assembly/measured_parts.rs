@@ -1,12 +1,13 @@
-//! Joining of measured responses from several files into a single model.
+//! Joining of measured responses from several files into a single model. A measured model consists
+//! of one or more parts ([`Part`]), which have the same name and together give its responses.
 
 use std::ops::Range;
 
 use super::channel_conversion::bands_or_full_range;
 use super::part::Part;
 use super::rules::Rules;
+use crate::dataset::dataset_draft::{ModelDraft, ResponseArray, ResponseDraft};
 use crate::dataset::model::Provenance;
-use crate::dataset::unchecked_dataset::{ModelDraft, ResponseArray, ResponseDraft};
 
 /// Valid band of an unmeasured response \[rad/s\]: an empty band.
 const NOT_MEASURED: [f64; 2] = [0.0, 0.0];

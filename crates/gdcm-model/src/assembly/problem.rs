@@ -4,11 +4,11 @@ use std::fmt;
 
 use super::file_scope::FileScope;
 use crate::dataset::channel::ChannelSide;
-use crate::dataset::unchecked_dataset::ResponseDraft;
+use crate::dataset::dataset_draft::ResponseDraft;
 use crate::names::RowRole;
 use crate::names::response_name::ResponseNameError;
 use crate::number_format::counted;
-use crate::units::number;
+use crate::number_format::number;
 
 /// A missing or contradictory fact about a model, a condition or the dataset.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -124,7 +124,7 @@ pub enum ProblemKind {
         "{} given for {} of the model; give one name for each, in the file's order",
         counted(*given, "name"), counted(*found, &side.to_string())
     )]
-    Names {
+    NameCount {
         side: ChannelSide,
         /// Number of names in the rules.
         given: usize,
@@ -160,7 +160,7 @@ pub enum ProblemKind {
     #[error("condition {condition} has {found} nominal models; it needs exactly one")]
     Nominal { condition: i64, found: usize },
     #[error("duplicate name \"{name}\" among the {bundle} models of condition {condition}")]
-    Name {
+    DuplicateName {
         condition: i64,
         /// "physics" or "identified".
         bundle: &'static str,
@@ -239,14 +239,14 @@ impl ProblemKind {
             Self::ResponseUnmatched { .. } => "response-unmatched",
             Self::ResponseName { .. } => "response-name",
             Self::ResponseTwice { .. } => "response-twice",
-            Self::Names { .. } => "names",
+            Self::NameCount { .. } => "names",
             Self::NoCondition => "no-condition",
             Self::NoRole => "no-role",
             Self::NoAirspeed => "no-airspeed",
             Self::Contradiction { .. } => "contradiction",
             Self::NameContradiction { .. } => "name-contradiction",
             Self::Nominal { .. } => "nominal",
-            Self::Name { .. } => "duplicate-name",
+            Self::DuplicateName { .. } => "duplicate-name",
             Self::MeasuredPhysics(_) => "measured-physics",
             Self::Grids { .. } => "grids",
             Self::Dataset(_) => "dataset",

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::units::number;
+use crate::number_format::number;
 
 /// Minimum lower end of a band \[rad/s\]: a period of 17 hours.
 pub const LEAST_OMEGA: f64 = 1e-4;

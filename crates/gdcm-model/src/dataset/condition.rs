@@ -1,41 +1,13 @@
-//! A flight condition with its two bundles of models and its flight records; their checks.
+//! A flight condition with its two bundles of models and its flight records, checked at
+//! construction.
 
-pub use super::condition_record::{ChannelRemedy, ConditionRecord, RecordKind};
+pub use super::channel_remedy::ChannelRemedy;
+pub use super::condition_record::{ConditionRecord, RecordKind};
+pub use super::flight_state::{FlightState, FlightStateError};
 
 use super::model::Model;
 use super::model_id::{BundleKind, ConditionId};
-use crate::units::number;
-
-/// Identification and flight state of a condition: name, airspeed, altitude, weight.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FlightState {
-    pub id: ConditionId,
-    pub name: String,
-    /// True airspeed \[kt\].
-    pub airspeed_kt: f64,
-    /// Altitude class ("low", "high").
-    pub altitude: Option<String>,
-    pub altitude_ft: Option<f64>,
-    /// Weight class ("low", "high").
-    pub weight: Option<String>,
-    pub mass_kg: Option<f64>,
-}
-
-impl FlightState {
-    /// Creates a condition with only an airspeed \[kt\], named after its identifier.
-    pub fn at(id: ConditionId, airspeed_kt: f64) -> Self {
-        let name = format!("condition {id}");
-        Self {
-            id,
-            name,
-            airspeed_kt,
-            altitude: None,
-            altitude_ft: None,
-            weight: None,
-            mass_kg: None,
-        }
-    }
-}
+use crate::number_format::number;
 
 /// A flight condition: physics models, exactly one of them nominal; identified models; and flight
 /// records.
@@ -45,27 +17,21 @@ impl FlightState {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Condition {
     flight_state: FlightState,
-    /// Physics models, then identified models.
+    /// Physics models, then identified models: indexed by [`BundleKind`].
     bundles: [Vec<Model>; 2],
+    /// Index of the nominal model among the physics models.
     nominal: usize,
     records: Vec<ConditionRecord>,
-    /// Indices of the physics and the identified models, sorted by name for binary search: linear
-    /// look-ups would be slow for thousands of models.
+    /// For each bundle, the indices of its models, sorted by name for binary search: linear look-ups
+    /// would be slow for thousands of models.
     by_name: [Vec<usize>; 2],
 }
 
 /// Error for data that do not form a flight condition.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ConditionError {
-    /// A value that is not finite, or a negative airspeed or mass.
-    #[error("{field}: expected a finite number{bound}, found {}", number(*value))]
-    FlightState {
-        /// Quantity and unit.
-        field: &'static str,
-        /// " not below zero" if negative values are not permitted, otherwise empty.
-        bound: &'static str,
-        value: f64,
-    },
+    #[error(transparent)]
+    FlightState(#[from] FlightStateError),
     #[error("the {0} bundle: expected at least one model, found none")]
     EmptyBundle(BundleKind),
     #[error(
@@ -116,7 +82,7 @@ impl Condition {
         physics: Vec<Model>,
         identified: Vec<Model>,
     ) -> Result<Self, ConditionError> {
-        check_flight_state(&flight_state)?;
+        flight_state.check()?;
         let bundles = [physics, identified];
         for (bundle, models) in BundleKind::BOTH.into_iter().zip(&bundles) {
             check_bundle(bundle, models)?;
@@ -236,34 +202,6 @@ fn indices_by_name(models: &[Model]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..models.len()).collect();
     order.sort_by(|a, b| models[*a].name.cmp(&models[*b].name));
     order
-}
-
-fn check_flight_state(state: &FlightState) -> Result<(), ConditionError> {
-    check_not_negative("airspeed [kt]", Some(state.airspeed_kt))?;
-    check_finite("altitude [ft]", state.altitude_ft)?;
-    check_not_negative("mass [kg]", state.mass_kg)
-}
-
-fn check_finite(field: &'static str, value: Option<f64>) -> Result<(), ConditionError> {
-    match value {
-        Some(value) if !value.is_finite() => Err(ConditionError::FlightState {
-            field,
-            bound: "",
-            value,
-        }),
-        _ => Ok(()),
-    }
-}
-
-fn check_not_negative(field: &'static str, value: Option<f64>) -> Result<(), ConditionError> {
-    match value {
-        Some(value) if !value.is_finite() || value < 0.0 => Err(ConditionError::FlightState {
-            field,
-            bound: " not below zero",
-            value,
-        }),
-        _ => Ok(()),
-    }
 }
 
 /// Checks a bundle: unique names, and at least one physics model. An identified bundle may be

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use serde::{Deserialize, Serialize};
+use super::channel_remedy::ChannelRemedy;
 
 /// Reference to a flight record: the file with its samples, and how they are used.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -63,8 +63,8 @@ impl ConditionRecord {
         Ok(())
     }
 
-    /// Returns whether both entries refer to the same record of the same file. Only file names are
-    /// compared, because the paths may be relative to different folders.
+    /// Returns whether both entries refer to the same record of the same file. Of the paths, only
+    /// the file names are compared, because the folders may be relative to different places.
     fn is_of_same_source(&self, other: &ConditionRecord) -> bool {
         let contents_differ = match (&self.sha256, &other.sha256) {
             (Some(a), Some(b)) => a != b,
@@ -148,38 +148,5 @@ impl RecordKind {
     /// Parses a keyword; `None` for an unknown word.
     pub fn from_word(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| kind.word() == word)
-    }
-}
-
-/// Correction of a channel in a record that is inconsistent with the other records (M14.16).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct ChannelRemedy {
-    /// Extra logging delay \[s\] relative to the other records; it is removed.
-    pub delay_s: f64,
-    /// Factor on the channel's samples, in addition to the unit conversion.
-    pub factor: f64,
-}
-
-impl ChannelRemedy {
-    /// No correction: no delay, factor 1.
-    pub const NONE: Self = Self {
-        delay_s: 0.0,
-        factor: 1.0,
-    };
-
-    /// Returns the correction that applies `self`, then `next`.
-    #[must_use]
-    pub fn then(self, next: Self) -> Self {
-        Self {
-            delay_s: self.delay_s + next.delay_s,
-            factor: self.factor * next.factor,
-        }
-    }
-}
-
-impl Default for ChannelRemedy {
-    fn default() -> Self {
-        Self::NONE
     }
 }

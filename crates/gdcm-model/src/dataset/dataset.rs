@@ -211,7 +211,8 @@ impl Dataset {
         )
     }
 
-    /// Returns the input names and the output names.
+    /// Returns the names of all channels: inputs, then outputs. The names of a single response come
+    /// in the other order ([`Self::channel_names`]).
     pub fn names_of_channels(&self) -> (Vec<String>, Vec<String>) {
         (
             channel_names(&self.header.inputs),
@@ -219,7 +220,7 @@ impl Dataset {
         )
     }
 
-    /// Returns the channel names of a response, output first.
+    /// Returns the channel names of a response: output, then input.
     pub fn channel_names(&self, pair: Pair) -> (String, String) {
         (
             self.header.outputs[pair.output].name.clone(),

@@ -4,7 +4,7 @@ use nalgebra::Complex;
 
 use super::limits::{AVERAGES, WINDOW_S};
 use super::pair_table::{Pair, PairTable};
-use crate::units::number;
+use crate::number_format::number;
 
 /// A frequency response measured (or exported) at `N` frequencies, given instead of a state-space
 /// model.

@@ -80,7 +80,7 @@ pub(super) struct Elimination<'a> {
 const GROUP: usize = 8;
 
 /// Maximum `|s| / alpha`: beyond it, its square could overflow.
-const LARGEST: f64 = 1e150;
+const LARGEST_SHIFT: f64 = 1e150;
 
 impl WithSimd for Elimination<'_> {
     type Output = FrequencyResponse;
@@ -126,7 +126,7 @@ impl GroupShifts {
         };
         for lane in 0..GROUP {
             let shift = group[lane.min(group.len() - 1)] * frequency_scale;
-            let is_too_large = shift.norm() > LARGEST;
+            let is_too_large = shift.norm() > LARGEST_SHIFT;
             if !is_too_large {
                 shifts.re[lane] = shift.re;
                 shifts.im[lane] = shift.im;

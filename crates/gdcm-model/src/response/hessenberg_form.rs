@@ -216,6 +216,7 @@ impl ScaledSystem {
         let inputs = self.b.ncols();
         let outputs = self.c.nrows();
         let mut rows = DMatrix::zeros(order + inputs, order + outputs);
+        // Each matrix with its first row and column in `[A B; C D]`.
         for (matrix, row, column) in [
             (self.a, 0, 0),
             (self.b, 0, order),
@@ -231,7 +232,8 @@ impl ScaledSystem {
 
 /// The reduced system matrix `[G K; L D']`: transposed, with the states in reversed order.
 struct ReversedSystem {
-    /// The matrix before transposition and reversal, with each row stored as a column.
+    /// The matrix before transposition and reversal, with each row stored as a column: its index
+    /// order is therefore already that of the transposed matrix.
     rows: DMatrix<f64>,
     order: usize,
     inputs: usize,
@@ -243,6 +245,8 @@ impl ReversedSystem {
         self.rows[(self.reversed(row), self.reversed(column))]
     }
 
+    /// Returns the index before the reversal of the states; inputs and outputs follow the states in
+    /// the original order.
     fn reversed(&self, index: usize) -> usize {
         if index < self.order {
             self.order - 1 - index

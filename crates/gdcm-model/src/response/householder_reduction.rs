@@ -71,8 +71,9 @@ fn clear_column(rows: &mut DMatrix<f64>, states: usize, column: usize, first: us
     }
 }
 
-/// Applies the reflection `I - beta v v'` of the given states from both sides: `y` has an entry per
-/// row of the matrix, `v` and `w` have an entry per column.
+/// Applies the reflection `I - beta v v'` of the given states from both sides, with y, w and gamma
+/// as in [`HouseholderReduction`]: `y` has an entry per row of the matrix, `v` and `w` have an entry
+/// per column. Only the rows of these states change by `v w'`.
 #[inline(always)]
 fn reflect(rows: &mut DMatrix<f64>, states: Range<usize>, v: &[f64], beta: f64) {
     let width = rows.nrows();

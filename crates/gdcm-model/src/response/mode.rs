@@ -1,30 +1,24 @@
 //! Modes of a model: poles, natural frequency, damping, and state participation.
 //!
 //! ```text
-//! 1  balance A; A = Q T Q^H, T triangular with the poles lambda_k on its diagonal
-//! 2  for each k: x_k = 1, x_j = -(sum_(j < i <= k) t_ji x_i) / (t_jj - lambda_k), j = k - 1 ... 1;    v = Q x
-//! 3              y_k = 1, y_j = -(sum_(k <= i < j) y_i t_ij) / (t_jj - lambda_k), j = k + 1 ... n;    w = y Q^H
-//! 4  w v = 1: the pole moves by |w| |v| per unit change in A; beyond a limit it is near defective
-//! 5  participation of state i: |w_i v_i| / sum_j |w_j v_j|, independent of the state units
-//! 6  residue of output i over the inputs together: (C v)_i |w B|
+//! 1  balance A; A = Q T Q^H, T triangular with the eigenvalues on its diagonal (schur_form.rs)
+//! 2  for each eigenvalue lambda: the pole is lambda, or ln(1 + lambda) / T in discrete time (s_plane.rs)
+//! 3  participation of the states, and residues of the outputs, from its eigenvectors (eigenvectors.rs)
+//! 4  the conjugate of a pole above the real axis: conjugate residues, the same participation
 //! ```
-//!
-//! Eigenvectors: Golub & Van Loan, "Matrix Computations", 4th ed. 2013, 7.6.4. Participation:
-//! Perez-Arriaga, Verghese & Schweppe, "Selective modal analysis", IEEE Trans. Power Apparatus and
-//! Systems 101(9), 1982.
 
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::Complex;
 
 use super::balancing::balance;
+use super::eigenvectors::Eigenvectors;
+pub use super::eigenvectors::NearDefective;
 use super::large_entry::LargeEntry;
 use super::s_plane::SPlane;
 use super::schur_form::SchurForm;
 use crate::dataset::{Dynamics, StateSpace};
 
-/// Maximum displacement of a pole per unit change in the balanced A for which eigenvectors are
-/// meaningful. In floating point, a double pole with a single eigenvector has about 1e8, a well
-/// separated pole less than 1e3.
-const NEAR_DEFECTIVE: f64 = 1e6;
+/// Rounding error of an eigenvalue, relative to the number of states times the norm of A.
+const ROUNDING_PER_STATE: f64 = 4.0 * f64::EPSILON;
 
 /// A pole of a model and its motion.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,19 +39,6 @@ pub struct Mode {
     /// row in the residue matrix, its phase is relative to the other outputs. `None` for a
     /// near-defective pole.
     pub residues: Option<Vec<Complex<f64>>>,
-}
-
-/// Error for a pole whose eigenvectors, and thus the state participation, are dominated by rounding
-/// errors: the pole coincides or shares an eigenvector with another pole, as for two identical
-/// sensors.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "the pole cannot be distinguished from a neighbouring pole: a relative change of 1e-16 in A \
-    moves it {movement:.0e} times as far, so that its state participation is meaningless"
-)]
-pub struct NearDefective {
-    /// Displacement of the pole per unit change in A.
-    pub movement: f64,
 }
 
 /// Reason why the modes of a model are unavailable.
@@ -121,12 +102,13 @@ pub fn modes(model: &StateSpace) -> Result<Vec<Mode>, ModesError> {
     let mut c = model.c().clone();
     balance(&mut a, &mut b, &mut c);
     let form = SchurForm::new(&a).ok_or(ModesError::NotConverged)?;
-    let rounding = 4.0 * f64::EPSILON * a.nrows() as f64 * a.norm();
+    let rounding = ROUNDING_PER_STATE * a.nrows() as f64 * a.norm();
     let mut modes: Vec<Mode> = Vec::with_capacity(a.nrows());
     // The last mode above the real axis, until its conjugate, the next eigenvalue, has been added.
     let mut upper_mode: Option<Mode> = None;
     for (index, eigenvalue) in form.eigenvalues().into_iter().enumerate() {
         if let Some(upper) = upper_mode.take() {
+            // Step 4.
             let residues = upper
                 .residues
                 .map(|residues| residues.iter().map(Complex::conj).collect());
@@ -138,10 +120,11 @@ pub fn modes(model: &StateSpace) -> Result<Vec<Mode>, ModesError> {
         } else {
             eigenvalue
         };
+        // Step 2.
         let Some(pole) = plane.value(eigenvalue) else {
             continue;
         };
-        // Steps 2 to 6.
+        // Step 3.
         let vectors = Eigenvectors::new(&form, index);
         let residues = vectors
             .as_ref()
@@ -178,64 +161,8 @@ pub fn modes_of(dynamics: &Dynamics) -> Result<Vec<Mode>, ModesError> {
     }
 }
 
-/// Right and left eigenvectors for an eigenvalue: `A v = lambda v`, `w A = lambda w` and `w v = 1`.
-struct Eigenvectors {
-    /// `v`.
-    right: DVector<Complex<f64>>,
-    /// `w`, as a column.
-    left: DVector<Complex<f64>>,
-}
-
-impl Eigenvectors {
-    /// Computes the eigenvectors for the eigenvalue at diagonal position `index` of `T` (steps 2 to
-    /// 4).
-    ///
-    /// # Errors
-    /// [`NearDefective`] if they are dominated by rounding errors.
-    fn new(form: &SchurForm, index: usize) -> Result<Self, NearDefective> {
-        let x = form.right(index);
-        let y = form.left(index);
-        let movement = x.norm() * y.norm();
-        // `!movement.le(...)` is also true for NaN, which results if the eigenvectors overflow.
-        if !movement.le(&NEAR_DEFECTIVE) {
-            return Err(NearDefective { movement });
-        }
-        Ok(Self {
-            right: &form.q * x,
-            left: form.q.conjugate() * y,
-        })
-    }
-
-    /// Returns the state participation (state index, share) in descending order (step 5).
-    fn participation(&self) -> Vec<(usize, f64)> {
-        let products: Vec<f64> = self
-            .right
-            .iter()
-            .zip(&self.left)
-            .map(|(v, w)| (v * w).norm())
-            .collect();
-        let sum: f64 = products.iter().sum();
-        let mut shares: Vec<(usize, f64)> = products
-            .into_iter()
-            .map(|product| product / sum)
-            .enumerate()
-            .collect();
-        shares.sort_by(|a, b| b.1.total_cmp(&a.1));
-        shares
-    }
-
-    /// Returns the residue `(C v)_i |w B|` of each output (step 6).
-    fn residues(&self, b: &DMatrix<f64>, c: &DMatrix<f64>) -> Vec<Complex<f64>> {
-        let input_norm = (b.map(Complex::from).transpose() * &self.left).norm();
-        (c.map(Complex::from) * &self.right)
-            .iter()
-            .map(|output| output * input_norm)
-            .collect()
-    }
-}
-
-/// Returns the eigenvalues of A, computed without balancing: \[rad/s\] in continuous time, `z` in
-/// discrete time. Returns `None` if the Schur iteration does not converge.
+/// Returns the eigenvalues of A, computed without balancing: \[rad/s\] in continuous time, but `z`
+/// in discrete time, unlike the poles of [`modes`]. Returns `None` if the Schur iteration does not converge.
 #[must_use]
 pub fn poles(model: &StateSpace) -> Option<Vec<Complex<f64>>> {
     let schur =
@@ -245,7 +172,7 @@ pub fn poles(model: &StateSpace) -> Option<Vec<Complex<f64>>> {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::dmatrix;
+    use nalgebra::{DMatrix, dmatrix};
     use proptest::prelude::*;
 
     use super::*;

@@ -1,4 +1,5 @@
-//! Magnitude and phase of responses, as compared with one another; responses without them.
+//! Magnitude and phase of responses, as compared with one another, and the responses that have none
+//! or are numerically zero.
 
 use nalgebra::Complex;
 

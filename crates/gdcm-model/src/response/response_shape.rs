@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use nalgebra::Complex;
 
-use super::curve_values::{nearest_turn_offset, unwrap, wrap};
-use super::lead_filter::GainDelay;
+use super::gain_delay::GainDelay;
+use super::phase_unwrapping::{nearest_turn_offset, unwrap, wrap};
 use crate::units::ratio_to_db;
 
 /// Magnitude and unwrapped phase of a response, for plots (M2).

@@ -72,13 +72,14 @@ pub fn transmission_zeros(model: &StateSpace, pair: Pair) -> Result<Transmission
         return Err(ZerosError::OutsideModel { pair });
     }
     let plane = SPlane::new(model);
-    // The last `controllable` makes A Hessenberg again, as step 3 requires.
+    // Steps 1 and 2. The last `controllable` makes A Hessenberg again, as step 3 requires.
     let minimal = SingleResponse::new(model, plane, pair)
         .controllable()
         .transposed()
         .controllable()
         .transposed()
         .controllable();
+    // Step 3.
     let ReducedResponse {
         model: reduced,
         mut infinite,
@@ -88,6 +89,7 @@ pub fn transmission_zeros(model: &StateSpace, pair: Pair) -> Result<Transmission
     let form = SchurForm::new(&closed).ok_or(ZerosError::NotConverged)?;
     let mut finite = Vec::with_capacity(closed.nrows());
     for zero in form.eigenvalues().into_iter().filter(|zero| zero.im >= 0.0) {
+        // Step 5.
         let zero = polished(&minimal, zero);
         let has_conjugate = zero.im > 0.0;
         match plane.value(zero) {

@@ -56,16 +56,6 @@ impl Segment {
     }
 }
 
-/// Subtracts its mean from each column.
-#[must_use]
-pub fn centred(mut samples: DMatrix<f64>) -> DMatrix<f64> {
-    for mut column in samples.column_iter_mut() {
-        let mean = column.mean();
-        column.add_scalar_mut(-mean);
-    }
-    samples
-}
-
 /// A channel in flight records, by index and name.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Signal {
@@ -79,4 +69,14 @@ impl fmt::Display for Signal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.name)
     }
+}
+
+/// Subtracts its mean from each column.
+#[must_use]
+pub fn centred(mut samples: DMatrix<f64>) -> DMatrix<f64> {
+    for mut column in samples.column_iter_mut() {
+        let mean = column.mean();
+        column.add_scalar_mut(-mean);
+    }
+    samples
 }

@@ -49,6 +49,7 @@ struct UnitRow {
     spellings: &'static [&'static str],
 }
 
+/// Creates a row of [`UNITS`].
 const fn unit(dimension: Dimension, size: f64, spellings: &'static [&'static str]) -> UnitRow {
     UnitRow {
         dimension,
@@ -59,7 +60,10 @@ const fn unit(dimension: Dimension, size: f64, spellings: &'static [&'static str
 
 /// All supported units. `rps` is not supported: it may mean radians or revolutions per second.
 const UNITS: &[UnitRow] = {
-    use Dimension::*;
+    use Dimension::{
+        Acceleration, Angle, AngularAcceleration, AngularRate, Force, Frequency, Length, Level,
+        Part, Speed, Time,
+    };
     &[
         unit(Angle, 1.0, &["rad", "radian"]),
         unit(Angle, 1e-3, &["mrad"]),
@@ -132,6 +136,7 @@ impl PhysicalUnit {
     }
 }
 
+/// Returns the row with this spelling; `None` if there is none.
 fn find_unit(spelling: &str) -> Option<&'static UnitRow> {
     UNITS.iter().find(|row| row.spellings.contains(&spelling))
 }

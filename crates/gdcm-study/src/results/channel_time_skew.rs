@@ -20,7 +20,7 @@
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::{Band, BundleKind, Condition, Dataset, Dynamics, Pair};
-use gdcm_model::response::curve_values::unwrap;
+use gdcm_model::response::phase_unwrapping::unwrap;
 use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
 use gdcm_model::simulation::Signal;
 use gdcm_model::statistics::median;

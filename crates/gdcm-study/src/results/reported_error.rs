@@ -4,7 +4,7 @@
 use gdcm_method::uncertainty::spread::{CoherenceError, ReportedUncertainty};
 use gdcm_method::uncertainty::{IdentificationSource, Scalar, VarianceComponent};
 use gdcm_model::dataset::{BundleKind, Dynamics, Pair, PairTable};
-use gdcm_model::response::curve_values::coherence_at;
+use gdcm_model::response::interpolation::coherence_at;
 use gdcm_model::statistics::median;
 
 use super::analysis::{Analysis, ConditionAnalysis};

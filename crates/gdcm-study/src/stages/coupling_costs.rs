@@ -19,7 +19,7 @@ use gdcm_method::schedule::CostChange;
 use gdcm_model::dataset::{Band, BundleKind, ConditionId, Model, Pair, PairTable};
 use gdcm_model::executor::{Sequential, each};
 use gdcm_model::progress::{Cancelled, Portion, Progress, Shares};
-use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::response::frequency_grid::log_spaced;
 use gdcm_model::response::{FrequencyGrid, PreparedModel};
 
 use super::condition_stages::SUBSTITUTION_PROOF;

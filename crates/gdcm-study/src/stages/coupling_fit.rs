@@ -14,7 +14,7 @@ use gdcm_model::dataset::model::{ContentHash, ModelBands};
 use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dynamics, Model, PairTable};
 use gdcm_model::executor::Executor;
 use gdcm_model::progress::{Cancelled, Progress};
-use gdcm_model::response::curve_values::coherence_at;
+use gdcm_model::response::interpolation::coherence_at;
 use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
 
 use super::condition_responses::GridKey;

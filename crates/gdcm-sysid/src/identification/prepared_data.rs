@@ -8,7 +8,7 @@ use gdcm_model::dataset::StateSpace;
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::executor::Executor;
 use gdcm_model::progress::Shares;
-use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::response::frequency_grid::log_spaced;
 use gdcm_model::simulation::{FlightRecord, Segment, centred};
 
 use super::candidates::SubspaceSettings;

@@ -7,7 +7,7 @@ use serde_json::Value;
 use gdcm_model::dataset::Pair;
 use gdcm_model::executor::Sequential;
 use gdcm_model::progress::{Shares, Unobserved};
-use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::response::frequency_grid::log_spaced;
 use gdcm_model::simulation::{FlightRecord, Segment};
 use gdcm_model::statistics::median;
 

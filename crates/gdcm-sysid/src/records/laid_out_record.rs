@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 
 use gdcm_model::dataset::Dataset;
 use gdcm_model::dataset::condition::{ChannelRemedy, ConditionRecord};
-use gdcm_model::names::name_pattern::standard_patterns;
+use gdcm_model::names::standard_patterns;
 use gdcm_model::simulation::FlightRecord;
 
 use super::layout_problem::{LayoutCaution, LayoutProblem};

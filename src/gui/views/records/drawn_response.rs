@@ -4,7 +4,7 @@ use nalgebra::Complex;
 
 use gdcm_model::dataset::{Pair, StateSpace};
 use gdcm_model::response::evaluate;
-use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::response::frequency_grid::log_spaced;
 use gdcm_model::response::response_shape::ResponseShape;
 use gdcm_model::units::neper_to_db;
 use gdcm_sysid::diagnostics::bands::TWO_SIDED_95;

@@ -2,8 +2,8 @@
 //! becomes text.
 
 use gdcm_model::dataset::condition::{ConditionRecord, FlightState, RecordKind};
+use gdcm_model::dataset::dataset_draft::{ConditionDraft, DatasetDraft, ModelDraft};
 use gdcm_model::dataset::location::Location;
-use gdcm_model::dataset::unchecked_dataset::{ConditionDraft, DatasetDraft, ModelDraft};
 use gdcm_model::dataset::{BundleKind, Channel, Condition, ConditionId, Dataset};
 
 use super::text::{

@@ -3,13 +3,11 @@
 use nalgebra::DMatrix;
 
 use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::dataset::dataset_draft::{BandsDraft, ModelDraft, ResponseArray, ResponseDraft};
 use gdcm_model::dataset::location::Location;
 use gdcm_model::dataset::measured_response::Estimate;
 use gdcm_model::dataset::model::{Origin, Provenance};
 use gdcm_model::dataset::state_space::Timing;
-use gdcm_model::dataset::unchecked_dataset::{
-    BandsDraft, ModelDraft, ResponseArray, ResponseDraft,
-};
 use gdcm_model::dataset::{BundleKind, Model};
 
 use super::text::{BandsText, ModelText, ResponseText, SideText, SourceText};

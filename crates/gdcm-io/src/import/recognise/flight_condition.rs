@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use gdcm_model::assembly::found_model::Facts;
 use gdcm_model::dataset::model::Origin;
-use gdcm_model::names::name_facts::RowRole;
+use gdcm_model::names::RowRole;
 use gdcm_model::units::number;
 
 use super::record::Record;

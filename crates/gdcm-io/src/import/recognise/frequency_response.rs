@@ -3,9 +3,9 @@
 use std::f64::consts::TAU;
 
 use gdcm_model::assembly::FoundModel;
+use gdcm_model::dataset::dataset_draft::{ModelDraft, ResponseArray, ResponseDraft};
 use gdcm_model::dataset::measured_response::Estimate;
 use gdcm_model::dataset::model::Origin;
-use gdcm_model::dataset::unchecked_dataset::{ModelDraft, ResponseArray, ResponseDraft};
 use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit};
 
 use super::delays::refuse_delays;

@@ -4,10 +4,10 @@
 use nalgebra::DMatrix;
 
 use gdcm_model::assembly::FoundModel;
+use gdcm_model::dataset::dataset_draft::ModelDraft;
 use gdcm_model::dataset::limits::MOST_STATES;
 use gdcm_model::dataset::model::Provenance;
 use gdcm_model::dataset::state_space::Timing;
-use gdcm_model::dataset::unchecked_dataset::ModelDraft;
 use gdcm_model::units::number;
 
 use super::delays::timing_of;

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use gdcm_model::dataset::StateSpace;
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::executor::Sequential;
-use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::response::frequency_grid::log_spaced;
 use gdcm_model::simulation::{FirstOrderHold, LowPass, Segment};
 use gdcm_sysid::likelihood::noise_covariance::NoiseCovariance;
 use gdcm_sysid::spectra::cut_off::CutOff;

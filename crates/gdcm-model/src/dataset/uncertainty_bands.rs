@@ -1,4 +1,5 @@
-//! Uncertainty of a model's response, as estimated by the identification.
+//! Uncertainty bands of a model's response over frequency, as estimated by the identification; not
+//! frequency bands (`band.rs`).
 
 use sha2::{Digest, Sha256};
 

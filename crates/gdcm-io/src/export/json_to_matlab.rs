@@ -6,7 +6,8 @@
 
 use serde_json::Value as Json;
 
-use super::matlab_values::{Fields, LONGEST_NAME, cell_of_texts, row};
+use super::matlab_names::valid_name;
+use super::matlab_values::{Fields, cell_of_texts, row};
 use crate::formats::strides::first_index_fastest;
 use crate::formats::variables::{Array, CellArray, ElementKind, StructArray, Value};
 
@@ -222,23 +223,6 @@ fn names_of<'j>(objects: &[&'j Json]) -> Vec<&'j str> {
         }
     }
     names
-}
-
-/// Returns a name that MATLAB accepts for a field: other characters than letters and digits become
-/// _, the name starts with a letter, and it is cut to [`LONGEST_NAME`].
-fn valid_name(name: &str) -> String {
-    let mut valid = String::new();
-    if !name.starts_with(|first: char| first.is_ascii_alphabetic()) {
-        valid.push('x');
-    }
-    for letter in name.chars() {
-        if valid.len() == LONGEST_NAME {
-            break;
-        }
-        let is_valid = letter.is_ascii_alphanumeric();
-        valid.push(if is_valid { letter } else { '_' });
-    }
-    valid
 }
 
 /// Returns the dimensions of an array in MATLAB, of which there are at least two; a list becomes a

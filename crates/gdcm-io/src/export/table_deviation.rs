@@ -1,24 +1,26 @@
-//! Maximum error of linear interpolation in a table.
+//! Maximum deviation of a table, interpolated linearly, from the curve that it samples.
 
-/// Number of grid intervals in the search for the maximum error.
+/// Number of grid intervals in the search for the maximum deviation.
 const GRID: usize = 2000;
 /// Number of golden-section steps; each multiplies the interval by 0.618.
 const STEPS: usize = 60;
 
-/// Maximum error of a table, with its position.
+/// Maximum deviation of a table from its curve, with its position.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct TableError {
-    /// Error at that airspeed, in the unit of the `measure` passed to [`Self::greatest`].
-    pub(super) error: f64,
+pub(super) struct TableDeviation {
+    /// Deviation at `airspeed_kt`, in the unit of the `measure` passed to [`Self::greatest`].
+    pub(super) value: f64,
     /// Airspeed \[kt\] at which the maximum occurs.
     pub(super) airspeed_kt: f64,
 }
 
-impl TableError {
-    /// Finds the maximum error within `range_kt` of a table that samples `curve` at `points`;
-    /// `measure` returns the error of an interpolated value, given the exact value.
+impl TableDeviation {
+    /// Finds the maximum deviation within `range_kt` of a table that samples `curve` at the
+    /// airspeeds `points`; `measure` returns the deviation of an interpolated value, given the exact
+    /// value.
     ///
-    /// A grid search is refined by a golden-section search.
+    /// A grid search is refined by a golden-section search in the two intervals beside the greatest
+    /// grid value.
     pub(super) fn greatest(
         points: &[f64],
         range_kt: [f64; 2],
@@ -26,23 +28,23 @@ impl TableError {
         measure: impl Fn(f64, f64) -> f64,
     ) -> Self {
         let values: Vec<f64> = points.iter().map(|&point| curve(point)).collect();
-        let error_at = |kt: f64| Self {
-            error: measure(interpolated(points, &values, kt), curve(kt)),
+        let deviation_at = |kt: f64| Self {
+            value: measure(interpolated(points, &values, kt), curve(kt)),
             airspeed_kt: kt,
         };
         let [least, most] = range_kt;
         let step = (most - least) / GRID as f64;
-        let mut greatest = error_at(least);
+        let mut greatest = deviation_at(least);
         for index in 1..=GRID {
-            greatest = greatest.or_greater(error_at(least + index as f64 * step));
+            greatest = greatest.or_greater(deviation_at(least + index as f64 * step));
         }
         let mut low = (greatest.airspeed_kt - step).max(least);
         let mut high = (greatest.airspeed_kt + step).min(most);
         let golden_ratio = (5_f64.sqrt() - 1.0) / 2.0;
         for _ in 0..STEPS {
-            let left = error_at(high - golden_ratio * (high - low));
-            let right = error_at(low + golden_ratio * (high - low));
-            if left.error > right.error {
+            let left = deviation_at(high - golden_ratio * (high - low));
+            let right = deviation_at(low + golden_ratio * (high - low));
+            if left.value > right.value {
                 greatest = greatest.or_greater(left);
                 high = right.airspeed_kt;
             } else {
@@ -53,9 +55,9 @@ impl TableError {
         greatest
     }
 
-    /// Returns the larger of two errors; `self` if they are equal.
+    /// Returns the larger of two deviations; `self` if they are equal.
     pub(super) fn or_greater(self, other: Self) -> Self {
-        if other.error > self.error {
+        if other.value > self.value {
             other
         } else {
             self
@@ -81,27 +83,27 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_error_of_a_parabola_is_greatest_in_the_middle() {
+    fn the_deviation_of_a_parabola_is_greatest_in_the_middle() {
         // Between 0 and h, the chord of x^2 is at most h^2/4 above the curve.
-        let found = TableError::greatest(
+        let found = TableDeviation::greatest(
             &[0.0, 10.0, 16.0],
             [0.0, 16.0],
             |x| x * x,
             |a, b| (a - b).abs(),
         );
         assert!(
-            (found.error - 25.0).abs() < 1e-12 && (found.airspeed_kt - 5.0).abs() < 1e-5,
+            (found.value - 25.0).abs() < 1e-12 && (found.airspeed_kt - 5.0).abs() < 1e-5,
             "{found:?}"
         );
     }
 
     #[test]
     fn beyond_the_table_its_end_values_count() {
-        let found = TableError::greatest(&[2.0, 4.0], [0.0, 4.0], |x| x, |a, b| (a - b).abs());
+        let found = TableDeviation::greatest(&[2.0, 4.0], [0.0, 4.0], |x| x, |a, b| (a - b).abs());
         assert_eq!(
             found,
-            TableError {
-                error: 2.0,
+            TableDeviation {
+                value: 2.0,
                 airspeed_kt: 0.0
             }
         );

@@ -10,13 +10,15 @@ use gdcm_study::Analysis;
 use gdcm_words::assessment::not_assessed_text;
 use gdcm_words::caution::failure_text;
 
-use super::channel_names::{ChannelNames, rows, without_empty};
-use super::condition::condition_json;
+use super::condition_json::condition_json;
 use super::couplings::couplings;
+use super::labelled_analysis::LabelledAnalysis;
+use super::pair_rows::rows;
 use super::schedule::schedule_json;
 use super::uncertainty::uncertainty;
 use super::{NAME, VERSION};
 use crate::files::export_contents::ExportContents;
+use crate::json_empty_members::without_empty;
 
 /// Returns the content of `corrections.json`: all results of the chosen conditions, with the
 /// schedule of the whole study. The file format documentation describes each key.
@@ -24,7 +26,7 @@ use crate::files::export_contents::ExportContents;
 /// `sha256` is the hash of the dataset's file.
 pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<ConditionId>) -> Value {
     let dataset = &analysis.study.dataset;
-    let names = ChannelNames::new(analysis);
+    let names = LabelledAnalysis::new(analysis);
     let mut conditions = Vec::new();
     let mut failed = Vec::new();
     let mut assessed = Vec::new();

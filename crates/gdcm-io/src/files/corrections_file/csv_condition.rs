@@ -1,4 +1,4 @@
-//! Results of a condition for CSV files (RFC 4180).
+//! Results of a condition as cells of the CSV files.
 
 use std::collections::BTreeSet;
 
@@ -55,7 +55,7 @@ impl ConditionResults<'_> {
         self.result().map(|result| &result.correction)
     }
 
-    /// Returns the error bar of a result; `None` if it was not computed.
+    /// Returns the error bar of a scalar result; `None` if it was not computed.
     pub(super) fn bar(&self, scalar: Scalar) -> Option<&Bar> {
         self.analysis
             .uncertainty
@@ -63,19 +63,26 @@ impl ConditionResults<'_> {
             .bar(self.condition.id(), scalar)
     }
 
-    /// Formats the lower (`end` = 0) or upper (`end` = 1) bound of the total interval: a factor for
-    /// a gain, seconds for a delay. Empty if there is no interval.
-    pub(super) fn end(&self, scalar: Scalar, end: usize) -> String {
-        let ends = match &self.analysis.uncertainty {
-            Some(uncertainty) => self
-                .bar(scalar)
-                .and_then(|bar| bar.interval(uncertainty.level)),
-            None => None,
-        };
-        match ends {
-            Some(ends) if scalar.is_delay() => cell(Some(ends[end])),
-            Some(ends) => cell(Some(ends[end].exp())),
-            None => cell(None),
+    /// Formats the lower end of the total interval: a factor for a gain, seconds for a delay. Empty if
+    /// there is no interval.
+    pub(super) fn lower_end(&self, scalar: Scalar) -> String {
+        cell(self.interval(scalar).map(|[lower, _]| lower))
+    }
+
+    /// Formats the upper end of the total interval, as [`Self::lower_end`].
+    pub(super) fn upper_end(&self, scalar: Scalar) -> String {
+        cell(self.interval(scalar).map(|[_, upper]| upper))
+    }
+
+    /// Returns the total interval: factors for a gain, whose bar is an interval of its natural
+    /// logarithm; seconds for a delay.
+    fn interval(&self, scalar: Scalar) -> Option<[f64; 2]> {
+        let uncertainty = self.analysis.uncertainty.as_ref()?;
+        let ends = self.bar(scalar)?.interval(uncertainty.level)?;
+        if scalar.is_delay() {
+            Some(ends)
+        } else {
+            Some(ends.map(f64::exp))
         }
     }
 

@@ -12,14 +12,16 @@ use gdcm_words::caution::caution_text;
 use gdcm_words::convention_doubt::doubt_text;
 use gdcm_words::leads::lead_cautions;
 
-use super::channel_names::{ChannelNames, rows, without_empty};
 use super::couplings::condition_couplings;
+use super::labelled_analysis::LabelledAnalysis;
+use super::pair_rows::rows;
 use super::solutions::{delay_solution, gain_solution};
 use super::uncertainty::{bars, net_gain_bar};
+use crate::json_empty_members::without_empty;
 
 /// Returns the object with all results of a condition.
 pub(super) fn condition_json(
-    names: &ChannelNames<'_>,
+    names: &LabelledAnalysis<'_>,
     condition: &Condition,
     result: &ConditionAnalysis,
 ) -> Value {
@@ -89,7 +91,7 @@ fn rejection_reasons(choice: &ConditionChoice) -> Value {
 }
 
 /// Returns the models that the analysis excluded automatically, with reasons.
-fn set_aside(names: &ChannelNames<'_>, result: &ConditionAnalysis) -> Value {
+fn set_aside(names: &LabelledAnalysis<'_>, result: &ConditionAnalysis) -> Value {
     let mut models = Vec::new();
     for caution in &result.cautions {
         if let Caution::SetAside { model, .. } = caution {
@@ -99,13 +101,13 @@ fn set_aside(names: &ChannelNames<'_>, result: &ConditionAnalysis) -> Value {
     Value::Array(models)
 }
 
-fn caution_words(names: &ChannelNames<'_>, caution: &Caution) -> String {
+fn caution_words(names: &LabelledAnalysis<'_>, caution: &Caution) -> String {
     caution_text(caution, |pair| names.analysis.study.dataset.pair_name(pair))
 }
 
 /// Returns the suspected faults of the models, followed by the cautions about the results and about
 /// leads.
-fn cautions(names: &ChannelNames<'_>, result: &ConditionAnalysis) -> Value {
+fn cautions(names: &LabelledAnalysis<'_>, result: &ConditionAnalysis) -> Value {
     let study = &names.analysis.study;
     let mut cautions = Vec::new();
     for doubt in &result.doubts {
@@ -119,7 +121,7 @@ fn cautions(names: &ChannelNames<'_>, result: &ConditionAnalysis) -> Value {
 }
 
 /// Returns the net gain of each response, with its interval if available.
-fn net_gains(names: &ChannelNames<'_>, id: ConditionId, result: &ConditionAnalysis) -> Value {
+fn net_gains(names: &LabelledAnalysis<'_>, id: ConditionId, result: &ConditionAnalysis) -> Value {
     let mut net_gains = Vec::new();
     for pair in result.held().pairs() {
         let mut members = Map::new();

@@ -1,58 +1,20 @@
-//! JSON values by channel and by response, labelled with the channel names of a dataset.
+//! Values of an analysis as JSON, labelled with the channel names of its dataset.
 
 use serde_json::{Map, Value, json};
 
 use gdcm_method::correction::{Channel, ChannelCorrection, Channels, LeadPrice};
 use gdcm_method::schedule::Regression;
-use gdcm_model::dataset::{Pair, PairTable};
+use gdcm_model::dataset::Pair;
 use gdcm_study::Analysis;
 
-/// Returns whether a value is empty: null, false, or an empty list.
-pub(super) fn is_empty_value(value: &Value) -> bool {
-    match value {
-        Value::Null | Value::Bool(false) => true,
-        Value::Array(list) => list.is_empty(),
-        _ => false,
-    }
-}
-
-/// Removes from an object the named members that are empty.
-pub(crate) fn without_empty(mut object: Value, members: &[&str]) -> Value {
-    if let Value::Object(all) = &mut object {
-        all.retain(|name, value| !(members.contains(&name.as_str()) && is_empty_value(value)));
-    }
-    object
-}
-
-/// Returns a table as a list of rows, one per output. Non-finite values become null, because JSON
-/// cannot represent them.
-pub(super) fn rows<T>(table: &PairTable<Option<T>>, figure: impl Fn(&T) -> f64) -> Value {
-    rows_of(table.outputs(), table.inputs(), |pair| {
-        table[pair].as_ref().map(&figure).into()
-    })
-}
-
-/// Returns the entries of a table as a list of rows, one per output.
-pub(super) fn rows_of(outputs: usize, inputs: usize, entry: impl Fn(Pair) -> Value) -> Value {
-    let mut rows = Vec::with_capacity(outputs);
-    for output in 0..outputs {
-        let mut row = Vec::with_capacity(inputs);
-        for input in 0..inputs {
-            row.push(entry(Pair { output, input }));
-        }
-        rows.push(Value::Array(row));
-    }
-    Value::Array(rows)
-}
-
-/// An analysis with the channel names of its dataset.
-pub(super) struct ChannelNames<'a> {
+/// An analysis with the channel names of its dataset, by which its values are labelled.
+pub(super) struct LabelledAnalysis<'a> {
     pub(super) analysis: &'a Analysis,
     pub(super) inputs: Vec<String>,
     pub(super) outputs: Vec<String>,
 }
 
-impl<'a> ChannelNames<'a> {
+impl<'a> LabelledAnalysis<'a> {
     pub(super) fn new(analysis: &'a Analysis) -> Self {
         let (inputs, outputs) = analysis.study.dataset.names_of_channels();
         Self {

@@ -10,7 +10,7 @@ use gdcm_model::response::LeadFilter;
 use gdcm_plot::figure::all_channels;
 use gdcm_study::Analysis;
 
-use super::condition_results::{ConditionResults, cell, condition_results};
+use super::csv_condition::{ConditionResults, cell, condition_results};
 use crate::csv_text::write_records;
 
 /// A channel in a condition.
@@ -69,16 +69,16 @@ const CHANNEL_COLUMNS: [ChannelColumn; 23] = [
         cell(row.tau_s(row.results.scheduled.as_ref()))
     }),
     ("gain_low", |row| {
-        row.results.end(Scalar::ChannelGain(row.channel), 0)
+        row.results.lower_end(Scalar::ChannelGain(row.channel))
     }),
     ("gain_high", |row| {
-        row.results.end(Scalar::ChannelGain(row.channel), 1)
+        row.results.upper_end(Scalar::ChannelGain(row.channel))
     }),
     ("delay_low_s", |row| {
-        row.results.end(Scalar::ChannelDelay(row.channel), 0)
+        row.results.lower_end(Scalar::ChannelDelay(row.channel))
     }),
     ("delay_high_s", |row| {
-        row.results.end(Scalar::ChannelDelay(row.channel), 1)
+        row.results.upper_end(Scalar::ChannelDelay(row.channel))
     }),
     ("u_gain_physics", |row| {
         row.results
@@ -102,7 +102,7 @@ const CHANNEL_COLUMNS: [ChannelColumn; 23] = [
 /// the lead filters (M15). With couplings, further columns give, in the row of an input, its
 /// coefficients for each input (mixing) and each output (feedback) (M16). A missing value is an
 /// empty cell.
-pub(crate) fn channel_table(
+pub(crate) fn write_corrections_csv(
     analysis: &Analysis,
     chosen: &BTreeSet<ConditionId>,
     file: &mut dyn Write,

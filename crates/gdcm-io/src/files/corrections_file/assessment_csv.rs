@@ -9,7 +9,7 @@ use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_study::Analysis;
 use gdcm_words::assessment::not_assessed_text;
 
-use super::condition_results::{ConditionResults, cell, condition_results};
+use super::csv_condition::{ConditionResults, cell, condition_results};
 use crate::csv_text::write_records;
 
 /// A response in a condition.
@@ -116,17 +116,21 @@ const RESPONSE_COLUMNS: [ResponseColumn; 34] = [
             .held_out
             .to_string()
     }),
-    ("G_low", |row| row.results.end(Scalar::Gain(row.pair), 0)),
-    ("G_high", |row| row.results.end(Scalar::Gain(row.pair), 1)),
-    ("D_low_s", |row| row.results.end(Scalar::Delay(row.pair), 0)),
+    ("G_low", |row| row.results.lower_end(Scalar::Gain(row.pair))),
+    ("G_high", |row| {
+        row.results.upper_end(Scalar::Gain(row.pair))
+    }),
+    ("D_low_s", |row| {
+        row.results.lower_end(Scalar::Delay(row.pair))
+    }),
     ("D_high_s", |row| {
-        row.results.end(Scalar::Delay(row.pair), 1)
+        row.results.upper_end(Scalar::Delay(row.pair))
     }),
     ("net_gain_low", |row| {
-        row.results.end(Scalar::NetGain(row.pair), 0)
+        row.results.lower_end(Scalar::NetGain(row.pair))
     }),
     ("net_gain_high", |row| {
-        row.results.end(Scalar::NetGain(row.pair), 1)
+        row.results.upper_end(Scalar::NetGain(row.pair))
     }),
     ("u_net_gain_physics", |row| {
         row.results
@@ -145,10 +149,10 @@ const RESPONSE_COLUMNS: [ResponseColumn; 34] = [
     }),
     ("left_in_band", |row| cell(row.left_in_band())),
     ("D_band_low_s", |row| {
-        row.results.end(Scalar::BandDelay(row.pair), 0)
+        row.results.lower_end(Scalar::BandDelay(row.pair))
     }),
     ("D_band_high_s", |row| {
-        row.results.end(Scalar::BandDelay(row.pair), 1)
+        row.results.upper_end(Scalar::BandDelay(row.pair))
     }),
 ];
 
@@ -156,7 +160,7 @@ const RESPONSE_COLUMNS: [ResponseColumn; 34] = [
 /// scheduled correction, for every response in the chosen conditions. A missing value is an empty
 /// cell. `left_out` gives the reason why a condition is not assessed, `D_band_s` is the band delay
 /// (M15.2), and the columns `…_low` and `…_high` contain confidence intervals.
-pub(crate) fn response_table(
+pub(crate) fn write_assessment_csv(
     analysis: &Analysis,
     chosen: &BTreeSet<ConditionId>,
     file: &mut dyn Write,

@@ -1,145 +1,22 @@
-//! JSON objects of a study file, and their conversion from and to the decisions of a study.
+//! Conversion between study files and decisions: a study becomes text, and text becomes decisions that
+//! are checked against the dataset.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use serde::{Deserialize, Serialize};
-
-use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_CONDITIONS, MOST_MODELS, MOST_RECORDS};
 use gdcm_model::dataset::location::Location;
 use gdcm_model::dataset::{Condition, ConditionId, Dataset};
-use gdcm_model::whole_number::whole;
 use gdcm_study::Study;
 use gdcm_study::decisions::adopted_models::AdoptedModels;
-use gdcm_study::decisions::choices::{BundleChoice, ConditionChoice};
-use gdcm_study::decisions::dataset_differences::Inventory;
+use gdcm_study::decisions::choices::ConditionChoice;
 use gdcm_study::decisions::named_decisions::Decisions;
-use gdcm_study::decisions::requirement_settings::RequirementSettings;
 use gdcm_study::decisions::settings::{ResponseNames, Settings};
-use gdcm_study::decisions::signs::TurnedChannel;
 
-use crate::file_error::{ContentError, ContentFault};
-use crate::files::dataset_file::{ModelText, RecordText};
-use crate::json_text::{Format, list};
-
-/// Maximum number of variants in a study file.
-pub(crate) const MOST_VARIANTS: usize = 1000;
-
-/// Format and version of a study file.
-pub(super) const FORMAT: Format = Format {
-    name: "gdcm-study",
-    version: 1,
+use super::json_form::{
+    ConditionText, DatasetReference, FORMAT, StudyText, TakenText, VariantText,
 };
-
-/// Content of a study file.
-#[derive(Deserialize, Serialize)]
-pub(super) struct StudyText {
-    format: String,
-    #[serde(deserialize_with = "whole")]
-    version: u64,
-    software: String,
-    pub(super) dataset: DatasetReference,
-    settings: Settings<ResponseNames>,
-    #[serde(deserialize_with = "list::<MOST_CONDITIONS, _, _>")]
-    conditions: Vec<ConditionText>,
-    /// Identified models that replace those of the dataset.
-    #[serde(
-        default,
-        skip_serializing_if = "Vec::is_empty",
-        deserialize_with = "list::<MOST_CONDITIONS, _, _>"
-    )]
-    taken: Vec<TakenText>,
-    /// Channels whose sign is reversed in some models.
-    #[serde(
-        default,
-        skip_serializing_if = "Vec::is_empty",
-        deserialize_with = "list::<MOST_CHANNELS, _, _>"
-    )]
-    signs: Vec<TurnedChannel>,
-    /// Decisions about the requirements; omitted if they are the defaults.
-    #[serde(default, skip_serializing_if = "is_default")]
-    requirements: RequirementSettings,
-    /// Named alternatives to the decisions; absent in older studies.
-    #[serde(
-        default,
-        skip_serializing_if = "Vec::is_empty",
-        deserialize_with = "list::<MOST_VARIANTS, _, _>"
-    )]
-    variants: Vec<VariantText>,
-}
-
-/// Identified models adopted in a condition, and their flight records.
-#[derive(Deserialize, Serialize)]
-struct TakenText {
-    #[serde(deserialize_with = "whole")]
-    condition: i64,
-    #[serde(deserialize_with = "list::<MOST_MODELS, _, _>")]
-    identified_models: Vec<ModelText>,
-    #[serde(default, deserialize_with = "list::<MOST_RECORDS, _, _>")]
-    records: Vec<RecordText>,
-}
-
-/// A named alternative to the decisions.
-#[derive(Deserialize, Serialize)]
-struct VariantText {
-    name: String,
-    settings: Settings<ResponseNames>,
-    #[serde(deserialize_with = "list::<MOST_CONDITIONS, _, _>")]
-    conditions: Vec<ConditionText>,
-}
-
-/// Reference from a study to its dataset.
-#[derive(Clone, Deserialize, Serialize)]
-pub(super) struct DatasetReference {
-    /// Path relative to the study's directory, with `/` between its parts; `None` for the embedded
-    /// example.
-    pub(super) path: Option<String>,
-    /// Name of the dataset, for display only.
-    pub(super) name: String,
-    pub(super) sha256: String,
-    /// Summary of the dataset's contents, used to find changes; absent in older studies.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) holds: Option<Inventory>,
-}
-
-/// Decisions about a condition.
-#[derive(Deserialize, Serialize)]
-struct ConditionText {
-    #[serde(deserialize_with = "whole")]
-    id: i64,
-    physics: BundleChoice,
-    identified: BundleChoice,
-    scheduled: bool,
-    /// Whether the condition is held out for validation; absent in older studies.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    held_out: bool,
-}
-
-impl ConditionText {
-    fn from_condition(condition: &Condition, study: &Study) -> Self {
-        let ConditionChoice {
-            physics,
-            identified,
-            scheduled,
-            held_out,
-        } = study.choice(condition.id()).clone();
-        Self {
-            id: condition.id().0,
-            physics,
-            identified,
-            scheduled,
-            held_out,
-        }
-    }
-
-    /// Returns the decisions about all conditions.
-    fn from_study(study: &Study) -> Vec<Self> {
-        let conditions = study.dataset.conditions().iter();
-        conditions
-            .map(|condition| Self::from_condition(condition, study))
-            .collect()
-    }
-}
+use crate::content_fault::{ContentError, ContentFault};
+use crate::files::dataset_file::{ModelText, RecordText};
 
 impl StudyText {
     pub(super) fn new(study: &Study, dataset: DatasetReference) -> Self {
@@ -180,8 +57,30 @@ impl StudyText {
     }
 }
 
-fn is_default(settings: &RequirementSettings) -> bool {
-    *settings == RequirementSettings::default()
+impl ConditionText {
+    fn from_condition(condition: &Condition, study: &Study) -> Self {
+        let ConditionChoice {
+            physics,
+            identified,
+            scheduled,
+            held_out,
+        } = study.choice(condition.id()).clone();
+        Self {
+            id: condition.id().0,
+            physics,
+            identified,
+            scheduled,
+            held_out,
+        }
+    }
+
+    /// Returns the decisions about all conditions.
+    fn from_study(study: &Study) -> Vec<Self> {
+        let conditions = study.dataset.conditions().iter();
+        conditions
+            .map(|condition| Self::from_condition(condition, study))
+            .collect()
+    }
 }
 
 /// Converts the content of a study file to decisions, checked against the dataset.

@@ -1,159 +1,22 @@
-//! Requirement files (M17): `requirements.json` and `requirements.csv`, which hold the same values.
+//! `requirements.csv`: a row for each value.
 
-use std::collections::BTreeMap;
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
-
-use serde::Serialize;
-use serde_json::Value;
 
 use gdcm_method::requirements::BandwidthRule;
-use gdcm_model::dataset::{ConditionId, Dataset};
+use gdcm_model::dataset::ConditionId;
 use gdcm_study::results::required_bandwidth::BandwidthFinding;
 use gdcm_study::results::required_modes::{ModeFinding, ModeNumbers};
 use gdcm_study::results::requirements::{Requirements, SummaryFinding};
 use gdcm_study::results::time_histories::{HistoryFinding, TimeHistories, ToleranceFinding};
-use gdcm_words::missing_results::{
-    missing_reason_text, no_bandwidth_text, no_mode_value_text, no_summary_text,
-    reversed_phase_text,
-};
+use gdcm_words::missing_results::{no_bandwidth_text, no_mode_value_text, no_summary_text};
 
 use crate::csv_text::write_records;
-use crate::file_error::FileError;
-use crate::json_text::write_pretty;
-use crate::output_set::{OutputSet, make_directory};
-
-const NAME: &str = "gdcm-requirements";
-const VERSION: u64 = 1;
-
-/// Names of the two requirement files, in the order JSON, CSV.
-pub const REQUIREMENT_FILES: [&str; 2] = ["requirements.json", "requirements.csv"];
-
-/// Returns the paths of the JSON and the CSV file in a directory.
-pub fn requirement_paths(directory: &Path) -> [PathBuf; 2] {
-    REQUIREMENT_FILES.map(|name| directory.join(name))
-}
-
-/// Contents of `requirements.json`: the dataset, then the findings.
-#[derive(Serialize)]
-struct RequirementsDocument<'a> {
-    format: &'static str,
-    version: u64,
-    software: &'static str,
-    dataset: DatasetName<'a>,
-    #[serde(flatten)]
-    requirements: &'a Requirements,
-    time_histories: &'a TimeHistories,
-}
-
-#[derive(Serialize)]
-struct DatasetName<'a> {
-    name: &'a str,
-    sha256: &'a str,
-}
-
-/// Findings on the requirements, with the dataset to which they apply.
-#[derive(Clone, Copy)]
-pub struct RequirementResults<'a> {
-    pub requirements: &'a Requirements,
-    pub time_histories: &'a TimeHistories,
-    pub dataset: &'a Dataset,
-    /// SHA-256 of the dataset's file.
-    pub sha256: &'a str,
-}
-
-/// Writes the JSON and the CSV file, or neither, into a directory, which is created if missing.
-pub fn write_requirements(
-    results: RequirementResults<'_>,
-    directory: &Path,
-    mut outputs: OutputSet,
-) -> Result<(), FileError> {
-    let RequirementResults {
-        requirements,
-        time_histories,
-        dataset,
-        sha256,
-    } = results;
-    let [json, table] = requirement_paths(directory);
-    outputs.check(&[&json, &table])?;
-    make_directory(directory)?;
-    let document = RequirementsDocument {
-        format: NAME,
-        version: VERSION,
-        software: concat!("gdcm ", env!("CARGO_PKG_VERSION")),
-        dataset: DatasetName {
-            name: dataset.name(),
-            sha256,
-        },
-        requirements,
-        time_histories,
-    };
-    outputs.add(&json, |file| {
-        write_pretty(&with_sentences(&document, results)?, file)
-    })?;
-    outputs.add(&table, |file| {
-        write_rows(requirements, time_histories, file)
-    })?;
-    outputs.persist()
-}
-
-/// Converts the contents of `requirements.json`, and replaces the codes of missing values and
-/// cautions by sentences.
-fn with_sentences(
-    document: &RequirementsDocument<'_>,
-    results: RequirementResults<'_>,
-) -> io::Result<Value> {
-    let mut value = serde_json::to_value(document)?;
-    for (index, finding) in results.requirements.bandwidth.iter().enumerate() {
-        let entry = &mut value["bandwidth"][index];
-        replace_absent(entry, &finding.absent, no_bandwidth_text);
-    }
-    for (index, finding) in results.requirements.modes.iter().enumerate() {
-        let models = [
-            ("identified", Some(&finding.identified)),
-            ("physics", finding.physics.as_ref()),
-            ("corrected", finding.corrected.as_ref()),
-        ];
-        for (role, numbers) in models {
-            if let Some(numbers) = numbers {
-                let entry = &mut value["modes"][index][role];
-                replace_absent(entry, &numbers.absent, |why| no_mode_value_text(*why));
-            }
-        }
-    }
-    for (index, finding) in results.requirements.summary.iter().enumerate() {
-        let entry = &mut value["summary"][index];
-        replace_absent(entry, &finding.absent, |why| no_summary_text(*why));
-    }
-    for (index, missing) in results.requirements.missing.iter().enumerate() {
-        value["missing"][index]["why"] = missing_reason_text(&missing.why).into();
-    }
-    for (index, phase) in results.requirements.cautions.iter().enumerate() {
-        value["cautions"][index]["text"] = reversed_phase_text(phase, results.dataset).into();
-    }
-    for (index, missing) in results.time_histories.missing.iter().enumerate() {
-        let why = missing_reason_text(&missing.why);
-        value["time_histories"]["missing"][index]["why"] = why.into();
-    }
-    Ok(value)
-}
-
-/// Replaces the codes of the missing values of a finding by sentences.
-fn replace_absent<T, S: Into<Value>>(
-    entry: &mut Value,
-    absent: &BTreeMap<&'static str, T>,
-    text: impl Fn(&T) -> S,
-) {
-    for (name, why) in absent {
-        entry["absent"][*name] = text(why).into();
-    }
-}
 
 /// Column names of the CSV file, separated by blanks.
 const HEADING: &str = "question condition airspeed_kt role model output input mode record tolerance quantity value low high remark";
 
-/// Writes the CSV file: a row for each value.
-fn write_rows(
+/// Writes the CSV file: bandwidths, modes, summary costs, then time histories.
+pub(super) fn write_rows(
     requirements: &Requirements,
     time_histories: &TimeHistories,
     file: &mut dyn Write,

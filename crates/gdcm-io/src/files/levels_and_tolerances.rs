@@ -8,11 +8,13 @@ use serde::{Deserialize, Serialize};
 use gdcm_method::requirements::{LevelBoundaries, Tolerance, ToleranceTable};
 use gdcm_model::dataset::location::Location;
 
-use crate::file_error::{ContentError, ContentFault, FileError};
-use crate::json_text::{Format, json_error, write_pretty};
+use crate::content_fault::{ContentError, ContentFault};
+use crate::file_error::FileError;
+use crate::file_reading::Source;
+use crate::json_reading::{Format, json_error};
+use crate::json_writing::write_pretty;
 use crate::output_set::OutputSet;
 use crate::reading_budget::ReadingBudget;
-use crate::source::Source;
 
 const TOLERANCES: Format = Format {
     name: "gdcm-tolerances",

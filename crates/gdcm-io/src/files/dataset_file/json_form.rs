@@ -12,7 +12,7 @@ use gdcm_model::dataset::limits::{
 };
 use gdcm_model::whole_number::{whole, whole_or_none};
 
-use crate::json_text::{Format, Limited, Nested, Numbers, list, list_while};
+use crate::json_reading::{Format, Limited, Nested, Numbers, list, list_while};
 
 /// Name and version of the file format.
 pub(super) const FORMAT: Format = Format {

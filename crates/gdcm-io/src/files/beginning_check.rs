@@ -16,9 +16,9 @@ use std::path::Path;
 use super::dataset_file::check_dataset_text;
 use super::study_file::check_study_text;
 use crate::file_error::FileError;
+use crate::file_reading::{text_reader, without_mark};
 use crate::json_outline::Outline;
 use crate::reading_budget::ReadingBudget;
-use crate::source::{text_reader, without_mark};
 
 /// Length of the first check \[bytes\].
 const FIRST: usize = 1 << 16;
@@ -80,7 +80,7 @@ mod tests {
     use gdcm_model::dataset::limits::LARGEST_TEXT;
 
     use super::*;
-    use crate::file_error::ContentFault;
+    use crate::content_fault::ContentFault;
 
     const SMALL: &str = include_str!("../../../../tests/data/small-dataset.json");
 

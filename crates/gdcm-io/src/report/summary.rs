@@ -1,12 +1,8 @@
-//! Report sections on the study as a whole: summary of the results, and settings.
+//! Report section with the summary of the results.
 
-use gdcm_method::schedule::{ScheduleKind, ScheduleSettings};
-use gdcm_model::dataset::{BundleKind, Condition, Dataset, PairTable};
-use gdcm_model::units::{number, six_digits};
+use gdcm_model::dataset::{BundleKind, Condition};
+use gdcm_model::units::number;
 use gdcm_plot::figure::assessment::usual_choice;
-use gdcm_plot::figure::condition_source::quantity_symbol;
-use gdcm_study::decisions::setting;
-use gdcm_study::decisions::setting::SETTINGS;
 use gdcm_study::{Analysis, AssessmentTable, ConditionAnalysis, Study};
 use gdcm_words::Table;
 use gdcm_words::assessment::summary_text;
@@ -14,7 +10,7 @@ use gdcm_words::caution::failure_text;
 
 use super::conditions::proof_word;
 use super::page::Page;
-use super::wording::{MISSING, capital, counted_are, names};
+use super::wording::{MISSING, counted_are};
 
 /// Adds the summary of the results.
 pub(super) fn add_summary(page: &mut Page, analysis: &Analysis) {
@@ -129,72 +125,4 @@ fn kept_words(study: &Study, condition: &Condition, kind: BundleKind) -> String 
 fn matched_words(result: &ConditionAnalysis, unmatched: usize) -> String {
     let held = result.held().marked().count();
     format!("{} of {held}", held.saturating_sub(unmatched))
-}
-
-/// Adds the section on the settings: constrained and ignored responses, then every setting that
-/// affects the results.
-pub(super) fn add_settings(page: &mut Page, study: &Study) {
-    page.section("Settings");
-    let settings = &study.settings;
-    let dataset = &study.dataset;
-    page.facts([
-        ("On-axis responses", pair_names(dataset, dataset.on_axis())),
-        ("Held exactly", pair_names(dataset, &settings.constrained)),
-        (
-            "Ignored in the objective",
-            pair_names(dataset, &settings.ignored),
-        ),
-    ]);
-    let mut facts: Vec<(String, String)> = Vec::new();
-    for row in SETTINGS {
-        if !(row.control.applies)(study) {
-            continue;
-        }
-        let words = if *row == setting::GAIN_SOURCE {
-            settings.gain_source_words()
-        } else {
-            row.words(settings)
-        };
-        facts.push((capital(row.name), words));
-    }
-    page.facts(
-        facts
-            .iter()
-            .map(|(name, words)| (name.as_str(), words.clone())),
-    );
-}
-
-/// Lists the marked responses by name.
-fn pair_names(dataset: &Dataset, marked: &PairTable<bool>) -> String {
-    let pairs: Vec<String> = marked
-        .marked()
-        .map(|pair| dataset.pair_name(pair))
-        .collect();
-    if pairs.is_empty() {
-        "none".to_owned()
-    } else {
-        names(&pairs)
-    }
-}
-
-/// Describes the kind, degree and variables of a schedule.
-pub(super) fn schedule_words(settings: &ScheduleSettings) -> String {
-    let kind = match settings.kind {
-        ScheduleKind::Polynomial { degree } => format!("polynomial of degree {degree} in airspeed"),
-        ScheduleKind::Table => "table over airspeed, linear between its points".to_owned(),
-    };
-    let quantity = quantity_symbol(settings.quantity);
-    let delays = if settings.delays {
-        "delays are scheduled too"
-    } else {
-        "delays are not scheduled"
-    };
-    let second = match settings.second {
-        Some(variable) => format!(" and {variable}"),
-        None => String::new(),
-    };
-    format!(
-        "{kind}{second}, of {quantity}; airspeeds within {} kt count as equal; {delays}",
-        six_digits(settings.airspeed_tolerance_kt)
-    )
 }

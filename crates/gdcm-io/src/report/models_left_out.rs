@@ -13,7 +13,7 @@ use super::wording::{MISSING, NAMES_SHOWN, counted_are, names};
 
 /// Adds the section on excluded models: rejected ones with the analyst's reasons, those excluded by
 /// the analysis, and suspected ones.
-pub(super) fn add_left_out(page: &mut Page, analysis: &Analysis) {
+pub(super) fn add_models_left_out(page: &mut Page, analysis: &Analysis) {
     page.section("Models left out");
     let rejected = rejected_table(analysis);
     if rejected.rows.is_empty() {

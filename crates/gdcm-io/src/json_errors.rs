@@ -13,7 +13,8 @@ use gdcm_model::dataset::location::Location;
 use gdcm_model::message_text::{sanitized, shortened};
 use gdcm_model::units::number;
 
-use crate::file_error::{ContentError, ContentFault, FileError};
+use crate::content_fault::{ContentError, ContentFault};
+use crate::file_error::FileError;
 
 /// Line and column in a text, counted from 1; the column in bytes.
 #[derive(Clone, Copy)]

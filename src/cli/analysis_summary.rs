@@ -19,10 +19,12 @@ use gdcm_words::coupling_remark::coupling_remark_text;
 use gdcm_words::couplings::{coupling_cost_table, coupling_matrix_tables, couplings_heading};
 
 use super::condition_summary::condition_section;
-use super::schedule_summary::{evidence_section, nominal_choice, schedule_section};
+use super::evidence_summary::evidence_section;
+use super::leave_one_out::nominal_choice;
+use super::printed_lines::{detail, indented, line};
+use super::schedule_summary::schedule_section;
 use super::shared_cautions::cautions_section;
 use super::terminal::keep_caution;
-use super::text::{detail, indented, line};
 
 /// Returns the printed summary: settings, results of each condition, schedule, assessment, and
 /// output files.

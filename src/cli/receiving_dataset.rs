@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use gdcm_io::files::study_file::relative_folder;
 use gdcm_io::reading_budget::ReadingBudget;
+use gdcm_io::relative_folder::relative_folder;
 use gdcm_io::{Opened, load_any};
 use gdcm_model::dataset::condition::ConditionRecord;
 use gdcm_model::dataset::{ConditionId, Dataset};
@@ -13,9 +13,9 @@ use gdcm_study::decisions::adopted_models::AdoptedModels;
 use gdcm_sysid::records::LaidOutRecord;
 
 use super::condition_messages::listed_conditions;
+use super::dataset_lookup::{condition_ids, condition_of};
 use super::failure::Failure;
 use super::identify_arguments::IdentifyArguments;
-use super::study_options::{condition_ids, condition_of};
 use super::terminal::{caution, note};
 
 /// Records from which models are identified jointly.
@@ -26,7 +26,7 @@ pub(super) struct RecordGroup {
 }
 
 /// A dataset that receives identified models.
-pub(super) struct Destination {
+pub(super) struct ReceivingDataset {
     pub(super) dataset: Arc<Dataset>,
     /// Path of the extended dataset.
     pub(super) path: PathBuf,
@@ -35,7 +35,7 @@ pub(super) struct Destination {
     condition: Option<ConditionId>,
 }
 
-impl Destination {
+impl ReceivingDataset {
     /// Opens the dataset given by `--into`; `None` without this option.
     pub(super) fn open(arguments: &IdentifyArguments) -> Result<Option<Self>, Failure> {
         let Some(path) = arguments.into.as_deref() else {

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use gdcm_model::message_text::{sanitized_path, shortened, shortened_message};
+use gdcm_model::message_text::{sanitized, sanitized_path, shortened, shortened_message};
 use gdcm_words::Table;
 
 /// Maximum width of a line, in columns.
@@ -73,6 +73,11 @@ impl<'a> Label<'a> {
 /// Returns a line with the label of a section.
 pub(super) fn line(label: &str, words: &str) -> String {
     Label::of_section(label).before(words)
+}
+
+/// Returns the line of a caution, without control characters.
+pub(super) fn caution_line(words: &str) -> String {
+    line("Caution", &sanitized(words))
 }
 
 /// Returns an indented, labelled line within a section.

@@ -1,4 +1,5 @@
-//! Units, factors and signs that options of `gdcm assemble` declare for channels, added to the rules.
+//! Units, factors and signs that options of `gdcm assemble` declare for channels, added to the
+//! rules.
 
 use std::collections::BTreeSet;
 

@@ -143,8 +143,8 @@ fn bar_half_width(analysis: &Analysis, result: &ConditionAnalysis, scalar: Scala
     bar.half_width(uncertainty.level)
 }
 
-/// Returns column headings, with an additional heading if there are leads: their price, which is the
-/// gain that they add above the band.
+/// Returns column headings, with an additional heading if there are leads: their price, which is
+/// the gain that they add above the band.
 fn with_price_heading(columns: &[&str], price: Option<&LeadPrice>) -> Vec<String> {
     let mut headings: Vec<String> = columns.iter().map(|&column| column.to_owned()).collect();
     if let Some(price) = price {

@@ -1,4 +1,5 @@
-//! Conditions and responses of a dataset that options name, with the failure if the dataset lacks them.
+//! Conditions and responses of a dataset that options name, with the failure if the dataset lacks
+//! them.
 
 use gdcm_model::dataset::{Channel, ConditionId, Dataset, Pair};
 

@@ -1,4 +1,5 @@
-//! Options of `gdcm assemble` that declare a sign, unit or factor for a channel in some of the files.
+//! Options of `gdcm assemble` that declare a sign, unit or factor for a channel in some of the
+//! files.
 
 use gdcm_model::assembly::FileScope;
 

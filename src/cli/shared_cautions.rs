@@ -1,5 +1,5 @@
-//! Cautions of all conditions: a table of the cautions of kinds that usually recur in many conditions,
-//! and a line for each other caution, merged over the conditions with equal text.
+//! Cautions of all conditions: a table of the cautions of kinds that usually recur in many
+//! conditions, and a line for each other caution, merged over the conditions with equal text.
 //!
 //! A caution is a [`Remark`] of the kind [`RemarkKind::Caution`].
 

@@ -2,7 +2,8 @@
 //!
 //! serde_json gives most details only in the texts of its messages, such as "missing field `name`",
 //! so this file depends on their wording; `tests/suite/dataset_file/wrong_text.rs` and
-//! `wrong_content.rs` of this crate fail if it changes. A text with another wording is reported as it is.
+//! `wrong_content.rs` of this crate fail if it changes. A text with another wording is reported as
+//! it is.
 
 use std::path::Path;
 

@@ -1,5 +1,5 @@
-//! Exports of all analysis results: `corrections.json`, `corrections.csv`, and a MATLAB struct with the
-//! content of `corrections.json`.
+//! Exports of all analysis results: `corrections.json`, `corrections.csv`, and a MATLAB struct with
+//! the content of `corrections.json`.
 
 use std::collections::BTreeSet;
 

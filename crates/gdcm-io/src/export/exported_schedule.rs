@@ -2,8 +2,8 @@
 //! channel as curves over airspeed.
 //!
 //! A lead filter is `(1 + a s) / (1 + b s)`, or of second order with the same time constants. The
-//! exported curve is the numerator time constant `a` \[s\] (`zero_s`); `b` (`lag_s`) is a constant of
-//! the design.
+//! exported curve is the numerator time constant `a` \[s\] (`zero_s`); `b` (`lag_s`) is a constant
+//! of the design.
 
 use gdcm_method::correction::Channel;
 use gdcm_method::couplings::CouplingMatrices;

@@ -1,8 +1,9 @@
 //! Conversion of JSON to MATLAB values with the same structure.
 //!
 //! A list of objects with equal members becomes a struct array, which MATLAB shows element by
-//! element, or is *gathered*: a struct with an array for each member, which can be plotted directly.
-//! `[{"x": 1, "y": [2, 3]}, {"x": 4, "y": [5, 6]}]` is gathered to `x = [1; 4]`, `y = [2 3; 5 6]`.
+//! element, or is *gathered*: a struct with an array for each member, which can be plotted
+//! directly: `[{"x": 1, "y": [2, 3]}, {"x": 4, "y": [5, 6]}]` is gathered to `x = [1; 4]` and
+//! `y = [2 3; 5 6]`.
 
 use serde_json::Value as Json;
 
@@ -97,9 +98,10 @@ impl Layout {
         })
     }
 
-    /// Gathers values in an array of this shape; in `leaves`, which holds the value at each index, the
-    /// last index runs fastest. Objects become a struct of arrays, numbers an array, booleans a logical array, lists of numbers an
-    /// array with an additional index, and all other values cells.
+    /// Gathers values in an array of this shape; in `leaves`, which holds the value at each index,
+    /// the last index runs fastest. Objects become a struct of arrays, numbers an array, booleans a
+    /// logical array, lists of numbers an array with an additional index, and all other values
+    /// cells.
     fn gathered(&self, shape: &[usize], leaves: Vec<&Json>) -> Value {
         if leaves.iter().any(|leaf| leaf.is_object()) {
             return self.gathered_objects(shape, &leaves);

@@ -76,7 +76,8 @@ const LEAD: Quantity = Quantity {
 };
 
 impl Quantity {
-    /// Returns the deviation of `value` from `truth`: relative \[%\] for a gain, absolute \[ms\] for a time.
+    /// Returns the deviation of `value` from `truth`: relative \[%\] for a gain, absolute \[ms\]
+    /// for a time.
     fn deviation(&self, value: f64, truth: f64) -> f64 {
         let difference = value - truth;
         if difference == 0.0 {

@@ -41,8 +41,8 @@ impl ExportedModel {
 
     /// Describes the parts in the model and their accuracy; omitted delays are not mentioned.
     ///
-    /// A part is exact unless it is approximated: in discrete time (`pade_order` 0), lead filters by
-    /// Tustin's rule; in continuous time, delays by Padé approximants.
+    /// A part is exact unless it is approximated: in discrete time (`pade_order` 0), lead filters
+    /// by Tustin's rule; in continuous time, delays by Padé approximants.
     fn delay_words(&self) -> String {
         let has_delays = self.contents.delays != PartSource::None;
         let has_leads = self.lead_states > 0;

@@ -1,5 +1,5 @@
-//! The corrected models that an export requests: choice of the conditions, the physics model and the
-//! correction, and computation of the corrected model with its accuracy.
+//! The corrected models that an export requests: choice of the conditions, the physics model and
+//! the correction, and computation of the corrected model with its accuracy.
 
 use gdcm_method::correction::{self, ChannelCorrection, LeadPrice};
 use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dynamics, Model};

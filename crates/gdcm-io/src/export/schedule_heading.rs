@@ -1,5 +1,5 @@
-//! Headings of files with an exported schedule: meaning and units of its quantities, origin, contents,
-//! and notes.
+//! Headings of files with an exported schedule: meaning and units of its quantities, origin,
+//! contents, and notes.
 
 use gdcm_model::message_text::shortened;
 use gdcm_plot::figure::all_channels;

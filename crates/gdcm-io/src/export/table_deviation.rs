@@ -16,8 +16,8 @@ pub(super) struct TableDeviation {
 
 impl TableDeviation {
     /// Finds the maximum deviation within `range_kt` of a table that samples `curve` at the
-    /// airspeeds `points`; `measure` returns the deviation of an interpolated value, given the exact
-    /// value.
+    /// airspeeds `points`; `measure` returns the deviation of an interpolated value, given the
+    /// exact value.
     ///
     /// A grid search is refined by a golden-section search in the two intervals beside the greatest
     /// grid value.

@@ -1,5 +1,5 @@
-//! Files with models identified from flight records, `gdcm-identified` 1, written by `gdcm identify`.
-//! `model_collection` reads their models.
+//! Files with models identified from flight records, `gdcm-identified` 1, written by `gdcm
+//! identify`. `model_collection` reads their models.
 
 use std::path::Path;
 

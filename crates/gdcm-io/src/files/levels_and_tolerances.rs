@@ -1,5 +1,5 @@
-//! Tables that the engineer supplies as separate files, for use in any study (M17): level boundaries
-//! of bandwidth and phase delay, and tolerances of time histories.
+//! Tables that the engineer supplies as separate files, for use in any study (M17): level
+//! boundaries of bandwidth and phase delay, and tolerances of time histories.
 
 use std::path::Path;
 

@@ -1,5 +1,5 @@
-//! Model files, `gdcm-models` 1, written by `gdcm convert` and, for corrected models, by `gdcm export`.
-//! Models in `gdcm-identified` files have the same form and are read here too.
+//! Model files, `gdcm-models` 1, written by `gdcm convert` and, for corrected models, by `gdcm
+//! export`. Models in `gdcm-identified` files have the same form and are read here too.
 
 use std::io::{self, Write};
 use std::path::Path;

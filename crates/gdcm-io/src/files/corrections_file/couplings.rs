@@ -60,8 +60,8 @@ pub(super) fn couplings(analysis: &Analysis) -> Value {
     )
 }
 
-/// Returns a matrix as a list of rows, one per receiving input. [`rows_of`] calls the row index `output`
-/// and the column index `input`, whatever the matrix holds.
+/// Returns a matrix as a list of rows, one per receiving input. [`rows_of`] calls the row index
+/// `output` and the column index `input`, whatever the matrix holds.
 fn matrix_rows<T: Scalar + Into<Value>>(matrix: &DMatrix<T>) -> Value {
     rows_of(matrix.nrows(), matrix.ncols(), |at| {
         matrix[(at.output, at.input)].clone().into()

@@ -63,8 +63,8 @@ impl ConditionResults<'_> {
             .bar(self.condition.id(), scalar)
     }
 
-    /// Formats the lower end of the total interval: a factor for a gain, seconds for a delay. Empty if
-    /// there is no interval.
+    /// Formats the lower end of the total interval: a factor for a gain, seconds for a delay. Empty
+    /// if there is no interval.
     pub(super) fn lower_end(&self, scalar: Scalar) -> String {
         cell(self.interval(scalar).map(|[lower, _]| lower))
     }

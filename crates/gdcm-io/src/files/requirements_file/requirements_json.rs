@@ -1,5 +1,5 @@
-//! `requirements.json`: the findings as the analysis holds them, with sentences instead of the codes of
-//! missing values and cautions.
+//! `requirements.json`: the findings as the analysis holds them, with sentences instead of the
+//! codes of missing values and cautions.
 
 use std::collections::BTreeMap;
 use std::io;

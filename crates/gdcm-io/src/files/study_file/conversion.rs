@@ -1,5 +1,5 @@
-//! Conversion between study files and decisions: a study becomes text, and text becomes decisions that
-//! are checked against the dataset.
+//! Conversion between study files and decisions: a study becomes text, and text becomes decisions
+//! that are checked against the dataset.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

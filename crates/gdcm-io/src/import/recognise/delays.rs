@@ -148,8 +148,8 @@ impl DelayReading {
     }
 
     /// Splits the delays of single responses (a matrix, outputs x inputs) into delays of inputs and
-    /// of outputs, `tau_oi = tau_o + tau_i`. With `f` the output with the smallest delay to input 0,
-    /// `tau_f = 0`, hence `tau_i = tau_fi` and `tau_o = tau_o0 - tau_f0`.
+    /// of outputs, `tau_oi = tau_o + tau_i`. With `f` the output with the smallest delay to input
+    /// 0, `tau_f = 0`, hence `tau_i = tau_fi` and `tau_o = tau_o0 - tau_f0`.
     ///
     /// # Errors
     /// The reason if the delays cannot be split within `ROUNDING_S`.

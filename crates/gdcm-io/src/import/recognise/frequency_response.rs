@@ -171,8 +171,8 @@ struct ResponseLayout {
     inputs: usize,
     /// Number of frequencies.
     count: usize,
-    // Distances in the file between values whose output, input or frequency index differs by 1. In a
-    // file, the first index runs fastest.
+    // Distances in the file between values whose output, input or frequency index differs by 1. In
+    // a file, the first index runs fastest.
     output_stride: usize,
     input_stride: usize,
     frequency_stride: usize,

@@ -1,7 +1,7 @@
 //! Models whose matrices have a common suffix: `A_nom, B_nom, ...`, `A1, B1, ...`.
 //!
-//! The variables `A_nom, B_nom, C_nom, InputDelay_nom, labels` become the record `A, B, C, InputDelay,
-//! labels`, which is read like any other.
+//! The variables `A_nom, B_nom, C_nom, InputDelay_nom, labels` become the record `A, B, C,
+//! InputDelay, labels`, which is read like any other.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -92,10 +92,10 @@ fn matrices_with_suffix<'v>(by_name: &HashMap<&str, &'v Value>, suffix: &str) ->
     fields
 }
 
-/// Returns the fields that apply to the model with this suffix, other than its matrices: all variables
-/// but matrices without a suffix and delays with the suffix of another model. The suffix is removed
-/// from its own delays. Matrices of other models remain: their names, with a suffix, mean nothing in
-/// the record.
+/// Returns the fields that apply to the model with this suffix, other than its matrices: all
+/// variables but matrices without a suffix and delays with the suffix of another model. The suffix
+/// is removed from its own delays. Matrices of other models remain: their names, with a suffix,
+/// mean nothing in the record.
 fn fields_beside<'v>(
     variables: &'v [Variable],
     suffix: &str,

@@ -120,10 +120,14 @@ mod tests {
     use gdcm_study::decisions::setting;
     use gdcm_study::{AssessedCorrection, CouplingCorrection, Engine, PhaseCorrection, Study};
 
+    use super::metrics::array;
+    use super::numpy::row_of_texts;
     use super::*;
     use crate::export::ExportRequest;
+    use crate::export::matlab_values::matrix;
     use crate::files::dataset_file::embedded_example;
-    use crate::files::export_contents::LeftOutPart;
+    use crate::files::export_contents::{LeftOutPart, PartSource};
+    use crate::formats::variables::{Value, Variable};
     use crate::formats::zip_files::read_npz;
     use crate::reading_budget::ReadingBudget;
 

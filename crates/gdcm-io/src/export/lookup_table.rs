@@ -394,18 +394,18 @@ mod tests {
     }
 
     #[test]
-    fn the_greatest_error_is_above_the_table_and_airspeeds_must_increase() {
+    fn the_greatest_deviation_is_above_the_table_and_airspeeds_must_increase() {
         let analysis = analysis(None);
         let source = source();
         let table = table(&analysis, &source);
-        let worst = table.columns[0].error;
+        let worst = table.columns[0].deviation;
         assert!(
-            worst.error > 0.0 && !POINTS.contains(&worst.airspeed_kt),
+            worst.value > 0.0 && !POINTS.contains(&worst.airspeed_kt),
             "{worst:?}"
         );
         let line = format!(
             "\n# gain of input LON: {:.3e} % at {:.3} kt\n",
-            worst.error, worst.airspeed_kt
+            worst.value, worst.airspeed_kt
         );
         assert!(table.csv().contains(&line), "{}", table.csv());
         for points in [&[][..], &[1.0, 1.0], &[1.0, f64::NAN]] {

@@ -70,7 +70,7 @@ impl NamedArrays {
 }
 
 /// Returns a row with one string per entry.
-fn row_of_texts<T: ToString>(texts: impl IntoIterator<Item = T>) -> Value {
+pub(super) fn row_of_texts<T: ToString>(texts: impl IntoIterator<Item = T>) -> Value {
     let texts: Vec<String> = texts.into_iter().map(|text| text.to_string()).collect();
     Value::Text(TextArray {
         shape: vec![1, texts.len()],

@@ -12,7 +12,7 @@ use gdcm_words::Table;
 use gdcm_words::missing_results::no_bandwidth_text;
 
 use super::condition_messages::{ConditionMessage, shared_messages};
-use super::text::{decimals_or_dash, indented, line};
+use super::printed_lines::{decimals_or_dash, indented, line};
 
 /// Returns a table of bandwidth and phase delay of the responses for which either is defined, and
 /// the reasons why the other responses have none.

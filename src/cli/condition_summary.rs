@@ -14,8 +14,8 @@ use gdcm_words::caution::failure_text;
 use gdcm_words::remark::remark_text;
 use gdcm_words::solution_details::proof_text;
 
+use super::printed_lines::{detail, detail_list, fixed_digits, indented, line};
 use super::schedule_summary::shown_pairs;
-use super::text::{detail, detail_list, fixed_digits, indented, line};
 
 /// Returns the section on a condition: representatives, rejected models, on-axis and constrained
 /// responses, and unmatched responses.
@@ -45,8 +45,8 @@ pub(super) fn condition_section(analysis: &Analysis, condition: &Condition) -> S
     text
 }
 
-/// Returns the representatives, the rejected models, and the suggested outliers that are not yet
-/// rejected.
+/// Returns the representatives, the rejected models, and the suggested outliers, which are physics
+/// models, unless they are already rejected.
 fn model_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let id = result.condition.id();
     let mut text = String::new();
@@ -93,20 +93,22 @@ fn response_table(analysis: &Analysis, result: &ConditionAnalysis) -> Table {
     let dataset = &analysis.study.dataset;
     for pair in shown_pairs(&analysis.study) {
         let is_held = result.held()[pair];
-        let half_width = |scalar| bar_half_width(analysis, result, scalar);
-        let gain_bar = half_width(Scalar::Gain(pair));
-        let net_gain_bar = half_width(Scalar::NetGain(pair));
-        let delay_bar_s = half_width(result.wanted_delay(pair));
         let cost = result.cost[pair];
         let mut cells = vec![
             sanitized(&dataset.pair_name(pair)),
             if is_held { "yes" } else { "no" }.to_owned(),
             fixed_digits(result.wanted_gain(pair), 3),
-            fixed_digits(gain_bar.map(|bar| 100.0 * bar), 1),
+            fixed_digits(half_width_percent(analysis, result, Scalar::Gain(pair)), 1),
             fixed_digits(Some(result.correction.net_gain(pair)), 3),
-            fixed_digits(net_gain_bar.map(|bar| 100.0 * bar), 1),
+            fixed_digits(
+                half_width_percent(analysis, result, Scalar::NetGain(pair)),
+                1,
+            ),
             fixed_digits(result.wanted_delay_s(pair).map(s_to_ms), 1),
-            fixed_digits(delay_bar_s.map(|bar_s| 1e3 * bar_s), 1),
+            fixed_digits(
+                half_width_ms(analysis, result, result.wanted_delay(pair)),
+                1,
+            ),
             fixed_digits(Some(s_to_ms(result.correction.net_delay_s(pair))), 1),
             fixed_digits(cost.map(|cost| cost.uncorrected.total()), 1),
             fixed_digits(cost.map(|cost| cost.corrected.total()), 1),
@@ -119,15 +121,30 @@ fn response_table(analysis: &Analysis, result: &ConditionAnalysis) -> Table {
     table
 }
 
-/// Returns the half-width of an error bar, relative for gains and in s for delays; `None` if the
-/// error bars were not computed.
+/// Returns the half-width of the error bar of a gain \[%\]; `None` without error bars.
+fn half_width_percent(
+    analysis: &Analysis,
+    result: &ConditionAnalysis,
+    gain: Scalar,
+) -> Option<f64> {
+    bar_half_width(analysis, result, gain).map(|half_width| 100.0 * half_width)
+}
+
+/// Returns the half-width of the error bar of a delay \[ms\]; `None` without error bars.
+fn half_width_ms(analysis: &Analysis, result: &ConditionAnalysis, delay: Scalar) -> Option<f64> {
+    bar_half_width(analysis, result, delay).map(|half_width_s| 1e3 * half_width_s)
+}
+
+/// Returns the half-width of an error bar, relative for gains and in s for delays; `None` without
+/// error bars.
 fn bar_half_width(analysis: &Analysis, result: &ConditionAnalysis, scalar: Scalar) -> Option<f64> {
     let uncertainty = analysis.uncertainty.as_ref()?;
     let bar = uncertainty.bar(result.condition.id(), scalar)?;
     bar.half_width(uncertainty.level)
 }
 
-/// Returns column headings, with an additional heading for the gain of the leads above the band.
+/// Returns column headings, with an additional heading if there are leads: their price, which is
+/// the gain that they add above the band.
 fn with_price_heading(columns: &[&str], price: Option<&LeadPrice>) -> Vec<String> {
     let mut headings: Vec<String> = columns.iter().map(|&column| column.to_owned()).collect();
     if let Some(price) = price {
@@ -199,7 +216,7 @@ fn lead_table(dataset: &Dataset, correction: &ChannelCorrection, leads: &Channel
 /// Lists the unmatched responses with reasons, and the results without an optimality proof.
 fn trouble_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let mut text = String::new();
-    // Unmatched responses come first, followed by the reasons and remedies.
+    // `condition_remarks` gives the unmatched responses first, then the reasons and remedies.
     let mut label = "not matched";
     // Cautions are collected in their own section.
     for remark in condition_remarks(&analysis.study, result, None) {

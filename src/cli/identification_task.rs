@@ -15,11 +15,12 @@ use gdcm_sysid::identification::{
 use gdcm_sysid::records::LaidOutRecord;
 use gdcm_words::channel_time_skew::time_skew_text;
 
-use super::destination::RecordGroup;
 use super::failure::Failure;
-use super::flight_records::record_table;
+use super::receiving_dataset::RecordGroup;
+
 use super::identify_arguments::IdentifyArguments;
 use super::progress::TerminalProgress;
+use super::record_table::record_table;
 use crate::executor::Pool;
 
 /// Name of the file with the identified models.

@@ -8,12 +8,12 @@ use gdcm_model::number_format::counted;
 use gdcm_study::results::required_modes::KnownPoles;
 
 use super::failure::Failure;
-use super::histories::{read_histories, simulated_histories};
 use super::progress::TerminalProgress;
 use super::result_arguments::ReportArguments;
 use super::study_analysis::{ErrorBars, StudyAnalysis, analyze_study};
 use super::study_options::CommandStudy;
 use super::terminal::print;
+use super::time_histories::{read_histories, simulated_histories};
 
 /// Analyses a study and writes the full report.
 pub(super) fn report(arguments: &ReportArguments) -> Result<(), Failure> {

@@ -1,7 +1,7 @@
 //! `gdcm requirements`: computes the metrics required for a qualification for the models of every
 //! condition, writes them to files and prints a short table.
 
-use gdcm_io::files::requirement_tables::add_tolerances;
+use gdcm_io::files::levels_and_tolerances::add_tolerances;
 use gdcm_io::files::requirements_file::{
     REQUIREMENT_FILES, RequirementResults, requirement_paths, write_requirements,
 };
@@ -23,13 +23,13 @@ use gdcm_words::time_histories::{history_cost_table, output_weights_text, share_
 use super::bandwidth_summary::bandwidth_section;
 use super::condition_messages::{ConditionMessage, shared_messages};
 use super::failure::Failure;
-use super::histories::{read_histories, simulated_histories};
+use super::printed_lines::{decimals_or_dash, indented, indented_untitled, line};
 use super::progress::TerminalProgress;
 use super::result_arguments::RequirementsArguments;
 use super::study_analysis::{ErrorBars, StudyAnalysis, analyze_study};
 use super::study_options::CommandStudy;
 use super::terminal::{caution_for, note, print};
-use super::text::{decimals_or_dash, indented, indented_untitled, line};
+use super::time_histories::{read_histories, simulated_histories};
 
 /// Writes the tolerance table if requested; analyses the study, writes the requirements, and prints
 /// a short table.

@@ -2,17 +2,18 @@
 
 use std::sync::Arc;
 
-use gdcm_io::files::requirement_tables::{load_tolerances, read_levels};
+use gdcm_io::files::levels_and_tolerances::{load_tolerances, read_levels};
 use gdcm_io::output_set::OutputSet;
 use gdcm_io::{LoadedDataset, embedded_example};
 use gdcm_method::correction;
-use gdcm_model::dataset::{BundleKind, Channel, ConditionId, Dataset, ModelId, Pair};
+use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
 use gdcm_model::message_text::sanitized;
 use gdcm_study::decisions::requirement_settings::RequirementSettings;
 use gdcm_study::{Edit, Study};
 
 use super::channel_values::{ChannelSign, ChannelValue, first_duplicate};
 use super::condition_messages::listed_conditions;
+use super::dataset_lookup::pairs_of;
 use super::failure::Failure;
 use super::option_values::{PairName, Rejection};
 use super::study_arguments::{GivenSetting, StudyArguments};
@@ -58,32 +59,6 @@ impl CommandStudy {
             outputs: OutputSet::new(existing(force), inputs),
         })
     }
-}
-
-/// Returns the condition with the id given by an option; an error if the dataset lacks it.
-pub(super) fn condition_of(dataset: &Dataset, id: i64) -> Result<ConditionId, Failure> {
-    match dataset.condition(ConditionId(id)) {
-        Some(condition) => Ok(condition.id()),
-        None => {
-            let ids = condition_ids(dataset);
-            let reason = format!("the dataset has no condition {id}; it has {ids}");
-            Err(Failure::coded_option(
-                "--condition",
-                "unknown-condition",
-                reason,
-            ))
-        }
-    }
-}
-
-/// Lists the ids of all conditions, separated by commas.
-pub(super) fn condition_ids(dataset: &Dataset) -> String {
-    let ids: Vec<String> = dataset
-        .conditions()
-        .iter()
-        .map(|condition| condition.id().to_string())
-        .collect();
-    ids.join(", ")
 }
 
 /// Applies an edit requested by an option.
@@ -221,36 +196,6 @@ pub(super) fn apply_signs(study: &mut Study, signs: &[ChannelSign]) -> Result<()
         apply(study, OPTION, &Edit::SetSign { channel, of: *role })?;
     }
     Ok(())
-}
-
-/// Returns the responses listed in an option.
-pub(super) fn pairs_of(
-    dataset: &Dataset,
-    list: &[PairName],
-    option: &'static str,
-) -> Result<Vec<Pair>, Failure> {
-    let mut pairs = Vec::new();
-    for PairName { output, input } in list {
-        let pair = dataset.find_pair(output, input).ok_or_else(|| {
-            let reason = format!(
-                "the dataset has no response {output}/{input}; outputs are {}; inputs are {}",
-                channel_names(dataset.outputs()),
-                channel_names(dataset.inputs())
-            );
-            Failure::coded_option(option, "unknown-response", reason)
-        })?;
-        pairs.push(pair);
-    }
-    Ok(pairs)
-}
-
-/// Lists channel names, separated by commas.
-pub(super) fn channel_names(channels: &[Channel]) -> String {
-    let names: Vec<&str> = channels
-        .iter()
-        .map(|channel| channel.name.as_str())
-        .collect();
-    names.join(", ")
 }
 
 /// Constrains the listed responses and releases all others.

@@ -2,7 +2,8 @@
 //!
 //! serde_json gives most details only in the texts of its messages, such as "missing field `name`",
 //! so this file depends on their wording; `tests/suite/dataset_file/wrong_text.rs` and
-//! `wrong_content.rs` of this crate fail if it changes. A text with another wording is reported as it is.
+//! `wrong_content.rs` of this crate fail if it changes. A text with another wording is reported as
+//! it is.
 
 use std::path::Path;
 
@@ -13,7 +14,8 @@ use gdcm_model::dataset::location::Location;
 use gdcm_model::message_text::{sanitized, shortened};
 use gdcm_model::units::number;
 
-use crate::file_error::{ContentError, ContentFault, FileError};
+use crate::content_fault::{ContentError, ContentFault};
+use crate::file_error::FileError;
 
 /// Line and column in a text, counted from 1; the column in bytes.
 #[derive(Clone, Copy)]

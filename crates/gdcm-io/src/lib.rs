@@ -12,24 +12,29 @@
 //! # Ok::<(), gdcm_io::FileError>(())
 //! ```
 
+pub mod content_fault;
 pub mod csv_text;
 pub mod export;
 pub mod export_fault;
 pub mod file_error;
+pub mod file_reading;
 pub mod files;
 pub mod formats;
+mod gzip;
 pub mod import;
 mod json_arrays;
+mod json_empty_members;
 mod json_errors;
 mod json_lists;
+mod json_location;
 mod json_outline;
 mod json_path;
-pub mod json_text;
-mod location;
+mod json_reading;
+pub mod json_writing;
 pub mod output_set;
 pub mod reading_budget;
+pub mod relative_folder;
 pub mod report;
-pub mod source;
 mod unknown_keys;
 pub mod user_paths;
 mod variable_fault;

@@ -16,7 +16,7 @@ use tempfile::NamedTempFile;
 use self::set_lock::SetLock;
 use self::temporary_files::{directory_of, kept_aside, remove_leftovers, write_temporary_file};
 use super::file_error::FileError;
-use super::source::kind_of;
+use super::file_reading::kind_of;
 
 /// Treatment of existing files at the paths of new files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use gdcm_model::message_text::quoted;
 
+use crate::json_location::location_of;
 use crate::json_outline::Outline;
 use crate::json_path::Step;
-use crate::location::location_of;
 
 /// Maximum number of keys reported individually: a file with more was written by another program,
 /// or was made to fill the memory.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
-use gdcm_io::source::file_sha256;
+use gdcm_io::file_reading::file_sha256;
 use gdcm_io::user_paths::FileStamp;
 
 use super::threads::ReplySender;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use gdcm_io::FileError;
-use gdcm_io::files::requirement_tables::{add_tolerances, load_tolerances, read_levels};
+use gdcm_io::files::levels_and_tolerances::{add_tolerances, load_tolerances, read_levels};
 use gdcm_model::message_text::sanitized_path;
 use gdcm_study::Edit;
 use gdcm_study::decisions::requirement_settings::RequirementSettings;

@@ -8,8 +8,8 @@ use gdcm_method::correction::Channel;
 use gdcm_method::couplings::CouplingMatrices;
 use gdcm_plot::figure::all_channels;
 
-use super::scheduled::Scheduled;
-use super::table_error::TableError;
+use super::exported_schedule::ExportedSchedule;
+use super::table_deviation::TableDeviation;
 use super::{Export, ExportFormat, Exported};
 use crate::export_fault::ExportFault;
 use crate::files::export_contents::ExportContents;
@@ -76,11 +76,12 @@ const LEAD: Quantity = Quantity {
 };
 
 impl Quantity {
-    /// Returns the error of `value`: relative \[%\] for a gain, absolute \[ms\] for a time.
-    fn error(&self, value: f64, truth: f64) -> f64 {
+    /// Returns the deviation of `value` from `truth`: relative \[%\] for a gain, absolute \[ms\]
+    /// for a time.
+    fn deviation(&self, value: f64, truth: f64) -> f64 {
         let difference = value - truth;
         if difference == 0.0 {
-            // Equal values have no error, even if both are zero and a percentage is undefined.
+            // Equal values do not deviate, even if both are zero and a percentage is undefined.
             0.0
         } else if self.is_time {
             1e3 * difference.abs()
@@ -106,12 +107,12 @@ struct Column {
     /// One value for each row of the table.
     values: Vec<f64>,
     /// Maximum deviation of the table from the schedule: \[%\] for a gain, \[ms\] for a time.
-    error: TableError,
+    deviation: TableDeviation,
 }
 
 /// A schedule sampled at given airspeeds.
 struct BreakpointTable<'e> {
-    scheduled: Scheduled<'e>,
+    scheduled: ExportedSchedule<'e>,
     /// Airspeeds \[kt\], increasing.
     airspeeds_kt: Vec<f64>,
     /// All airspeeds, repeated for each value of the second variable.
@@ -134,7 +135,10 @@ impl<'e> BreakpointTable<'e> {
     /// # Errors
     /// [`ExportFault::Breakpoints`] if the airspeeds are not finite and increasing, or if there are
     /// none; [`ExportFault::Curve`] if the schedule contains a value that is not finite.
-    fn new(scheduled: Scheduled<'e>, breakpoints_kt: Option<&[f64]>) -> Result<Self, ExportFault> {
+    fn new(
+        scheduled: ExportedSchedule<'e>,
+        breakpoints_kt: Option<&[f64]>,
+    ) -> Result<Self, ExportFault> {
         scheduled.check()?;
         let airspeeds_kt = match breakpoints_kt {
             Some(airspeeds_kt) => airspeeds_kt.to_vec(),
@@ -206,7 +210,7 @@ impl<'e> BreakpointTable<'e> {
     }
 
     /// Returns the column of a channel; `value_at` gives the value at a breakpoint. The maximum
-    /// error is searched over airspeed at each of `second_values`.
+    /// deviation is searched over airspeed at each of `second_values`.
     fn column(
         &self,
         channel: Channel,
@@ -217,9 +221,9 @@ impl<'e> BreakpointTable<'e> {
         let (inputs, outputs) = self.scheduled.dataset.names_of_channels();
         let airspeeds = &self.scheduled.schedule.airspeeds;
         let range_kt = [airspeeds.min_kt, airspeeds.max_kt];
-        let mut greatest: Option<TableError> = None;
+        let mut greatest: Option<TableDeviation> = None;
         for &second in second_values {
-            let found = TableError::greatest(
+            let found = TableDeviation::greatest(
                 &self.airspeeds_kt,
                 range_kt,
                 |airspeed_kt| {
@@ -228,7 +232,7 @@ impl<'e> BreakpointTable<'e> {
                         second,
                     })
                 },
-                |value, truth| quantity.error(value, truth),
+                |value, truth| quantity.deviation(value, truth),
             );
             greatest = Some(match greatest {
                 Some(greatest) => greatest.or_greater(found),
@@ -240,8 +244,8 @@ impl<'e> BreakpointTable<'e> {
             channel,
             name: channel.name(&inputs, &outputs),
             values: self.rows.iter().map(|&row| value_at(row)).collect(),
-            error: greatest.unwrap_or(TableError {
-                error: 0.0,
+            deviation: greatest.unwrap_or(TableDeviation {
+                value: 0.0,
                 airspeed_kt: range_kt[0],
             }),
         }
@@ -251,11 +255,11 @@ impl<'e> BreakpointTable<'e> {
     fn remarks(&self) -> Vec<String> {
         let mut remarks = self.scheduled.notes();
         for column in &self.columns {
-            if column.error.error > 0.0 {
+            if column.deviation.value > 0.0 {
                 remarks.push(format!(
                     "table of the {}: maximum error {}",
                     column.words(),
-                    column.error_words()
+                    column.deviation_words()
                 ));
             }
         }
@@ -264,7 +268,7 @@ impl<'e> BreakpointTable<'e> {
 }
 
 /// Returns the distinct airspeeds \[kt\] of the scheduled conditions, increasing.
-fn distinct_airspeeds_kt(scheduled: &Scheduled<'_>) -> Vec<f64> {
+fn distinct_airspeeds_kt(scheduled: &ExportedSchedule<'_>) -> Vec<f64> {
     let mut airspeeds_kt = scheduled.schedule.airspeeds.values_kt.clone();
     airspeeds_kt.sort_by(f64::total_cmp);
     airspeeds_kt.dedup();
@@ -273,7 +277,7 @@ fn distinct_airspeeds_kt(scheduled: &Scheduled<'_>) -> Vec<f64> {
 
 /// Returns the ends and the middle of the second variable's range, which suffice because its effect
 /// is nearly linear; a single `None` without a second variable.
-fn second_values(scheduled: &Scheduled<'_>) -> Vec<Option<f64>> {
+fn second_values(scheduled: &ExportedSchedule<'_>) -> Vec<Option<f64>> {
     match &scheduled.schedule.second {
         Some(term) => vec![
             Some(term.range[0]),
@@ -297,14 +301,14 @@ impl Column {
         format!("{} of {} {}", self.quantity.name, self.side(), self.name)
     }
 
-    /// Describes the maximum error: "1.200e0 % at 62.000 kt".
-    fn error_words(&self) -> String {
+    /// Describes the maximum deviation: "1.200e0 % at 62.000 kt".
+    fn deviation_words(&self) -> String {
         let unit = if self.quantity.is_time { "ms" } else { "%" };
-        let TableError { error, airspeed_kt } = self.error;
-        if error > 0.0 {
-            format!("{error:.3e} {unit} at {airspeed_kt:.3} kt")
+        let TableDeviation { value, airspeed_kt } = self.deviation;
+        if value > 0.0 {
+            format!("{value:.3e} {unit} at {airspeed_kt:.3} kt")
         } else {
-            format!("{error:.3e} {unit}")
+            format!("{value:.3e} {unit}")
         }
     }
 }
@@ -336,7 +340,7 @@ mod tests {
         let schedule = analysis.schedule.as_ref().unwrap();
         let dataset = &analysis.study.dataset;
         let contents = ExportContents::of_scheduled(analysis);
-        let scheduled = Scheduled {
+        let scheduled = ExportedSchedule {
             schedule,
             dataset,
             source,
@@ -390,18 +394,18 @@ mod tests {
     }
 
     #[test]
-    fn the_greatest_error_is_above_the_table_and_airspeeds_must_increase() {
+    fn the_greatest_deviation_is_above_the_table_and_airspeeds_must_increase() {
         let analysis = analysis(None);
         let source = source();
         let table = table(&analysis, &source);
-        let worst = table.columns[0].error;
+        let worst = table.columns[0].deviation;
         assert!(
-            worst.error > 0.0 && !POINTS.contains(&worst.airspeed_kt),
+            worst.value > 0.0 && !POINTS.contains(&worst.airspeed_kt),
             "{worst:?}"
         );
         let line = format!(
             "\n# gain of input LON: {:.3e} % at {:.3} kt\n",
-            worst.error, worst.airspeed_kt
+            worst.value, worst.airspeed_kt
         );
         assert!(table.csv().contains(&line), "{}", table.csv());
         for points in [&[][..], &[1.0, 1.0], &[1.0, f64::NAN]] {

@@ -5,9 +5,6 @@ use gdcm_model::dataset::Dataset;
 use crate::files::export_contents::ExportContents;
 use crate::formats::variables::{Array, CellArray, StructArray, Value};
 
-/// Maximum length of a name in MATLAB (`namelengthmax`).
-pub(super) const LONGEST_NAME: usize = 63;
-
 /// Fields of a struct, in order.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Fields {

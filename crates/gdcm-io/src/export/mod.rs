@@ -4,15 +4,21 @@
 
 mod all_results;
 mod corrected_models;
+mod corrections_struct;
 mod exported_model;
+mod exported_schedule;
 pub mod figure_file;
+mod json_to_matlab;
 mod lookup_table;
-mod matlab_struct;
+mod matlab_names;
 mod matlab_values;
+mod model_description;
 mod program_text;
 mod programs;
-mod scheduled;
-mod table_error;
+mod requested_models;
+mod schedule_heading;
+mod state_names;
+mod table_deviation;
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -22,7 +28,7 @@ use gdcm_model::dataset::ConditionId;
 use gdcm_study::{Analysis, AssessedCorrection};
 use gdcm_words::lead_price::price_text;
 
-use self::scheduled::Scheduled;
+use self::exported_schedule::ExportedSchedule;
 use crate::export_fault::ExportFault;
 use crate::file_error::FileError;
 use crate::files::export_contents::ExportContents;
@@ -148,7 +154,7 @@ impl<'e> Export<'e> {
     ///
     /// # Errors
     /// Fails if the study has no schedule, or lacks the couplings that it requests.
-    fn scheduled(&self) -> Result<Scheduled<'e>, ExportFault> {
+    fn scheduled(&self) -> Result<ExportedSchedule<'e>, ExportFault> {
         let analysis = self.analysis;
         let schedule = match &analysis.schedule {
             Ok(schedule) => schedule,
@@ -159,7 +165,7 @@ impl<'e> Export<'e> {
             .map_err(|error| ExportFault::NoCouplings {
                 why: error.words(&analysis.study.dataset.names_of_channels().0),
             })?;
-        Ok(Scheduled {
+        Ok(ExportedSchedule {
             schedule,
             dataset: &analysis.study.dataset,
             source: self.source,

@@ -10,9 +10,9 @@ use gdcm_study::decisions::dataset_differences::Difference;
 use super::dataset_file::{DatasetOrigin, LoadedDataset, dataset_from};
 use super::study_file::{OpenedStudy, study_from};
 use crate::file_error::FileError;
+use crate::file_reading::Source;
 use crate::json_outline::Outline;
 use crate::reading_budget::ReadingBudget;
-use crate::source::Source;
 
 /// Content of a file opened by the user.
 #[derive(Clone, Debug)]

@@ -7,10 +7,11 @@ use serde::{Deserialize, Serialize};
 use gdcm_model::whole_number::whole;
 
 use crate::file_error::FileError;
-use crate::json_text::{Format, write_pretty};
+use crate::file_reading::Source;
+use crate::json_reading::Format;
+use crate::json_writing::write_pretty;
 use crate::output_set::{make_directory, write_whole};
 use crate::reading_budget::ReadingBudget;
-use crate::source::Source;
 
 /// Maximum number of files in the list of recent files.
 const MOST: usize = 10;

@@ -14,11 +14,13 @@ use gdcm_model::names::channel_rule::ChannelRule;
 use gdcm_model::names::{NamePattern, standard_patterns};
 use gdcm_model::whole_number::whole;
 
-use crate::file_error::{ContentError, ContentFault, FileError};
-use crate::json_text::{Format, list, write_pretty};
+use crate::content_fault::{ContentError, ContentFault};
+use crate::file_error::FileError;
+use crate::file_reading::Source;
+use crate::json_reading::{Format, list};
+use crate::json_writing::write_pretty;
 use crate::output_set::OutputSet;
 use crate::reading_budget::ReadingBudget;
-use crate::source::Source;
 
 const RULES_EXTENSION: &str = "gdcm-rules.json";
 

@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use gdcm_model::message_text::sanitized;
 
 use crate::file_error::FileError;
+use crate::file_reading::kind_of;
 use crate::formats::text::TEXT;
 use crate::formats::{ending_of, importer_of, is_known};
-use crate::source::kind_of;
 
 /// Maximum number of listed files.
 pub(crate) const MOST_FILES: usize = 20_000;

@@ -4,6 +4,7 @@
 use std::path::Path;
 
 use crate::file_error::FileError;
+use crate::file_reading::{Source, text_of, without_mark};
 use crate::files::dataset_file::{DatasetOrigin, dataset_from};
 use crate::files::model_collection::found_models;
 use crate::formats::json_tree::Tree;
@@ -12,9 +13,9 @@ use crate::formats::variables::{
     Array, CellArray, ElementKind, StructArray, TextArray, Value, Variable,
 };
 use crate::formats::{Contents, Importer, importer_of};
+use crate::gzip::GZIP_MAGIC;
 use crate::json_outline::Outline;
 use crate::reading_budget::{ReadingBudget, VariableFault};
-use crate::source::{GZIP_MAGIC, Source, text_of, without_mark};
 
 /// Estimated memory of a single value \[bytes\]: the value, and the three allocations for shape,
 /// name and number.

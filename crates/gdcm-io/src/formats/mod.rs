@@ -42,6 +42,7 @@ use gdcm_model::dataset::Dataset;
 
 use self::variables::Variable;
 use crate::file_error::FileError;
+use crate::file_reading::{read_bytes, sha256};
 use crate::formats::folders::list_files;
 use crate::formats::foreign_formats::FOREIGN_FORMAT;
 use crate::formats::json_values::JSON;
@@ -54,7 +55,6 @@ use crate::formats::recorded_columns::Columns;
 use crate::formats::text::{LITERALS, TEXT};
 use crate::formats::zip_files::ZIP;
 use crate::reading_budget::{ReadingBudget, VariableFault};
-use crate::source::{read_bytes, sha256};
 
 pub use folders::sources_folder;
 #[cfg(test)]

@@ -13,7 +13,8 @@ use gdcm_study::results::assessment_table::AssessmentTable;
 use gdcm_words::assessment::{missing_cost_text, not_assessed_text, summary_text};
 use gdcm_words::table::Table;
 
-use super::page::{CONDITIONS_DRAWN, PAIRS_DRAWN, Page};
+use super::limits::{CONDITIONS_DRAWN, PAIRS_DRAWN};
+use super::page::Page;
 use super::wording::capital;
 
 /// Maximum number of responses in a figure, in four rows.

@@ -12,7 +12,8 @@ use gdcm_study::jobs::curve_jobs::ConditionModes;
 use gdcm_study::stages::condition_curves::{CURVE_POINTS, curves_band};
 use gdcm_study::{Analysis, ConditionAnalysis, Engine};
 
-use super::page::{PAIRS_DRAWN, Page};
+use super::limits::PAIRS_DRAWN;
+use super::page::Page;
 use super::shown_models::models_hidden;
 
 /// Computes the curves of a condition and adds its plots.

@@ -3,15 +3,18 @@
 
 mod assessment;
 mod condition_plots;
+mod condition_tables;
 mod conditions;
 mod couplings;
-mod left_out;
+mod limits;
+mod models_left_out;
 mod page;
 mod provenance;
 mod requirements;
 mod schedule;
+mod settings;
 mod shown_models;
-mod study;
+mod summary;
 mod uncertainty;
 mod wording;
 
@@ -28,7 +31,7 @@ use crate::file_error::FileError;
 use crate::files::dataset_file::LoadedDataset;
 use crate::output_set::OutputSet;
 
-pub use self::study::assessment_sentence;
+pub use self::summary::assessment_sentence;
 
 const PROGRAM: &str = concat!("gdcm ", env!("CARGO_PKG_VERSION"));
 
@@ -87,10 +90,10 @@ pub fn report(
     let with_bars = uncertainty::with_bars(subject.analysis, engine, progress)?;
     let analysis = &couplings::with_couplings(with_bars, engine, progress)?;
     let mut page = Page::default();
-    study::add_summary(&mut page, analysis);
-    study::add_settings(&mut page, &analysis.study);
+    summary::add_summary(&mut page, analysis);
+    settings::add_settings(&mut page, &analysis.study);
     provenance::add_files(&mut page, &analysis.study, source);
-    left_out::add_left_out(&mut page, analysis);
+    models_left_out::add_models_left_out(&mut page, analysis);
     couplings::add_couplings(&mut page, analysis);
     conditions::add_conditions(&mut page, analysis, engine, progress)?;
     schedule::add_schedule(&mut page, analysis);

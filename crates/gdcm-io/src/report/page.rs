@@ -9,15 +9,6 @@ use gdcm_words::Table;
 
 use super::wording::counted_are;
 
-/// Maximum number of conditions with figures; the tables list all conditions.
-pub(super) const CONDITIONS_DRAWN: usize = 60;
-/// Maximum number of responses with figures, for on-axis and for off-axis responses each.
-pub(super) const PAIRS_DRAWN: usize = 40;
-/// Maximum number of responses for which all are listed in a table; if there are more, only on-axis
-/// and constrained responses are listed.
-pub(super) const PAIRS_LISTED: usize = 48;
-/// Maximum number of models of a bundle that are listed and drawn.
-pub(super) const MODELS_SHOWN: usize = 40;
 /// Maximum distance \[pt\] between a simplified line in a figure and its original points: less than
 /// the thinnest line width, hence invisible. Simplifying reduces the file size to a quarter.
 const TOLERANCE_PT: f64 = 0.1;

@@ -2,10 +2,10 @@
 //! scheduled with airspeed.
 
 use gdcm_method::correction::{Channel, ChannelCorrection};
-use gdcm_method::schedule::Schedule;
+use gdcm_method::schedule::{Schedule, ScheduleKind, ScheduleSettings};
 use gdcm_model::dataset::{ConditionId, Dataset, Pair};
 use gdcm_model::number_format::{compact, decimals};
-use gdcm_model::units::{number, s_to_ms};
+use gdcm_model::units::{number, s_to_ms, six_digits};
 use gdcm_plot::figure::all_channels;
 use gdcm_plot::figure::condition_source::quantity_symbol;
 use gdcm_plot::figure::gains::{Across, GainAxes, Measure, channels_figure, net_gain_figure};
@@ -14,8 +14,8 @@ use gdcm_words::Table;
 use gdcm_words::lead_price::price_text;
 use gdcm_words::schedule::{delayed_channel_text, schedule_caution_text};
 
-use super::page::{PAIRS_DRAWN, Page};
-use super::study::schedule_words;
+use super::limits::PAIRS_DRAWN;
+use super::page::Page;
 use super::wording::names;
 
 /// Maximum number of channels in a figure, in two rows.
@@ -92,6 +92,7 @@ fn add_airspeed(page: &mut Page, analysis: &Analysis, schedule: &Schedule, chann
     }
 }
 
+/// Adds form, degree and airspeeds of the schedule, and the conditions that it omits.
 fn add_schedule_facts(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
     let low = number(schedule.airspeeds.min_kt);
     let high = number(schedule.airspeeds.max_kt);
@@ -114,6 +115,28 @@ fn add_schedule_facts(page: &mut Page, analysis: &Analysis, schedule: &Schedule)
         ),
         ("Conditions left out", left_out),
     ]);
+}
+
+/// Describes the kind, degree and variables of a schedule.
+fn schedule_words(settings: &ScheduleSettings) -> String {
+    let kind = match settings.kind {
+        ScheduleKind::Polynomial { degree } => format!("polynomial of degree {degree} in airspeed"),
+        ScheduleKind::Table => "table over airspeed, linear between its points".to_owned(),
+    };
+    let quantity = quantity_symbol(settings.quantity);
+    let delays = if settings.delays {
+        "delays are scheduled too"
+    } else {
+        "delays are not scheduled"
+    };
+    let second = match settings.second {
+        Some(variable) => format!(" and {variable}"),
+        None => String::new(),
+    };
+    format!(
+        "{kind}{second}, of {quantity}; airspeeds within {} kt count as equal; {delays}",
+        six_digits(settings.airspeed_tolerance_kt)
+    )
 }
 
 /// Adds the cost of leads, cautions about the schedule, and the delays that the schedule omits.

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use gdcm_model::dataset::{BundleKind, ModelId};
 use gdcm_study::{ConditionAnalysis, Study};
 
-use super::page::MODELS_SHOWN;
+use super::limits::MODELS_SHOWN;
 
 /// Returns the indices of the models of a bundle that are listed and drawn: all models of a short
 /// bundle; of a long bundle the representative, nominal and suggested models, then rejected models,

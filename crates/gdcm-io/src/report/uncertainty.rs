@@ -14,7 +14,8 @@ use gdcm_words::uncertainty::{
 };
 
 use super::CancellationOnly;
-use super::page::{PAIRS_DRAWN, Page};
+use super::limits::PAIRS_DRAWN;
+use super::page::Page;
 
 /// Returns the analysis with confidence intervals, which are computed if missing.
 ///

@@ -39,7 +39,7 @@ impl BreakpointTable<'_> {
                 text,
                 "# {}: {}",
                 comment(&column.words()),
-                column.error_words()
+                column.deviation_words()
             );
         }
         if let Some(couplings) = self.scheduled.couplings {

@@ -9,7 +9,7 @@ use crate::formats::variables::{Value, Variable};
 impl BreakpointTable<'_> {
     /// Returns the variable `gdcm_table`: the airspeeds, and for inputs and outputs the matrices of
     /// gains, delays \[s\] and lead numerators \[s\] with a row for each airspeed and a column for
-    /// each channel, with their maximum errors.
+    /// each channel, with their maximum deviations.
     pub(super) fn variable(&self) -> Variable {
         let scheduled = &self.scheduled;
         let mut fields = Fields::default();
@@ -66,7 +66,10 @@ impl BreakpointTable<'_> {
             );
             let unit = if quantity.is_time { "ms" } else { "percent" };
             let name = format!("{side}_{}_error_{unit}", quantity.name.replace(' ', "_"));
-            fields.add(&name, row(columns.iter().map(|column| column.error.error)));
+            fields.add(
+                &name,
+                row(columns.iter().map(|column| column.deviation.value)),
+            );
         }
     }
 

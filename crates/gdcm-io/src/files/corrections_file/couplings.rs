@@ -10,7 +10,8 @@ use gdcm_study::results::couplings_assessment::{AxisCost, CouplingCost, Coupling
 use gdcm_study::{Analysis, ConditionAnalysis};
 use gdcm_words::coupling_remark::coupling_remark_text;
 
-use super::channel_names::{rows_of, without_empty};
+use super::pair_rows::rows_of;
+use crate::json_empty_members::without_empty;
 
 /// Returns the study's mixing and feedback, in the dataset's units; null without couplings.
 pub(super) fn couplings(analysis: &Analysis) -> Value {
@@ -59,7 +60,8 @@ pub(super) fn couplings(analysis: &Analysis) -> Value {
     )
 }
 
-/// Returns a matrix as a list of rows, one per receiving input.
+/// Returns a matrix as a list of rows, one per receiving input. [`rows_of`] calls the row index
+/// `output` and the column index `input`, whatever the matrix holds.
 fn matrix_rows<T: Scalar + Into<Value>>(matrix: &DMatrix<T>) -> Value {
     rows_of(matrix.nrows(), matrix.ncols(), |at| {
         matrix[(at.output, at.input)].clone().into()

@@ -11,10 +11,11 @@ use gdcm_method::correction::{Outcome, Problem, Quantity, Solution};
 use gdcm_study::ConditionAnalysis;
 use gdcm_words::conflict_text::{agreement_text, conflict_text, miss_text};
 
-use super::channel_names::{ChannelNames, without_empty};
+use super::labelled_analysis::LabelledAnalysis;
+use crate::json_empty_members::without_empty;
 
 /// Returns the object with the results of the gain fit.
-pub(super) fn gain_solution(names: &ChannelNames<'_>, result: &ConditionAnalysis) -> Value {
+pub(super) fn gain_solution(names: &LabelledAnalysis<'_>, result: &ConditionAnalysis) -> Value {
     let gains = &result.gains;
     let mut unmatched = Vec::new();
     for entry in &gains.unmatched {
@@ -39,7 +40,7 @@ pub(super) fn gain_solution(names: &ChannelNames<'_>, result: &ConditionAnalysis
 }
 
 /// Returns the object with the results of the delay fit.
-pub(super) fn delay_solution(names: &ChannelNames<'_>, result: &ConditionAnalysis) -> Value {
+pub(super) fn delay_solution(names: &LabelledAnalysis<'_>, result: &ConditionAnalysis) -> Value {
     let delays = &result.delays;
     let band_top_rad_s = names.analysis.study.settings.band.max();
     let mut unmatched = Vec::new();
@@ -77,7 +78,7 @@ pub(super) fn delay_solution(names: &ChannelNames<'_>, result: &ConditionAnalysi
 
 /// Explains why gains or delays are not matched: the conflicts, the changes that would resolve
 /// them, and the cost of each constraint.
-fn explanation(names: &ChannelNames<'_>, problem: &Problem, solution: &Solution) -> Value {
+fn explanation(names: &LabelledAnalysis<'_>, problem: &Problem, solution: &Solution) -> Value {
     let mut conflicts = Vec::new();
     for conflict in &solution.conflicts {
         let words = conflict_text(conflict, &names.inputs, &names.outputs);
@@ -160,7 +161,7 @@ impl ConflictFigures {
     }
 }
 
-fn conflict_json(names: &ChannelNames<'_>, conflict: &Conflict, words: String) -> Value {
+fn conflict_json(names: &LabelledAnalysis<'_>, conflict: &Conflict, words: String) -> Value {
     let ConflictFigures {
         kind,
         figure,
@@ -182,7 +183,7 @@ fn conflict_json(names: &ChannelNames<'_>, conflict: &Conflict, words: String) -
     })
 }
 
-fn sensitivity_json(names: &ChannelNames<'_>, sensitivity: &Sensitivity) -> Value {
+fn sensitivity_json(names: &LabelledAnalysis<'_>, sensitivity: &Sensitivity) -> Value {
     let (restraint, entry, channel) = match sensitivity.constraint {
         ActiveConstraint::Held(pair) => ("held", Some(names.pair(pair)), None),
         ActiveConstraint::LowerBound(channel) => ("lower_bound", None, Some(channel)),

@@ -13,7 +13,9 @@ use gdcm_study::results::uncertainty::{
 };
 use gdcm_words::uncertainty::{bar_remark_texts, difference_text, second_variable_text};
 
-use super::channel_names::{ChannelNames, is_empty_value, rows_of, without_empty};
+use super::labelled_analysis::LabelledAnalysis;
+use super::pair_rows::rows_of;
+use crate::json_empty_members::{is_empty_value, without_empty};
 
 /// Returns the confidence interval of a net gain; `None` if it was not computed.
 pub(super) fn net_gain_bar(
@@ -29,7 +31,7 @@ pub(super) fn net_gain_bar(
 }
 
 /// Returns the confidence intervals of a condition, except the intervals of net gains.
-pub(super) fn bars(names: &ChannelNames<'_>, condition: ConditionId) -> Option<Value> {
+pub(super) fn bars(names: &LabelledAnalysis<'_>, condition: ConditionId) -> Option<Value> {
     let uncertainty = names.analysis.uncertainty.as_ref()?;
     let bars = ConditionBars {
         names,
@@ -53,7 +55,7 @@ pub(super) fn bars(names: &ChannelNames<'_>, condition: ConditionId) -> Option<V
 
 /// Error bars of a condition, from which its confidence intervals at a level are written.
 struct ConditionBars<'a> {
-    names: &'a ChannelNames<'a>,
+    names: &'a LabelledAnalysis<'a>,
     bars: &'a ScalarTable<Option<Bar>>,
     level: f64,
 }
@@ -117,7 +119,7 @@ fn in_units(scalar: Scalar, ends: [f64; 2]) -> [f64; 2] {
 
 /// Returns the conclusions from the confidence intervals of all conditions; `None` without
 /// confidence intervals.
-pub(super) fn uncertainty(names: &ChannelNames<'_>) -> Option<Value> {
+pub(super) fn uncertainty(names: &LabelledAnalysis<'_>) -> Option<Value> {
     let uncertainty = names.analysis.uncertainty.as_ref()?;
     let level = uncertainty.level;
     let mut differences = Vec::new();
@@ -183,7 +185,7 @@ fn decomposition_json(split: &VarianceDecomposition, level: f64) -> Value {
 
 /// Returns the scheduled net gains of the on-axis responses (all responses if none is on-axis),
 /// with their confidence and scatter bands, as natural logarithms.
-fn bands(names: &ChannelNames<'_>, uncertainty: &Uncertainty) -> Value {
+fn bands(names: &LabelledAnalysis<'_>, uncertainty: &Uncertainty) -> Value {
     let (Ok(schedule), Some(bands)) = (&names.analysis.schedule, &uncertainty.bands) else {
         return json!([]);
     };

@@ -6,11 +6,11 @@ use gdcm_model::dataset::dataset_draft::{ConditionDraft, DatasetDraft, ModelDraf
 use gdcm_model::dataset::location::Location;
 use gdcm_model::dataset::{BundleKind, Channel, Condition, ConditionId, Dataset};
 
-use super::text::{
+use super::json_form::{
     BandText, ChannelText, ConditionText, DatasetText, FORMAT, ModelText, RecordText,
 };
-use crate::file_error::{ContentError, ContentFault};
-use crate::json_text::Limited;
+use crate::content_fault::{ContentError, ContentFault};
+use crate::json_reading::Limited;
 
 /// Draft of a dataset, with cautions about the text from which it was read.
 pub(super) struct CautionedDraft {

@@ -1,8 +1,8 @@
 //! Dataset files, `*.json` and `*.json.gz`.
 
 mod conversion;
+mod json_form;
 mod model_conversion;
-mod text;
 
 use std::fmt;
 use std::io::BufWriter;
@@ -16,14 +16,15 @@ use gdcm_model::dataset::Dataset;
 use gdcm_model::message_text::{sanitized, sanitized_path};
 
 use self::conversion::CautionedDraft;
-use self::text::{DatasetText, FORMAT};
-use crate::file_error::{ContentError, FileError};
-use crate::json_text::write_compact;
+use self::json_form::{DatasetText, FORMAT};
+use crate::content_fault::ContentError;
+use crate::file_error::FileError;
+use crate::file_reading::Source;
+use crate::json_writing::write_compact;
 use crate::output_set::{Existing, OutputSet, make_directory};
 use crate::reading_budget::ReadingBudget;
-use crate::source::Source;
 
-pub(crate) use self::text::{LabelText, ModelText, RecordText};
+pub(crate) use self::json_form::{LabelText, ModelText, RecordText};
 
 /// The example dataset: a synthetic UH-60A-class helicopter at eleven flight conditions.
 const EXAMPLE: &[u8] = include_bytes!("../../../../../assets/example-dataset.json.gz");

@@ -10,9 +10,9 @@ use gdcm_model::dataset::model::{Origin, Provenance};
 use gdcm_model::dataset::state_space::Timing;
 use gdcm_model::dataset::{BundleKind, Model};
 
-use super::text::{BandsText, ModelText, ResponseText, SideText, SourceText};
-use crate::file_error::{ContentError, ContentFault};
-use crate::json_text::{Limited, Nested};
+use super::json_form::{BandsText, ModelText, ResponseText, SideText, SourceText};
+use crate::content_fault::{ContentError, ContentFault};
+use crate::json_reading::{Limited, Nested};
 
 impl ModelText {
     /// Returns the keys that are present but have no meaning for models in a bundle of this kind.

@@ -1,25 +1,26 @@
 //! Study files, `*.gdcm-study.json`: the decisions of a study, with a reference to its dataset.
 
+mod conversion;
+mod json_form;
 mod paths;
-mod text;
 
 use std::path::{Path, PathBuf};
 
 use gdcm_study::Study;
 use gdcm_study::decisions::dataset_differences::{Difference, Inventory};
 
+use self::conversion::decisions_of;
+use self::json_form::{DatasetReference, FORMAT, StudyText};
 use self::paths::{path_text, referenced_path, settled_or_absolute, slashed};
-use self::text::{DatasetReference, FORMAT, StudyText, decisions_of};
 use super::dataset_file::{DatasetOrigin, LoadedDataset, embedded_example, load_dataset_within};
 use crate::file_error::FileError;
-use crate::json_text::write_pretty;
+use crate::file_reading::Source;
+use crate::json_writing::write_pretty;
 use crate::output_set::{Existing, OutputSet};
 use crate::reading_budget::ReadingBudget;
-use crate::source::Source;
 
-pub use self::paths::relative_folder;
 #[cfg(test)]
-pub(crate) use self::text::MOST_VARIANTS;
+pub(crate) use self::json_form::MOST_VARIANTS;
 
 /// File extension of a study.
 pub const STUDY_EXTENSION: &str = "gdcm-study.json";

@@ -1,19 +1,17 @@
 //! Recognition of models given by measured frequency responses.
 
-use std::f64::consts::TAU;
-
 use gdcm_model::assembly::FoundModel;
 use gdcm_model::dataset::dataset_draft::{ModelDraft, ResponseArray, ResponseDraft};
 use gdcm_model::dataset::measured_response::Estimate;
 use gdcm_model::dataset::model::Origin;
-use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit};
 
 use super::delays::refuse_delays;
 use super::flight_condition::{Page, facts_of, origin_of};
 use super::labels::{inputs_of, outputs_of};
 use super::record::Record;
+use super::response_frequencies::{Frequencies, has_several_frequencies};
 use super::state_space::source_of;
-use super::values::{Field, array_of, first_text_of, list_of};
+use super::values::array_of;
 use crate::files::model_collection::bare_draft;
 use crate::formats::variables::Array;
 
@@ -30,13 +28,6 @@ const RESPONSES: &[&str] = &[
 ];
 const REAL_PARTS: &[&str] = &["re", "real", "Hre"];
 const IMAGINARY_PARTS: &[&str] = &["im", "imag", "Him"];
-/// Names of frequencies in rad/s.
-const RADIANS: &[&str] = &["omega", "omega_rad_s", "w", "freq_rad_s", "frequency_rad_s"];
-/// Names of frequencies in an unspecified unit.
-const FREQUENCIES: &[&str] = &["Frequency", "freq", "frequencies", "f"];
-/// Names of frequencies in Hz.
-const HERTZ: &[&str] = &["f_hz", "freq_hz", "frequency_hz"];
-const UNITS: &[&str] = &["FrequencyUnit", "FreqUnits", "Units", "frequency_unit"];
 const COHERENCES: &[&str] = &[
     "coherence",
     "coher",
@@ -49,17 +40,10 @@ const COHERENCES: &[&str] = &[
 const GAMMAS: &[&str] = &["gamma", "γ"];
 
 /// Returns whether fields form a frequency response: more than one frequency, and either complex
-/// values or real and imaginary parts.
+/// values or real and imaginary parts. Marks the fields of these values as used.
 pub(super) fn is_response(record: &Record<'_>) -> bool {
-    let frequencies = record
-        .find(RADIANS)
-        .or_else(|| record.find(FREQUENCIES))
-        .or_else(|| record.find(HERTZ));
-    let Some(frequencies) = frequencies else {
-        return false;
-    };
-    let has_frequencies = array_of(frequencies.value).is_some_and(|array| array.len() > 1);
-    has_frequencies && (complex_array(record).is_some() || real_and_imaginary(record).is_some())
+    has_several_frequencies(record)
+        && (complex_array(record).is_some() || real_and_imaginary(record).is_some())
 }
 
 /// Reads the measured response in `record`.
@@ -181,128 +165,14 @@ fn coherence_of(
     }
 }
 
-/// Frequencies of a response.
-struct Frequencies {
-    /// Angular frequencies \[rad/s\].
-    omega: Vec<f64>,
-    /// Whether the file gives the frequencies in Hz or in a multiple of Hz.
-    is_hertz: bool,
-}
-
-impl Frequencies {
-    fn read(record: &Record<'_>) -> Result<Self, String> {
-        let unit = FrequencyUnit::read(record);
-        let GivenFrequencies { field, is_hertz } = GivenFrequencies::find(record, &unit)?;
-        let values = list_of("frequencies", record.take(field))?;
-        let factor = if is_hertz {
-            unit.rad_s_per_multiple_of_hertz()
-        } else {
-            unit.rad_s_per_angular_rate()?
-        };
-        Ok(Self {
-            omega: values.into_iter().map(|value| value * factor).collect(),
-            is_hertz,
-        })
-    }
-}
-
-/// Field with the frequencies of a response.
-struct GivenFrequencies<'v> {
-    field: Field<'v>,
-    is_hertz: bool,
-}
-
-impl<'v> GivenFrequencies<'v> {
-    /// Finds the field; its name decides about the unit, unless a unit is given.
-    ///
-    /// # Errors
-    /// The reason if there are no frequencies, or neither their name nor a unit tells whether they
-    /// are in rad/s or Hz.
-    fn find(record: &Record<'v>, unit: &FrequencyUnit) -> Result<Self, String> {
-        // Without a unit, MATLAB and python-control use rad/s.
-        let has_default = record.class.is_some() || record.get(&["frdata", "fresp"]).is_some();
-        if let Some(field) = record.find(RADIANS) {
-            Ok(Self {
-                field,
-                is_hertz: unit.multiple_of_hertz.is_some(),
-            })
-        } else if let Some(field) = record.find(FREQUENCIES) {
-            if unit.text.is_empty() && !has_default {
-                return Err(
-                    "frequencies: unit missing, rad/s or Hz; call them omega_rad_s or f_hz, or give \"rad/s\" or \"Hz\" \
-                        beside them as frequency_unit"
-                        .to_owned(),
-                );
-            }
-            Ok(Self {
-                field,
-                is_hertz: unit.multiple_of_hertz.is_some(),
-            })
-        } else if let Some(field) = record.find(HERTZ) {
-            Ok(Self {
-                field,
-                is_hertz: true,
-            })
-        } else {
-            Err("frequencies are missing".to_owned())
-        }
-    }
-}
-
-/// Unit that is given beside the frequencies.
-struct FrequencyUnit {
-    /// Name of the unit; empty if none is given.
-    text: String,
-    /// The unit, if it is Hz, kHz, ...
-    multiple_of_hertz: Option<PhysicalUnit>,
-    /// The unit, if it is an angle in rad over a time.
-    angular_rate: Option<PhysicalUnit>,
-}
-
-impl FrequencyUnit {
-    fn read(record: &Record<'_>) -> Self {
-        let text = record
-            .get(UNITS)
-            .and_then(first_text_of)
-            .unwrap_or_default();
-        let unit = PhysicalUnit::parse(&text);
-        Self {
-            multiple_of_hertz: unit.filter(|unit| unit.dimension == Dimension::Frequency),
-            angular_rate: unit.filter(|unit| unit.name.starts_with("rad/")),
-            text,
-        }
-    }
-
-    /// Returns the factor from the unit to rad/s; without a unit, from Hz.
-    fn rad_s_per_multiple_of_hertz(&self) -> f64 {
-        match self.multiple_of_hertz {
-            Some(unit) => TAU * unit.size,
-            None => TAU,
-        }
-    }
-
-    /// Returns the factor from the unit to rad/s; without a unit, 1.
-    fn rad_s_per_angular_rate(&self) -> Result<f64, String> {
-        if let Some(unit) = self.angular_rate {
-            return Ok(unit.size);
-        }
-        match self.text.to_lowercase().as_str() {
-            "" | "rad" | "rads" | "rad/timeunit" => Ok(1.0),
-            other => Err(format!(
-                "frequencies are in \"{other}\"; expected rad/s or Hz"
-            )),
-        }
-    }
-}
-
 /// Dimensions and index order of a stored response.
 struct ResponseLayout {
     outputs: usize,
     inputs: usize,
     /// Number of frequencies.
     count: usize,
-    // Distances in the file between values whose output, input or frequency index differs by 1. In a
-    // file, the first index runs fastest.
+    // Distances in the file between values whose output, input or frequency index differs by 1. In
+    // a file, the first index runs fastest.
     output_stride: usize,
     input_stride: usize,
     frequency_stride: usize,

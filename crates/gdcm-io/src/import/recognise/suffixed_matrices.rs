@@ -1,4 +1,7 @@
 //! Models whose matrices have a common suffix: `A_nom, B_nom, ...`, `A1, B1, ...`.
+//!
+//! The variables `A_nom, B_nom, C_nom, InputDelay_nom, labels` become the record `A, B, C,
+//! InputDelay, labels`, which is read like any other.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -56,6 +59,7 @@ pub(super) fn suffixed_models(
             .add(name, read(&record, name).unwrap_or_default());
         for field in record.fields() {
             if record.is_used(field.name) {
+                // In the file, the name has the suffix only if it was removed above.
                 models.used.insert(field.name.to_owned());
                 models.used.insert(format!("{}{suffix}", field.name));
             }
@@ -88,8 +92,10 @@ fn matrices_with_suffix<'v>(by_name: &HashMap<&str, &'v Value>, suffix: &str) ->
     fields
 }
 
-/// Returns the fields that apply to the model with this suffix, other than its matrices: all variables
-/// but the delays that have the suffix of another model. The suffix is removed from its delays.
+/// Returns the fields that apply to the model with this suffix, other than its matrices: all
+/// variables but matrices without a suffix and delays with the suffix of another model. The suffix
+/// is removed from its own delays. Matrices of other models remain: their names, with a suffix,
+/// mean nothing in the record.
 fn fields_beside<'v>(
     variables: &'v [Variable],
     suffix: &str,

@@ -8,11 +8,11 @@
 //!       -> records: a table is split by a column that numbers them, or where time restarts
 //! ```
 
+mod array_columns;
 mod column_labels;
 mod dataset_entry;
 mod embedded_example;
 mod iddata;
-mod record_columns;
 mod samples;
 mod simulink;
 mod text_columns;
@@ -28,8 +28,8 @@ use std::sync::atomic::AtomicBool;
 use gdcm_sysid::records::separation::Separation;
 use gdcm_sysid::records::{RecordSource, RecordTable};
 
+use self::array_columns::array_columns;
 use self::iddata::{experiments, is_iddata};
-use self::record_columns::array_columns;
 use self::simulink::simulink_columns;
 use self::text_columns::text_columns;
 use self::timetable::timetable_columns;

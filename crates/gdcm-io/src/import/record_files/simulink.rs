@@ -2,7 +2,7 @@
 
 use gdcm_sysid::records::RecordColumn;
 
-use super::record_columns::FEWEST_TIMED;
+use super::array_columns::FEWEST_TIMED;
 use super::samples::{named_columns, samples_of};
 use crate::formats::recorded_columns::Columns;
 use crate::formats::variables::Value;

@@ -17,7 +17,7 @@ use gdcm_sysid::identification::{
 use gdcm_sysid::records::time_base::median_step;
 use gdcm_sysid::records::topics::is_held;
 use gdcm_sysid::records::{LaidOutRecord, RecordChannels};
-use gdcm_sysid::spectra::preparation::RecordUse;
+use gdcm_sysid::spectra::record_use::RecordUse;
 
 use super::condition_messages::{ConditionMessage, shared_messages};
 use super::destination::{Destination, RecordGroup, named_conditions};

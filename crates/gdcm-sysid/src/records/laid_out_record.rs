@@ -16,7 +16,7 @@ use super::record_channels::RecordChannels;
 use super::record_guess::RecordGuess;
 use super::record_layout::RecordLayout;
 use super::record_table::RecordTable;
-use crate::spectra::preparation::RecordUse;
+use crate::spectra::record_use::RecordUse;
 
 /// Name endings for recorded references: pilot and position references, setpoints, injected
 /// signals. Endings up to two letters long must be whole words.

@@ -9,7 +9,7 @@ use gdcm_model::message_text::sanitized;
 use gdcm_model::units::telling;
 use gdcm_sysid::identification::CautionNote;
 use gdcm_sysid::records::layout_problem::LayoutCaution;
-use gdcm_sysid::records::time_base::median_step;
+use gdcm_sysid::records::sample_step::median_step;
 use gdcm_sysid::records::{
     LaidOutRecord, RecordChannels, RecordTable, TimeWish, leave_out_copies, with_topics_joined,
 };

@@ -14,8 +14,8 @@ use gdcm_study::decisions::adopted_models::AdoptedModels;
 use gdcm_sysid::identification::{
     CautionNote, Hold, Identification, IdentificationError, Preparation,
 };
-use gdcm_sysid::records::time_base::median_step;
-use gdcm_sysid::records::topics::is_held;
+use gdcm_sysid::records::sample_step::median_step;
+use gdcm_sysid::records::stamped_channel::is_held;
 use gdcm_sysid::records::{LaidOutRecord, RecordChannels};
 use gdcm_sysid::spectra::record_use::RecordUse;
 

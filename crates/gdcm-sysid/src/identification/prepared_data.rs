@@ -29,7 +29,7 @@ use crate::spectra::reference_response::Instrument;
 use crate::spectra::response_estimate::ResponseEstimate;
 use crate::spectra::scales::{Scales, ScalingError};
 use crate::spectra::spectrum::{LineRange, Spectrum};
-use crate::subspace::search_extent::{Extent, FIGURES_AN_UNKNOWN, parameters_of_order};
+use crate::subspace::tried_orders::{Extent, FIGURES_AN_UNKNOWN, parameters_of_order};
 
 /// Number of frequencies of the measured response.
 const MEASURED_POINTS: usize = 40;

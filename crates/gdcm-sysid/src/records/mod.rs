@@ -2,10 +2,10 @@
 //!
 //! | stage | files |
 //! |---|---|
-//! | a file's columns, from the reader | [`record_table`], [`record_identity`] |
+//! | a file's columns, from the reader | [`record_table`], `record_identity` |
 //! | stamps and their unit | [`time_base`], `stamp_unit`, [`sample_step`] |
 //! | several records in a table | [`separation`] |
-//! | topics in separate tables (M14.11) | [`topic_tables`], [`topic_join`], `topic_names`, `side_by_side_tables` |
+//! | topics in separate tables (M14.11) | [`topic_tables`], `topic_join`, `topic_names`, `side_by_side_tables` |
 //! | channels to read | [`record_channels`], [`channel_list`], `channel_units`, [`dataset_of_records`] |
 //! | columns for time and channels | [`layout_proposal`], `column_candidates`, `position_columns`, [`column_use`] |
 //! | chosen columns, edited by the user | [`record_layout`], `layout_transfer` |
@@ -40,7 +40,7 @@ mod possible_references;
 pub mod record_channels;
 pub mod record_copies;
 pub mod record_guess;
-pub mod record_identity;
+mod record_identity;
 pub mod record_layout;
 pub mod record_table;
 mod resampling;
@@ -52,7 +52,7 @@ pub mod spectrogram;
 mod stamp_unit;
 pub mod stamped_channel;
 pub mod time_base;
-pub mod topic_join;
+mod topic_join;
 mod topic_names;
 pub mod topic_tables;
 

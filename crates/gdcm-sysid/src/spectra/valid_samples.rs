@@ -156,6 +156,8 @@ fn invalid_runs(is_valid: &[bool], frozen: &[StampRange]) -> Vec<InvalidRun> {
     for run in is_valid.chunk_by(|a, b| a == b) {
         let to = from + run.len();
         if !run[0] {
+            // The last frozen run that begins before the end of this run; they overlap if it also
+            // ends after its beginning.
             let before = frozen[..frozen.partition_point(|run| run.from < to)].last();
             runs.push(InvalidRun {
                 stamps: StampRange { from, to },

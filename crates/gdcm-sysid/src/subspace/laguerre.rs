@@ -7,7 +7,7 @@
 //! a the Laguerre pole, dt the sample time, s the signal, tau the time ahead
 //!
 //! 1  c = 2/dt, g = sqrt(2a)/(a + c), alpha = (a - c)/(a + c)                  (bilinear rule)
-//! 2  x = the record less its last sample, from its end to its beginning
+//! 2  x = the signal less its last sample, from its end to its beginning
 //! 3  y_0[n] = g (x[n] + x[n-1]) - alpha y_0[n-1]                              zero initial state
 //! 4  y_k[n] = alpha y_{k-1}[n] + y_{k-1}[n-1] - alpha y_k[n-1]                k = 1 ... p
 //! 5  each y_k from its end to its beginning

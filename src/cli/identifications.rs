@@ -13,7 +13,7 @@ use gdcm_model::number_format::counted;
 use gdcm_study::decisions::adopted_models::AdoptedModels;
 use gdcm_sysid::identification::{CautionNote, Identification, IdentificationError};
 use gdcm_sysid::records::RecordChannels;
-use gdcm_sysid::spectra::preparation::RecordUse;
+use gdcm_sysid::spectra::record_use::RecordUse;
 
 use super::condition_messages::{ConditionMessage, shared_messages};
 use super::failure::Failure;

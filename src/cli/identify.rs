@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use gdcm_io::output_set::OutputSet;
 use gdcm_model::dataset::Band;
 use gdcm_sysid::identification::{Hold, Preparation};
-use gdcm_sysid::records::time_base::median_step;
-use gdcm_sysid::records::topics::is_held;
+use gdcm_sysid::records::sample_step::median_step;
+use gdcm_sysid::records::stamped_channel::is_held;
 use gdcm_sysid::records::{LaidOutRecord, RecordChannels};
 
 use super::existing;

@@ -3,7 +3,7 @@
 use gdcm_model::message_text::sanitized;
 use gdcm_model::units::telling;
 use gdcm_sysid::records::LaidOutRecord;
-use gdcm_sysid::records::time_base::median_step;
+use gdcm_sysid::records::sample_step::median_step;
 use gdcm_words::Table;
 
 use super::printed_lines::indented;

@@ -5,7 +5,7 @@ use nalgebra::{Complex, DMatrix};
 use crate::likelihood::blocks::BlockModel;
 use crate::likelihood::cost::{Likelihood, SegmentCost};
 use crate::likelihood::covariance::ParameterCovariance;
-use crate::subspace::search_extent::parameters_of_order;
+use crate::subspace::tried_orders::parameters_of_order;
 
 /// Fit of the recommended model to a record.
 #[derive(Clone, Copy, Debug, PartialEq)]

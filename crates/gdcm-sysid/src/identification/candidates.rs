@@ -12,11 +12,11 @@ use crate::likelihood::blocks::BlockModel;
 use crate::likelihood::cost::Likelihood;
 use crate::likelihood::refinement::Fit;
 use crate::subspace::ct_pbsid::{Subspace, SubspaceShape};
+use crate::subspace::data_matrix::Projections;
 use crate::subspace::fast_modes::without_fast_modes;
-use crate::subspace::laguerre::Projections;
-use crate::subspace::search_extent::SPACING;
 use crate::subspace::stabilisation::PolesOfOrder;
 use crate::subspace::triangular_factor::TriangularFactor;
+use crate::subspace::tried_orders::SPACING;
 
 /// Highest order at which poles and past windows are compared.
 const RANKING_ORDER: usize = 18;

@@ -15,7 +15,8 @@ use gdcm_model::simulation::{FirstOrderHold, FlightRecord};
 use super::identify::identify;
 use super::real_flight_tests::{Flown, Generator, codes, known, options};
 use super::{Options, Preparation};
-use crate::spectra::preparation::{RecordUse, prepare};
+use crate::spectra::preparation::prepare;
+use crate::spectra::record_use::RecordUse;
 
 /// Records, and the options of their identification.
 struct Flights {

@@ -23,7 +23,7 @@ use crate::diagnostics::record_contrast::RecordContrasts;
 use crate::diagnostics::record_fault::RecordFault;
 use crate::likelihood::blocks::BlockModel;
 use crate::likelihood::covariance::ParameterCovariance;
-use crate::spectra::channel_quality::Clipping;
+use crate::spectra::clipping::Clipping;
 use crate::spectra::local_polynomial::local_polynomial;
 use crate::spectra::preparation::prepare;
 use crate::spectra::response_estimate::EstimatePoint;

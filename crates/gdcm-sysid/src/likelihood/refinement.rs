@@ -15,7 +15,7 @@ use gdcm_model::progress::{Cancelled, Shares};
 use super::blocks::BlockModel;
 use super::cost::{Likelihood, SegmentCost};
 use super::normal_system::{NormalSystem, normal_systems};
-use crate::subspace::search_extent::parameters_of_order;
+use crate::subspace::tried_orders::parameters_of_order;
 
 /// Relative gain in cost below which the refinement ends; the comparison of orders of large models
 /// uses another limit.

@@ -10,7 +10,8 @@ use super::record_channels::RecordChannels;
 use super::record_layout::{ChannelUse, ChosenColumn, RecordLayout};
 use super::record_table::{RecordTable, same_samples};
 use super::resampling::{Resampling, has_holes};
-use super::time_base::{LONGEST_STEP_S, TimeBase};
+use super::sample_step::LONGEST_STEP_S;
+use super::time_base::TimeBase;
 
 /// Maximum plausible sensor or bus delay \[s\].
 const LONGEST_DELAY_S: f64 = 10.0;

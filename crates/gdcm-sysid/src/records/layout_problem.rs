@@ -3,7 +3,7 @@
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::units::{number, telling};
 
-use super::topics::TopicError;
+use super::resampling_error::ResamplingError;
 
 /// Reasons why the chosen columns cannot be used as they are.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -164,7 +164,7 @@ pub enum LayoutProblem {
     },
     /// Topics with separate clocks cannot be combined into a record.
     #[error("{0}")]
-    Topics(TopicError),
+    Topics(ResamplingError),
 }
 
 impl LayoutProblem {

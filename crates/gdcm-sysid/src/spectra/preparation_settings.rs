@@ -3,7 +3,7 @@
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::simulation::Signal;
 
-use super::gaps::names;
+use super::signal_names::names;
 
 /// Maximum plausible delay or hold of a channel \[s\].
 const LONGEST_SHIFT_S: f64 = 10.0;

@@ -7,7 +7,7 @@ use egui::{Color32, Label, Rect, RichText, ScrollArea, Sense, Ui, vec2};
 use gdcm_model::simulation::FlightRecord;
 use gdcm_model::units::telling;
 use gdcm_sysid::records::ModeSpan;
-use gdcm_sysid::spectra::gaps::{Gap, Treatment};
+use gdcm_sysid::spectra::gap::{Gap, Treatment};
 
 use super::frame_cache::cached;
 use super::page::Page;

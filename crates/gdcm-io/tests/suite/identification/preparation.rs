@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use gdcm_model::executor::Sequential;
 use gdcm_model::simulation::FlightRecord;
 use gdcm_sysid::identification::{Hold, Preparation};
-use gdcm_sysid::spectra::gaps::{Cause, Treatment};
+use gdcm_sysid::spectra::gap::{Cause, Treatment};
 use gdcm_sysid::spectra::preparation::{Prepared, prepare};
 use gdcm_sysid::spectra::preparation_settings::PreparationError;
 use gdcm_sysid::spectra::record_cautions::RecordCaution;

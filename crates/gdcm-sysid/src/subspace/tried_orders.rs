@@ -1,4 +1,7 @@
-//! Orders and past windows that the amount of data allows (M14.13).
+//! Model orders and past windows to try, as far as the amount of data allows (M14.13).
+//!
+//! A data matrix has a block of columns for each of the `past + 1` projections, and a row for each
+//! instant; a model of order n needs a map to the future with at least n rows.
 
 use std::ops::RangeInclusive;
 
@@ -6,8 +9,10 @@ use std::ops::RangeInclusive;
 const LOW_ORDERS: RangeInclusive<usize> = 1..=8;
 /// Range of the higher orders, of which the even ones are tried.
 const HIGH_ORDERS: RangeInclusive<usize> = 10..=24;
-/// Maximum number of channels for which odd orders above 3 are tried.
-const ODD_ORDERS: usize = 6;
+/// Maximum odd order that is tried for any number of channels.
+const LAST_ODD_ORDER: usize = 3;
+/// Maximum number of channels for which higher odd orders are tried.
+const ODD_ORDERS_CHANNELS: usize = 6;
 /// Past windows to try for any number of channels.
 const PASTS: [usize; 4] = [8, 10, 12, 16];
 /// Further past window to try for few channels.
@@ -17,12 +22,17 @@ const LONG_PAST_CHANNELS: usize = 4;
 /// Minimum past window.
 const LEAST_PAST: usize = 3;
 /// Minimum ratio of rows to columns in a data matrix.
-const LEAST_ROWS: f64 = 2.0;
-/// Minimum ratio of rows to columns if no past window reaches `LEAST_ROWS`.
-const LEAST_ROWS_SHORT: f64 = 1.5;
-/// Time between instants times the upper band end \[rad\].
+const ROWS_PER_COLUMN: f64 = 2.0;
+/// Minimum ratio of rows to columns if no past window reaches `ROWS_PER_COLUMN`.
+const ROWS_PER_COLUMN_SHORT: f64 = 1.5;
+/// Number of states for which the map to the future has enough rows.
+const FUTURE_STATES: usize = 30;
+/// Minimum value of the maximum number of block rows in the map to the future.
+const LEAST_FUTURE: usize = 12;
+/// Time between instants (rows of the data matrix) times the upper band end \[rad\].
 pub(crate) const SPACING: f64 = 1.2;
-/// Minimum number of real values in the spectral lines for each parameter of a model (M14.13).
+/// Minimum number of real values ("figures") in the spectral lines for each parameter ("unknown") of
+/// a model (M14.13).
 pub(crate) const FIGURES_AN_UNKNOWN: usize = 5;
 
 /// Counts the parameters of a model with this order, without those that only change the state
@@ -47,9 +57,12 @@ impl Extent {
         self.inputs + self.outputs
     }
 
-    /// Returns the maximum number of block rows in the map to the future: enough for 30 states.
+    /// Returns the maximum number of block rows in the map to the future: enough for 30
+    /// states, and at least 12.
     pub(crate) fn longest_future(self) -> usize {
-        30_usize.div_ceil(self.outputs.max(1)).max(12)
+        FUTURE_STATES
+            .div_ceil(self.outputs.max(1))
+            .max(LEAST_FUTURE)
     }
 
     /// Returns the past windows that the amount of data allows.
@@ -61,10 +74,10 @@ impl Extent {
         }
         pasts.retain(|past| {
             let columns = ((past + 1) * self.channels()) as f64;
-            rows >= LEAST_ROWS * columns
+            rows >= ROWS_PER_COLUMN * columns
         });
         if pasts.is_empty() {
-            let block_columns = (rows / (LEAST_ROWS_SHORT * self.channels() as f64)) as usize;
+            let block_columns = (rows / (ROWS_PER_COLUMN_SHORT * self.channels() as f64)) as usize;
             pasts.push(block_columns.saturating_sub(1).max(LEAST_PAST));
         }
         pasts
@@ -72,11 +85,12 @@ impl Extent {
 
     /// Returns the orders that the amount of data allows, with past windows up to `longest_past`.
     pub(crate) fn orders(self, longest_past: usize) -> Vec<usize> {
+        // A model has at most as many states as the map to the future has rows.
         let most = longest_past.min(self.longest_future()) * self.outputs;
-        let tries_odd = self.channels() <= ODD_ORDERS;
+        let tries_odd = self.channels() <= ODD_ORDERS_CHANNELS;
         LOW_ORDERS
             .chain(HIGH_ORDERS.step_by(2))
-            .filter(|order| *order <= 3 || order.is_multiple_of(2) || tries_odd)
+            .filter(|order| *order <= LAST_ODD_ORDER || order.is_multiple_of(2) || tries_odd)
             .filter(|order| *order <= most && self.carries(*order))
             .collect()
     }

@@ -1,23 +1,10 @@
-//! Gaps in a flight record: their causes and their treatment (M14.1).
+//! A gap in a flight record, with its cause and its treatment (M14.1). `gap_search` finds the gaps.
 
 use std::fmt;
 
 use gdcm_model::simulation::Signal;
 
-/// Joins the names of signals: `P, Q and R`.
-pub(crate) fn names(signals: &[Signal]) -> String {
-    let names: Vec<&str> = signals.iter().map(|signal| signal.name.as_str()).collect();
-    listed(&names)
-}
-
-/// Joins words: `P, Q and R`.
-pub(crate) fn listed<S: AsRef<str> + std::borrow::Borrow<str>>(words: &[S]) -> String {
-    match words {
-        [] => String::new(),
-        [single] => single.as_ref().to_owned(),
-        [most @ .., last] => format!("{} and {}", most.join(", "), last.as_ref()),
-    }
-}
+use super::signal_names::names;
 
 /// Cause of a gap.
 #[derive(Clone, Debug, PartialEq)]

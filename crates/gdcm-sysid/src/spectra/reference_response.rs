@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! 1  [Y; U] = (Gamma0 + Gamma1 x + Gamma2 x^2) R + transient + N: local polynomials at every line
-//!    in the longest record, h = max(0.45, 0.15 omega);  S = the block for R in (F'F)^-1
+//!    of the longest record, h = max(0.45, 0.15 omega);  S = the block for R in (F'F)^-1
 //! 2  G = Gamma_y Gamma_u^+ (relative tolerance 1e-3),   Cv = Re([I, -G] Cov N [I, -G]')
 //! 3  the cost (M14.4) with U = Gamma_u R, Y = Gamma_y R, Gamma linear between points, on the lines
 //!    with leverage R S R' < 0.5
@@ -11,6 +11,11 @@
 //!    divided by sqrt(coherence between input and R)
 //! 5  valid where the coherence between an input and R is at least 0.6: elsewhere R does not excite
 //! ```
+//!
+//! `U`, `Y` and `R` are the spectral lines of inputs, outputs and references, `Gamma_y` and `Gamma_u`
+//! the rows of `Gamma0` for outputs and inputs, `F` the regressors `[R, x R, x^2 R]` without the
+//! transient, `N` the noise of `[Y; U]`. In instrumental-variable identification, such a reference is
+//! called the instrument.
 //!
 //! The leverage excludes the ends of a chirp's band, where its smooth spectrum and the
 //! transient look alike. The cost per degree of freedom is far below 1 and meaningless.
@@ -22,7 +27,8 @@ use gdcm_model::dataset::{Pair, PairTable};
 use gdcm_model::executor::Executor;
 
 use super::interpolation::Neighbours;
-use super::local_polynomial::{LocalFit, LocalPolynomialError, condition, local_fits};
+use super::local_polynomial::{LocalFit, condition, local_fits};
+use super::local_polynomial_error::LocalPolynomialError;
 use super::response_estimate::{EstimatePoint, ResponseEstimate};
 use super::spectrum::{LineRange, Spectrum};
 

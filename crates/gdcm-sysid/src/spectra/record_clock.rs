@@ -1,15 +1,19 @@
-//! Time stamps of a record, and their uniform grid (M14.1).
+//! Time stamps of a record, their jitter and their uniform grid (M14.1).
+//!
+//! Rows without a finite stamp are left out. All other code of the preparation counts samples by
+//! their index in [`Clock::times`], which differs from their row in the record.
 
-use gdcm_model::simulation::FlightRecord;
+use gdcm_model::simulation::{FlightRecord, Signal};
 use gdcm_model::statistics::quantile;
 
-use super::gaps::{Cause, Gap, Treatment};
 use super::preparation_settings::PreparationError;
 
 /// Maximum deviation of even stamps from multiples of the sample time \[%\] (M14.1).
 const UNEVEN_PERCENT: f64 = 20.0;
 /// Quantile of the deviations that is compared with the limit: a single late stamp is no jitter.
 const COUNTED: f64 = 0.95;
+/// Tolerance for rounded stamps: relative to the jitter limit, and in samples at a grid point.
+const ROUNDING: f64 = 1e-6;
 
 /// Stamps of a record, with their median step and their jitter.
 pub(crate) struct Clock {
@@ -68,7 +72,7 @@ impl Clock {
     /// Whether the jitter exceeds 20 % of the sample time.
     pub fn is_uneven(&self) -> bool {
         // Rounded stamps may be just at the limit.
-        self.jitter_percent > UNEVEN_PERCENT * (1.0 + 1e-6)
+        self.jitter_percent > UNEVEN_PERCENT * (1.0 + ROUNDING)
     }
 
     /// Returns the time from the first stamp to the last \[s\].
@@ -87,8 +91,7 @@ impl Clock {
                 continue;
             }
             if to > from {
-                // A deviation of less than a millionth of a sample is a rounding error.
-                let last = (self.times[to] / self.sample_time_s + 1e-6).floor();
+                let last = (self.times[to] / self.sample_time_s + ROUNDING).floor();
                 let first = (self.times[from] / self.sample_time_s).ceil();
                 grid.push(GridStretch {
                     first,
@@ -99,28 +102,28 @@ impl Clock {
         }
         grid
     }
+}
 
-    /// Returns the gaps between the stamps.
-    pub fn gaps(&self) -> Vec<Gap> {
-        let mut gaps = Vec::new();
-        for k in 1..self.times.len() {
-            let step = self.times[k] - self.times[k - 1];
-            let stamp_missing = self.rows[k] > self.rows[k - 1] + 1;
-            if !stamp_missing && step <= 1.5 * self.sample_time_s {
-                continue;
-            }
-            gaps.push(Gap {
-                start_s: self.start_s + self.times[k - 1],
-                end_s: self.start_s + self.times[k],
-                cause: if stamp_missing {
-                    Cause::StampsMissing
-                } else {
-                    Cause::RowsMissing
-                },
-                treatment: Treatment::for_gap(step <= self.longest_step_s),
-            });
+/// Consecutive indices `from..to` of a clock's stamps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct StampRange {
+    pub from: usize,
+    pub to: usize,
+}
+
+/// Values of a channel at the stamps of a clock.
+pub(crate) struct StampedValues {
+    pub signal: Signal,
+    pub values: Vec<f64>,
+}
+
+impl StampedValues {
+    pub fn new(record: &FlightRecord, clock: &Clock, signal: Signal) -> Self {
+        let samples = record.channel(&signal);
+        Self {
+            values: clock.rows.iter().map(|&row| samples[row]).collect(),
+            signal,
         }
-        gaps
     }
 }
 

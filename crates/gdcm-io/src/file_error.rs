@@ -3,7 +3,7 @@
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use gdcm_method::requirements::tolerance::ToleranceError;
+use gdcm_method::requirements::tolerance_check::ToleranceError;
 use gdcm_model::dataset::band::BandError;
 use gdcm_model::dataset::location::Location;
 use gdcm_model::dataset::unchecked_dataset::{DraftError, DraftFault};

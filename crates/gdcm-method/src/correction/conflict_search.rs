@@ -16,7 +16,7 @@ use super::conflict::{Conflict, ConflictKind};
 use super::constraints::{Constraints, PairNodes};
 use super::problem::Problem;
 use super::reachable_targets::Reached;
-use super::rounding::three_digits;
+use super::three_digits::three_digits;
 
 /// An entry that stage 1 could not meet, with the smallest conflict that explains it.
 #[derive(Clone, Debug)]

@@ -9,7 +9,7 @@
 //! `[output, input]`, gains are ratios, delays are in seconds.
 //!
 //! ```text
-//! delta                                            G and D from two models, and the bounds
+//! delta, channel_bounds                            G and D from two models; bounds on the channels
 //! problem, solve, solution                         eq. (7) and (11): problem, entry point, result
 //!     constraints, components, reachable_targets       stage 1
 //!     scaled_objective, branch_and_bound               stage 2 and the proof
@@ -20,6 +20,7 @@
 //! ```
 
 pub mod branch_and_bound;
+pub mod channel_bounds;
 pub mod channel_correction;
 pub mod channel_model;
 pub mod channels;
@@ -39,14 +40,14 @@ pub mod problem;
 pub mod quantity;
 mod reachable_targets;
 pub mod remedy;
-mod rounding;
 mod scaled_objective;
 pub mod sensitivity;
 pub mod solution;
 pub mod solve;
+mod three_digits;
 pub mod toggles;
 
-pub use branch_and_bound::search::ProofBudget;
+pub use branch_and_bound::proof_budget::ProofBudget;
 pub use channel_correction::ChannelCorrection;
 pub use channels::{Channel, Channels};
 pub use lead_price::LeadPrice;

@@ -1,12 +1,8 @@
-//! Distances between the models of a bundle, and its representative (M5).
+//! Distances between the models of a bundle (M5).
 //!
 //! ```text
 //! d(a, b) = sqrt(mean over the compared responses of J(a against b)),   J with the mean over frequency
-//! s_a     = mean over b != a of d(a, b);   the representative is the model with the smallest s_a (medoid)
 //! ```
-
-use std::cmp::Ordering;
-use std::collections::BTreeSet;
 
 use gdcm_model::dataset::{Pair, PairTable};
 use gdcm_model::response::PolarResponse;
@@ -173,45 +169,6 @@ fn cost_between(a: &ComparedModel<'_>, b: &ComparedModel<'_>, pair: Pair) -> Opt
     let weighted_by_a = a.weighted_cost(curve_a, curve_b, pair);
     let weighted_by_b = b.weighted_cost(curve_a, curve_b, pair);
     Some(0.5 * (weighted_by_a + weighted_by_b))
-}
-
-/// The medoid of the accepted models, or the model pinned by the analyst, with the score of every
-/// accepted model (M5).
-#[derive(Clone, Debug, PartialEq)]
-pub struct Representative {
-    /// The representative's index in the bundle.
-    pub model: usize,
-    /// `s_a = mean over b != a of d(a, b)` over the accepted models; `None` for a model that is
-    /// rejected or set aside. Zero for a single accepted model.
-    pub scores: Vec<Option<f64>>,
-}
-
-impl Representative {
-    /// Returns the accepted model with the smallest score (ties: the first in file order), or
-    /// `pinned`; `None` if every model is rejected or set aside. A pinned model that is set aside
-    /// is ignored.
-    pub fn select(
-        distance: &BundleDistance,
-        rejected: &BTreeSet<usize>,
-        pinned: Option<usize>,
-    ) -> Option<Self> {
-        let mut kept = distance.measured.compared_models();
-        kept.retain(|model| !rejected.contains(model));
-        let mut scores = vec![None; distance.places.len()];
-        for &a in &kept {
-            let sum: f64 = kept.iter().filter_map(|&b| distance.between(a, b)).sum();
-            scores[a] = Some(sum / kept.len().saturating_sub(1).max(1) as f64);
-        }
-        let medoid = kept
-            .iter()
-            .copied()
-            .min_by(|&a, &b| scores[a].partial_cmp(&scores[b]).unwrap_or(Ordering::Equal))?;
-        let model = match pinned {
-            Some(pinned) if kept.contains(&pinned) => pinned,
-            _ => medoid,
-        };
-        Some(Self { model, scores })
-    }
 }
 
 #[cfg(test)]

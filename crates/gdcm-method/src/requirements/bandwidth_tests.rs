@@ -20,7 +20,7 @@ use super::bandwidth::{
     substitution_bar,
 };
 use super::known_answers::{answers, attitudes, number};
-use super::sampled_model::SampledModel;
+use super::sampled_response::SampledResponse;
 use super::{AttitudeOutput, BandwidthRule};
 
 /// The only response of a model with one input and one output.
@@ -337,7 +337,7 @@ fn measured_bandwidth(top: f64) -> Bandwidth {
     )
     .unwrap();
     let omega = measured.omega().to_vec();
-    let model = SampledModel::new(&Dynamics::Measured(measured), band());
+    let model = SampledResponse::new(&Dynamics::Measured(measured), band());
     let response = model.exact(ONLY, GainDelay::NONE);
     let attitude = AttitudeResponse::new(&response, AttitudeOutput::Rate, &omega, band()).unwrap();
     Bandwidth::read(&attitude, &settings(CommandType::Rate), None)
@@ -389,7 +389,7 @@ fn a_model_and_its_correction_are_evaluated_exactly() {
         input_delays_s: Some(vec![0.02]),
         ..Timing::default()
     };
-    let model = SampledModel::new(&Dynamics::StateSpace(lag.timed(timing).unwrap()), band());
+    let model = SampledResponse::new(&Dynamics::StateSpace(lag.timed(timing).unwrap()), band());
     let correction = GainDelay::new(1.7, 0.04);
     let rate = settings(CommandType::Rate);
     let exact = evaluate(

@@ -19,7 +19,7 @@ use gdcm_method::requirements::attitude_response::{
 use gdcm_method::requirements::bandwidth::{
     AboveBand, Bandwidth, BandwidthSettings, Metric, NoMetric, PairBand, substitution_bar,
 };
-use gdcm_method::requirements::sampled_model::SampledModel;
+use gdcm_method::requirements::sampled_response::SampledResponse;
 use gdcm_method::requirements::{AttitudeOutput, BandwidthRule};
 use gdcm_method::uncertainty::spread::Figures;
 use gdcm_method::uncertainty::{Scalar, student_quantile};
@@ -247,12 +247,12 @@ struct EvaluatedModel<'a> {
     dynamics: Cow<'a, Dynamics>,
     /// The standard deviations that the model contains, if any.
     bands: Option<&'a ModelBands>,
-    sampled: SampledModel,
+    sampled: SampledResponse,
 }
 
 impl<'a> EvaluatedModel<'a> {
     fn new(dynamics: Cow<'a, Dynamics>, bands: Option<&'a ModelBands>, band: Band) -> Self {
-        let sampled = SampledModel::new(&dynamics, band);
+        let sampled = SampledResponse::new(&dynamics, band);
         Self {
             dynamics,
             bands,

@@ -52,9 +52,10 @@ pub(crate) mod newton;
 mod node_exclusion;
 pub(crate) mod objective;
 mod open_nodes;
+pub mod proof_budget;
 pub(crate) mod quadratic;
 pub(crate) mod rounded;
-pub mod search;
+pub(crate) mod search;
 pub(crate) mod term;
 mod underestimator;
 

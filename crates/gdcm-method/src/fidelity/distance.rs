@@ -12,6 +12,69 @@ use super::coherence_weights::CoherenceWeights;
 use super::cost::{Cost, CostAverage, mean_cost};
 use super::mismatch::Mismatch;
 
+/// A model whose distances from other models are computed.
+#[derive(Clone, Copy, Debug)]
+pub struct ComparedModel<'a> {
+    pub responses: &'a PolarResponse,
+    /// Frequency weights of each response, if measured with coherence (M4a).
+    pub coherence_weights: Option<&'a PairTable<CoherenceWeights>>,
+}
+
+impl ComparedModel<'_> {
+    /// Computes J of `a` against `b`, as the mean over frequency, with the coherence weights of
+    /// this model; over all frequencies, equally weighted, if none has a weight.
+    fn weighted_cost(&self, a: &PolarCurve, b: &PolarCurve, pair: Pair) -> f64 {
+        let Some(weights) = self.coherence_weights else {
+            return mean_cost(a, b);
+        };
+        let Some(mismatch) = Mismatch::new(a, b).coherence_weighted(Some(&weights[pair])) else {
+            return mean_cost(a, b);
+        };
+        Cost::from_errors(
+            mismatch.magnitude_db.iter().copied(),
+            mismatch.phase.iter().copied(),
+            mismatch.weights(),
+            CostAverage::Mean,
+        )
+        .total()
+    }
+}
+
+/// Computes the distances from model `a` to each later model, `d(a, a + 1), d(a, a + 2), ...`; for
+/// a large bundle, the calls are independent tasks.
+///
+/// J is weighted by the reference model's coherence (M4a), and in a bundle either model can be the
+/// reference: if either has coherence, J is the mean over both directions, so that a distance does
+/// not depend on the models' order. A response without any weighted frequency is compared over all
+/// frequencies, so that poorly measured models do not appear similar.
+pub fn distances_from(a: usize, models: &[ComparedModel<'_>], compared: &[Pair]) -> Vec<f64> {
+    models[a + 1..]
+        .iter()
+        .map(|b| distance(&models[a], b, compared))
+        .collect()
+}
+
+/// Computes `d(a, b)`.
+fn distance(a: &ComparedModel<'_>, b: &ComparedModel<'_>, compared: &[Pair]) -> f64 {
+    let sum: f64 = compared
+        .iter()
+        .filter_map(|&pair| cost_between(a, b, pair))
+        .sum();
+    (sum / compared.len().max(1) as f64).sqrt()
+}
+
+/// Computes J for a response of `a` against `b`; `None` where either lacks it.
+fn cost_between(a: &ComparedModel<'_>, b: &ComparedModel<'_>, pair: Pair) -> Option<f64> {
+    let curve_a = a.responses.curves()[pair].as_ref()?;
+    let curve_b = b.responses.curves()[pair].as_ref()?;
+    if a.coherence_weights.is_none() && b.coherence_weights.is_none() {
+        return Some(mean_cost(curve_a, curve_b));
+    }
+    let weighted_by_a = a.weighted_cost(curve_a, curve_b, pair);
+    let weighted_by_b = b.weighted_cost(curve_a, curve_b, pair);
+    Some(0.5 * (weighted_by_a + weighted_by_b))
+}
+
 /// The responses compared to compute distances in a bundle, and the responses that each model lacks
 /// (M5b).
 #[derive(Clone, Debug, PartialEq)]
@@ -106,69 +169,6 @@ impl BundleDistance {
     pub fn measured(&self) -> &MeasuredPairs {
         &self.measured
     }
-}
-
-/// A model whose distances from other models are computed.
-#[derive(Clone, Copy, Debug)]
-pub struct ComparedModel<'a> {
-    pub responses: &'a PolarResponse,
-    /// Frequency weights of each response, if measured with coherence (M4a).
-    pub coherence_weights: Option<&'a PairTable<CoherenceWeights>>,
-}
-
-impl ComparedModel<'_> {
-    /// Computes J of `a` against `b`, as the mean over frequency, with the coherence weights of
-    /// this model; over all frequencies, equally weighted, if none has a weight.
-    fn weighted_cost(&self, a: &PolarCurve, b: &PolarCurve, pair: Pair) -> f64 {
-        let Some(weights) = self.coherence_weights else {
-            return mean_cost(a, b);
-        };
-        let Some(mismatch) = Mismatch::new(a, b).coherence_weighted(Some(&weights[pair])) else {
-            return mean_cost(a, b);
-        };
-        Cost::from_errors(
-            mismatch.magnitude_db.iter().copied(),
-            mismatch.phase.iter().copied(),
-            mismatch.weights(),
-            CostAverage::Mean,
-        )
-        .total()
-    }
-}
-
-/// Computes the distances from model `a` to each later model, `d(a, a + 1), d(a, a + 2), ...`; for
-/// a large bundle, the calls are independent tasks.
-///
-/// J is weighted by the reference model's coherence (M4a), and in a bundle either model can be the
-/// reference: if either has coherence, J is the mean over both directions, so that a distance does
-/// not depend on the models' order. A response without any weighted frequency is compared over all
-/// frequencies, so that poorly measured models do not appear similar.
-pub fn distances_from(a: usize, models: &[ComparedModel<'_>], compared: &[Pair]) -> Vec<f64> {
-    models[a + 1..]
-        .iter()
-        .map(|b| distance(&models[a], b, compared))
-        .collect()
-}
-
-/// Computes `d(a, b)`.
-fn distance(a: &ComparedModel<'_>, b: &ComparedModel<'_>, compared: &[Pair]) -> f64 {
-    let sum: f64 = compared
-        .iter()
-        .filter_map(|&pair| cost_between(a, b, pair))
-        .sum();
-    (sum / compared.len().max(1) as f64).sqrt()
-}
-
-/// Computes J for a response of `a` against `b`; `None` where either lacks it.
-fn cost_between(a: &ComparedModel<'_>, b: &ComparedModel<'_>, pair: Pair) -> Option<f64> {
-    let curve_a = a.responses.curves()[pair].as_ref()?;
-    let curve_b = b.responses.curves()[pair].as_ref()?;
-    if a.coherence_weights.is_none() && b.coherence_weights.is_none() {
-        return Some(mean_cost(curve_a, curve_b));
-    }
-    let weighted_by_a = a.weighted_cost(curve_a, curve_b, pair);
-    let weighted_by_b = b.weighted_cost(curve_a, curve_b, pair);
-    Some(0.5 * (weighted_by_a + weighted_by_b))
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@
 //! | `attitude_response`, `sampled_response` | response from which bandwidths are read | |
 //! | `bandwidth`, `phase_delay`, `bandwidth_deviation`, `substitution_bar`, `level_boundary` | bandwidth, phase delay, their uncertainty and levels | ADS-33E-PRF 3.3.2, 3.4.1; MIL-DTL-32742 |
 //! | `mode_comparison`, `mode_pairing`, `mode_name`, `mode_values`, `mode_tolerance` | modes | 14 CFR part 60, appendix C, table C2A, 2.c.3.a, 2.d.3.a |
-//! | `summary` | J, rms in time, Theil's coefficients, MUAD | MIL-STD-1797A, appendix A, 4.2.1.2 |
+//! | `summary`, `rms_cost` | J, rms in time, Theil's coefficients, MUAD | MIL-STD-1797A, appendix A, 4.2.1.2 |
 //! | `test_input`, `test_response` | steps and doublets; simulated responses to them | |
 //! | `tolerance_table`, `tolerance_check` | time histories within tolerances | 14 CFR part 60, appendix C, table C2A; CS-FSTD(H) |
 
@@ -31,6 +31,7 @@ mod mode_tolerance;
 mod mode_values;
 mod phase_delay;
 mod positive_number;
+pub mod rms_cost;
 mod root_search;
 pub mod sampled_response;
 mod substitution_bar;

@@ -43,10 +43,15 @@
 //! wherever Newton's method ends, so that the bound does not require convergence; its rounding
 //! error is summed over the terms (`Rounded`).
 
+mod active_set;
+mod bound_near_minimum;
+mod concave_interval;
+mod convex_bound;
 mod derivatives;
 mod difference_bounds;
 pub(crate) mod effort;
 mod envelope;
+pub(crate) mod expansion;
 pub(crate) mod exponential;
 pub(crate) mod newton;
 mod node_exclusion;

@@ -1,13 +1,15 @@
 //! The branch-and-bound search for the global minimum and for the other minima within 1 % of it.
 
+use super::convex_bound::tangent_bound;
 use super::difference_bounds::DifferenceBounds;
 use super::effort::{Effort, SearchStopped};
+use super::expansion::{Curvature, Differentiable, Expansion, ScaleBox};
 use super::newton::Newton;
 use super::node_exclusion::NodeExclusion;
-use super::objective::{Curvature, Differentiable, Expansion, Objective, ScaleBox};
+use super::objective::Objective;
 use super::open_nodes::{Node, OpenNodes};
 use super::proof_budget::{Limit, ProofBudget};
-use super::underestimator::{ConcaveEnd, Underestimator, tangent_bound};
+use super::underestimator::{ConcaveEnd, Underestimator};
 
 /// Relative gap that is accepted as a proof.
 pub(crate) const PROOF: f64 = 1e-9;

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 
 use serde::{Serialize, Serializer};
 
-use gdcm_method::correction::leads::ChannelLeads;
+use gdcm_method::correction::channel_leads::ChannelLeads;
 use gdcm_method::correction::{Channel, ChannelCorrection, Pade};
 use gdcm_method::requirements::attitude_response::{
     AttitudeResponse, AttitudeResponseError, ResponseAt, search_frequencies,
@@ -21,7 +21,7 @@ use gdcm_method::requirements::bandwidth::{
 };
 use gdcm_method::requirements::sampled_response::SampledResponse;
 use gdcm_method::requirements::{AttitudeOutput, BandwidthRule};
-use gdcm_method::uncertainty::spread::Figures;
+use gdcm_method::uncertainty::scalar::Figures;
 use gdcm_method::uncertainty::{Scalar, student_quantile};
 use gdcm_model::dataset::model::ModelBands;
 use gdcm_model::dataset::{Band, BundleKind, ConditionId, Dynamics, Pair};

@@ -228,8 +228,8 @@ fn slow_modes_below_the_band_move_neither_branch_nor_crossings() {
     );
     assert!((value(turned.omega_180) / value(plain.omega_180) - 1.0).abs() < 0.1);
     assert!((value(turned.omega_bw) / value(plain.omega_bw) - 1.0).abs() < 0.2);
-    // A phase that falls through -135 deg below the band but rises above it again has its crossing
-    // within the band.
+    // The phase falls through -135 deg and rises above this level again, both below the band; the
+    // crossing that counts is the later one within the band.
     let dipping = rate_bandwidth(
         |s| short(s) * (s * s + 0.001 * s + 0.04) / (s * s + 0.001 * s + 0.0225),
         &rate,

@@ -36,6 +36,17 @@
 //! 10  lower bound <- lowest bound of all closed and open nodes
 //! ```
 //!
+//! | line | file |
+//! |---|---|
+//! | 1, 6 | `newton`, each step by `active_set` |
+//! | 2, 3, 7, 9, 10 | `search`, `open_nodes`, `difference_bounds`, `proof_budget` |
+//! | 4 | `node_exclusion` |
+//! | 5 | `underestimator`, `envelope`, `convex_bound` |
+//! | 8 | `bound_near_minimum`, `node_exclusion`, `convex_bound` |
+//!
+//! The function `F` is in `objective`, its terms in `term`, `quadratic`, `exponential` and
+//! `concave_interval`, its derivatives in `expansion` and `derivatives`.
+//!
 //! Sources: Hansen and Walster, *Global Optimization Using Interval Analysis* (2004), for
 //! branching, monotonicity and convexity tests; Horst and Tuy, *Global Optimization* (1996), for
 //! best-first branch and bound and its convergence; McCormick (1976), *Mathematical Programming*

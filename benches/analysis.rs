@@ -13,7 +13,8 @@ use criterion::{Criterion, criterion_group, criterion_main};
 
 use gdcm::executor::Pool;
 use gdcm_io::{embedded_example, load_dataset};
-use gdcm_method::correction::delta::{Delta, delay_upper_s, gain_bounds, mismatch_table};
+use gdcm_method::correction::channel_bounds::{delay_upper_s, gain_bounds};
+use gdcm_method::correction::delta::{Delta, mismatch_table};
 use gdcm_method::fidelity::Discontinuity;
 use gdcm_method::fidelity::discontinuity::PerturbedModel;
 use gdcm_model::dataset::model::Origin;

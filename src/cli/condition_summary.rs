@@ -1,6 +1,6 @@
 //! Printed results of a condition: representatives, rejected models, responses and channels.
 
-use gdcm_method::correction::leads::ChannelLeads;
+use gdcm_method::correction::channel_leads::ChannelLeads;
 use gdcm_method::correction::{ChannelCorrection, LeadPrice, Outcome};
 use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::{BundleKind, Condition, Dataset};

@@ -2,7 +2,7 @@
 //!
 //! A fault does not know the path of the file; [`FileError`](crate::file_error::FileError) adds it.
 
-use gdcm_method::requirements::tolerance::ToleranceError;
+use gdcm_method::requirements::tolerance_check::ToleranceError;
 use gdcm_model::dataset::band::BandError;
 use gdcm_model::dataset::draft_fault::{DraftError, DraftFault};
 use gdcm_model::dataset::location::Location;

@@ -1,7 +1,7 @@
 //! Details of the solution of a condition, as sentences.
 
 use gdcm_method::correction::Outcome;
-use gdcm_method::correction::branch_and_bound::search::Limit;
+use gdcm_method::correction::branch_and_bound::proof_budget::Limit;
 use gdcm_method::correction::sensitivity::{kkt_residual, sensitivities};
 use gdcm_study::{ConditionAnalysis, PhaseCorrection, Study};
 

@@ -4,8 +4,8 @@
 use gdcm_model::dataset::Pair;
 use gdcm_model::response::{GainDelay, LeadFilter};
 
+use super::channel_leads::ChannelLeads;
 use super::channels::{Channel, Channels};
-use super::leads::ChannelLeads;
 
 /// The correction `M_O H M_I`; each channel contributes `k e^(-tau s)`, eq. (12), or `k L(s)`
 /// (M15).

@@ -2,8 +2,8 @@
 
 use gdcm_model::dataset::Pair;
 
+use super::channel_bounds::Bounds;
 use super::channels::Channel;
-use super::problem::Bounds;
 use super::quantity::Quantity;
 
 /// A minimal infeasible set of constrained entries and bounds: releasing any of its members makes

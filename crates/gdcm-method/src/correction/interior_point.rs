@@ -3,7 +3,8 @@
 
 use gdcm_numerics::{CscMatrix, DefaultSettings, convex_program};
 
-use super::branch_and_bound::objective::{Curvature, Differentiable, Expansion, Objective};
+use super::branch_and_bound::expansion::{Curvature, Differentiable, Expansion};
+use super::branch_and_bound::objective::Objective;
 use super::problem::ProblemError;
 
 /// Returns a point within about 1e-9 of the minimum over the box.

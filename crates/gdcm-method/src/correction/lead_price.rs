@@ -3,8 +3,8 @@
 
 use gdcm_model::dataset::Pair;
 
+use super::channel_leads::ChannelLeads;
 use super::channels::Channels;
-use super::leads::ChannelLeads;
 
 /// Multiple of the upper end of the band at which the gain above the band is computed (M15.6).
 pub const ABOVE_BAND: f64 = 10.0;
@@ -65,7 +65,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::super::channels::Channel;
-    use super::super::leads::{LeadDesign, LeadSettings};
+    use super::super::lead_design::{LeadDesign, LeadSettings};
     use super::*;
 
     fn leads(input_s: f64, output_s: f64) -> ChannelLeads {

@@ -48,9 +48,8 @@ impl Pade {
 
     /// Creates the state-space model of the approximant for a positive delay \[s\].
     ///
-    /// The ladder is `t = e_1' (L/z + S)^-1 e_1` with `L = diag(1, 3, 5, ...)`, `S` with 1 above
-    /// and
-    /// -1 below the diagonal, and the first unit vector `e_1`. Then
+    /// The ladder is `t = e_1' (L/z + S)^-1 e_1` with `L = diag(1, 3, 5, ...)`, the first unit vector
+    /// `e_1`, and `S` skew-symmetric with 1 directly above the diagonal and 0 elsewhere above it. Then
     /// `(1 - t) / (1 + t) = 1 - 2 e_1' (L/z + R)^-1 e_1` with `R = S + e_1 e_1'`. With
     /// `K = L^(-1/2) R L^(-1/2)` and `z = tau s / 2`, this is the state-space model
     /// `A = -(2/tau) K^-1`, `B = 2/sqrt(tau) K^-1 e_1`, `C = 2/sqrt(tau) e_1' K^-1`, `D = (-1)^N`.

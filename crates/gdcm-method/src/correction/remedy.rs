@@ -11,7 +11,7 @@ use super::constraints::Constraints;
 use super::interval::Interval;
 use super::problem::Problem;
 use super::quantity::Quantity;
-use super::rounding::three_digits;
+use super::three_digits::three_digits;
 
 /// Single changes, each of which makes all constrained entries feasible at their delta; empty if
 /// several changes are needed.

@@ -7,9 +7,8 @@
 //! ```
 //!
 //! `s_input` and `s_output` are the scales of the components ([`super::components`]) of the entry's
-//! input and output. The deviation of a channel from neutral is an entry too: its other scale is
-//! the
-//! *ground*, a last scale that is always 0.
+//! input and output. The deviation of a channel from neutral is an entry too; its other scale is a
+//! last scale that is always 0, the *ground*.
 
 use super::branch_and_bound::exponential::{CombinedEntries, ProductEntry};
 use super::branch_and_bound::objective::Objective;

@@ -3,7 +3,7 @@
 
 use gdcm_model::dataset::{Pair, PairTable};
 
-use super::branch_and_bound::search::Limit;
+use super::branch_and_bound::proof_budget::Limit;
 use super::channels::Channels;
 use super::conflict::Conflict;
 use super::quantity::Quantity;

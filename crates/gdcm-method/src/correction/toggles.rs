@@ -3,7 +3,7 @@
 
 use gdcm_model::dataset::Pair;
 
-use super::branch_and_bound::search::ProofBudget;
+use super::branch_and_bound::proof_budget::ProofBudget;
 use super::problem::{Problem, ProblemError};
 use super::solution::{Outcome, Solution};
 use super::solve::solve;

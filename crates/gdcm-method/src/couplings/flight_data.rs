@@ -11,8 +11,8 @@ use gdcm_model::response::FrequencyResponse;
 use gdcm_model::response::interpolation::interpolate_values;
 
 use crate::correction::Channels;
-use crate::correction::leads::LeadDesign;
-use crate::uncertainty::spread::Measurement;
+use crate::correction::lead_design::LeadDesign;
+use crate::uncertainty::coherence_error::Measurement;
 
 /// Returns the mean signed delay of each channel \[s\] over the conditions, which have the same
 /// channels; `None` without conditions.
@@ -103,7 +103,7 @@ mod tests {
     use gdcm_model::dataset::Pair;
 
     use super::*;
-    use crate::correction::leads::LeadSettings;
+    use crate::correction::lead_design::LeadSettings;
 
     fn signed_delays() -> Channels<f64> {
         Channels {

@@ -34,7 +34,7 @@
 //! | 7 | `normal_equations`, `arrow_system` |
 //! | 8 | `coupling_matrices` |
 //! | 9 | `jackknife` |
-//! | 10 | `coupling_matrices`, `pole_shifts`, `response_effects`; entries in pilot units: `coupling_shares` |
+//! | 10 | `coupling_matrices`, `coupled_model`, `pole_shifts`, `loop_margin`, `response_change`; entries in pilot units: `coupling_shares` |
 //!
 //! Step 9: B. Efron, "The Jackknife, the Bootstrap and Other Resampling Plans", SIAM 1982,
 //! chapter 3.
@@ -45,17 +45,19 @@
 mod arrow_system;
 mod closed_loop;
 mod condition_blocks;
+pub mod coupled_model;
 pub mod coupling_matrices;
 pub mod coupling_shares;
 mod error;
 pub mod fit;
 mod flight_data;
 pub mod jackknife;
+mod loop_margin;
 mod normal_equations;
 mod pair_products;
 mod pole_shifts;
 pub mod problem;
-pub mod response_effects;
+pub mod response_change;
 mod unknown;
 mod unknown_layout;
 mod weighted_condition;
@@ -63,10 +65,11 @@ mod weighted_condition;
 #[cfg(test)]
 mod tests;
 
-pub use coupling_matrices::{CoupledModelError, CouplingMatrices};
+pub use coupled_model::CoupledModelError;
+pub use coupling_matrices::CouplingMatrices;
 pub use fit::fit_couplings;
 pub use jackknife::{CouplingBars, LEAST_CONDITIONS, LeftOutFit};
+pub use loop_margin::LoopMargin;
 pub use pole_shifts::{PoleShift, PoleShiftError};
 pub use problem::{CouplingCondition, CouplingKind, CouplingProblem};
-pub use response_effects::LoopMargin;
 pub use unknown::Unknown;

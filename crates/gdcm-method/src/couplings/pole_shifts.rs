@@ -6,7 +6,8 @@ use gdcm_model::dataset::StateSpace;
 use gdcm_model::response::mode::ModesError;
 use gdcm_model::response::modes;
 
-use super::coupling_matrices::{CoupledModelError, CouplingMatrices};
+use super::coupled_model::CoupledModelError;
+use super::coupling_matrices::CouplingMatrices;
 use crate::correction::Pade;
 use crate::fidelity::mode_tracks;
 

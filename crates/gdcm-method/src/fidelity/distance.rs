@@ -1,12 +1,8 @@
-//! Distances between the models of a bundle, and its representative (M5).
+//! Distances between the models of a bundle (M5).
 //!
 //! ```text
 //! d(a, b) = sqrt(mean over the compared responses of J(a against b)),   J with the mean over frequency
-//! s_a     = mean over b != a of d(a, b);   the representative is the model with the smallest s_a (medoid)
 //! ```
-
-use std::cmp::Ordering;
-use std::collections::BTreeSet;
 
 use gdcm_model::dataset::{Pair, PairTable};
 use gdcm_model::response::PolarResponse;
@@ -15,6 +11,69 @@ use gdcm_model::response::polar_response::PolarCurve;
 use super::coherence_weights::CoherenceWeights;
 use super::cost::{Cost, CostAverage, mean_cost};
 use super::mismatch::Mismatch;
+
+/// A model whose distances from other models are computed.
+#[derive(Clone, Copy, Debug)]
+pub struct ComparedModel<'a> {
+    pub responses: &'a PolarResponse,
+    /// Frequency weights of each response, if measured with coherence (M4a).
+    pub coherence_weights: Option<&'a PairTable<CoherenceWeights>>,
+}
+
+impl ComparedModel<'_> {
+    /// Computes J of `a` against `b`, as the mean over frequency, with the coherence weights of
+    /// this model; over all frequencies, equally weighted, if none has a weight.
+    fn weighted_cost(&self, a: &PolarCurve, b: &PolarCurve, pair: Pair) -> f64 {
+        let Some(weights) = self.coherence_weights else {
+            return mean_cost(a, b);
+        };
+        let Some(mismatch) = Mismatch::new(a, b).coherence_weighted(Some(&weights[pair])) else {
+            return mean_cost(a, b);
+        };
+        Cost::from_errors(
+            mismatch.magnitude_db.iter().copied(),
+            mismatch.phase.iter().copied(),
+            mismatch.weights(),
+            CostAverage::Mean,
+        )
+        .total()
+    }
+}
+
+/// Computes the distances from model `a` to each later model, `d(a, a + 1), d(a, a + 2), ...`; for
+/// a large bundle, the calls are independent tasks.
+///
+/// J is weighted by the reference model's coherence (M4a), and in a bundle either model can be the
+/// reference: if either has coherence, J is the mean over both directions, so that a distance does
+/// not depend on the models' order. A response without any weighted frequency is compared over all
+/// frequencies, so that poorly measured models do not appear similar.
+pub fn distances_from(a: usize, models: &[ComparedModel<'_>], compared: &[Pair]) -> Vec<f64> {
+    models[a + 1..]
+        .iter()
+        .map(|b| distance(&models[a], b, compared))
+        .collect()
+}
+
+/// Computes `d(a, b)`.
+fn distance(a: &ComparedModel<'_>, b: &ComparedModel<'_>, compared: &[Pair]) -> f64 {
+    let sum: f64 = compared
+        .iter()
+        .filter_map(|&pair| cost_between(a, b, pair))
+        .sum();
+    (sum / compared.len().max(1) as f64).sqrt()
+}
+
+/// Computes J for a response of `a` against `b`; `None` where either lacks it.
+fn cost_between(a: &ComparedModel<'_>, b: &ComparedModel<'_>, pair: Pair) -> Option<f64> {
+    let curve_a = a.responses.curves()[pair].as_ref()?;
+    let curve_b = b.responses.curves()[pair].as_ref()?;
+    if a.coherence_weights.is_none() && b.coherence_weights.is_none() {
+        return Some(mean_cost(curve_a, curve_b));
+    }
+    let weighted_by_a = a.weighted_cost(curve_a, curve_b, pair);
+    let weighted_by_b = b.weighted_cost(curve_a, curve_b, pair);
+    Some(0.5 * (weighted_by_a + weighted_by_b))
+}
 
 /// The responses compared to compute distances in a bundle, and the responses that each model lacks
 /// (M5b).
@@ -109,108 +168,6 @@ impl BundleDistance {
     /// Returns the compared responses, and the responses that each model lacks.
     pub fn measured(&self) -> &MeasuredPairs {
         &self.measured
-    }
-}
-
-/// A model whose distances from other models are computed.
-#[derive(Clone, Copy, Debug)]
-pub struct ComparedModel<'a> {
-    pub responses: &'a PolarResponse,
-    /// Frequency weights of each response, if measured with coherence (M4a).
-    pub coherence_weights: Option<&'a PairTable<CoherenceWeights>>,
-}
-
-impl ComparedModel<'_> {
-    /// Computes J of `a` against `b`, as the mean over frequency, with the coherence weights of
-    /// this model; over all frequencies, equally weighted, if none has a weight.
-    fn weighted_cost(&self, a: &PolarCurve, b: &PolarCurve, pair: Pair) -> f64 {
-        let Some(weights) = self.coherence_weights else {
-            return mean_cost(a, b);
-        };
-        let Some(mismatch) = Mismatch::new(a, b).coherence_weighted(Some(&weights[pair])) else {
-            return mean_cost(a, b);
-        };
-        Cost::from_errors(
-            mismatch.magnitude_db.iter().copied(),
-            mismatch.phase.iter().copied(),
-            mismatch.weights(),
-            CostAverage::Mean,
-        )
-        .total()
-    }
-}
-
-/// Computes the distances from model `a` to each later model, `d(a, a + 1), d(a, a + 2), ...`; for
-/// a large bundle, the calls are independent tasks.
-///
-/// J is weighted by the reference model's coherence (M4a), and in a bundle either model can be the
-/// reference: if either has coherence, J is the mean over both directions, so that a distance does
-/// not depend on the models' order. A response without any weighted frequency is compared over all
-/// frequencies, so that poorly measured models do not appear similar.
-pub fn distances_from(a: usize, models: &[ComparedModel<'_>], compared: &[Pair]) -> Vec<f64> {
-    models[a + 1..]
-        .iter()
-        .map(|b| distance(&models[a], b, compared))
-        .collect()
-}
-
-/// Computes `d(a, b)`.
-fn distance(a: &ComparedModel<'_>, b: &ComparedModel<'_>, compared: &[Pair]) -> f64 {
-    let sum: f64 = compared
-        .iter()
-        .filter_map(|&pair| cost_between(a, b, pair))
-        .sum();
-    (sum / compared.len().max(1) as f64).sqrt()
-}
-
-/// Computes J for a response of `a` against `b`; `None` where either lacks it.
-fn cost_between(a: &ComparedModel<'_>, b: &ComparedModel<'_>, pair: Pair) -> Option<f64> {
-    let curve_a = a.responses.curves()[pair].as_ref()?;
-    let curve_b = b.responses.curves()[pair].as_ref()?;
-    if a.coherence_weights.is_none() && b.coherence_weights.is_none() {
-        return Some(mean_cost(curve_a, curve_b));
-    }
-    let weighted_by_a = a.weighted_cost(curve_a, curve_b, pair);
-    let weighted_by_b = b.weighted_cost(curve_a, curve_b, pair);
-    Some(0.5 * (weighted_by_a + weighted_by_b))
-}
-
-/// The medoid of the accepted models, or the model pinned by the analyst, with the score of every
-/// accepted model (M5).
-#[derive(Clone, Debug, PartialEq)]
-pub struct Representative {
-    /// The representative's index in the bundle.
-    pub model: usize,
-    /// `s_a = mean over b != a of d(a, b)` over the accepted models; `None` for a model that is
-    /// rejected or set aside. Zero for a single accepted model.
-    pub scores: Vec<Option<f64>>,
-}
-
-impl Representative {
-    /// Returns the accepted model with the smallest score (ties: the first in file order), or
-    /// `pinned`; `None` if every model is rejected or set aside. A pinned model that is set aside
-    /// is ignored.
-    pub fn select(
-        distance: &BundleDistance,
-        rejected: &BTreeSet<usize>,
-        pinned: Option<usize>,
-    ) -> Option<Self> {
-        let mut kept = distance.measured.compared_models();
-        kept.retain(|model| !rejected.contains(model));
-        let mut scores = vec![None; distance.places.len()];
-        for &a in &kept {
-            let sum: f64 = kept.iter().filter_map(|&b| distance.between(a, b)).sum();
-            scores[a] = Some(sum / kept.len().saturating_sub(1).max(1) as f64);
-        }
-        let medoid = kept
-            .iter()
-            .copied()
-            .min_by(|&a, &b| scores[a].partial_cmp(&scores[b]).unwrap_or(Ordering::Equal))?;
-        let model = match pinned {
-            Some(pinned) if kept.contains(&pinned) => pinned,
-            _ => medoid,
-        };
-        Some(Self { model, scores })
     }
 }
 

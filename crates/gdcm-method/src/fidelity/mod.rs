@@ -11,6 +11,7 @@ pub mod mismatch;
 pub mod mode_tracks;
 pub mod muad;
 mod pure_delay;
+pub mod representative;
 
 pub use coherence_weights::CoherenceWeights;
 pub use cost::{ACCEPTABLE, Cost, CostAverage, summand};

@@ -15,18 +15,19 @@
 //!
 //! ADS-33E-PRF, "Handling qualities requirements for military rotorcraft", 2000, 3.3.2.1 and figure
 //! 4; MIL-DTL-32742. `attitude_response` does step 1, `phase_delay` steps 5 to 7; standard
-//! deviations come from `response_deviation`.
+//! deviations come from `bandwidth_deviation`.
 
 use serde::{Deserialize, Serialize};
 
 use gdcm_model::dataset::Band;
 
+pub use super::bandwidth_deviation::PairBand;
 pub use super::bandwidth_metric::{AboveBand, Metric, NoMetric};
 pub use super::phase_delay::PhaseLine;
-pub use super::response_deviation::{PairBand, substitution_bar};
+pub use super::substitution_bar::substitution_bar;
 
 use super::attitude_response::AttitudeResponse;
-use super::crossing::root_between;
+use super::root_search::root_between;
 
 /// Gain margin at `omega_gain` \[dB\].
 const GAIN_MARGIN_DB: f64 = 6.0;

@@ -20,7 +20,7 @@ use super::bandwidth::{
     substitution_bar,
 };
 use super::known_answers::{answers, attitudes, number};
-use super::sampled_model::SampledModel;
+use super::sampled_response::SampledResponse;
 use super::{AttitudeOutput, BandwidthRule};
 
 /// The only response of a model with one input and one output.
@@ -228,8 +228,8 @@ fn slow_modes_below_the_band_move_neither_branch_nor_crossings() {
     );
     assert!((value(turned.omega_180) / value(plain.omega_180) - 1.0).abs() < 0.1);
     assert!((value(turned.omega_bw) / value(plain.omega_bw) - 1.0).abs() < 0.2);
-    // A phase that falls through -135 deg below the band but rises above it again has its crossing
-    // within the band.
+    // The phase falls through -135 deg and rises above this level again, both below the band; the
+    // crossing that counts is the later one within the band.
     let dipping = rate_bandwidth(
         |s| short(s) * (s * s + 0.001 * s + 0.04) / (s * s + 0.001 * s + 0.0225),
         &rate,
@@ -337,7 +337,7 @@ fn measured_bandwidth(top: f64) -> Bandwidth {
     )
     .unwrap();
     let omega = measured.omega().to_vec();
-    let model = SampledModel::new(&Dynamics::Measured(measured), band());
+    let model = SampledResponse::new(&Dynamics::Measured(measured), band());
     let response = model.exact(ONLY, GainDelay::NONE);
     let attitude = AttitudeResponse::new(&response, AttitudeOutput::Rate, &omega, band()).unwrap();
     Bandwidth::read(&attitude, &settings(CommandType::Rate), None)
@@ -389,7 +389,7 @@ fn a_model_and_its_correction_are_evaluated_exactly() {
         input_delays_s: Some(vec![0.02]),
         ..Timing::default()
     };
-    let model = SampledModel::new(&Dynamics::StateSpace(lag.timed(timing).unwrap()), band());
+    let model = SampledResponse::new(&Dynamics::StateSpace(lag.timed(timing).unwrap()), band());
     let correction = GainDelay::new(1.7, 0.04);
     let rate = settings(CommandType::Rate);
     let exact = evaluate(

@@ -15,7 +15,7 @@
 //! other model. `omega_min` is the lower band end: below it flight resolves poles only by their absolute
 //! difference. `c` is the modal assurance criterion, 1 for equal shapes and 0 for orthogonal
 //! shapes: Allemang & Brown, "A correlation coefficient for modal vector analysis", Proc. 1st
-//! International Modal Analysis Conference, 1982. Assignment: see `fidelity/mode_tracks.rs`.
+//! International Modal Analysis Conference, 1982. Assignment: see `fidelity/assignment.rs`.
 
 use nalgebra::Complex;
 

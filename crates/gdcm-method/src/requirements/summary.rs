@@ -3,143 +3,22 @@
 //!
 //! ```text
 //! J:      J_mag + J_phase after the correction, averaged over the on-axis responses and over all (M4)
-//! J_rms:  sqrt(1 / (n_t n_o) sum (y - y^)' W (y - y^)), W = 1 in deg/s, deg, ft/s^2, ft/s: 1 deg counts as 1 ft/s^2
+//! J_rms:  weighted rms of y - y^ over all outputs together (rms_cost)
 //! Theil:  rms(y - y^) / (rms y + rms y^) for each channel (M14, 6)
 //! MUAD:   1 - sum ln(b/a) / ln(omega_N/omega_1) over the ranges (a, b) in which the error leaves an envelope
 //! ```
 //!
-//! `y` are the flown and `y^` the simulated outputs over `n_t` samples, `n_o` the number of outputs
-//! with a weight; the band extends from `omega_1` to `omega_N`.
+//! `y` are the flown and `y^` the simulated outputs; the band extends from `omega_1` to `omega_N`.
 //!
-//! Tischler & Remple, "Aircraft and Rotorcraft System Identification", 2nd ed. 2012, 14.3 (J_rms
-//! and its weights); MIL-STD-1797A, appendix A, 4.2.1.2 (MUAD).
+//! MUAD: MIL-STD-1797A, appendix A, 4.2.1.2.
 
 use gdcm_model::dataset::{Channel, Pair, PairTable};
 use gdcm_model::response::{GainDelay, wrap};
-use gdcm_model::simulation::{Validation, ValidationWindow};
+use gdcm_model::simulation::Validation;
 use gdcm_model::statistics::mean;
-use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit, conversion_factor};
 
+use super::rms_cost::RmsCost;
 use crate::fidelity::{CostAverage, Mismatch, ranges_outside};
-
-/// Means over the on-axis responses and over all responses.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct OnAxisAndAll {
-    /// Mean over the on-axis responses; `None` if none is defined.
-    pub on_axis: Option<f64>,
-    /// Mean over all responses; `None` if none is defined.
-    pub all: Option<f64>,
-}
-
-impl OnAxisAndAll {
-    /// Averages the defined values.
-    pub fn average(values: &PairTable<Option<f64>>, on_axis: &PairTable<bool>) -> Self {
-        let mut all_values = Vec::new();
-        let mut on_axis_values = Vec::new();
-        for (pair, value) in values.iter() {
-            let Some(value) = *value else { continue };
-            all_values.push(value);
-            if on_axis.get(pair) == Some(&true) {
-                on_axis_values.push(value);
-            }
-        }
-        Self {
-            on_axis: mean_or_none(&on_axis_values),
-            all: mean_or_none(&all_values),
-        }
-    }
-}
-
-fn mean_or_none(values: &[f64]) -> Option<f64> {
-    if values.is_empty() {
-        return None;
-    }
-    Some(mean(values))
-}
-
-/// The weighted rms error in time, `J_rms`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RmsCost {
-    /// `J_rms` \[deg, deg/s, ft/s, ft/s^2\].
-    pub value: f64,
-    /// Indices of outputs without a weight, in units other than angle, speed or acceleration.
-    pub left_out: Vec<usize>,
-}
-
-impl RmsCost {
-    /// Computes the cost over all samples of `windows`; `None` without samples, or if no output has
-    /// a weight.
-    pub fn compute(windows: &[ValidationWindow], outputs: &[Channel]) -> Option<Self> {
-        let mut counted: Vec<WeightedOutput> = Vec::new();
-        let mut left_out = Vec::new();
-        for (output, channel) in outputs.iter().enumerate() {
-            match unit_factor(&channel.unit) {
-                Some(factor) => counted.push(WeightedOutput { output, factor }),
-                None => left_out.push(output),
-            }
-        }
-        let mut sum = 0.0;
-        let mut samples = 0;
-        for window in windows {
-            samples += window.measured.nrows();
-            for &WeightedOutput { output, factor } in &counted {
-                if output < window.measured.ncols() {
-                    let error = window.measured.column(output) - window.simulated.column(output);
-                    sum += factor * factor * error.norm_squared();
-                }
-            }
-        }
-        let count = samples * counted.len();
-        if count == 0 {
-            return None;
-        }
-        Some(Self {
-            value: (sum / count as f64).sqrt(),
-            left_out,
-        })
-    }
-}
-
-/// An output that counts in `J_rms`.
-struct WeightedOutput {
-    output: usize,
-    /// Factor from the output's unit to deg, deg/s, ft/s or ft/s^2.
-    factor: f64,
-}
-
-/// Returns the factor from a unit to deg, deg/s, ft/s or ft/s^2; `None` for any other unit.
-fn unit_factor(unit: &str) -> Option<f64> {
-    let counted = match PhysicalUnit::parse(unit)?.dimension {
-        Dimension::Angle => "deg",
-        Dimension::AngularRate => "deg/s",
-        Dimension::Speed => "ft/s",
-        Dimension::Acceleration => "ft/s^2",
-        _ => return None,
-    };
-    conversion_factor(unit, counted)
-}
-
-/// Returns the share of the band, in `ln omega`, in which a response error stays inside both MUAD
-/// envelopes after `correction`; `None` with fewer than two frequencies.
-pub fn muad_share(mismatch: &Mismatch, omega: &[f64], correction: GainDelay) -> Option<f64> {
-    let omega = mismatch.omega(omega);
-    let (&first, &last) = omega.first().zip(omega.last())?;
-    if first >= last {
-        return None;
-    }
-    let error_db: Vec<f64> = correction
-        .magnitudes_db(&mismatch.magnitude_db, omega)
-        .collect();
-    let error_deg: Vec<f64> = correction
-        .phases(&mismatch.phase, omega)
-        .map(|phase| wrap(phase).to_degrees())
-        .collect();
-    let outside: f64 = ranges_outside(omega, &error_db, &error_deg)
-        .iter()
-        .map(|(from, to)| (to / from).ln())
-        .sum();
-    Some((1.0 - outside / (last / first).ln()).clamp(0.0, 1.0))
-}
 
 /// A model in a condition, compared with flight.
 #[derive(Clone, Copy)]
@@ -201,10 +80,65 @@ impl Summary {
     }
 }
 
+/// Means over the on-axis responses and over all responses.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct OnAxisAndAll {
+    /// Mean over the on-axis responses; `None` if none is defined.
+    pub on_axis: Option<f64>,
+    /// Mean over all responses; `None` if none is defined.
+    pub all: Option<f64>,
+}
+
+impl OnAxisAndAll {
+    /// Averages the defined values.
+    pub fn average(values: &PairTable<Option<f64>>, on_axis: &PairTable<bool>) -> Self {
+        let mut all_values = Vec::new();
+        let mut on_axis_values = Vec::new();
+        for (pair, value) in values.iter() {
+            let Some(value) = *value else { continue };
+            all_values.push(value);
+            if on_axis.get(pair) == Some(&true) {
+                on_axis_values.push(value);
+            }
+        }
+        Self {
+            on_axis: mean_or_none(&on_axis_values),
+            all: mean_or_none(&all_values),
+        }
+    }
+}
+
+fn mean_or_none(values: &[f64]) -> Option<f64> {
+    if values.is_empty() {
+        return None;
+    }
+    Some(mean(values))
+}
+
+/// Returns the share of the band, in `ln omega`, in which a response error stays inside both MUAD
+/// envelopes after `correction`; `None` with fewer than two frequencies.
+pub fn muad_share(mismatch: &Mismatch, omega: &[f64], correction: GainDelay) -> Option<f64> {
+    let omega = mismatch.omega(omega);
+    let (&first, &last) = omega.first().zip(omega.last())?;
+    if first >= last {
+        return None;
+    }
+    let error_db: Vec<f64> = correction
+        .magnitudes_db(&mismatch.magnitude_db, omega)
+        .collect();
+    let error_deg: Vec<f64> = correction
+        .phases(&mismatch.phase, omega)
+        .map(|phase| wrap(phase).to_degrees())
+        .collect();
+    let outside: f64 = ranges_outside(omega, &error_db, &error_deg)
+        .iter()
+        .map(|(from, to)| (to / from).ln())
+        .sum();
+    Some((1.0 - outside / (last / first).ln()).clamp(0.0, 1.0))
+}
+
 #[cfg(test)]
 mod tests {
-    use nalgebra::DMatrix;
-
     use gdcm_model::response::frequency_grid::log_spaced;
     use gdcm_model::units::db_to_ratio;
 
@@ -224,43 +158,8 @@ mod tests {
         }
     }
 
-    /// A window with three outputs, stored one after the other.
-    fn window(measured: &[f64], simulated: &[f64]) -> ValidationWindow {
-        let samples = measured.len() / 3;
-        ValidationWindow {
-            record: 0,
-            start_s: 0.0,
-            sample_time_s: 0.1,
-            measured: DMatrix::from_column_slice(samples, 3, measured),
-            simulated: DMatrix::from_column_slice(samples, 3, simulated),
-        }
-    }
-
     fn outputs() -> [Channel; 3] {
         [("P", "deg/s"), ("NZ", "m/s^2"), ("T", "N")].map(|(name, unit)| Channel::new(name, unit))
-    }
-
-    #[test]
-    fn a_degree_counts_as_a_foot_a_second_squared() {
-        // Errors of 3 deg/s and 1 ft/s^2 in both samples; the force has no weight.
-        let windows = [window(
-            &[3.0, -3.0, 0.3048, 0.0, 9.0, 9.0],
-            &[0.0, 0.0, 0.0, 0.3048, 0.0, 0.0],
-        )];
-        let cost = RmsCost::compute(&windows, &outputs()).unwrap();
-        assert!(
-            (cost.value - 5.0_f64.sqrt()).abs() < 1e-13,
-            "the root of (9 + 1) / 2: {cost:?}"
-        );
-        assert_eq!(cost.left_out, [2]);
-        assert_eq!(RmsCost::compute(&[], &outputs()), None);
-        assert_eq!(RmsCost::compute(&windows, &outputs()[2..]), None);
-        let twice = [windows[0].clone(), windows[0].clone()];
-        assert_eq!(
-            RmsCost::compute(&twice, &outputs()).unwrap(),
-            cost,
-            "repeated data do not change a mean"
-        );
     }
 
     #[test]

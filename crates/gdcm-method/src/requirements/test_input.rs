@@ -1,10 +1,7 @@
-//! Test inputs (steps and doublets), and model responses to them (M17.2).
+//! Test inputs: steps and doublets (M17.2). `test_response` simulates a model with them.
 
-use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use gdcm_model::dataset::StateSpace;
-use gdcm_model::simulation::FirstOrderHold;
 use gdcm_model::units::number;
 
 /// Shape of a test input over time.
@@ -122,49 +119,10 @@ impl TestInput {
             TestInputShape::Doublet | TestInputShape::Step => self.size,
         }
     }
-
-    /// Simulates the outputs of `model` from rest, samples x outputs: the input acts from the first
-    /// sample on, and every later change is a ramp over one sample time \[s\].
-    ///
-    /// # Errors
-    /// [`TestInputError`] if there is no such input, its numbers are invalid, or the model cannot
-    /// be simulated.
-    pub fn answer(
-        &self,
-        model: &StateSpace,
-        input: usize,
-        sample_time_s: f64,
-        samples: usize,
-    ) -> Result<DMatrix<f64>, TestInputError> {
-        self.checked()?;
-        if input >= model.inputs() {
-            return Err(TestInputError::NoInput {
-                input,
-                inputs: model.inputs(),
-            });
-        }
-        if !model.timing().is_plain() {
-            return Err(TestInputError::Timing);
-        }
-        let held = FirstOrderHold::new(model, sample_time_s).ok_or(TestInputError::NotFinite)?;
-        let mut moved = DMatrix::zeros(samples, model.inputs());
-        moved
-            .column_mut(input)
-            .copy_from_slice(&self.signal(sample_time_s, samples));
-        let answer = held.simulate(&DVector::zeros(model.order()), &moved);
-        if answer.iter().any(|value| !value.is_finite()) {
-            return Err(TestInputError::NotFinite);
-        }
-        Ok(answer)
-    }
 }
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::dmatrix;
-
-    use gdcm_model::dataset::state_space::Timing;
-
     use super::*;
 
     fn test(shape: TestInputShape) -> TestInput {
@@ -173,16 +131,6 @@ mod tests {
             size: 10.0,
             duration_s: 1.0,
         }
-    }
-
-    fn lag() -> StateSpace {
-        StateSpace::new(
-            dmatrix![-2.0],
-            dmatrix![0.0, 1.0],
-            dmatrix![1.0],
-            dmatrix![0.0, 0.0],
-        )
-        .unwrap()
     }
 
     #[test]
@@ -194,61 +142,6 @@ mod tests {
         assert_eq!(
             test(TestInputShape::Doublet).signal(0.25, 6),
             [10.0, 10.0, -10.0, -10.0, 0.0, 0.0]
-        );
-    }
-
-    #[test]
-    fn the_answer_of_a_lag_to_a_step_is_its_known_one() {
-        let answer = test(TestInputShape::Step)
-            .answer(&lag(), 1, 0.1, 10)
-            .unwrap();
-        for (n, y) in answer.iter().enumerate() {
-            // 10 / 2 (1 - e^(-2 t)); rounding errors over ten steps.
-            let expected = 5.0 * (1.0 - (-0.2 * n as f64).exp());
-            assert!((y - expected).abs() < 1e-13, "{n}: {y} {expected}");
-        }
-    }
-
-    #[test]
-    fn a_test_that_cannot_be_simulated_is_refused() {
-        let step = test(TestInputShape::Step);
-        assert_eq!(
-            step.answer(&lag(), 2, 0.1, 5).unwrap_err(),
-            TestInputError::NoInput {
-                input: 2,
-                inputs: 2
-            }
-        );
-        let without_duration = TestInput {
-            duration_s: 0.0,
-            ..step
-        };
-        assert_eq!(
-            without_duration.answer(&lag(), 1, 0.1, 5).unwrap_err(),
-            TestInputError::Numbers {
-                size: 10.0,
-                duration_s: 0.0
-            }
-        );
-        let delay = Timing {
-            output_delays_s: Some(vec![0.1]),
-            ..Timing::default()
-        };
-        assert_eq!(
-            step.answer(&lag().timed(delay).unwrap(), 1, 0.1, 5)
-                .unwrap_err(),
-            TestInputError::Timing
-        );
-        let diverging = StateSpace::new(
-            dmatrix![2000.0],
-            dmatrix![0.0, 1.0],
-            dmatrix![1.0],
-            dmatrix![0.0, 0.0],
-        )
-        .unwrap();
-        assert_eq!(
-            step.answer(&diverging, 1, 0.1, 5).unwrap_err(),
-            TestInputError::NotFinite
         );
     }
 

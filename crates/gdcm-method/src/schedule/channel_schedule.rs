@@ -1,4 +1,4 @@
-//! Every channel's gain (and delay, where requested) as a function of airspeed (M11, M13.7, M15.5).
+//! Every channel's gain (and delay, where requested) as a function of airspeed (M11, M13.7, M15.5): fit and evaluation.
 //!
 //! ```text
 //! 1  cluster the conditions' airspeeds; v = (V - mean V) / (half the range of V)
@@ -16,6 +16,7 @@ use gdcm_model::dataset::condition::FlightState;
 
 use super::airspeeds::Airspeeds;
 use super::caution::ScheduleCaution;
+use super::delay_schedule::DelaySchedule;
 use super::error::ScheduleError;
 use super::lead_schedule::LeadSchedule;
 use super::regression::{Regression, design, interpolation_weights, powers};
@@ -41,15 +42,6 @@ pub struct Schedule {
     /// Signed delays as functions of airspeed, where the conditions' corrections have leads (M15).
     pub leads: Option<LeadSchedule>,
     pub cautions: Vec<ScheduleCaution>,
-}
-
-/// Every channel's delay as a function of airspeed.
-#[derive(Clone, Debug, PartialEq)]
-pub struct DelaySchedule {
-    /// Delays by channel \[s\].
-    pub taus_s: Channels<Regression>,
-    /// The conditions' upper bounds \[s\], interpolated linearly: no scheduled delay exceeds them.
-    pub upper_s: Regression,
 }
 
 impl Schedule {
@@ -90,9 +82,9 @@ impl Schedule {
                     .zip(scaled)
                     .map(|(value, scaled)| value - slopes[channel] * scaled)
                     .collect();
-                fit_regression(&airspeeds, &remainder, settings.kind)
+                Regression::fit(&airspeeds, &remainder, settings.kind)
             }
-            None => fit_regression(&airspeeds, values, settings.kind),
+            None => Regression::fit(&airspeeds, values, settings.kind),
         });
         let leads = LeadSchedule::fit(points, &airspeeds, settings.tau_degree);
         let delays = if settings.delays && leads.is_none() {
@@ -222,32 +214,6 @@ impl Schedule {
     }
 }
 
-impl DelaySchedule {
-    /// Fits the conditions' delays and their upper bounds; needs at least one condition.
-    fn fit(points: &[ScheduledPoint<'_>], airspeeds: &Airspeeds, kind: ScheduleKind) -> Self {
-        let taus_s = points[0].correction.channels(|channel| {
-            let taus_s: Vec<f64> = points
-                .iter()
-                .map(|point| point.correction.pure_delay_s(channel))
-                .collect();
-            fit_regression(airspeeds, &taus_s, kind)
-        });
-        let bounds_s: Vec<f64> = points.iter().map(|point| point.delay_upper_s).collect();
-        Self {
-            taus_s,
-            upper_s: Regression::table(airspeeds, &bounds_s),
-        }
-    }
-
-    /// Returns the delays \[s\] at an airspeed \[kt\], limited to the range from zero to the upper
-    /// bound.
-    fn at(&self, airspeeds: &Airspeeds, airspeed_kt: f64) -> Channels<f64> {
-        let upper_s = self.upper_s.at(airspeeds, airspeed_kt);
-        self.taus_s
-            .map(|_, tau_s| tau_s.at(airspeeds, airspeed_kt).min(upper_s).max(0.0))
-    }
-}
-
 /// Returns the values to regress, by channel and condition (step 2); needs at least one condition.
 fn regressed_values(
     points: &[ScheduledPoint<'_>],
@@ -283,14 +249,6 @@ fn fit_second_term(
     }
     let columns = design(airspeeds, settings.kind);
     SecondTerm::fit(variable, second, &columns, values).map(Some)
-}
-
-/// Fits a function of airspeed to one value for each condition (step 4).
-fn fit_regression(airspeeds: &Airspeeds, values: &[f64], kind: ScheduleKind) -> Regression {
-    match kind {
-        ScheduleKind::Polynomial { degree } => Regression::polynomial(airspeeds, values, degree),
-        ScheduleKind::Table => Regression::table(airspeeds, values),
-    }
 }
 
 #[cfg(test)]

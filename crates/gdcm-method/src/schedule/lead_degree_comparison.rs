@@ -93,7 +93,8 @@ mod tests {
 
     use super::*;
     use crate::correction::Channels;
-    use crate::correction::leads::{ChannelLeads, LeadDesign, LeadSettings};
+    use crate::correction::channel_leads::ChannelLeads;
+    use crate::correction::lead_design::{LeadDesign, LeadSettings};
     use crate::schedule::test_points::{correction, points};
 
     #[test]

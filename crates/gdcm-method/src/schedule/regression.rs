@@ -25,6 +25,14 @@ pub enum Regression {
 }
 
 impl Regression {
+    /// Fits a function of this form to one value for each condition.
+    pub(super) fn fit(airspeeds: &Airspeeds, values: &[f64], kind: ScheduleKind) -> Self {
+        match kind {
+            ScheduleKind::Polynomial { degree } => Self::polynomial(airspeeds, values, degree),
+            ScheduleKind::Table => Self::table(airspeeds, values),
+        }
+    }
+
     /// Fits a polynomial to one value for each condition by least squares; its degree is less than
     /// the cluster count.
     pub fn polynomial(airspeeds: &Airspeeds, values: &[f64], degree: usize) -> Self {

@@ -1,4 +1,12 @@
 //! Error bar of a value (M13.3).
+//!
+//! ```text
+//! whole bar: q_0 +- t(nu) u,   u^2 = s_phys^2 + s_id^2,   nu by Satterthwaite's formula (variance_component)
+//! inner bar: q_0 +- t(nu_id) s_id
+//! ```
+//!
+//! `q_0` is the value with both representatives, `s_phys` and `s_id` are the standard deviations due
+//! to the unknown trim and the identification, and `t` is Student's quantile at the confidence level.
 
 use super::distributions::student_quantile;
 use super::variance_component::{VarianceComponent, satterthwaite};

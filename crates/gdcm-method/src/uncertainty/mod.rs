@@ -16,8 +16,9 @@
 //!
 //! | step | file |
 //! |---|---|
-//! | 1 to 3, 6 | `scalar`, `spread`, `bar` |
+//! | 1 to 3 | `scalar`, `spread` |
 //! | 4, 5 | `variance_component`, `coherence_error` |
+//! | 6 | `bar`, `condition_bars` |
 //! | 7 | `difference` |
 //! | 8 | `design`, `variance_decomposition` |
 //! | 9 | `schedule_band` |
@@ -29,11 +30,12 @@
 //! quantile. The other symbols are defined in the files.
 
 pub mod bar;
-mod coherence_error;
+pub mod coherence_error;
+pub mod condition_bars;
 mod design;
 mod difference;
 mod distributions;
-mod scalar;
+pub mod scalar;
 mod schedule_band;
 pub mod second_variable_effect;
 pub mod settings;

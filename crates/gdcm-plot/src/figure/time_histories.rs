@@ -1,7 +1,7 @@
 //! Models over time: their responses to a test input, and to a flight record with its tolerance
 //! corridors (M17.2).
 
-use gdcm_method::requirements::tolerance::ToleranceCheck;
+use gdcm_method::requirements::tolerance_check::ToleranceCheck;
 use gdcm_method::requirements::{RecordCheck, TestInputShape};
 use gdcm_model::dataset::Dataset;
 use gdcm_model::units::number;

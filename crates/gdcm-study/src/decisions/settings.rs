@@ -6,7 +6,7 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use gdcm_method::correction::delta::GainSource;
-use gdcm_method::correction::leads::LeadSettings;
+use gdcm_method::correction::lead_design::LeadSettings;
 use gdcm_method::correction::{GainBounds, GainObjective};
 use gdcm_method::couplings::CouplingKind;
 use gdcm_method::fidelity::CostAverage;

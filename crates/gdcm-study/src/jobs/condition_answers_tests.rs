@@ -69,7 +69,7 @@ fn the_corrected_model_answers_as_that_which_is_exported() {
         .unwrap()
         .model;
     let expected = test
-        .answer(&exported, 1, found.sample_time_s, found.signal.len())
+        .simulate(&exported, 1, found.sample_time_s, found.signal.len())
         .unwrap();
     let of = |role| {
         found

@@ -7,7 +7,7 @@ use gdcm_method::correction::problem::ProblemError;
 use gdcm_method::correction::{ChannelCorrection, GainBounds, Problem, Solution};
 use gdcm_method::couplings::problem::CouplingError;
 use gdcm_method::fidelity::Discontinuity;
-use gdcm_method::fidelity::distance::Representative;
+use gdcm_method::fidelity::representative::Representative;
 use gdcm_method::schedule::{CostChange, Schedule, ScheduleError};
 use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Model, Pair, PairTable};

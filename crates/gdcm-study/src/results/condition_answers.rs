@@ -5,7 +5,7 @@
 use nalgebra::DMatrix;
 
 use gdcm_method::requirements::test_input::TestInputError;
-use gdcm_method::requirements::tolerance::ToleranceError;
+use gdcm_method::requirements::tolerance_check::ToleranceError;
 use gdcm_method::requirements::{RecordCheck, TestInput, Tolerance, ToleranceTable};
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::executor::{Executor, each};
@@ -233,7 +233,7 @@ impl TestAnswers {
             let model = analysis
                 .role_model(result, *role)
                 .map_err(NoTestAnswer::NoModel)?;
-            test.answer(&model, input, sample_time_s, STEPS + 1)
+            test.simulate(&model, input, sample_time_s, STEPS + 1)
                 .map_err(NoTestAnswer::NotSimulated)
         });
         Ok(Self {

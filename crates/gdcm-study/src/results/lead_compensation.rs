@@ -4,8 +4,8 @@
 use std::sync::Arc;
 
 use gdcm_method::correction::ChannelCorrection;
+use gdcm_method::correction::channel_leads::ChannelLeads;
 use gdcm_method::correction::delta::delta_gains;
-use gdcm_method::correction::leads::ChannelLeads;
 use gdcm_method::fidelity::CostAverage;
 use gdcm_method::schedule::CostChange;
 use gdcm_method::schedule::assessment::corrected_cost;

@@ -4,7 +4,7 @@
 use serde::{Serialize, Serializer};
 
 use gdcm_method::couplings::CoupledModelError;
-use gdcm_method::requirements::tolerance::{ToleranceCheckError, ToleranceError};
+use gdcm_method::requirements::tolerance_check::{ToleranceCheckError, ToleranceError};
 use gdcm_method::schedule::ScheduleError;
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::response::mode::ModesError;

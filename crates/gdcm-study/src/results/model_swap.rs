@@ -3,7 +3,8 @@
 
 use std::sync::Arc;
 
-use gdcm_method::uncertainty::spread::{ConditionSpread, Figures};
+use gdcm_method::uncertainty::scalar::Figures;
+use gdcm_method::uncertainty::spread::ConditionSpread;
 use gdcm_model::dataset::BundleKind;
 
 /// A model that replaces the representative of its bundle, with the resulting gains and delays.

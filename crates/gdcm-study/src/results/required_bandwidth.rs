@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 
 use serde::{Serialize, Serializer};
 
-use gdcm_method::correction::leads::ChannelLeads;
+use gdcm_method::correction::channel_leads::ChannelLeads;
 use gdcm_method::correction::{Channel, ChannelCorrection, Pade};
 use gdcm_method::requirements::attitude_response::{
     AttitudeResponse, AttitudeResponseError, ResponseAt, search_frequencies,
@@ -19,9 +19,9 @@ use gdcm_method::requirements::attitude_response::{
 use gdcm_method::requirements::bandwidth::{
     AboveBand, Bandwidth, BandwidthSettings, Metric, NoMetric, PairBand, substitution_bar,
 };
-use gdcm_method::requirements::sampled_model::SampledModel;
+use gdcm_method::requirements::sampled_response::SampledResponse;
 use gdcm_method::requirements::{AttitudeOutput, BandwidthRule};
-use gdcm_method::uncertainty::spread::Figures;
+use gdcm_method::uncertainty::scalar::Figures;
 use gdcm_method::uncertainty::{Scalar, student_quantile};
 use gdcm_model::dataset::model::ModelBands;
 use gdcm_model::dataset::{Band, BundleKind, ConditionId, Dynamics, Pair};
@@ -247,12 +247,12 @@ struct EvaluatedModel<'a> {
     dynamics: Cow<'a, Dynamics>,
     /// The standard deviations that the model contains, if any.
     bands: Option<&'a ModelBands>,
-    sampled: SampledModel,
+    sampled: SampledResponse,
 }
 
 impl<'a> EvaluatedModel<'a> {
     fn new(dynamics: Cow<'a, Dynamics>, bands: Option<&'a ModelBands>, band: Band) -> Self {
-        let sampled = SampledModel::new(&dynamics, band);
+        let sampled = SampledResponse::new(&dynamics, band);
         Self {
             dynamics,
             bands,

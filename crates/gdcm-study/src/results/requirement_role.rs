@@ -5,7 +5,7 @@ use serde::Serialize;
 use gdcm_method::correction::Pade;
 use gdcm_method::correction::corrected_model::CorrectedModelError;
 use gdcm_method::couplings::CoupledModelError;
-use gdcm_method::couplings::coupling_matrices::without_delays;
+use gdcm_method::couplings::coupled_model::without_delays;
 use gdcm_method::schedule::ScheduleError;
 use gdcm_model::dataset::{BundleKind, Model, StateSpace};
 

@@ -1,9 +1,9 @@
 //! Conditions in the schedule, and alternative schedules: without a condition, in other forms
 //! (M11).
 
+use gdcm_method::schedule::delay_scheduling::NOTABLE_DELAY_S;
 use gdcm_method::schedule::form_comparison::{FormComparison, compare_forms};
 use gdcm_method::schedule::lead_degree_comparison::{LeadDegreeFit, compare_lead_degrees};
-use gdcm_method::schedule::settings::NOTABLE_DELAY_S;
 use gdcm_method::schedule::{
     DelayScheduling, Schedule, ScheduleError, ScheduleSettings, ScheduledPoint,
 };

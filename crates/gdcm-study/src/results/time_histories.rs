@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use gdcm_method::requirements::summary::RmsCost;
+use gdcm_method::requirements::rms_cost::RmsCost;
 use gdcm_method::requirements::{RecordCheck, Tolerance, ToleranceTable};
 use gdcm_model::dataset::{ConditionId, StateSpace};
 use gdcm_model::executor::Sequential;

@@ -4,8 +4,8 @@
 use std::collections::BTreeMap;
 
 use gdcm_method::schedule::{Schedule, SecondVariable};
+use gdcm_method::uncertainty::scalar::ScalarTable;
 use gdcm_method::uncertainty::second_variable_effect::{SecondVariableEffect, SecondVariableError};
-use gdcm_method::uncertainty::spread::ScalarTable;
 use gdcm_method::uncertainty::{
     BandWidths, Bar, Difference, Scalar, ScheduleBand, VarianceDecomposition,
 };

@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 
 use gdcm_method::correction::delta::{Delta, delta_gains};
 use gdcm_method::fidelity::CostAverage;
-use gdcm_method::fidelity::distance::Representative;
+use gdcm_method::fidelity::representative::Representative;
 use gdcm_model::dataset::{BundleKind, Condition, Dynamics, Model, Pair, PairTable};
 use gdcm_model::response::GainDelay;
 

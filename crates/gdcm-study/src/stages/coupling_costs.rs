@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 use gdcm_method::correction::Pade;
 use gdcm_method::correction::lead_price::ABOVE_BAND;
-use gdcm_method::couplings::response_effects::relative_change_db;
+use gdcm_method::couplings::response_change::relative_change_db;
 use gdcm_method::couplings::{LEAST_CONDITIONS, LeftOutFit, LoopMargin, PoleShift};
 use gdcm_method::schedule::CostChange;
 use gdcm_model::dataset::{Band, BundleKind, ConditionId, Model, Pair, PairTable};

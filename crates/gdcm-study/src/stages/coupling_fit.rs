@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use gdcm_method::correction::Channels;
-use gdcm_method::correction::leads::{LeadDesign, LeadSettings};
+use gdcm_method::correction::lead_design::{LeadDesign, LeadSettings};
 use gdcm_method::couplings::problem::{
     CouplingError, CouplingOptions, coherence_deviation, mean_delays_s, response_deviation,
     without_delays_and_leads,

@@ -13,8 +13,8 @@ use std::sync::Arc;
 
 use gdcm_method::schedule::airspeeds::airspeed_indicators;
 use gdcm_method::schedule::{Schedule, ScheduledQuantity, SecondVariable};
+use gdcm_method::uncertainty::condition_bars::{BarSource, bars};
 use gdcm_method::uncertainty::second_variable_effect::SecondVariableError;
-use gdcm_method::uncertainty::spread::{BarSource, bars};
 use gdcm_method::uncertainty::{
     Bar, Design, Difference, Scalar, ScheduleBand, SecondVariableDesign, VarianceDecomposition,
     holm,

@@ -6,7 +6,8 @@ use std::sync::Arc;
 use gdcm_method::correction::ChannelCorrection;
 use gdcm_method::correction::delta::{Delta, GainSource};
 use gdcm_method::uncertainty::Scalar;
-use gdcm_method::uncertainty::spread::{ConditionSpread, Figures, ScalarTable};
+use gdcm_method::uncertainty::scalar::{Figures, ScalarTable};
+use gdcm_method::uncertainty::spread::ConditionSpread;
 use gdcm_model::dataset::{BundleKind, PairTable};
 use gdcm_model::progress::Cancelled;
 

@@ -8,8 +8,10 @@
 
 use std::sync::Arc;
 
-use gdcm_method::correction::delta::{Delta, delay_upper_s, gain_bounds};
-use gdcm_method::correction::leads::{ChannelLeads, LeadDesign};
+use gdcm_method::correction::channel_bounds::{delay_upper_s, gain_bounds};
+use gdcm_method::correction::channel_leads::ChannelLeads;
+use gdcm_method::correction::delta::Delta;
+use gdcm_method::correction::lead_design::LeadDesign;
 use gdcm_method::correction::problem::{DELAY_AGREEMENT_S, ProblemError};
 use gdcm_method::correction::solve::solve;
 use gdcm_method::correction::{

@@ -1,7 +1,7 @@
 //! Cautions about signed delays that no schedule can reproduce (M15.6).
 
 use gdcm_method::correction::Channel;
-use gdcm_method::correction::leads::ChannelLeads;
+use gdcm_method::correction::channel_leads::ChannelLeads;
 use gdcm_method::schedule::ScheduleCaution;
 use gdcm_model::dataset::ConditionId;
 

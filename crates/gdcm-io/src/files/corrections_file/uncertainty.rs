@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 
 use gdcm_method::correction::Channel;
 use gdcm_method::schedule::Schedule;
-use gdcm_method::uncertainty::spread::ScalarTable;
+use gdcm_method::uncertainty::scalar::ScalarTable;
 use gdcm_method::uncertainty::{Bar, Scalar, VarianceDecomposition};
 use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_study::Analysis;

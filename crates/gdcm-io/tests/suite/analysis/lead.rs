@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use gdcm_method::correction::Channel as CorrectedChannel;
-use gdcm_method::correction::leads::{LeadDesign, LeadSettings};
+use gdcm_method::correction::lead_design::{LeadDesign, LeadSettings};
 use gdcm_method::schedule::ScheduleCaution;
 use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::condition::FlightState;

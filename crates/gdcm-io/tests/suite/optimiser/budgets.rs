@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use nalgebra::DMatrix;
 
-use gdcm_method::correction::branch_and_bound::search::Limit;
+use gdcm_method::correction::branch_and_bound::proof_budget::Limit;
 use gdcm_method::correction::problem::ProblemError;
 use gdcm_method::correction::solve::solve;
 use gdcm_method::correction::toggles::toggles;

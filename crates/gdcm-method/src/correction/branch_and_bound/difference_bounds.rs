@@ -3,6 +3,9 @@
 
 use crate::correction::interval::Interval;
 
+/// Excess of a difference over its bound that is a rounding error.
+const ROUNDING: f64 = 1e-13;
+
 /// Bounds on the differences of scales: `s_to - s_from <= bound(from, to)` for every two scales,
 /// the ground included.
 ///
@@ -105,10 +108,10 @@ impl DifferenceBounds {
 
     /// Returns whether `scales` satisfies the bounds, up to rounding.
     pub(crate) fn contains(&self, scales: &[f64]) -> bool {
-        let slack = 1e-13;
         (0..self.count).all(|from| {
-            (0..self.count)
-                .all(|to| scales[to] - scales[from] <= self.bounds[from * self.count + to] + slack)
+            (0..self.count).all(|to| {
+                scales[to] - scales[from] <= self.bounds[from * self.count + to] + ROUNDING
+            })
         })
     }
 }

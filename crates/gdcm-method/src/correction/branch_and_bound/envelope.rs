@@ -11,6 +11,12 @@ use super::exponential::Exponential;
 use super::rounded::Rounded;
 use crate::correction::interval::Interval;
 
+/// Maximum number of steps to the tangent; the work per term in `underestimator` allows for them.
+const TANGENT_STEPS: usize = 14;
+/// Distance of the tangent below the function's left end, relative to the value there, at which it is
+/// close enough.
+const SUFFICIENT_CLOSENESS: f64 = 1e-9;
+
 /// Line that replaces the exponential below `until` in its convex envelope.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Line {
@@ -52,7 +58,7 @@ impl Line {
         let mut left = function.inflection().max(low);
         let mut right = over.high;
         let mut tangent = end;
-        for _ in 0..14 {
+        for _ in 0..TANGENT_STEPS {
             let excess = overshoot(low, start, right, &tangent);
             let newton = right - excess / (tangent.curvature * (low - right));
             let next = if left < newton && newton < right {
@@ -67,7 +73,7 @@ impl Line {
                 right = next;
                 tangent = at;
             }
-            if -overshoot(low, start, right, &tangent) <= 1e-9 * start.value.value {
+            if -overshoot(low, start, right, &tangent) <= SUFFICIENT_CLOSENESS * start.value.value {
                 break;
             }
         }

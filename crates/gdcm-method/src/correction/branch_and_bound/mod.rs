@@ -36,6 +36,17 @@
 //! 10  lower bound <- lowest bound of all closed and open nodes
 //! ```
 //!
+//! | line | file |
+//! |---|---|
+//! | 1, 6 | `newton`, each step by `active_set` |
+//! | 2, 3, 7, 9, 10 | `search`, `open_nodes`, `difference_bounds`, `proof_budget` |
+//! | 4 | `node_exclusion` |
+//! | 5 | `underestimator`, `envelope`, `convex_bound` |
+//! | 8 | `bound_near_minimum`, `node_exclusion`, `convex_bound` |
+//!
+//! The function `F` is in `objective`, its terms in `term`, `quadratic`, `exponential` and
+//! `concave_interval`, its derivatives in `expansion` and `derivatives`.
+//!
 //! Sources: Hansen and Walster, *Global Optimization Using Interval Analysis* (2004), for
 //! branching, monotonicity and convexity tests; Horst and Tuy, *Global Optimization* (1996), for
 //! best-first branch and bound and its convergence; McCormick (1976), *Mathematical Programming*
@@ -43,18 +54,24 @@
 //! wherever Newton's method ends, so that the bound does not require convergence; its rounding
 //! error is summed over the terms (`Rounded`).
 
+mod active_set;
+mod bound_near_minimum;
+mod concave_interval;
+mod convex_bound;
 mod derivatives;
 mod difference_bounds;
 pub(crate) mod effort;
 mod envelope;
+pub(crate) mod expansion;
 pub(crate) mod exponential;
 pub(crate) mod newton;
 mod node_exclusion;
 pub(crate) mod objective;
 mod open_nodes;
+pub mod proof_budget;
 pub(crate) mod quadratic;
 pub(crate) mod rounded;
-pub mod search;
+pub(crate) mod search;
 pub(crate) mod term;
 mod underestimator;
 

@@ -1,4 +1,4 @@
-//! Tests that exclude a node (a part of the box, here the *region*), and a bound near a minimum.
+//! Tests that exclude a node (a part of the box, here the *region*) from the search.
 //!
 //! ```text
 //! monotonicity  some slope dF/ds_i has a constant sign over the region, and s_i can move downhill without meeting
@@ -15,21 +15,24 @@ use nalgebra::DMatrix;
 
 use super::derivatives::Range;
 use super::difference_bounds::DifferenceBounds;
-use super::objective::{Expansion, Objective, add_curvature};
+use super::expansion::add_curvature;
+use super::objective::Objective;
 use super::term::Term;
-use super::underestimator::quadratic_bound;
 use crate::correction::interval::Interval;
+
+/// Distance from the end of the box that is a rounding error.
+const ROUNDING: f64 = 1e-12;
 
 /// The objective with the structure needed by the exclusion tests.
 pub(super) struct NodeExclusion<'a> {
-    objective: &'a Objective,
+    pub(super) objective: &'a Objective,
     /// Reference of each scale: the ground, or the first scale in its floating piece.
     reference: Vec<usize>,
     /// For each scale, the scales relative to which it is bounded: the ground, or the other scales
     /// in its floating piece.
     bounded_by: Vec<Vec<usize>>,
     /// Floating pieces: scales that terms connect with one another, but not with the ground.
-    floating: Vec<Vec<usize>>,
+    pub(super) floating: Vec<Vec<usize>>,
 }
 
 impl<'a> NodeExclusion<'a> {
@@ -108,7 +111,8 @@ impl<'a> NodeExclusion<'a> {
 
     /// Returns whether `s_to - s_from` has the same maximum over the region as over the whole box.
     fn reaches_box(&self, region: &DifferenceBounds, from: usize, to: usize) -> bool {
-        region.range(from, to).high >= self.objective.upper[to] - self.objective.lower[from] - 1e-12
+        region.range(from, to).high
+            >= self.objective.upper[to] - self.objective.lower[from] - ROUNDING
     }
 
     /// Bounds the slope `dF/ds_i` in each scale over the region; `size` is the sum of the sizes of
@@ -130,85 +134,8 @@ impl<'a> NodeExclusion<'a> {
         ranges
     }
 
-    /// Bounds the objective from below over a region on which it is convex, from its gradient and
-    /// Hessian at `minimum`. `None` if the gradient is too large for such a bound.
-    pub(super) fn bound_at(&self, minimum: &[f64], at: &Expansion) -> Option<f64> {
-        // Distance from the minimum, much larger than the error of the scales, much smaller than a
-        // distance over which the curvature changes.
-        const WITHIN: f64 = 0.01;
-        // A difference of two scales changes by up to twice the distance.
-        let least = self.least_hessian(|term| {
-            let u = term.difference(minimum);
-            Interval {
-                low: u - 2.0 * WITHIN,
-                high: u + 2.0 * WITHIN,
-            }
-        });
-        let pressures: Vec<f64> = (0..minimum.len())
-            .map(|scale| self.pressure(minimum, at, scale))
-            .collect();
-        let anchors = self.anchors(at, &pressures)?;
-        let lower = &self.objective.lower;
-        let upper = &self.objective.upper;
-        let free: Vec<usize> = (0..self.objective.ground())
-            .filter(|scale| lower[*scale] < upper[*scale] && !anchors.contains(scale))
-            .collect();
-        let inverse = least.reduced(&free).cholesky()?.inverse();
-        let mut reach = vec![0.0; minimum.len()];
-        for (position, &scale) in free.iter().enumerate() {
-            reach[scale] = inverse[(position, position)].sqrt();
-        }
-        quadratic_bound(at, &reach, WITHIN, |scale| pressures[scale] > 0.0)
-    }
-
-    /// Returns the magnitude of the slope that certainly presses the scale against its active
-    /// bound; 0 without an active bound or a certain sign.
-    fn pressure(&self, minimum: &[f64], at: &Expansion, scale: usize) -> f64 {
-        let slope = at.gradient[scale];
-        let is_stopped = if slope > 0.0 {
-            minimum[scale] <= self.objective.lower[scale]
-        } else {
-            minimum[scale] >= self.objective.upper[scale]
-        };
-        if is_stopped {
-            (slope.abs() - at.gradient_error[scale]).max(0.0)
-        } else {
-            0.0
-        }
-    }
-
-    /// Chooses a reference for each floating piece: a fixed scale or, if bounds are active, the
-    /// scale with the largest pressure. Returns `None` if this pressure is less than the sum of the
-    /// slope magnitudes of the scales in the piece without pressure.
-    fn anchors(&self, at: &Expansion, pressures: &[f64]) -> Option<Vec<usize>> {
-        let mut anchors = Vec::new();
-        for piece in &self.floating {
-            let fixed = piece
-                .iter()
-                .find(|&&scale| self.objective.lower[scale] >= self.objective.upper[scale]);
-            if let Some(&fixed) = fixed {
-                anchors.push(fixed);
-                continue;
-            }
-            let hardest = piece
-                .iter()
-                .copied()
-                .max_by(|a, b| pressures[*a].total_cmp(&pressures[*b]))?;
-            let free_slopes: f64 = piece
-                .iter()
-                .filter(|&&scale| pressures[scale] == 0.0)
-                .map(|&scale| at.gradient[scale].abs() + at.gradient_error[scale])
-                .sum();
-            if pressures[hardest] > 0.0 && pressures[hardest] < free_slopes {
-                return None;
-            }
-            anchors.push(hardest);
-        }
-        Some(anchors)
-    }
-
     /// Builds the Hessian from the minimum curvature of every term over its range.
-    fn least_hessian(&self, range: impl Fn(&Term) -> Interval) -> LeastHessian {
+    pub(super) fn least_hessian(&self, range: impl Fn(&Term) -> Interval) -> LeastHessian {
         let scales = self.objective.scales();
         let mut least = LeastHessian {
             entries: vec![0.0; scales * scales],
@@ -235,7 +162,7 @@ impl<'a> NodeExclusion<'a> {
 }
 
 /// The Hessian that consists of the minimum curvature of every term over a range.
-struct LeastHessian {
+pub(super) struct LeastHessian {
     /// Scales x scales, row by row.
     entries: Vec<f64>,
     /// For each diagonal entry, the sum of the sizes of its curvatures, to which its rounding error
@@ -247,7 +174,7 @@ impl LeastHessian {
     /// Returns the Hessian in the `free` scales. Its diagonal is reduced by a margin for the
     /// rounding in its sums (up to n terms) and in its factorisation (n (n + 1) roundings: Higham,
     /// *Accuracy and Stability of Numerical Algorithms*, 2002, theorem 10.3).
-    fn reduced(&self, free: &[usize]) -> DMatrix<f64> {
+    pub(super) fn reduced(&self, free: &[usize]) -> DMatrix<f64> {
         let scales = self.sizes.len();
         let roundings = ((scales + 1) * (scales + 2)) as f64;
         DMatrix::from_fn(free.len(), free.len(), |row, column| {

@@ -1,12 +1,15 @@
-//! The branch-and-bound search and its budget.
+//! The branch-and-bound search for the global minimum and for the other minima within 1 % of it.
 
+use super::convex_bound::tangent_bound;
 use super::difference_bounds::DifferenceBounds;
 use super::effort::{Effort, SearchStopped};
+use super::expansion::{Curvature, Differentiable, Expansion, ScaleBox};
 use super::newton::Newton;
 use super::node_exclusion::NodeExclusion;
-use super::objective::{Curvature, Differentiable, Expansion, Objective, ScaleBox};
+use super::objective::Objective;
 use super::open_nodes::{Node, OpenNodes};
-use super::underestimator::{ConcaveEnd, Underestimator, tangent_bound};
+use super::proof_budget::{Limit, ProofBudget};
+use super::underestimator::{ConcaveEnd, Underestimator};
 
 /// Relative gap that is accepted as a proof.
 pub(crate) const PROOF: f64 = 1e-9;
@@ -487,41 +490,4 @@ impl<'a> Search<'a> {
             all_minima: self.all_minima && left >= cutoff,
         }
     }
-}
-
-/// Budget of the search for a proof. It is counted instead of timed, so that results are
-/// reproducible.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ProofBudget {
-    /// Maximum total work, in evaluations of a term of the objective (20 to 30 ns on a core). A
-    /// step in progress is completed.
-    pub work: u64,
-    /// Maximum work after the proof, spent on finding every other local minimum within 1 % of the
-    /// best.
-    pub listing: u64,
-    /// Maximum memory for the open nodes \[bytes\].
-    pub bytes: usize,
-}
-
-impl Default for ProofBudget {
-    /// Returns a budget of about two seconds on one core and 64 MB, far more than a condition with
-    /// constrained on-axis responses needs, and of at most a few milliseconds for the other minima.
-    fn default() -> Self {
-        Self {
-            work: 80_000_000,
-            listing: 200_000,
-            bytes: 64_000_000,
-        }
-    }
-}
-
-/// Limit that ended a search before the proof.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Limit {
-    /// The work, [`ProofBudget::work`].
-    Work,
-    /// The memory, [`ProofBudget::bytes`].
-    Memory,
-    /// Double precision: a sharper bound is not possible.
-    Rounding,
 }

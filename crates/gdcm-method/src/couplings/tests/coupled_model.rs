@@ -8,7 +8,7 @@ use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
 
 use super::{constant, matrix_at};
 use crate::correction::Pade;
-use crate::couplings::response_effects::relative_change_db;
+use crate::couplings::response_change::relative_change_db;
 use crate::couplings::{CoupledModelError, CouplingMatrices, LoopMargin};
 
 /// A helicopter with four states, two inputs, three outputs and feed-through.

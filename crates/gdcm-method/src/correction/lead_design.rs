@@ -1,14 +1,11 @@
-//! Lead filters: design of the filter for a signed delay (M15.3), and the filters of all channels
-//! (M15.5).
+//! Design of the lead filter for a negative signed delay (M15.3).
 
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use gdcm_model::dataset::Pair;
 use gdcm_model::response::{LeadFilter, LeadOrder};
 
-use super::channels::Channels;
 use super::delta::band_delay_s;
 
 /// Settings shared by all lead filters.
@@ -101,7 +98,7 @@ impl LeadDesign {
     }
 
     /// Creates the filter with the lead time `lead_s` \[s\].
-    pub fn filter_of(&self, lead_s: f64) -> LeadFilter {
+    pub fn filter_for_lead(&self, lead_s: f64) -> LeadFilter {
         LeadFilter::new(self.settings.order, lead_s, self.lag_s())
     }
 
@@ -109,7 +106,7 @@ impl LeadDesign {
     /// `d(l) = - sum omega arg L / sum omega^2` \[s\] (M15.2): 0 at `l = 0`, and strictly
     /// decreasing.
     pub fn band_delay_s(&self, lead_s: f64) -> f64 {
-        let filter = self.filter_of(lead_s);
+        let filter = self.filter_for_lead(lead_s);
         -band_delay_s(
             self.omega.iter().map(|&omega| filter.phase(omega)),
             &self.omega,
@@ -121,7 +118,7 @@ impl LeadDesign {
     /// `x = a omega` it is the weighted mean of `(1 + x^2) / (1 + x^4)`, or of `1 / (1 + x^2)` for
     /// first order.
     fn band_delay_fall(&self, lead_s: f64) -> f64 {
-        let zero_s = self.filter_of(lead_s).zero_s;
+        let zero_s = self.filter_for_lead(lead_s).zero_s;
         let slopes = self.omega.iter().map(|&omega| {
             let square = (zero_s * omega).powi(2);
             match self.settings.order {
@@ -136,7 +133,7 @@ impl LeadDesign {
     /// below the lower bound is given the filter with the gain `R_max`.
     pub fn filter(&self, tau_s: f64) -> Option<LeadFilter> {
         if tau_s < 0.0 {
-            Some(self.filter_of(self.lead_s(tau_s)))
+            Some(self.filter_for_lead(self.lead_s(tau_s)))
         } else {
             None
         }
@@ -154,7 +151,9 @@ impl LeadDesign {
     ///
     /// Newton's method within a bracket (Press et al., "Numerical Recipes", 3rd ed. 2007, 9.4).
     pub fn lead_s(&self, tau_s: f64) -> f64 {
+        /// Far more steps than necessary; a few are typical.
         const STEPS: usize = 100;
+        /// Change of `l` at which the iteration ends (step 4).
         const RELATIVE_CHANGE: f64 = 1e-9;
         let mut low = 0.0;
         let mut high = self.longest_lead_s();
@@ -188,102 +187,6 @@ impl LeadDesign {
     }
 }
 
-/// A signed delay for each channel: a pure delay if positive, a lead filter if negative (M15.5).
-///
-/// The filters, and their curves over the band, are computed at first use, and shared by all
-/// clones.
-#[derive(Clone, Debug)]
-pub struct ChannelLeads {
-    /// Design that converts a signed delay to a filter.
-    pub design: Arc<LeadDesign>,
-    /// Signed delay of each channel \[s\].
-    pub taus_s: Channels<f64>,
-    filters: Arc<OnceLock<Channels<Option<LeadFilter>>>>,
-    curves: Arc<OnceLock<Channels<Option<LeadCurve>>>>,
-}
-
-impl PartialEq for ChannelLeads {
-    /// Compares the signed delays and the design, which determine the cached filters.
-    fn eq(&self, other: &Self) -> bool {
-        (&self.taus_s, &self.design) == (&other.taus_s, &other.design)
-    }
-}
-
-impl ChannelLeads {
-    /// Creates the leads for signed delays \[s\], with filters according to `design`.
-    pub fn new(design: Arc<LeadDesign>, taus_s: Channels<f64>) -> Self {
-        Self {
-            design,
-            taus_s,
-            filters: Arc::default(),
-            curves: Arc::default(),
-        }
-    }
-
-    /// Returns the lead filter of every channel; `None` if the signed delay is not negative.
-    pub fn filters(&self) -> &Channels<Option<LeadFilter>> {
-        self.filters
-            .get_or_init(|| self.taus_s.map(|_, &tau_s| self.design.filter(tau_s)))
-    }
-
-    /// Returns the pure delay of every channel \[s\], which is the positive part of its signed
-    /// delay.
-    pub fn delays_s(&self) -> Channels<f64> {
-        self.taus_s.map(|_, tau_s| tau_s.max(0.0))
-    }
-
-    /// Returns magnitude and phase of the filters on the input and output of a response, at each
-    /// frequency of the design's band; `None` if neither has a filter.
-    pub fn curve(&self, pair: Pair) -> Option<LeadCurve> {
-        let curves = self.curves.get_or_init(|| {
-            self.filters().map(|_, filter| {
-                let filter = (*filter)?;
-                Some(LeadCurve::new(filter, self.design.omega()))
-            })
-        });
-        match (&curves.inputs[pair.input], &curves.outputs[pair.output]) {
-            (Some(input), Some(output)) => Some(input.in_series(output)),
-            (Some(curve), None) | (None, Some(curve)) => Some(curve.clone()),
-            (None, None) => None,
-        }
-    }
-}
-
-/// Magnitude \[dB\] and phase \[rad\] of a filter, or of two filters in series.
-#[derive(Clone, Debug)]
-pub struct LeadCurve {
-    /// `20 log10 |L|` at each frequency.
-    pub magnitude_db: Vec<f64>,
-    /// `arg L` at each frequency, continuous.
-    pub phase: Vec<f64>,
-}
-
-impl LeadCurve {
-    /// Evaluates a filter at the frequencies `omega` \[rad/s\].
-    fn new(filter: LeadFilter, omega: &[f64]) -> Self {
-        Self {
-            magnitude_db: omega
-                .iter()
-                .map(|&omega| filter.magnitude_db(omega))
-                .collect(),
-            phase: omega.iter().map(|&omega| filter.phase(omega)).collect(),
-        }
-    }
-
-    /// Returns the curve of both filters in series.
-    fn in_series(&self, other: &Self) -> Self {
-        Self {
-            magnitude_db: sums(&self.magnitude_db, &other.magnitude_db),
-            phase: sums(&self.phase, &other.phase),
-        }
-    }
-}
-
-/// Adds two curves, frequency by frequency.
-fn sums(a: &[f64], b: &[f64]) -> Vec<f64> {
-    a.iter().zip(b).map(|(a, b)| a + b).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
@@ -312,7 +215,12 @@ mod tests {
         assert!((design.lower_s() + 0.095_616_050_448_4).abs() < 1e-12);
         assert!((design.longest_lead_s() - 0.084_942_288_684_1).abs() < 1e-12);
         assert!(
-            (design.filter_of(design.longest_lead_s()).gain_at_infinity() - 10.0).abs() < 1e-13
+            (design
+                .filter_for_lead(design.longest_lead_s())
+                .gain_at_infinity()
+                - 10.0)
+                .abs()
+                < 1e-13
         );
         assert_eq!(design.lead_s(-1.0), design.longest_lead_s(), "beyond reach");
         assert_eq!((design.filter(0.0), design.filter(0.01)), (None, None));

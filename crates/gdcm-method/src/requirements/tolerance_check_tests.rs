@@ -10,7 +10,9 @@ use gdcm_model::simulation::{
 };
 
 use super::known_answers::{answers, number};
-use super::tolerance::{ChannelTolerance, ToleranceCheck, ToleranceCheckError, ToleranceError};
+use super::tolerance_check::{
+    ChannelTolerance, ToleranceCheck, ToleranceCheckError, ToleranceError,
+};
 use super::{RecordCheck, Tolerance, ToleranceTable};
 
 const SAMPLE_TIME_S: f64 = 0.02;

@@ -1,26 +1,30 @@
-//! Uncertainty of bandwidth and phase delay (M17.1): to first order from a response's standard
-//! deviations (M14), or from the other models in the bundles (M13).
+//! Standard deviations of bandwidth and phase delay (M17.1), to first order from the standard
+//! deviations of the identified response (M14).
 //!
 //! ```text
-//! phase crossing:  sd = sd_phase / |d phase / d omega|
+//! phase crossing:  sd = sd_phase(omega) / |phase'(omega)|
 //! gain crossing:   sd^2 = (sd_dB(omega_gain)^2 + sd_dB(omega_180)^2 + (m'(omega_180) sd(omega_180))^2) / m'(omega_gain)^2
 //! phase delay:     sd = sqrt(sd_phase(omega_180)^2 + sd_phase(2 omega_180)^2) / (2 omega_180)
 //! ```
 //!
-//! `m` is the magnitude \[dB\], `m'` its derivative with respect to omega; `sd_dB` and `sd_phase` are
-//! the standard deviations of the response's magnitude and phase.
+//! `m` is the magnitude \[dB\]; primes mark derivatives with respect to omega; `sd_dB` and `sd_phase`
+//! are the standard deviations of the response's magnitude and phase; `sd(omega_180)` is that of the
+//! phase crossing. The frequencies are defined in `bandwidth`.
 //!
-//! Errors at distant frequencies are assumed independent, errors at neighbouring frequencies are
-//! not: the deviation of a phase delay read from the least-squares line is also computed from the
-//! two ends, because independent errors along the line would make it arbitrarily small with more
-//! points.
+//! The phase delay is that of its formula `-(Phi(2 omega_180) + pi) / (2 omega_180)`, with `omega_180`
+//! shifted by the error of the phase there: exact to first order if the phase is linear between
+//! `omega_180` and `2 omega_180`.
+//!
+//! Magnitude and phase errors, and errors at distant frequencies, are assumed independent. Errors at
+//! neighbouring frequencies are not: the deviation of a phase delay read from the least-squares line
+//! is also computed from the two ends, because independent errors along the line would make it
+//! arbitrarily small with more points.
 
 use gdcm_model::dataset::Pair;
 use gdcm_model::dataset::model::ModelBands;
 use gdcm_model::response::interpolation::between;
 
 use super::attitude_response::AttitudeResponse;
-use crate::uncertainty::{Bar, IdentificationSource, VarianceComponent};
 
 /// Half the step of a difference quotient, relative to the frequency.
 const HALF_STEP: f64 = 1e-4;
@@ -69,16 +73,16 @@ impl PairBand<'_> {
     pub(super) fn gain_crossing_sd(
         &self,
         attitude: &AttitudeResponse<'_>,
-        omega: f64,
+        omega_gain: f64,
         omega_180: f64,
     ) -> Option<f64> {
         let from_omega_180 =
             magnitude_slope(attitude, omega_180)? * self.phase_crossing_sd(attitude, omega_180)?;
         let level = self
-            .sd_db(omega)?
+            .sd_db(omega_gain)?
             .hypot(self.sd_db(omega_180)?)
             .hypot(from_omega_180);
-        Some(level / magnitude_slope(attitude, omega)?.abs())
+        Some(level / magnitude_slope(attitude, omega_gain)?.abs())
     }
 
     /// Returns the standard deviation of the phase delay \[s\].
@@ -107,30 +111,4 @@ fn difference_quotient(omega: f64, value: impl Fn(f64) -> Option<f64>) -> Option
         return None;
     }
     Some(slope)
-}
-
-/// Computes the error bar of `value`, a non-negative metric of the two representatives (M13.1,
-/// M13.3). The entries of `physics` and `identified` are the metric with that representative
-/// replaced by another model of its bundle; `None` if the metric does not exist, which the bar
-/// counts as left out.
-pub fn substitution_bar(value: f64, physics: &[Option<f64>], identified: &[Option<f64>]) -> Bar {
-    let left_out = physics
-        .iter()
-        .chain(identified)
-        .filter(|other| other.is_none())
-        .count();
-    Bar {
-        value,
-        trim: substitution_variance(value, physics),
-        identification: substitution_variance(value, identified),
-        source: IdentificationSource::Spread,
-        left_out,
-        range: [0.0, f64::INFINITY],
-    }
-}
-
-/// Returns the variance of the changes from `value` to each of `others`.
-fn substitution_variance(value: f64, others: &[Option<f64>]) -> Option<VarianceComponent> {
-    let changes: Vec<f64> = others.iter().flatten().map(|other| other - value).collect();
-    VarianceComponent::from_changes(&changes)
 }

@@ -1,11 +1,10 @@
-//! Effects of mixing and feedback on a response: the stability margin of the loop, and the change of
-//! each response, which matters above the band (M16.4).
+//! Stability margin of the loop that a feedback closes: the smallest singular value of `I - K H`
+//! (M16.4).
 
 use nalgebra::{Complex, DMatrix};
 
-use gdcm_model::dataset::{Pair, PairTable};
+use gdcm_model::dataset::Pair;
 use gdcm_model::response::FrequencyResponse;
-use gdcm_model::units::ratio_to_db;
 
 use super::coupling_matrices::CouplingMatrices;
 
@@ -71,23 +70,4 @@ impl CouplingMatrices {
         }
         difference.singular_values().min()
     }
-}
-
-/// Returns `20 log10 |H~ - H| / |H|` of every response at frequency index `k`, p x m; `None` if a
-/// value is not finite or `H` is zero, minus infinity if nothing changes.
-pub fn relative_change_db(
-    physics: &FrequencyResponse,
-    coupled: &FrequencyResponse,
-    k: usize,
-) -> PairTable<Option<f64>> {
-    physics.curves().map(|pair, curve| {
-        let before = curve.get(k)?;
-        let after = coupled.curve(pair).get(k)?;
-        let ratio = (after - before).norm() / before.norm();
-        if ratio.is_finite() {
-            Some(ratio_to_db(ratio))
-        } else {
-            None
-        }
-    })
 }

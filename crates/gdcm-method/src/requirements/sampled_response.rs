@@ -1,5 +1,5 @@
-//! A model's response sampled once on the search frequencies, for bandwidths under many corrections
-//! (M17.1).
+//! A model's response sampled once on the search frequencies and interpolated between them, so that
+//! bandwidths under many corrections need no further evaluation of the model (M17.1).
 
 use nalgebra::Complex;
 
@@ -13,7 +13,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// A model with its response on the search frequencies, which are continued in equal ratios up to
 /// twice the highest search frequency: a phase delay needs `2 omega_180`.
-pub struct SampledModel {
+pub struct SampledResponse {
     prepared: PreparedModel,
     /// The samples' frequencies \[rad/s\]: the search frequencies, then their continuation.
     omega: Vec<f64>,
@@ -23,7 +23,7 @@ pub struct SampledModel {
     searched: usize,
 }
 
-impl SampledModel {
+impl SampledResponse {
     /// Samples a model for a search in and around `band`.
     pub fn new(dynamics: &Dynamics, band: Band) -> Self {
         let prepared = PreparedModel::new(dynamics);
@@ -32,7 +32,8 @@ impl SampledModel {
         let highest = omega[omega.len() - 1];
         let ratio = omega[1] / omega[0];
         let beyond = std::iter::successors(Some(highest * ratio), |omega| Some(omega * ratio));
-        // `1 +`: the interpolation needs a sample beyond the highest frequency.
+        // `1 +`: a sample beyond twice the highest search frequency, so that the interpolation there
+        // has samples on both sides.
         omega.extend(beyond.take(1 + (2f64.ln() / ratio.ln()).ceil() as usize));
         let values = prepared.at(&omega);
         Self {

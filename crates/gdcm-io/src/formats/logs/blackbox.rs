@@ -7,6 +7,10 @@
 //! I, P, S, G, H, E            frames: intra, predicted, slow, GPS, GPS home, event
 //! ```
 //!
+//! Intra and predicted frames are main frames, each a sample of all fields. An intra frame is decoded
+//! by itself, a predicted frame from the two main frames before it. A slow frame gives the flight
+//! mode.
+//!
 //! A frame is accepted if another frame begins where it ends. After a damaged frame, all frames
 //! predicted from it are omitted up to the next intra frame, which leaves a gap.
 
@@ -14,9 +18,11 @@ use gdcm_model::number_format::counted;
 use gdcm_sysid::records::{ModeSpan, RecordColumn};
 
 use crate::file_error::FileError;
-use crate::formats::logs::blackbox_frames::{PackedBytes, Predecessors};
+use crate::formats::logs::blackbox_fields::Predecessors;
+use crate::formats::logs::blackbox_frames::{FRAME_LETTERS, Frame, parse_frame};
 use crate::formats::logs::blackbox_heading::Heading;
-use crate::formats::logs::meanings::{BETAFLIGHT, assign_documented_meanings};
+use crate::formats::logs::blackbox_integers::PackedBytes;
+use crate::formats::logs::documented_channels::{BETAFLIGHT, assign_documented_meanings};
 use crate::formats::logs::mode_spans::{mode_spans, modes_note};
 use crate::formats::recorded_columns::{Columns, MOST_RECORDS};
 use crate::formats::{Contents, Importer};
@@ -30,8 +36,7 @@ const LONGEST_STEP_US: i64 = 10_000_000;
 const FEWEST_FRAMES: usize = 50;
 /// The number 1.0 in the header, as an IEEE 754 bit pattern.
 const ONE: &str = "0x3f800000";
-/// Letters of all frames.
-const FRAME_LETTERS: &[u8] = b"IPSGHE";
+
 /// Column names of the controller terms; an axis index follows in square brackets.
 const TERMS: [&str; 4] = ["axisP", "axisI", "axisD", "axisF"];
 
@@ -47,11 +52,13 @@ pub(crate) const BLACKBOX: Importer = Importer {
     },
 };
 
+/// Reads all flights; flights with too few frames are omitted with a note.
 fn read_blackbox(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Columns>, VariableFault> {
     budget.work(bytes.len() as u64, "")?;
     let begins = flight_offsets(bytes);
     let count = begins.len();
     if count > MOST_RECORDS {
+        // Handled like an exhausted budget; the number of flights has no limit in steps of work.
         return Err(VariableFault::TooMuchWork {
             variable: String::new(),
             most_millions: 0,
@@ -74,7 +81,7 @@ fn read_blackbox(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Columns
     if flights.is_empty() {
         return Err(VariableFault::damaged(
             "",
-            "no flight with at least 50 frames",
+            format!("no flight with at least {FEWEST_FRAMES} frames"),
             0,
         ));
     }
@@ -95,91 +102,6 @@ fn flight_offsets(bytes: &[u8]) -> Vec<usize> {
         }
     }
     offsets
-}
-
-/// A decoded frame.
-enum Frame {
-    /// Values of an intra or a predicted frame.
-    Main(Vec<i64>),
-    /// Values of a slow frame.
-    Slow(Vec<i64>),
-    /// Frame whose contents are not used.
-    Other,
-    /// Event that ends the log.
-    End,
-}
-
-/// Parses a frame with the letter `kind`; returns `None` for an unknown letter, a damaged
-/// frame, or a predicted frame without a predecessor.
-fn parse_frame(
-    heading: &Heading,
-    kind: u8,
-    bytes: &mut PackedBytes<'_>,
-    before: &Predecessors,
-) -> Option<Frame> {
-    if kind == b'E' {
-        return parse_event(bytes);
-    }
-    let fields = heading.frame(kind)?;
-    if kind == b'P' && before.last.is_none() {
-        return None;
-    }
-    let differences = fields.differences(bytes)?;
-    let independent = Predecessors::default();
-    Some(match kind {
-        b'G' | b'H' => Frame::Other,
-        b'S' => Frame::Slow(fields.values(differences, &independent, heading.numbers)),
-        b'P' => Frame::Main(fields.values(differences, before, heading.numbers)),
-        _ => Frame::Main(fields.values(differences, &independent, heading.numbers)),
-    })
-}
-
-/// Numbers of the event types.
-mod event_type {
-    pub(super) const SYNC_BEEP: u8 = 0;
-    pub(super) const INFLIGHT_ADJUSTMENT: u8 = 13;
-    pub(super) const LOGGING_RESUME: u8 = 14;
-    pub(super) const DISARM: u8 = 15;
-    pub(super) const FLIGHT_MODE: u8 = 30;
-    pub(super) const IMU_FAILURE: u8 = 40;
-    pub(super) const LOG_END: u8 = 255;
-}
-
-/// Parses an event frame, whose length depends on the event type. The contents of events are not
-/// used.
-fn parse_event(bytes: &mut PackedBytes<'_>) -> Option<Frame> {
-    match bytes.byte()? {
-        // One integer.
-        event_type::SYNC_BEEP | event_type::DISARM | event_type::IMU_FAILURE => {
-            bytes.unsigned()?;
-        }
-        // Two integers.
-        event_type::LOGGING_RESUME | event_type::FLIGHT_MODE => {
-            bytes.unsigned()?;
-            bytes.unsigned()?;
-        }
-        // The function that is adjusted, then a float of four bytes if its highest bit is set,
-        // otherwise a packed integer.
-        event_type::INFLIGHT_ADJUSTMENT => {
-            if bytes.byte()? & 0x80 == 0 {
-                bytes.signed()?;
-            } else {
-                for _ in 0..4 {
-                    bytes.byte()?;
-                }
-            }
-        }
-        event_type::LOG_END => {
-            for letter in b"End of log" {
-                if bytes.byte() != Some(*letter) {
-                    return None;
-                }
-            }
-            return Some(Frame::End);
-        }
-        _ => return None,
-    }
-    Some(Frame::Other)
 }
 
 /// A flight with its decoded frames.

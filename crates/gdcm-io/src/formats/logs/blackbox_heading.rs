@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::formats::logs::blackbox_frames::{FrameFields, HeaderNumbers};
+use crate::formats::logs::blackbox_fields::{FrameFields, HeaderNumbers};
 
 /// Contents of the header lines before the frames.
 #[derive(Default)]

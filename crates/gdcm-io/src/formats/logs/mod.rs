@@ -3,20 +3,24 @@
 //! ```text
 //! bytes -> messages -> topics: stamps, and a column for each field  (ulog, dataflash)
 //!       -> frames   -> a single topic                               (blackbox)
-//!       -> documented units and channels                            (meanings)
+//!       -> documented units and channels                            (documented_channels)
 //! ```
 
 mod blackbox;
+mod blackbox_fields;
 mod blackbox_frames;
 mod blackbox_heading;
+mod blackbox_integers;
 mod dataflash;
-mod dataflash_messages;
+mod dataflash_layouts;
 mod dataflash_text;
-mod meanings;
+mod dataflash_topics;
+mod documented_channels;
 mod mode_spans;
 mod topics;
 mod ulog;
 mod ulog_layouts;
+mod ulog_modes;
 
 pub(crate) use blackbox::BLACKBOX;
 pub(crate) use dataflash::DATAFLASH;

@@ -4,16 +4,19 @@
 //! the same response if their names give the same output and input; a column whose name gives none
 //! belongs to the response of the columns before it. A missing unit that the numbers do not reveal is
 //! not guessed: it is added to `unsaid`, and the user is asked.
+//!
+//! `Recognition::frequency` is called before `Recognition::responses`, so that notes and missing
+//! units are listed with the frequency first; afterwards, the results are in the public fields.
 
 use std::f64::consts::TAU;
 
 use crate::formats::text::column_meaning::ColumnMeaning;
-use crate::formats::text::column_words::{KnownUnit, Quantity};
-use crate::formats::text::columns::TextTable;
+use crate::formats::text::quantity_words::{KnownUnit, Quantity};
 use crate::formats::text::response_columns::{
     CoherenceColumn, RecognisedResponse, ResponseParts, column_name, column_place,
 };
 use crate::formats::text::response_label::ResponseLabel;
+use crate::formats::text::text_table::TextTable;
 use crate::formats::text::unrecognised::{Unrecognised, UnsaidUnit, unrecognised};
 
 /// Maximum difference between the rectangular and the polar form of a response, relative to its

@@ -308,7 +308,7 @@ fn kind_of_column(rows: &[Vec<String>], index: usize) -> Kind {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::text::columns::read_table;
+    use crate::formats::text::table_reader::read_table;
 
     fn numbered(text: &str) -> Option<NumberedText> {
         numbered_words(text, &ReadingBudget::new(1 << 20)).unwrap()

@@ -15,10 +15,11 @@
 //!
 //! Arrays are stored in column-major order with their dimensions reversed.
 
-use crate::formats::octave::assembly::{Range, text_rows};
+use crate::formats::element_order::{Places, element_count};
+use crate::formats::octave::assembly::text_rows;
 use crate::formats::octave::form::Form;
+use crate::formats::octave::range::Range;
 use crate::formats::sparse_matrix::CompressedColumns;
-use crate::formats::strides::{Places, element_count};
 use crate::formats::variables::{
     Array, CellArray, ElementKind, Object, StructArray, TextArray, Value, Variable,
 };

@@ -20,7 +20,7 @@ use gdcm_sysid::records::{ModeSpan, RecordColumn};
 use crate::file_error::FileError;
 use crate::formats::logs::blackbox_fields::Predecessors;
 use crate::formats::logs::blackbox_frames::{FRAME_LETTERS, Frame, parse_frame};
-use crate::formats::logs::blackbox_heading::Heading;
+use crate::formats::logs::blackbox_header::Header;
 use crate::formats::logs::blackbox_integers::PackedBytes;
 use crate::formats::logs::documented_channels::{BETAFLIGHT, assign_documented_meanings};
 use crate::formats::logs::mode_spans::{mode_spans, modes_note};
@@ -106,7 +106,7 @@ fn flight_offsets(bytes: &[u8]) -> Vec<usize> {
 
 /// A flight with its decoded frames.
 struct Flight {
-    heading: Heading,
+    header: Header,
     /// Index of the field "time".
     time_field: Option<usize>,
     /// Values from the main frames, one list for each field.
@@ -129,9 +129,9 @@ impl Flight {
         name: &str,
         budget: &ReadingBudget<'_>,
     ) -> Result<Option<Self>, VariableFault> {
-        let heading = Heading::read(bytes);
-        budget.take(heading.length as u64, 2, name)?;
-        let mut flight = Self::begin(heading, name)?;
+        let header = Header::read(bytes);
+        budget.take(header.length as u64, 2, name)?;
+        let mut flight = Self::begin(header, name)?;
         flight.read_frames(bytes, name, budget)?;
         let frames = flight.values.first().map_or(0, Vec::len);
         if frames < FEWEST_FRAMES {
@@ -144,15 +144,15 @@ impl Flight {
     ///
     /// # Errors
     /// [`VariableFault`] if the data version or an encoding of the intra frames is not supported.
-    fn begin(heading: Heading, name: &str) -> Result<Self, VariableFault> {
-        let version = heading.value("Data version");
-        match heading.frame(b'I') {
+    fn begin(header: Header, name: &str) -> Result<Self, VariableFault> {
+        let version = header.value("Data version");
+        match header.frame_fields(b'I') {
             Some(fields) if version == "2" => Ok(Self {
                 time_field: fields.names.iter().position(|field| field == "time"),
                 values: vec![Vec::new(); fields.names.len()],
                 modes: Vec::new(),
                 damaged: 0,
-                heading,
+                header,
             }),
             _ => {
                 let version: String = version.chars().take(9).collect();
@@ -178,11 +178,11 @@ impl Flight {
     ) -> Result<(), VariableFault> {
         let field_count = self.values.len();
         let mut before = Predecessors::default();
-        let mut at = self.heading.length;
+        let mut at = self.header.length;
         while at < bytes.len() {
             budget.work(field_count as u64, name)?;
             let mut packed = PackedBytes::new(bytes, at + 1);
-            let mut frame = parse_frame(&self.heading, bytes[at], &mut packed, &before);
+            let mut frame = parse_frame(&self.header, bytes[at], &mut packed, &before);
             // A frame is damaged if no frame letter follows it.
             let next = bytes.get(packed.at);
             if next.is_some_and(|next| !FRAME_LETTERS.contains(next)) {
@@ -261,7 +261,7 @@ impl Flight {
     ) -> Result<Columns, VariableFault> {
         let mut notes =
             vec!["a Betaflight log; axisSum is the sum of the controller terms".to_owned()];
-        let names = self.heading.main_fields();
+        let names = self.header.main_fields();
         let mut columns = Vec::new();
         for (field, values) in names.iter().zip(self.values) {
             if field == "loopIteration" {
@@ -278,7 +278,7 @@ impl Flight {
             columns.extend(sum);
         }
         // The documented unit of the rates, deg/s, requires a scale of 1.
-        if self.heading.value("gyro_scale") == ONE {
+        if self.header.value("gyro_scale") == ONE {
             notes.extend(assign_documented_meanings(&mut columns, &BETAFLIGHT));
         } else {
             notes.push(

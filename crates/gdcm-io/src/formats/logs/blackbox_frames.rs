@@ -9,7 +9,7 @@
 //! ```
 
 use crate::formats::logs::blackbox_fields::Predecessors;
-use crate::formats::logs::blackbox_heading::Heading;
+use crate::formats::logs::blackbox_header::Header;
 use crate::formats::logs::blackbox_integers::PackedBytes;
 
 /// Letters of all frames.
@@ -31,7 +31,7 @@ pub(super) enum Frame {
 /// precede it. Returns `None` for an unknown letter, a damaged frame, or a predicted frame without a
 /// predecessor.
 pub(super) fn parse_frame(
-    heading: &Heading,
+    header: &Header,
     kind: u8,
     bytes: &mut PackedBytes<'_>,
     before: &Predecessors,
@@ -39,7 +39,7 @@ pub(super) fn parse_frame(
     if kind == b'E' {
         return parse_event(bytes);
     }
-    let fields = heading.frame(kind)?;
+    let fields = header.frame_fields(kind)?;
     if kind == b'P' && before.last.is_none() {
         return None;
     }
@@ -47,9 +47,9 @@ pub(super) fn parse_frame(
     let independent = Predecessors::default();
     Some(match kind {
         b'G' | b'H' => Frame::Other,
-        b'S' => Frame::Slow(fields.values(differences, &independent, heading.numbers)),
-        b'P' => Frame::Main(fields.values(differences, before, heading.numbers)),
-        _ => Frame::Main(fields.values(differences, &independent, heading.numbers)),
+        b'S' => Frame::Slow(fields.values(differences, &independent, header.numbers)),
+        b'P' => Frame::Main(fields.values(differences, before, header.numbers)),
+        _ => Frame::Main(fields.values(differences, &independent, header.numbers)),
     })
 }
 

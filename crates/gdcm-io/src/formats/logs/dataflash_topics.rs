@@ -11,7 +11,7 @@ use gdcm_sysid::records::ModeSpan;
 use crate::formats::logs::dataflash_layouts::{FieldKind, Layouts, MessageLayout};
 use crate::formats::logs::documented_channels::{ARDUPILOT, assign_documented_meanings};
 use crate::formats::logs::mode_spans::{mode_spans, modes_note};
-use crate::formats::logs::topics::{TopicField, TopicSamples};
+use crate::formats::logs::topic_samples::{TopicField, TopicSamples};
 use crate::formats::recorded_columns::Columns;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 

@@ -9,7 +9,7 @@
 mod blackbox;
 mod blackbox_fields;
 mod blackbox_frames;
-mod blackbox_heading;
+mod blackbox_header;
 mod blackbox_integers;
 mod dataflash;
 mod dataflash_layouts;
@@ -17,7 +17,7 @@ mod dataflash_text;
 mod dataflash_topics;
 mod documented_channels;
 mod mode_spans;
-mod topics;
+mod topic_samples;
 mod ulog;
 mod ulog_layouts;
 mod ulog_modes;
@@ -27,7 +27,7 @@ pub(crate) use dataflash::DATAFLASH;
 pub(crate) use dataflash_text::DATAFLASH_TEXT;
 pub(crate) use ulog::ULOG;
 
-/// Returns the `N` bytes from `offset` on; `None` if fewer are left.
+/// Returns the `N` bytes from `offset` on, for the readers of binary logs; `None` if fewer are left.
 fn array<const N: usize>(bytes: &[u8], offset: usize) -> Option<[u8; N]> {
     bytes.get(offset..offset.checked_add(N)?)?.try_into().ok()
 }

@@ -19,7 +19,7 @@ use crate::file_error::FileError;
 use crate::formats::logs::array;
 use crate::formats::logs::documented_channels::{PX4, assign_documented_meanings};
 use crate::formats::logs::mode_spans::modes_note;
-use crate::formats::logs::topics::{TopicField, TopicSamples};
+use crate::formats::logs::topic_samples::{TopicField, TopicSamples};
 use crate::formats::logs::ulog_layouts::{LayoutTexts, Place, places_in_message};
 use crate::formats::logs::ulog_modes::flight_modes;
 use crate::formats::recorded_columns::Columns;

@@ -3,7 +3,7 @@
 use gdcm_sysid::records::ModeSpan;
 
 use crate::formats::logs::mode_spans::mode_spans;
-use crate::formats::logs::topics::TopicSamples;
+use crate::formats::logs::topic_samples::TopicSamples;
 
 /// `ARMING_STATE_ARMED` in `VehicleStatus.msg`, PX4 1.14 to 1.16.
 const ARMED: f64 = 2.0;

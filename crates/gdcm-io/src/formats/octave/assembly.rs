@@ -233,7 +233,7 @@ impl Assembler<'_> {
 }
 
 /// Splits a byte array in column-major order into a string for each row.
-pub(super) fn text_rows(letters: &[u8], height: usize) -> TextArray {
+pub(super) fn byte_rows(letters: &[u8], height: usize) -> TextArray {
     if letters.is_empty() {
         return TextArray::one("");
     }

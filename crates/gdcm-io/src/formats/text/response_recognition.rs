@@ -47,50 +47,6 @@ pub(super) struct Recognition<'t> {
     pub(super) unused: Vec<String>,
 }
 
-/// Columns that belong to the same response.
-#[derive(Default)]
-struct Group {
-    label: ResponseLabel,
-    columns: Vec<GroupColumn>,
-}
-
-/// Column that holds a quantity of a response.
-struct GroupColumn {
-    quantity: Quantity,
-    /// Column index, from 0.
-    column: usize,
-}
-
-/// Indices of the columns with magnitude and phase.
-#[derive(Clone, Copy)]
-struct PolarColumns {
-    magnitude: usize,
-    phase: usize,
-}
-
-/// Interpretation of a magnitude and a phase column.
-struct PolarReading {
-    parts: ResponseParts,
-    /// Those columns of the two whose missing unit the user must state.
-    unsaid: Vec<UnsaidUnit>,
-}
-
-impl Group {
-    /// Returns the index of the column with a quantity.
-    fn column(&self, quantity: Quantity) -> Option<usize> {
-        let found = self.columns.iter().find(|known| known.quantity == quantity);
-        found.map(|known| known.column)
-    }
-
-    /// Returns magnitude and phase; `None` unless both are present.
-    fn polar_columns(&self) -> Option<PolarColumns> {
-        Some(PolarColumns {
-            magnitude: self.column(Quantity::Magnitude)?,
-            phase: self.column(Quantity::Phase)?,
-        })
-    }
-}
-
 impl<'t> Recognition<'t> {
     /// Interprets each column by its name and unit.
     pub(super) fn new(table: &'t TextTable) -> Self {
@@ -365,6 +321,50 @@ impl<'t> Recognition<'t> {
                 table.lines[row]
             ),
         });
+    }
+}
+
+/// Columns that belong to the same response.
+#[derive(Default)]
+struct Group {
+    label: ResponseLabel,
+    columns: Vec<GroupColumn>,
+}
+
+/// Column that holds a quantity of a response.
+struct GroupColumn {
+    quantity: Quantity,
+    /// Column index, from 0.
+    column: usize,
+}
+
+/// Indices of the columns with magnitude and phase.
+#[derive(Clone, Copy)]
+struct PolarColumns {
+    magnitude: usize,
+    phase: usize,
+}
+
+/// Interpretation of a magnitude and a phase column.
+struct PolarReading {
+    parts: ResponseParts,
+    /// Those columns of the two whose missing unit the user must state.
+    unsaid: Vec<UnsaidUnit>,
+}
+
+impl Group {
+    /// Returns the index of the column with a quantity.
+    fn column(&self, quantity: Quantity) -> Option<usize> {
+        let found = self.columns.iter().find(|known| known.quantity == quantity);
+        found.map(|known| known.column)
+    }
+
+    /// Returns magnitude and phase; `None` unless both are present.
+    fn polar_columns(&self) -> Option<PolarColumns> {
+        Some(PolarColumns {
+            magnitude: self.column(Quantity::Magnitude)?,
+            phase: self.column(Quantity::Phase)?,
+        })
     }
 }
 

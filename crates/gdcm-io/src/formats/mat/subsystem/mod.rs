@@ -1,5 +1,5 @@
-//! Objects of MATLAB classes, stored in a separate part of the file: the cells of a
-//! `FileWrapper__`.
+//! Objects of MATLAB classes, stored in a separate part of the file, which MATLAB calls subsystem
+//! data: the cells of a `FileWrapper__`.
 //!
 //! ```text
 //! cell 0        directory: names, classes, objects, and the cell of each property  (directory.rs)

@@ -1,4 +1,5 @@
-//! Columns of words and of times of day in tables of numbers.
+//! Columns of words and of times of day in tables of numbers: each word is replaced by a number, each
+//! time by seconds.
 
 use std::collections::BTreeMap;
 

@@ -9,7 +9,7 @@ use serde_json::Value as Json;
 
 use super::matlab_names::valid_name;
 use super::matlab_values::{Fields, cell_of_texts, row};
-use crate::formats::strides::first_index_fastest;
+use crate::formats::element_order::first_index_fastest;
 use crate::formats::variables::{Array, CellArray, ElementKind, StructArray, Value};
 
 static NULL: Json = Json::Null;

@@ -80,7 +80,8 @@ struct Listing<'p> {
 }
 
 impl Listing<'_> {
-    /// Adds the files in a folder and in its subfolders, down to `deeper` levels of subfolders.
+    /// Adds the files in a folder and in its subfolders, down to `deeper` levels of subfolders; each
+    /// recursion lowers `deeper` by 1.
     ///
     /// # Errors
     /// [`FileError`] if a folder cannot be read or is nested too deeply, or if there are too many

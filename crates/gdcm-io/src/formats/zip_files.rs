@@ -227,8 +227,7 @@ fn read_whole(
             Ok(0) if unpacked.len() as u64 == length => return Ok(Ok(unpacked)),
             Ok(0) => {
                 return Ok(Err(std::io::Error::other(
-                    "its length differs from the stated \
-                length",
+                    "its length differs from the stated length",
                 )));
             }
             Ok(_) => {}

@@ -7,6 +7,10 @@
 //! I, P, S, G, H, E            frames: intra, predicted, slow, GPS, GPS home, event
 //! ```
 //!
+//! Intra and predicted frames are main frames, each a sample of all fields. An intra frame is decoded
+//! by itself, a predicted frame from the two main frames before it. A slow frame gives the flight
+//! mode.
+//!
 //! A frame is accepted if another frame begins where it ends. After a damaged frame, all frames
 //! predicted from it are omitted up to the next intra frame, which leaves a gap.
 
@@ -14,9 +18,11 @@ use gdcm_model::number_format::counted;
 use gdcm_sysid::records::{ModeSpan, RecordColumn};
 
 use crate::file_error::FileError;
-use crate::formats::logs::blackbox_frames::{PackedBytes, Predecessors};
-use crate::formats::logs::blackbox_heading::Heading;
-use crate::formats::logs::meanings::{BETAFLIGHT, assign_documented_meanings};
+use crate::formats::logs::blackbox_fields::Predecessors;
+use crate::formats::logs::blackbox_frames::{FRAME_LETTERS, Frame, parse_frame};
+use crate::formats::logs::blackbox_header::Header;
+use crate::formats::logs::blackbox_integers::PackedBytes;
+use crate::formats::logs::documented_channels::{BETAFLIGHT, assign_documented_meanings};
 use crate::formats::logs::mode_spans::{mode_spans, modes_note};
 use crate::formats::recorded_columns::{Columns, MOST_RECORDS};
 use crate::formats::{Contents, Importer};
@@ -30,8 +36,7 @@ const LONGEST_STEP_US: i64 = 10_000_000;
 const FEWEST_FRAMES: usize = 50;
 /// The number 1.0 in the header, as an IEEE 754 bit pattern.
 const ONE: &str = "0x3f800000";
-/// Letters of all frames.
-const FRAME_LETTERS: &[u8] = b"IPSGHE";
+
 /// Column names of the controller terms; an axis index follows in square brackets.
 const TERMS: [&str; 4] = ["axisP", "axisI", "axisD", "axisF"];
 
@@ -47,11 +52,13 @@ pub(crate) const BLACKBOX: Importer = Importer {
     },
 };
 
+/// Reads all flights; flights with too few frames are omitted with a note.
 fn read_blackbox(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Columns>, VariableFault> {
     budget.work(bytes.len() as u64, "")?;
     let begins = flight_offsets(bytes);
     let count = begins.len();
     if count > MOST_RECORDS {
+        // Handled like an exhausted budget; the number of flights has no limit in steps of work.
         return Err(VariableFault::TooMuchWork {
             variable: String::new(),
             most_millions: 0,
@@ -74,7 +81,7 @@ fn read_blackbox(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Columns
     if flights.is_empty() {
         return Err(VariableFault::damaged(
             "",
-            "no flight with at least 50 frames",
+            format!("no flight with at least {FEWEST_FRAMES} frames"),
             0,
         ));
     }
@@ -97,94 +104,9 @@ fn flight_offsets(bytes: &[u8]) -> Vec<usize> {
     offsets
 }
 
-/// A decoded frame.
-enum Frame {
-    /// Values of an intra or a predicted frame.
-    Main(Vec<i64>),
-    /// Values of a slow frame.
-    Slow(Vec<i64>),
-    /// Frame whose contents are not used.
-    Other,
-    /// Event that ends the log.
-    End,
-}
-
-/// Parses a frame with the letter `kind`; returns `None` for an unknown letter, a damaged
-/// frame, or a predicted frame without a predecessor.
-fn parse_frame(
-    heading: &Heading,
-    kind: u8,
-    bytes: &mut PackedBytes<'_>,
-    before: &Predecessors,
-) -> Option<Frame> {
-    if kind == b'E' {
-        return parse_event(bytes);
-    }
-    let fields = heading.frame(kind)?;
-    if kind == b'P' && before.last.is_none() {
-        return None;
-    }
-    let differences = fields.differences(bytes)?;
-    let independent = Predecessors::default();
-    Some(match kind {
-        b'G' | b'H' => Frame::Other,
-        b'S' => Frame::Slow(fields.values(differences, &independent, heading.numbers)),
-        b'P' => Frame::Main(fields.values(differences, before, heading.numbers)),
-        _ => Frame::Main(fields.values(differences, &independent, heading.numbers)),
-    })
-}
-
-/// Numbers of the event types.
-mod event_type {
-    pub(super) const SYNC_BEEP: u8 = 0;
-    pub(super) const INFLIGHT_ADJUSTMENT: u8 = 13;
-    pub(super) const LOGGING_RESUME: u8 = 14;
-    pub(super) const DISARM: u8 = 15;
-    pub(super) const FLIGHT_MODE: u8 = 30;
-    pub(super) const IMU_FAILURE: u8 = 40;
-    pub(super) const LOG_END: u8 = 255;
-}
-
-/// Parses an event frame, whose length depends on the event type. The contents of events are not
-/// used.
-fn parse_event(bytes: &mut PackedBytes<'_>) -> Option<Frame> {
-    match bytes.byte()? {
-        // One integer.
-        event_type::SYNC_BEEP | event_type::DISARM | event_type::IMU_FAILURE => {
-            bytes.unsigned()?;
-        }
-        // Two integers.
-        event_type::LOGGING_RESUME | event_type::FLIGHT_MODE => {
-            bytes.unsigned()?;
-            bytes.unsigned()?;
-        }
-        // The function that is adjusted, then a float of four bytes if its highest bit is set,
-        // otherwise a packed integer.
-        event_type::INFLIGHT_ADJUSTMENT => {
-            if bytes.byte()? & 0x80 == 0 {
-                bytes.signed()?;
-            } else {
-                for _ in 0..4 {
-                    bytes.byte()?;
-                }
-            }
-        }
-        event_type::LOG_END => {
-            for letter in b"End of log" {
-                if bytes.byte() != Some(*letter) {
-                    return None;
-                }
-            }
-            return Some(Frame::End);
-        }
-        _ => return None,
-    }
-    Some(Frame::Other)
-}
-
 /// A flight with its decoded frames.
 struct Flight {
-    heading: Heading,
+    header: Header,
     /// Index of the field "time".
     time_field: Option<usize>,
     /// Values from the main frames, one list for each field.
@@ -207,9 +129,9 @@ impl Flight {
         name: &str,
         budget: &ReadingBudget<'_>,
     ) -> Result<Option<Self>, VariableFault> {
-        let heading = Heading::read(bytes);
-        budget.take(heading.length as u64, 2, name)?;
-        let mut flight = Self::begin(heading, name)?;
+        let header = Header::read(bytes);
+        budget.take(header.length as u64, 2, name)?;
+        let mut flight = Self::begin(header, name)?;
         flight.read_frames(bytes, name, budget)?;
         let frames = flight.values.first().map_or(0, Vec::len);
         if frames < FEWEST_FRAMES {
@@ -222,15 +144,15 @@ impl Flight {
     ///
     /// # Errors
     /// [`VariableFault`] if the data version or an encoding of the intra frames is not supported.
-    fn begin(heading: Heading, name: &str) -> Result<Self, VariableFault> {
-        let version = heading.value("Data version");
-        match heading.frame(b'I') {
+    fn begin(header: Header, name: &str) -> Result<Self, VariableFault> {
+        let version = header.value("Data version");
+        match header.frame_fields(b'I') {
             Some(fields) if version == "2" => Ok(Self {
                 time_field: fields.names.iter().position(|field| field == "time"),
                 values: vec![Vec::new(); fields.names.len()],
                 modes: Vec::new(),
                 damaged: 0,
-                heading,
+                header,
             }),
             _ => {
                 let version: String = version.chars().take(9).collect();
@@ -256,11 +178,11 @@ impl Flight {
     ) -> Result<(), VariableFault> {
         let field_count = self.values.len();
         let mut before = Predecessors::default();
-        let mut at = self.heading.length;
+        let mut at = self.header.length;
         while at < bytes.len() {
             budget.work(field_count as u64, name)?;
             let mut packed = PackedBytes::new(bytes, at + 1);
-            let mut frame = parse_frame(&self.heading, bytes[at], &mut packed, &before);
+            let mut frame = parse_frame(&self.header, bytes[at], &mut packed, &before);
             // A frame is damaged if no frame letter follows it.
             let next = bytes.get(packed.at);
             if next.is_some_and(|next| !FRAME_LETTERS.contains(next)) {
@@ -339,7 +261,7 @@ impl Flight {
     ) -> Result<Columns, VariableFault> {
         let mut notes =
             vec!["a Betaflight log; axisSum is the sum of the controller terms".to_owned()];
-        let names = self.heading.main_fields();
+        let names = self.header.main_fields();
         let mut columns = Vec::new();
         for (field, values) in names.iter().zip(self.values) {
             if field == "loopIteration" {
@@ -356,7 +278,7 @@ impl Flight {
             columns.extend(sum);
         }
         // The documented unit of the rates, deg/s, requires a scale of 1.
-        if self.heading.value("gyro_scale") == ONE {
+        if self.header.value("gyro_scale") == ONE {
             notes.extend(assign_documented_meanings(&mut columns, &BETAFLIGHT));
         } else {
             notes.push(

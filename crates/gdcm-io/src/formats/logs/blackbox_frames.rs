@@ -1,373 +1,102 @@
-//! Encoding and prediction of the fields in blackbox frames.
+//! Frames of a blackbox flight: a letter, then fields or an event
+//! (<https://betaflight.com/docs/development/Blackbox-Internals>).
 //!
-//! A frame holds the difference of each field from a prediction. Decoding has two steps, for which
-//! the header of the flight gives each field a number: the encoding says how the difference is
-//! packed into bytes (`FrameFields::differences`), the predictor what it is added to
-//! (`FrameFields::values`).
-//!
-//! Source: <https://betaflight.com/docs/development/Blackbox-Internals>.
+//! ```text
+//! I, P      intra and predicted frame: the main fields
+//! S         slow frame: flight mode and other states
+//! G, H      GPS position, GPS home: not used
+//! E         event: a type, on which the length depends
+//! ```
 
-/// Maximum number of fields in a frame.
-const MOST_FIELDS: usize = 256;
+use crate::formats::logs::blackbox_fields::Predecessors;
+use crate::formats::logs::blackbox_header::Header;
+use crate::formats::logs::blackbox_integers::PackedBytes;
 
-/// Numbers of the supported encodings.
-mod encoding {
-    /// Variable-length integer with the sign in the lowest bit.
-    pub(super) const SIGNED_VB: u8 = 0;
-    /// Variable-length integer without a sign.
-    pub(super) const UNSIGNED_VB: u8 = 1;
-    /// 14-bit integer with the opposite sign.
-    pub(super) const NEG_14BIT: u8 = 3;
-    /// Up to eight fields: a byte that marks the nonzero fields, then these.
-    pub(super) const TAG8_8SVB: u8 = 6;
-    /// Three fields: two bits that give their lengths, then the fields.
-    pub(super) const TAG2_3S32: u8 = 7;
-    /// Four fields: a byte with two bits for the length of each, then the fields.
-    pub(super) const TAG8_4S16: u8 = 8;
-    /// No bytes; the difference is 0.
-    pub(super) const NULL: u8 = 9;
+/// Letters of all frames.
+pub(super) const FRAME_LETTERS: &[u8] = b"IPSGHE";
+
+/// A decoded frame.
+pub(super) enum Frame {
+    /// Values of an intra or a predicted frame.
+    Main(Vec<i64>),
+    /// Values of a slow frame.
+    Slow(Vec<i64>),
+    /// Frame whose contents are not used.
+    Other,
+    /// Event that ends the log.
+    End,
 }
 
-/// Numbers of the predictors that do not predict 0; all others, such as 0, do.
-mod predictor {
-    /// Value in the preceding frame.
-    pub(super) const PREVIOUS: u8 = 1;
-    /// Continuation of the line through the two preceding frames.
-    pub(super) const STRAIGHT_LINE: u8 = 2;
-    /// Mean of the two preceding frames.
-    pub(super) const AVERAGE_2: u8 = 3;
-    /// Header value `minthrottle`.
-    pub(super) const MIN_THROTTLE: u8 = 4;
-    /// Field `motor[0]` in the same frame.
-    pub(super) const MOTOR_0: u8 = 5;
-    /// Value in the preceding frame plus 1.
-    pub(super) const INCREMENT: u8 = 6;
-    /// The number 1500.
-    pub(super) const FIXED_1500: u8 = 8;
-    /// Header value `vbatref`.
-    pub(super) const VBATREF: u8 = 9;
-    /// Header value `motorOutput`.
-    pub(super) const MIN_MOTOR: u8 = 11;
-}
-
-/// Descriptions of the fields in all frames with the same letter; each list has an entry for each
-/// field.
-#[derive(Clone, Debug, Default)]
-pub(super) struct FrameFields {
-    pub(super) names: Vec<String>,
-    /// Whether the values are signed 32-bit integers, otherwise unsigned.
-    pub(super) signed: Vec<bool>,
-    /// Numbers in `predictor`.
-    pub(super) predictors: Vec<u8>,
-    /// Numbers in `encoding`.
-    pub(super) encodings: Vec<u8>,
-}
-
-/// Header values used by the predictors.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct HeaderNumbers {
-    pub(super) least_throttle: i64,
-    pub(super) least_motor: i64,
-    pub(super) battery: i64,
-}
-
-/// The two frames that precede a predicted frame.
-#[derive(Default)]
-pub(super) struct Predecessors {
-    pub(super) last: Option<Vec<i64>>,
-    /// The frame before the last; `None` if the last is an intra frame.
-    pub(super) earlier: Option<Vec<i64>>,
-}
-
-/// Cursor over bytes that hold packed integers.
-pub(super) struct PackedBytes<'b> {
-    bytes: &'b [u8],
-    /// Offset of the next byte.
-    pub(super) at: usize,
-}
-
-impl<'b> PackedBytes<'b> {
-    /// Creates a cursor at the offset `at` \[bytes\].
-    pub(super) fn new(bytes: &'b [u8], at: usize) -> Self {
-        Self { bytes, at }
+/// Parses a frame with the letter `kind`, after this letter; `before` holds the main frames that
+/// precede it. Returns `None` for an unknown letter, a damaged frame, or a predicted frame without a
+/// predecessor.
+pub(super) fn parse_frame(
+    header: &Header,
+    kind: u8,
+    bytes: &mut PackedBytes<'_>,
+    before: &Predecessors,
+) -> Option<Frame> {
+    if kind == b'E' {
+        return parse_event(bytes);
     }
-
-    pub(super) fn byte(&mut self) -> Option<u8> {
-        let byte = self.bytes.get(self.at).copied()?;
-        self.at += 1;
-        Some(byte)
+    let fields = header.frame_fields(kind)?;
+    if kind == b'P' && before.last.is_none() {
+        return None;
     }
+    let differences = fields.differences(bytes)?;
+    let independent = Predecessors::default();
+    Some(match kind {
+        b'G' | b'H' => Frame::Other,
+        b'S' => Frame::Slow(fields.values(differences, &independent, header.numbers)),
+        b'P' => Frame::Main(fields.values(differences, before, header.numbers)),
+        _ => Frame::Main(fields.values(differences, &independent, header.numbers)),
+    })
+}
 
-    /// Reads a variable-length integer: seven bits per byte, lowest first; the eighth bit is set if
-    /// another byte follows. Returns `None` if the bytes end early or the integer exceeds five
-    /// bytes.
-    pub(super) fn unsigned(&mut self) -> Option<u32> {
-        let mut value = 0_u32;
-        for shift in (0..32).step_by(7) {
-            let byte = self.byte()?;
-            value |= u32::from(byte & 0x7f) << shift;
-            if byte & 0x80 == 0 {
-                return Some(value);
-            }
+/// Numbers of the event types.
+mod event_type {
+    pub(super) const SYNC_BEEP: u8 = 0;
+    pub(super) const INFLIGHT_ADJUSTMENT: u8 = 13;
+    pub(super) const LOGGING_RESUME: u8 = 14;
+    pub(super) const DISARM: u8 = 15;
+    pub(super) const FLIGHT_MODE: u8 = 30;
+    pub(super) const IMU_FAILURE: u8 = 40;
+    pub(super) const LOG_END: u8 = 255;
+}
+
+/// Parses an event frame, whose length depends on the event type. The contents of events are not
+/// used.
+fn parse_event(bytes: &mut PackedBytes<'_>) -> Option<Frame> {
+    match bytes.byte()? {
+        // One integer.
+        event_type::SYNC_BEEP | event_type::DISARM | event_type::IMU_FAILURE => {
+            bytes.unsigned()?;
         }
-        None
-    }
-
-    /// Reads a variable-length integer with the sign in the lowest bit.
-    pub(super) fn signed(&mut self) -> Option<i32> {
-        let value = self.unsigned()?;
-        Some((value >> 1).cast_signed() ^ -((value & 1).cast_signed()))
-    }
-
-    /// Reads the encoding `NEG_14BIT`.
-    fn neg_14bit(&mut self) -> Option<i32> {
-        Some(-extended(self.unsigned()? & 0x3fff, 14))
-    }
-
-    /// Reads the encoding `TAG2_3S32`. The upper two bits of the first byte are the tag: 0, 1 and 2
-    /// mean 2, 4 and 6 bits for each integer; with 3, the lower six bits give the length of each
-    /// integer, from 1 to 4 bytes.
-    fn tag2_3s32(&mut self) -> Option<[i32; 3]> {
-        let lead = self.byte()?;
-        Some(match lead >> 6 {
-            0 => [lead >> 4, lead >> 2, lead].map(|bits| extended(u32::from(bits & 3), 2)),
-            1 => {
-                let next = self.byte()?;
-                [lead & 15, next >> 4, next & 15].map(|bits| extended(u32::from(bits), 4))
-            }
-            2 => [lead, self.byte()?, self.byte()?].map(|bits| extended(u32::from(bits & 63), 6)),
-            _ => {
-                let mut values = [0; 3];
-                for (index, value) in values.iter_mut().enumerate() {
-                    // Two bits for each length, the first integer lowest; bytes follow lowest
-                    // first.
-                    let bytes = 1 + u32::from((lead >> (2 * index)) & 3);
-                    let mut bits = 0_u32;
-                    for byte in 0..bytes {
-                        bits |= u32::from(self.byte()?) << (8 * byte);
-                    }
-                    *value = extended(bits, 8 * bytes);
+        // Two integers.
+        event_type::LOGGING_RESUME | event_type::FLIGHT_MODE => {
+            bytes.unsigned()?;
+            bytes.unsigned()?;
+        }
+        // The function that is adjusted, then a float of four bytes if its highest bit is set,
+        // otherwise a packed integer.
+        event_type::INFLIGHT_ADJUSTMENT => {
+            if bytes.byte()? & 0x80 == 0 {
+                bytes.signed()?;
+            } else {
+                for _ in 0..4 {
+                    bytes.byte()?;
                 }
-                values
-            }
-        })
-    }
-
-    /// Reads the encoding `TAG8_4S16`. The tags 0 to 3 mean integers of 0, 4, 8 and 16 bits, which
-    /// are packed without gaps, the higher half of each byte first.
-    fn tag8_4s16(&mut self) -> Option<[i32; 4]> {
-        let tags = self.byte()?;
-        // Lower half of the last byte, if it has not been used.
-        let mut half = None;
-        let mut values = [0; 4];
-        for (index, value) in values.iter_mut().enumerate() {
-            // Length of the integer in halves of a byte.
-            let halves = [0, 1, 2, 4][usize::from((tags >> (2 * index)) & 3)];
-            let mut bits = 0_u32;
-            for _ in 0..halves {
-                let next = match half.take() {
-                    Some(next) => next,
-                    None => {
-                        let byte = self.byte()?;
-                        half = Some(byte & 15);
-                        byte >> 4
-                    }
-                };
-                bits = bits << 4 | u32::from(next);
-            }
-            *value = if halves == 0 {
-                0
-            } else {
-                extended(bits, 4 * halves)
-            };
-        }
-        Some(values)
-    }
-}
-
-/// Sign-extends a number with `count` bits.
-fn extended(bits: u32, count: u32) -> i32 {
-    let unused = 32 - count;
-    (bits << unused).cast_signed() >> unused
-}
-
-impl FrameFields {
-    /// Returns whether the fields can be decoded: there are between 1 and `MOST_FIELDS` names, each
-    /// with a sign, a predictor and a supported encoding.
-    pub(super) fn is_whole(&self) -> bool {
-        let count = self.names.len();
-        (1..=MOST_FIELDS).contains(&count)
-            && self.signed.len() == count
-            && self.predictors.len() == count
-            && self.encodings.len() == count
-            && self.encodings.iter().all(|encoding| is_known(*encoding))
-    }
-
-    /// Reads the differences of a frame from its bytes; returns `None` if they are damaged.
-    pub(super) fn differences(&self, bytes: &mut PackedBytes<'_>) -> Option<Vec<i64>> {
-        let count = self.names.len();
-        let mut values: Vec<i64> = Vec::with_capacity(count);
-        while values.len() < count {
-            let field = values.len();
-            match self.encodings[field] {
-                encoding::SIGNED_VB => values.push(i64::from(bytes.signed()?)),
-                encoding::UNSIGNED_VB => values.push(i64::from(bytes.unsigned()?)),
-                encoding::NEG_14BIT => values.push(i64::from(bytes.neg_14bit()?)),
-                encoding::TAG8_8SVB => self.read_tag8_8svb(bytes, &mut values)?,
-                encoding::TAG2_3S32 => values.extend(bytes.tag2_3s32()?.map(i64::from)),
-                encoding::TAG8_4S16 => values.extend(bytes.tag8_4s16()?.map(i64::from)),
-                // `encoding::NULL`: `is_whole` admits no other.
-                _ => values.push(0),
             }
         }
-        // A group of three or four may reach beyond the last field.
-        values.truncate(count);
-        Some(values)
-    }
-
-    /// Reads up to eight consecutive fields with the encoding `TAG8_8SVB`. They share a leading byte
-    /// in which each bit marks a nonzero field; a single field has no such byte.
-    fn read_tag8_8svb(&self, bytes: &mut PackedBytes<'_>, values: &mut Vec<i64>) -> Option<()> {
-        let mut count = 0;
-        for number in self.encodings[values.len()..].iter().take(8) {
-            if *number != encoding::TAG8_8SVB {
-                break;
+        event_type::LOG_END => {
+            for letter in b"End of log" {
+                if bytes.byte() != Some(*letter) {
+                    return None;
+                }
             }
-            count += 1;
+            return Some(Frame::End);
         }
-        let tags = if count == 1 { 1 } else { bytes.byte()? };
-        for index in 0..count {
-            let is_nonzero = tags >> index & 1 == 1;
-            values.push(if is_nonzero {
-                i64::from(bytes.signed()?)
-            } else {
-                0
-            });
-        }
-        Some(())
+        _ => return None,
     }
-
-    /// Computes the field values of a frame by adding its predictions to its differences.
-    ///
-    /// A missing predecessor counts as 0, and a missing earlier frame as equal to the last.
-    pub(super) fn values(
-        &self,
-        differences: Vec<i64>,
-        before: &Predecessors,
-        header: HeaderNumbers,
-    ) -> Vec<i64> {
-        // The differences are replaced by the values in the order of the fields.
-        let mut values = differences;
-        let motor = self.names.iter().position(|name| name == "motor[0]");
-        for field in 0..values.len() {
-            let last = field_of(&before.last, field).unwrap_or(0);
-            let earlier = field_of(&before.earlier, field).unwrap_or(last);
-            let predicted = match self.predictors[field] {
-                predictor::PREVIOUS => last,
-                predictor::STRAIGHT_LINE => 2 * last - earlier,
-                predictor::AVERAGE_2 => (last + earlier) / 2,
-                predictor::MIN_THROTTLE => header.least_throttle,
-                predictor::MOTOR_0 => motor
-                    .and_then(|motor| values.get(motor))
-                    .copied()
-                    .unwrap_or(0),
-                predictor::INCREMENT => last + 1,
-                predictor::FIXED_1500 => 1500,
-                predictor::VBATREF => header.battery,
-                predictor::MIN_MOTOR => header.least_motor,
-                _ => 0,
-            };
-            // Keep the lower 32 bits, as the arithmetic of the logger does.
-            let low = values[field].wrapping_add(predicted) as u32;
-            values[field] = if self.signed[field] {
-                i64::from(low.cast_signed())
-            } else {
-                i64::from(low)
-            };
-        }
-        values
-    }
-}
-
-/// Returns whether this program can decode the encoding with a number.
-fn is_known(number: u8) -> bool {
-    matches!(
-        number,
-        encoding::SIGNED_VB
-            | encoding::UNSIGNED_VB
-            | encoding::NEG_14BIT
-            | encoding::TAG8_8SVB
-            | encoding::TAG2_3S32
-            | encoding::TAG8_4S16
-            | encoding::NULL
-    )
-}
-
-/// Returns the value of a field; `None` if the frame or the field is missing.
-fn field_of(frame: &Option<Vec<i64>>, field: usize) -> Option<i64> {
-    frame.as_ref()?.get(field).copied()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn packed_numbers_agree_with_the_format_description() {
-        assert_eq!(PackedBytes::new(&[0xff, 0x01], 0).unsigned(), Some(255));
-        assert_eq!(
-            PackedBytes::new(&[0x80; 6], 0).unsigned(),
-            None,
-            "it does not end"
-        );
-        assert_eq!(
-            [0, 1, 2, 3].map(|byte| PackedBytes::new(&[byte], 0).signed()),
-            [0, -1, 1, -2].map(Some)
-        );
-        assert_eq!(
-            PackedBytes::new(&[0xff, 0x3f], 0).neg_14bit(),
-            Some(-0x1fff)
-        );
-        assert_eq!(
-            PackedBytes::new(&[0b0001_1011], 0).tag2_3s32(),
-            Some([1, -2, -1])
-        );
-        assert_eq!(
-            PackedBytes::new(&[0b0100_0111, 0x9f], 0).tag2_3s32(),
-            Some([7, -7, -1])
-        );
-        assert_eq!(
-            PackedBytes::new(&[0b1100_0001, 0x34, 0x12, 0xff, 0x05], 0).tag2_3s32(),
-            Some([0x1234, -1, 5])
-        );
-        // Lengths 4, 8, 0 and 16 bits: the values 1, -2, 0 and 0x1234.
-        assert_eq!(
-            PackedBytes::new(&[0b1100_1001, 0x1f, 0xe1, 0x23, 0x40], 0).tag8_4s16(),
-            Some([1, -2, 0, 0x1234])
-        );
-        assert_eq!(PackedBytes::new(&[0b1100_1001, 0x1f], 0).tag8_4s16(), None);
-    }
-
-    #[test]
-    fn predictions_use_the_frames_before() {
-        let fields = FrameFields {
-            names: ["time", "a", "b", "motor[0]", "motor[1]"]
-                .map(str::to_owned)
-                .to_vec(),
-            signed: vec![false, true, true, false, false],
-            predictors: vec![2, 1, 3, 11, 5],
-            encodings: vec![0; 5],
-        };
-        assert!(fields.is_whole());
-        let header = HeaderNumbers {
-            least_motor: 158,
-            ..HeaderNumbers::default()
-        };
-        let before = Predecessors {
-            last: Some(vec![200, -5, 8, 0, 0]),
-            earlier: Some(vec![100, 0, 4, 0, 0]),
-        };
-        let values = fields.values(vec![1, 1, 1, 2, 3], &before, header);
-        assert_eq!(values, [301, -4, 7, 160, 163]);
-    }
+    Some(Frame::Other)
 }

@@ -17,9 +17,8 @@ use gdcm_model::number_format::counted;
 
 use crate::file_error::FileError;
 use crate::formats::logs::array;
-use crate::formats::logs::dataflash_messages::{
-    FieldKind, Layouts, MessageLayout, SampleFields, Topics,
-};
+use crate::formats::logs::dataflash_layouts::{FieldKind, Layouts, MessageLayout};
+use crate::formats::logs::dataflash_topics::{SampleFields, Topics};
 use crate::formats::recorded_columns::Columns;
 use crate::formats::stored_number::{NumberClass, StoredNumber};
 use crate::formats::{Contents, Importer};

@@ -6,7 +6,8 @@
 use std::collections::BTreeMap;
 
 use crate::file_error::FileError;
-use crate::formats::logs::dataflash_messages::{Layouts, MessageLayout, SampleFields, Topics};
+use crate::formats::logs::dataflash_layouts::{Layouts, MessageLayout};
+use crate::formats::logs::dataflash_topics::{SampleFields, Topics};
 use crate::formats::recorded_columns::Columns;
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};

@@ -14,14 +14,14 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use gdcm_model::number_format::counted;
-use gdcm_sysid::records::ModeSpan;
 
 use crate::file_error::FileError;
 use crate::formats::logs::array;
-use crate::formats::logs::meanings::{PX4, assign_documented_meanings};
-use crate::formats::logs::mode_spans::{mode_spans, modes_note};
-use crate::formats::logs::topics::{TopicField, TopicSamples};
-use crate::formats::logs::ulog_layouts::{Formats, Place, places_in_message};
+use crate::formats::logs::documented_channels::{PX4, assign_documented_meanings};
+use crate::formats::logs::mode_spans::modes_note;
+use crate::formats::logs::topic_samples::{TopicField, TopicSamples};
+use crate::formats::logs::ulog_layouts::{LayoutTexts, Place, places_in_message};
+use crate::formats::logs::ulog_modes::flight_modes;
 use crate::formats::recorded_columns::Columns;
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
@@ -40,8 +40,6 @@ const INCOMPATIBILITY: Range<usize> = 8..16;
 const APPENDED_OFFSETS_AT: usize = 16;
 /// Number of these offsets, which have 8 bytes each; unused offsets are 0.
 const APPENDED_OFFSETS: usize = 3;
-/// `ARMING_STATE_ARMED` in `VehicleStatus.msg`, PX4 1.14 to 1.16.
-const ARMED: f64 = 2.0;
 
 /// Importer of PX4 logs.
 pub(crate) const ULOG: Importer = Importer {
@@ -68,7 +66,7 @@ struct Subscription {
 /// Contents of the messages read so far.
 #[derive(Default)]
 struct Messages<'b> {
-    formats: Formats<'b>,
+    layouts: LayoutTexts<'b>,
     /// Topics by message id.
     subscriptions: BTreeMap<u16, Subscription>,
     /// Number of dropouts of the logger.
@@ -152,7 +150,7 @@ impl<'b> Messages<'b> {
         budget: &ReadingBudget<'_>,
     ) -> Result<(), VariableFault> {
         match kind {
-            b'F' => self.add_format(content, budget)?,
+            b'F' => self.add_layout(content, budget)?,
             b'A' => self.subscribe(content, budget)?,
             b'D' => self.add_sample(content, budget)?,
             b'O' => {
@@ -165,7 +163,7 @@ impl<'b> Messages<'b> {
     }
 
     /// Stores the layout of a topic; ignores a second layout with the same name.
-    fn add_format(
+    fn add_layout(
         &mut self,
         content: &'b [u8],
         budget: &ReadingBudget<'_>,
@@ -173,7 +171,7 @@ impl<'b> Messages<'b> {
         let text = std::str::from_utf8(content).unwrap_or_default();
         if let Some((name, fields)) = text.split_once(':') {
             budget.take(1, 64, name)?;
-            self.formats.entry(name).or_insert(fields);
+            self.layouts.entry(name).or_insert(fields);
         }
         Ok(())
     }
@@ -213,7 +211,7 @@ impl<'b> Messages<'b> {
         };
         let message_id = u16::from_le_bytes([low, high]);
         let name = std::str::from_utf8(&content[3..]).unwrap_or_default();
-        let mut places = match places_in_message(name, &self.formats, budget) {
+        let mut places = match places_in_message(name, &self.layouts, budget) {
             Err(fault) if fault.is_of_the_budget() => return Err(fault),
             Err(_) => return Ok(()),
             Ok(places) => places,
@@ -291,55 +289,6 @@ impl<'b> Messages<'b> {
         Ok(columns)
     }
 }
-
-/// Returns the spans in which the vehicle was armed, and those of the flight modes, from
-/// `vehicle_status`.
-fn flight_modes(topics: &[TopicSamples]) -> Vec<ModeSpan> {
-    let Some(status) = topics.iter().find(|topic| topic.name == "vehicle_status") else {
-        return Vec::new();
-    };
-    let mut modes = Vec::new();
-    if let Some(field) = status.field("arming_state") {
-        let states = field.values.iter().copied();
-        modes.extend(mode_spans(&status.time_s, states, |state| {
-            if state == ARMED {
-                Some("armed".to_owned())
-            } else {
-                None
-            }
-        }));
-    }
-    if let Some(field) = status.field("nav_state") {
-        let states = field.values.iter().copied();
-        modes.extend(mode_spans(&status.time_s, states, navigation_mode));
-    }
-    modes
-}
-
-/// Returns the name of a navigation state; `None` for an unknown state.
-fn navigation_mode(state: f64) -> Option<String> {
-    let (_, name) = NAVIGATION
-        .iter()
-        .find(|(number, _)| f64::from(*number) == state)?;
-    Some((*name).to_owned())
-}
-
-/// `NAVIGATION_STATE_…` in `VehicleStatus.msg`, PX4 1.14 to 1.16.
-const NAVIGATION: [(u8, &str); 13] = [
-    (0, "manual"),
-    (1, "altitude"),
-    (2, "position"),
-    (3, "mission"),
-    (4, "loiter"),
-    (5, "return"),
-    (10, "acro"),
-    (12, "descend"),
-    (14, "offboard"),
-    (15, "stabilized"),
-    (17, "take-off"),
-    (18, "land"),
-    (21, "orbit"),
-];
 
 #[cfg(test)]
 mod tests {

@@ -8,19 +8,19 @@
 //!
 //! Source: "MAT-File Format", The MathWorks, "miMATRIX Format".
 
+use crate::formats::element_order;
 use crate::formats::mat::cursor::Cursor;
 use crate::formats::mat::element::{DataKind, Element};
 use crate::formats::mat::numbers::read_sizes;
-use crate::formats::strides;
 use crate::formats::variables::ElementKind;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Bits of the first word that hold the class number.
 const CLASS_BITS: u32 = 0xff;
 /// Flag of logical arrays.
-const LOGICAL: u32 = 0x0200;
+pub(super) const LOGICAL: u32 = 0x0200;
 /// Flag of complex arrays.
-const COMPLEX: u32 = 0x0800;
+pub(super) const COMPLEX: u32 = 0x0800;
 /// Class number of unsigned 64-bit integers.
 const UINT64: u32 = 15;
 
@@ -77,7 +77,7 @@ impl ArrayHeader {
         };
         // Reject a shape whose nonzero dimensions have a product that overflows: no budget is so
         // large.
-        if strides::element_count(&shape).is_none() {
+        if element_order::element_count(&shape).is_none() {
             budget.take(u64::MAX, 1, "")?;
         }
         Ok(ArrayHeader {

@@ -14,7 +14,7 @@ use crate::formats::stored_number::{NumberClass, StoredNumber};
 use crate::reading_budget::VariableFault;
 
 /// Length of the tag of an element that is not small \[bytes\].
-const TAG_BYTES: usize = 8;
+pub(super) const TAG_BYTES: usize = 8;
 
 /// Data type of an element; the values are the numbers in the tag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,7 +38,7 @@ pub(super) enum DataKind {
 
 impl DataKind {
     /// Returns the data type for the number in a tag; `None` for an unknown number.
-    fn from_number(number: u32) -> Option<Self> {
+    pub(super) fn from_number(number: u32) -> Option<Self> {
         Some(match number {
             1 => Self::I8,
             2 => Self::U8,
@@ -181,54 +181,6 @@ fn known_kind(number: u32, tag: Cursor<'_>) -> Result<DataKind, VariableFault> {
         .ok_or_else(|| tag.damaged(format!("an element of unknown data type {number}")))
 }
 
-/// Positions of an array that was read, from which the position of the next element is found.
-#[derive(Clone, Copy)]
-pub(super) struct ReadArray<'b> {
-    /// Position of the tag.
-    pub(super) start: Cursor<'b>,
-    pub(super) element: Element<'b>,
-    /// Part of the data that was not read.
-    pub(super) unread: Cursor<'b>,
-    /// Position after the element and its padding, according to the tag.
-    pub(super) end: Cursor<'b>,
-}
-
-impl<'b> ReadArray<'b> {
-    /// Returns the position of the next element.
-    ///
-    /// GNU Octave announces too many bytes for some strings and objects. Hence, if bytes were not
-    /// read and no array begins at the announced end, the next element begins with the unread
-    /// bytes.
-    pub(super) fn next_position(self) -> Result<Cursor<'b>, VariableFault> {
-        if self.unread.is_empty() || (self.element.is_whole && begins_array(&self.end)) {
-            return Ok(self.end);
-        }
-        let mut next = self.start;
-        let read = self.element.data.len().saturating_sub(self.unread.len());
-        next.pass(TAG_BYTES + read)?;
-        Ok(next)
-    }
-}
-
-/// Returns whether an array begins at the cursor, or the data end there.
-fn begins_array(cursor: &Cursor<'_>) -> bool {
-    if cursor.is_empty() {
-        return true;
-    }
-    let mut tag = *cursor;
-    let Ok(number) = tag.read_u32() else {
-        return false;
-    };
-    let Ok(length) = tag.read_u32() else {
-        return false;
-    };
-    let is_array = matches!(
-        DataKind::from_number(number),
-        Some(DataKind::Matrix | DataKind::Packed)
-    );
-    is_array && length as usize <= tag.len()
-}
-
 /// Decodes a name up to the first zero byte; bytes that are not UTF-8 are read as Latin-1, the
 /// encoding used by old programs.
 pub(super) fn decode_name(bytes: &[u8]) -> String {
@@ -271,19 +223,6 @@ mod tests {
         let mut cursor = Cursor::file(&bytes, ByteOrder::Little);
         assert_eq!(Element::read(&mut cursor).unwrap().count(), Ok(5));
         assert_eq!(Element::read(&mut cursor).unwrap().data.rest(), [7]);
-    }
-
-    #[test]
-    fn an_array_begins_at_a_tag_that_fits_the_remaining_bytes() {
-        let begins = |bytes: &[u8]| begins_array(&Cursor::file(bytes, ByteOrder::Little));
-        assert!(begins(&[]) && begins(&[14, 0, 0, 0, 0, 0, 0, 0]));
-        for bytes in [
-            &[14, 0, 0, 0, 1, 0, 0, 0][..],
-            &[9, 0, 0, 0, 0, 0, 0, 0],
-            &[14, 0, 0, 0],
-        ] {
-            assert!(!begins(bytes), "{bytes:?}");
-        }
     }
 
     #[test]

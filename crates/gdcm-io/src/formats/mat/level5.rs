@@ -13,11 +13,12 @@
 
 use std::collections::HashSet;
 
+use crate::formats::mat::array_contents::{ArrayReader, Objects};
+use crate::formats::mat::array_end::ReadArray;
 use crate::formats::mat::array_header::ArrayHeader;
 use crate::formats::mat::cursor::{ByteOrder, Cursor};
-use crate::formats::mat::element::{DataKind, Element, ReadArray};
+use crate::formats::mat::element::{DataKind, Element};
 use crate::formats::mat::inflate::inflate;
-use crate::formats::mat::matrix::{ArrayReader, Objects};
 use crate::formats::mat::object_part::read_objects;
 use crate::formats::mat::value_path::ValuePath;
 use crate::formats::variables::Variable;

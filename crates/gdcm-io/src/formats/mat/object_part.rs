@@ -19,11 +19,11 @@
 
 use std::ops::Range;
 
+use crate::formats::mat::array_contents::{ArrayReader, Objects, read_field_names};
 use crate::formats::mat::array_header::{ArrayClass, ArrayHeader};
 use crate::formats::mat::cursor::{ByteOrder, Cursor};
 use crate::formats::mat::element::{DataKind, Element};
 use crate::formats::mat::inflate::inflate;
-use crate::formats::mat::matrix::{ArrayReader, Objects, read_field_names};
 use crate::formats::mat::numbers::read_long_words;
 use crate::formats::mat::subsystem::{CLASS_SYSTEM, LongWords, Subsystem};
 use crate::formats::mat::value_path::{Step, ValuePath};

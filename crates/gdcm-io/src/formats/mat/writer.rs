@@ -1,7 +1,7 @@
 //! Writes level-5 files for MATLAB, GNU Octave and SciPy, in little-endian byte order.
 //!
 //! The layouts are drawn where they are read: the file in `level5.rs`, elements in `element.rs`,
-//! headers of arrays in `array_header.rs`, and contents of arrays in `matrix.rs`. Functions called
+//! headers of arrays in `array_header.rs`, and contents of arrays in `array_contents.rs`. Functions called
 //! `…_contents` return the data of an array element: header and contents.
 //!
 //! Source: "MAT-File Format", The MathWorks, "Level 5 MAT-File Format".
@@ -11,6 +11,7 @@ use std::io::Write;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
+use crate::formats::mat::array_header::{COMPLEX, LOGICAL};
 use crate::formats::mat::element::DataKind;
 use crate::formats::variables::{
     Array, CellArray, ElementKind, StructArray, TextArray, Value, Variable,
@@ -23,10 +24,6 @@ const HEADER_TEXT: &str = "MATLAB 5.0 MAT-file, written by gdcm";
 const HEADER_TEXT_BYTES: usize = 116;
 /// Maximum size of a variable \[bytes\].
 const MOST_BYTES: u64 = u32::MAX as u64;
-/// Flag of complex arrays.
-const COMPLEX: u32 = 0x0800;
-/// Flag of logical arrays.
-const LOGICAL: u32 = 0x0200;
 /// Lengths to which MATLAB pads field names, including the terminating zero \[bytes\].
 const FIELD_NAME_LENGTHS: [usize; 2] = [32, 64];
 

@@ -62,7 +62,8 @@ pub(super) fn check_chunks(
     if chunks.iter().any(|chunk| chunk.storage_size > longest) {
         return Err(damaged(path, "a chunk is longer than its shape allows"));
     }
-    // Only this index stores offsets; the others compute them.
+    // Only this index stores where each chunk begins in the dataset; for the others, the library
+    // computes it.
     if index == Some(ChunkIndex::BTreeV1) {
         let is_outside = chunks.iter().any(|chunk| begins_outside(chunk, sides));
         if is_outside || chunks.len() as u64 > most_chunks {

@@ -2,10 +2,10 @@
 
 use hdf5_pure::{Dataset, Datatype, ReferenceType};
 
+use crate::formats::element_order::{Places, element_count, matrix_shape};
 use crate::formats::mat73::chunks::check_chunks;
 use crate::formats::mat73::library_fault::{damaged, library_fault};
 use crate::formats::mat73::number_type::NumberType;
-use crate::formats::strides::{Places, element_count, matrix_shape};
 use crate::formats::variables::{Array, ElementKind};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 

@@ -7,7 +7,7 @@ use hdf5_pure::{Dataset, File, Object};
 use crate::formats::mat::{LongWords, Subsystem};
 use crate::formats::mat73::dataset::{Elements, Order};
 use crate::formats::mat73::library_fault::library_fault;
-use crate::formats::mat73::objects::Objects;
+use crate::formats::mat73::object_references::Objects;
 use crate::formats::mat73::reader::Reader;
 use crate::formats::variables::Value;
 use crate::reading_budget::{ReadingBudget, VariableFault};

@@ -16,11 +16,14 @@
 use hdf5_pure::{Dataset, Group, Object};
 
 use crate::formats::mat73::attributes::{FOLDER_OBJECT, FUNCTION_HANDLE, MatlabAttributes, OBJECT};
+use crate::formats::mat73::compound_records::compound_records;
 use crate::formats::mat73::dataset::{Elements, Order, is_object_reference};
+use crate::formats::mat73::empty_value::empty_value;
 use crate::formats::mat73::library_fault::{damaged, library_fault};
-use crate::formats::mat73::objects::Objects;
-use crate::formats::mat73::sparse_group::{Member, SparseGroup};
-use crate::formats::mat73::values::{character_rows, compound_records, empty_value, strings};
+use crate::formats::mat73::member::Member;
+use crate::formats::mat73::object_references::Objects;
+use crate::formats::mat73::sparse_group::SparseGroup;
+use crate::formats::mat73::strings::{character_rows, strings};
 use crate::formats::variables::{
     self, Array, CellArray, ElementKind, StructArray, Value, Variable,
 };

@@ -4,15 +4,10 @@ use hdf5_pure::Object;
 
 use crate::formats::mat73::dataset::{Elements, Order};
 use crate::formats::mat73::library_fault::damaged;
+use crate::formats::mat73::member::Member;
 use crate::formats::sparse_matrix::CompressedColumns;
 use crate::formats::variables::{Array, ElementKind};
 use crate::reading_budget::{ReadingBudget, VariableFault};
-
-/// Dataset or group in a group.
-pub(super) struct Member {
-    pub(super) name: String,
-    pub(super) object: Object,
-}
 
 /// Group with a sparse matrix in compressed sparse column format (`MATLAB_sparse`).
 pub(super) struct SparseGroup<'g> {

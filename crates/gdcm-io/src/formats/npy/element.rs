@@ -9,9 +9,9 @@
 
 use serde_json::Value as Json;
 
+use crate::formats::element_order::element_count;
 use crate::formats::npy::TEXT_LENGTH_AT;
 use crate::formats::stored_number::{NumberClass, StoredNumber};
-use crate::formats::strides::element_count;
 use crate::reading_budget::VariableFault;
 
 /// Type of an array element, given by `dtype.descr` of NumPy.

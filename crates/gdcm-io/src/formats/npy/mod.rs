@@ -10,10 +10,10 @@ mod header;
 mod python_literal;
 mod writer;
 
+use crate::formats::element_order::{Places, element_count, matrix_shape};
 use crate::formats::npy::element::{Element, Field};
 use crate::formats::npy::header::{Header, MAGIC};
 use crate::formats::stored_number::StoredNumber;
-use crate::formats::strides::{Places, element_count, matrix_shape};
 use crate::formats::variables::{
     Array, ElementKind, RECORD_MEMORY, StructArray, TextArray, Value, Variable,
 };

@@ -11,7 +11,7 @@
 //! ```
 
 use crate::formats::octave::assembly::{
-    Parts, Sides, ValueHeading, read_value, text_rows, texts_in_pages,
+    Parts, Sides, ValueHeading, byte_rows, read_value, texts_in_pages,
 };
 use crate::formats::octave::form::{Element, Form, NumberParts, StorageType};
 use crate::formats::sparse_matrix::{CompressedColumns, SparseEntries};
@@ -241,7 +241,7 @@ impl Parts for BinaryReader<'_> {
         let texts = if letters.is_empty() { 0 } else { height as u64 };
         self.budget
             .take(texts, size_of::<String>() as u64, variable)?;
-        Ok(text_rows(letters, height))
+        Ok(byte_rows(letters, height))
     }
 
     fn read_field_count(&mut self, _: Form, variable: &str) -> Result<usize, VariableFault> {

@@ -15,10 +15,11 @@
 //!
 //! Arrays are stored in column-major order with their dimensions reversed.
 
-use crate::formats::octave::assembly::{Range, text_rows};
+use crate::formats::element_order::{Places, element_count};
+use crate::formats::octave::assembly::byte_rows;
 use crate::formats::octave::form::Form;
+use crate::formats::octave::range::Range;
 use crate::formats::sparse_matrix::CompressedColumns;
-use crate::formats::strides::{Places, element_count};
 use crate::formats::variables::{
     Array, CellArray, ElementKind, Object, StructArray, TextArray, Value, Variable,
 };
@@ -160,7 +161,7 @@ fn in_file_order(values: &[f64], places: &[usize]) -> Vec<f64> {
 /// Converts a byte array to a string for each row.
 fn texts(codes: &Array) -> TextArray {
     let letters: Vec<u8> = codes.re.iter().map(|&code| code as i64 as u8).collect();
-    text_rows(&letters, codes.shape.first().copied().unwrap_or(0))
+    byte_rows(&letters, codes.shape.first().copied().unwrap_or(0))
 }
 
 /// Parts of a value, which are the members of its group.

@@ -11,7 +11,7 @@
 
 use gdcm_model::units::physical_unit::PhysicalUnit;
 
-use crate::formats::text::column_words::{
+use crate::formats::text::quantity_words::{
     ABSOLUTE, BEFORE_UNIT, KnownUnit, Quantity, UNIT_ENDINGS, WORDS,
 };
 use crate::formats::text::response_label::ResponseLabel;

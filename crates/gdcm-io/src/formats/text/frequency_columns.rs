@@ -7,9 +7,9 @@
 //! FrequencyColumns::values      numbers -> points of each response (response_columns.rs)
 //! ```
 
-use crate::formats::text::columns::TextTable;
 use crate::formats::text::response_columns::{RecognisedResponse, ResponsePoints, column_place};
 use crate::formats::text::response_recognition::{FrequencyColumn, Recognition};
+use crate::formats::text::text_table::TextTable;
 use crate::formats::text::unrecognised::{Unrecognised, units_missing, unrecognised};
 use crate::reading_budget::VariableFault;
 
@@ -141,8 +141,8 @@ mod recognition_tests {
     use std::f64::consts::TAU;
 
     use super::*;
-    use crate::formats::text::columns::read_table;
     use crate::formats::text::response_columns::{CoherenceColumn, ResponseParts};
+    use crate::formats::text::table_reader::read_table;
     use crate::formats::text::unrecognised::UnsaidUnit;
     use crate::reading_budget::ReadingBudget;
 
@@ -366,7 +366,7 @@ mod frequency_values_tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::formats::text::columns::read_table;
+    use crate::formats::text::table_reader::read_table;
     use crate::reading_budget::ReadingBudget;
 
     fn values(text: &str) -> Result<Vec<ResponsePoints>, VariableFault> {

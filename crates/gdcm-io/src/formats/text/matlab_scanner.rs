@@ -4,13 +4,10 @@
 //! move. A copy of the scanner keeps a position, to which reading can return.
 
 use crate::formats::text::lines::excerpt;
+use crate::formats::text::matlab_brackets::OpenBrackets;
+use crate::formats::text::matlab_number_syntax::{is_digit, past_exponent, past_mantissa};
+use crate::formats::text::matlab_value_error::{MOST_NESTED, Position, ValueError, refused};
 use crate::reading_budget::{ReadingBudget, VariableFault};
-
-/// Remedy in messages about unsupported statements.
-pub(super) const REMEDY: &str =
-    "write the numbers, or save the workspace in MATLAB: save -v7 workspace.mat";
-/// Maximum nesting depth of values, which are read recursively.
-pub(super) const MOST_NESTED: usize = 64;
 
 /// Returns whether a name can contain this character.
 pub(super) fn is_name_character(character: char) -> bool {
@@ -20,35 +17,6 @@ pub(super) fn is_name_character(character: char) -> bool {
 /// Returns whether a text begins like a name.
 pub(super) fn begins_name(text: &str) -> bool {
     text.starts_with(|first: char| first.is_alphabetic() || first == '_')
-}
-
-/// Reason why a value cannot be read.
-pub(super) enum ValueError {
-    /// The value at position `at` is not supported; reading continues with other values.
-    NotUnderstood { what: String, at: Position },
-    /// An error that ends the reading.
-    Fault(VariableFault),
-}
-
-impl From<VariableFault> for ValueError {
-    fn from(fault: VariableFault) -> Self {
-        Self::Fault(fault)
-    }
-}
-
-/// Returns the error that a value at a position is not supported.
-pub(super) fn refused<T>(what: impl Into<String>, at: Position) -> Result<T, ValueError> {
-    Err(ValueError::NotUnderstood {
-        what: what.into(),
-        at,
-    })
-}
-
-/// Line and column in the text, both counted from 1.
-#[derive(Clone, Copy)]
-pub(super) struct Position {
-    pub(super) line: usize,
-    pub(super) column: usize,
 }
 
 /// An unsigned real or imaginary number.
@@ -390,114 +358,4 @@ fn is_indexed_assignment(line: &str, open: char, close: char) -> bool {
         }
     }
     false
-}
-
-/// Open brackets in a statement that is skipped, the outermost first.
-#[derive(Default)]
-struct OpenBrackets(Vec<OpenBracket>);
-
-struct OpenBracket {
-    bracket: char,
-    place: Position,
-}
-
-impl OpenBrackets {
-    fn is_empty(&self) -> bool {
-        self.0.is_empty()
-    }
-
-    fn is_in_matrix(&self) -> bool {
-        matches!(
-            self.0.last(),
-            Some(OpenBracket {
-                bracket: '[' | '{',
-                ..
-            })
-        )
-    }
-
-    fn open(&mut self, bracket: char, place: Position) -> Result<(), VariableFault> {
-        if self.0.len() >= MOST_NESTED {
-            return Err(VariableFault::too_deep(""));
-        }
-        self.0.push(OpenBracket { bracket, place });
-        Ok(())
-    }
-
-    /// Closes the innermost open bracket that matches, with all brackets inside it; ignores
-    /// `closing` if none matches.
-    fn close(&mut self, closing: char) {
-        let opening = match closing {
-            ')' => '(',
-            ']' => '[',
-            _ => '{',
-        };
-        if let Some(at) = self.0.iter().rposition(|open| open.bracket == opening) {
-            self.0.truncate(at);
-        }
-    }
-
-    /// Closes the round brackets inside the innermost square or curly bracket, because round
-    /// brackets end with their line.
-    fn end_line(&mut self) {
-        while self.0.last().is_some_and(|open| open.bracket == '(') {
-            self.0.pop();
-        }
-    }
-
-    /// Returns an error if a square or curly bracket is still open. Unclosed round brackets are
-    /// tolerated.
-    fn check_closed(self) -> Result<(), VariableFault> {
-        let unclosed = self.0.into_iter().rfind(|open| open.bracket != '(');
-        let Some(OpenBracket { bracket, place }) = unclosed else {
-            return Ok(());
-        };
-        let what = format!(
-            "the bracket {bracket} in column {} is never closed; close it",
-            place.column
-        );
-        Err(VariableFault::line("", place.line, what))
-    }
-}
-
-/// Returns whether there is a digit at an offset.
-fn is_digit(bytes: &[u8], at: usize) -> bool {
-    bytes.get(at).is_some_and(u8::is_ascii_digit)
-}
-
-/// Returns the offset after the digits that begin at `from`.
-fn past_digits(bytes: &[u8], from: usize) -> usize {
-    let mut at = from;
-    while is_digit(bytes, at) {
-        at += 1;
-    }
-    at
-}
-
-/// Returns the offset after digits, which may include a decimal point.
-fn past_mantissa(bytes: &[u8]) -> usize {
-    let end = past_digits(bytes, 0);
-    // A point before an operator belongs to the operator: "1./x", "2.^n", "1...".
-    let is_operator = bytes
-        .get(end + 1)
-        .is_some_and(|byte| b"*/\\^'.".contains(byte));
-    if bytes.get(end) == Some(&b'.') && !is_operator {
-        past_digits(bytes, end + 1)
-    } else {
-        end
-    }
-}
-
-/// Returns the offset after the exponent that begins at `from`; `from` if there is no exponent.
-fn past_exponent(bytes: &[u8], from: usize) -> usize {
-    if !matches!(bytes.get(from), Some(b'e' | b'E' | b'd' | b'D')) {
-        return from;
-    }
-    let has_sign = matches!(bytes.get(from + 1), Some(b'+' | b'-'));
-    let digits = from + 1 + usize::from(has_sign);
-    if is_digit(bytes, digits) {
-        past_digits(bytes, digits)
-    } else {
-        from
-    }
 }

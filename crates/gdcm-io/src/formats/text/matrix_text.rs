@@ -3,12 +3,13 @@
 use std::collections::HashSet;
 
 use crate::formats::text::cell_number::cell_number;
-use crate::formats::text::columns::{TextTable, read_table};
 use crate::formats::text::encoding::refuse_binary;
 use crate::formats::text::lines::{comment, excerpt, is_rule, lines};
 use crate::formats::text::matrix_lines::{
     NameLine, is_columns_line, is_number_word, is_row_of_numbers, name_line, scale_line,
 };
+use crate::formats::text::table_reader::read_table;
+use crate::formats::text::text_table::TextTable;
 use crate::formats::variables::{Array, Value, Variable};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 

@@ -1,6 +1,6 @@
 //! Columns of a table that hold a frequency response, and its points.
 
-use crate::formats::text::columns::TextTable;
+use crate::formats::text::text_table::TextTable;
 use crate::reading_budget::VariableFault;
 
 /// A frequency response in columns of a table; its frequencies are in another column, which all

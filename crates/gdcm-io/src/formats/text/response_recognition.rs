@@ -4,16 +4,19 @@
 //! the same response if their names give the same output and input; a column whose name gives none
 //! belongs to the response of the columns before it. A missing unit that the numbers do not reveal is
 //! not guessed: it is added to `unsaid`, and the user is asked.
+//!
+//! `Recognition::frequency` is called before `Recognition::responses`, so that notes and missing
+//! units are listed with the frequency first; afterwards, the results are in the public fields.
 
 use std::f64::consts::TAU;
 
 use crate::formats::text::column_meaning::ColumnMeaning;
-use crate::formats::text::column_words::{KnownUnit, Quantity};
-use crate::formats::text::columns::TextTable;
+use crate::formats::text::quantity_words::{KnownUnit, Quantity};
 use crate::formats::text::response_columns::{
     CoherenceColumn, RecognisedResponse, ResponseParts, column_name, column_place,
 };
 use crate::formats::text::response_label::ResponseLabel;
+use crate::formats::text::text_table::TextTable;
 use crate::formats::text::unrecognised::{Unrecognised, UnsaidUnit, unrecognised};
 
 /// Maximum difference between the rectangular and the polar form of a response, relative to its
@@ -42,50 +45,6 @@ pub(super) struct Recognition<'t> {
     pub(super) unsaid: Vec<UnsaidUnit>,
     /// Names of unused columns.
     pub(super) unused: Vec<String>,
-}
-
-/// Columns that belong to the same response.
-#[derive(Default)]
-struct Group {
-    label: ResponseLabel,
-    columns: Vec<GroupColumn>,
-}
-
-/// Column that holds a quantity of a response.
-struct GroupColumn {
-    quantity: Quantity,
-    /// Column index, from 0.
-    column: usize,
-}
-
-/// Indices of the columns with magnitude and phase.
-#[derive(Clone, Copy)]
-struct PolarColumns {
-    magnitude: usize,
-    phase: usize,
-}
-
-/// Interpretation of a magnitude and a phase column.
-struct PolarReading {
-    parts: ResponseParts,
-    /// Those columns of the two whose missing unit the user must state.
-    unsaid: Vec<UnsaidUnit>,
-}
-
-impl Group {
-    /// Returns the index of the column with a quantity.
-    fn column(&self, quantity: Quantity) -> Option<usize> {
-        let found = self.columns.iter().find(|known| known.quantity == quantity);
-        found.map(|known| known.column)
-    }
-
-    /// Returns magnitude and phase; `None` unless both are present.
-    fn polar_columns(&self) -> Option<PolarColumns> {
-        Some(PolarColumns {
-            magnitude: self.column(Quantity::Magnitude)?,
-            phase: self.column(Quantity::Phase)?,
-        })
-    }
 }
 
 impl<'t> Recognition<'t> {
@@ -362,6 +321,50 @@ impl<'t> Recognition<'t> {
                 table.lines[row]
             ),
         });
+    }
+}
+
+/// Columns that belong to the same response.
+#[derive(Default)]
+struct Group {
+    label: ResponseLabel,
+    columns: Vec<GroupColumn>,
+}
+
+/// Column that holds a quantity of a response.
+struct GroupColumn {
+    quantity: Quantity,
+    /// Column index, from 0.
+    column: usize,
+}
+
+/// Indices of the columns with magnitude and phase.
+#[derive(Clone, Copy)]
+struct PolarColumns {
+    magnitude: usize,
+    phase: usize,
+}
+
+/// Interpretation of a magnitude and a phase column.
+struct PolarReading {
+    parts: ResponseParts,
+    /// Those columns of the two whose missing unit the user must state.
+    unsaid: Vec<UnsaidUnit>,
+}
+
+impl Group {
+    /// Returns the index of the column with a quantity.
+    fn column(&self, quantity: Quantity) -> Option<usize> {
+        let found = self.columns.iter().find(|known| known.quantity == quantity);
+        found.map(|known| known.column)
+    }
+
+    /// Returns magnitude and phase; `None` unless both are present.
+    fn polar_columns(&self) -> Option<PolarColumns> {
+        Some(PolarColumns {
+            magnitude: self.column(Quantity::Magnitude)?,
+            phase: self.column(Quantity::Phase)?,
+        })
     }
 }
 

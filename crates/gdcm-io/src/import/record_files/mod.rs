@@ -39,7 +39,7 @@ use crate::file_error::FileError;
 use crate::formats::recorded_columns::{Columns, MOST_RECORDS};
 use crate::formats::variables::Variable;
 use crate::formats::{
-    Contents, FolderProgress, ImportedFile, import, import_bytes, import_file, of_file,
+    Contents, FolderProgress, ImportedFile, import, import_bytes, import_file, with_file_name,
 };
 use crate::reading_budget::{MOST_MEMORY, ReadingBudget, VariableFault};
 
@@ -280,8 +280,8 @@ impl FoundRecords {
         for columns in found.items {
             self.add_table(columns.in_file(name, sha256));
         }
-        self.faults.extend(of_file(name, found.faults));
-        self.ignored.extend(of_file(name, found.ignored));
+        self.faults.extend(with_file_name(name, found.faults));
+        self.ignored.extend(with_file_name(name, found.ignored));
     }
 
     /// Splits a table into records and adds them.

@@ -1,5 +1,5 @@
-//! Objects of MATLAB classes, stored in a separate part of the file: the cells of a
-//! `FileWrapper__`.
+//! Objects of MATLAB classes, stored in a separate part of the file, which MATLAB calls subsystem
+//! data: the cells of a `FileWrapper__`.
 //!
 //! ```text
 //! cell 0        directory: names, classes, objects, and the cell of each property  (directory.rs)
@@ -10,7 +10,7 @@
 //! ```
 //!
 //! A variable holds only a reference: the class number and the object numbers (`reference.rs`). The
-//! properties of these objects are put together by `instance.rs`; a property may in turn be a
+//! properties of these objects are put together by `object_assembly.rs`; a property may in turn be a
 //! reference.
 //!
 //! The format is not published by The MathWorks; this reader follows the descriptions by the
@@ -19,7 +19,7 @@
 
 mod directory;
 mod enumeration;
-mod instance;
+mod object_assembly;
 mod packed_text;
 mod reference;
 
@@ -27,7 +27,7 @@ use std::collections::HashMap;
 
 use crate::formats::mat::subsystem::directory::Directory;
 use crate::formats::mat::subsystem::enumeration::EnumerationMembers;
-use crate::formats::mat::subsystem::instance::Assembly;
+use crate::formats::mat::subsystem::object_assembly::Assembly;
 use crate::formats::mat::unreadable::unreadable;
 use crate::formats::mat::value_path::ValuePath;
 use crate::formats::variables::{StructArray, Value};

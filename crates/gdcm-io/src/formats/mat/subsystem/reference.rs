@@ -1,6 +1,6 @@
 //! References to objects, as stored in MATLAB files.
 
-use crate::formats::strides::element_count;
+use crate::formats::element_order::element_count;
 use crate::formats::variables::{ElementKind, Value};
 
 /// First word of every reference.

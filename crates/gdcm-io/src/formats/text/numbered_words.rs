@@ -1,4 +1,5 @@
-//! Columns of words and of times of day in tables of numbers.
+//! Columns of words and of times of day in tables of numbers: each word is replaced by a number, each
+//! time by seconds.
 
 use std::collections::BTreeMap;
 
@@ -308,7 +309,7 @@ fn kind_of_column(rows: &[Vec<String>], index: usize) -> Kind {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::text::columns::read_table;
+    use crate::formats::text::table_reader::read_table;
 
     fn numbered(text: &str) -> Option<NumberedText> {
         numbered_words(text, &ReadingBudget::new(1 << 20)).unwrap()

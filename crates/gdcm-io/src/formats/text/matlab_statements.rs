@@ -6,11 +6,10 @@
 
 use crate::formats::text::encoding::refuse_binary;
 use crate::formats::text::lines::excerpt;
-use crate::formats::text::literal_values::ValueReader;
-use crate::formats::text::matlab_scanner::{
-    Position, Scanner, ValueError, begins_name, is_name_character, refused,
-};
-use crate::formats::text::workspace::Workspace;
+use crate::formats::text::matlab_scanner::{Scanner, begins_name, is_name_character};
+use crate::formats::text::matlab_statement_values::ValueReader;
+use crate::formats::text::matlab_value_error::{Position, ValueError, refused};
+use crate::formats::text::matlab_workspace::Workspace;
 use crate::formats::variables::{Value, Variable};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
@@ -53,7 +52,7 @@ pub struct Statements {
 /// # Errors
 /// [`VariableFault`] for binary data and unclosed brackets, and if the budget is exhausted.
 /// Unsupported statements are noted instead.
-pub fn read_literals(text: &str, budget: &ReadingBudget) -> Result<Statements, VariableFault> {
+pub fn read_statements(text: &str, budget: &ReadingBudget) -> Result<Statements, VariableFault> {
     refuse_binary(text, "MATLAB statements")?;
     let mut reading = Reading {
         scanner: Scanner::new(text),
@@ -238,11 +237,11 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::formats::text::matlab_scanner::REMEDY;
+    use crate::formats::text::matlab_value_error::REMEDY;
     use crate::formats::variables::{Array, CellArray, StructArray, TextArray};
 
     fn read(text: &str) -> Result<Statements, VariableFault> {
-        read_literals(text, &ReadingBudget::new(1 << 22))
+        read_statements(text, &ReadingBudget::new(1 << 22))
     }
 
     fn value(text: &str) -> Value {

@@ -2,12 +2,13 @@
 
 use gdcm_model::number_format::counted;
 
-use crate::formats::strides::first_index_fastest;
-use crate::formats::text::literal_functions::{Call, Function};
-use crate::formats::text::matlab_scanner::{
-    MOST_NESTED, Number, Position, REMEDY, Scanner, ValueError, refused,
+use crate::formats::element_order::first_index_fastest;
+use crate::formats::text::matlab_functions::{Call, Function};
+use crate::formats::text::matlab_scanner::{Number, Scanner};
+use crate::formats::text::matlab_value_error::{
+    MOST_NESTED, Position, REMEDY, ValueError, refused,
 };
-use crate::formats::text::workspace::Workspace;
+use crate::formats::text::matlab_workspace::Workspace;
 use crate::formats::variables::{Array, CellArray, ElementKind, TextArray, Value};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 

@@ -1,4 +1,5 @@
-//! Quantities and units in frequency response tables, with the words that name them.
+//! Quantities and units in frequency response tables, with the words in column names that denote
+//! them.
 
 /// Quantity that a column of a frequency response table holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

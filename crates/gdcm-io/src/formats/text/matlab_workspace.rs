@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::formats::text::matlab_scanner::{MOST_NESTED, Position, ValueError, refused};
+use crate::formats::text::matlab_value_error::{MOST_NESTED, Position, ValueError, refused};
 use crate::formats::variables::{StructArray, Value, Variable};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 

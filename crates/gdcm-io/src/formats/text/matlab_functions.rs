@@ -1,6 +1,6 @@
 //! MATLAB functions that create models, structs and filled matrices from their arguments.
 
-use crate::formats::text::matlab_scanner::{Position, REMEDY, ValueError, refused};
+use crate::formats::text::matlab_value_error::{Position, REMEDY, ValueError, refused};
 use crate::formats::variables::{Array, StructArray, Value};
 use crate::reading_budget::ReadingBudget;
 

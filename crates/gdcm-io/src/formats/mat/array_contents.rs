@@ -19,10 +19,11 @@
 
 use std::collections::HashSet;
 
+use crate::formats::mat::array_end::ReadArray;
 use crate::formats::mat::array_header::{ArrayClass, ArrayHeader};
 use crate::formats::mat::characters::read_text;
 use crate::formats::mat::cursor::Cursor;
-use crate::formats::mat::element::{DataKind, Element, ReadArray, decode_name};
+use crate::formats::mat::element::{DataKind, Element, decode_name};
 use crate::formats::mat::numbers::{read_numbers, read_sizes};
 use crate::formats::mat::subsystem::{CLASS_SYSTEM, Reference, Subsystem};
 use crate::formats::mat::unreadable::{unread_class, unreadable};

@@ -1,88 +1,26 @@
-//! Tables of numbers in columns, written by programs or by hand.
+//! Reading of tables of numbers in columns, written by programs or by hand.
+//!
+//! 1. Recognise separator, decimal mark and number of columns (`layout.rs`).
+//! 2. Take each line as a row, or keep it as skipped.
+//! 3. Find names and units in the lines above the first row (`heading.rs`).
 
 use gdcm_model::number_format::counted;
 
 use crate::formats::text::cell_number::cell_number;
 use crate::formats::text::encoding::refuse_binary;
-use crate::formats::text::heading::{Heading, is_mostly_numbers, names_one_more_column};
-use crate::formats::text::heading_units::name_and_unit;
+use crate::formats::text::heading::Heading;
+use crate::formats::text::heading_cells::{is_mostly_numbers, names_one_more_column};
 use crate::formats::text::layout::{Layout, RowShape};
 use crate::formats::text::lines::{NumberedLine, comment, excerpt, is_rule, lines};
 use crate::formats::text::separator::Separator;
+use crate::formats::text::text_table::TextTable;
 use crate::reading_budget::{ReadingBudget, VariableFault};
+
+/// Name of the expected contents in error messages.
 
 const EXPECTED: &str = "a table of numbers in columns";
 /// Number of lines before the first row among which a repeated heading is looked up.
 const COMPARED_HEADINGS: usize = 20;
-
-/// Table of numbers in columns.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TextTable {
-    /// Column names; `None` if the text has none.
-    pub names: Option<Vec<String>>,
-    /// Unit of each column, where the text gives it.
-    pub units: Vec<Option<String>>,
-    /// Numbers by column. A missing number is NaN; code that needs the number reports its position.
-    pub columns: Vec<Vec<f64>>,
-    /// Line number of each row, counted from 1.
-    pub lines: Vec<usize>,
-    pub separator: Separator,
-    pub decimal_comma: bool,
-    /// Lines that are not rows, such as comments and headings.
-    pub skipped: Vec<NumberedLine>,
-    /// Notes for the user on how ambiguous parts were read.
-    pub notes: Vec<String>,
-}
-
-impl TextTable {
-    /// Returns the name of a column, if the text gives one.
-    pub(super) fn name(&self, column: usize) -> Option<&str> {
-        self.names.as_ref()?.get(column).map(String::as_str)
-    }
-
-    /// Returns the column headings, with units such as "omega \[rad/s\]"; empty strings for columns
-    /// without a name.
-    pub fn headings(&self) -> Vec<String> {
-        (0..self.units.len())
-            .map(|column| self.heading(column))
-            .collect()
-    }
-
-    fn heading(&self, column: usize) -> String {
-        let name = self.name(column).unwrap_or_default();
-        match &self.units[column] {
-            Some(unit) => format!("{name} [{unit}]").trim().to_owned(),
-            None => name.to_owned(),
-        }
-    }
-
-    /// Replaces the names and units of all columns by those in `headings`, in the notation of
-    /// [`TextTable::headings`].
-    ///
-    /// # Errors
-    /// [`VariableFault`] if the number of headings differs from the number of columns.
-    pub fn with_headings(mut self, headings: &[String]) -> Result<Self, VariableFault> {
-        if headings.len() != self.columns.len() {
-            let found = format!(
-                "{} for {}",
-                counted(headings.len(), "heading"),
-                counted(self.columns.len(), "column")
-            );
-            return Err(VariableFault::format("one heading for each column", found));
-        }
-        let mut names = Vec::with_capacity(headings.len());
-        self.units.clear();
-        for heading in headings {
-            let (name, unit) = name_and_unit(heading);
-            names.push(name);
-            self.units.push(unit);
-        }
-        self.names = Some(names);
-        self.notes
-            .push("the column headings are taken from the rules".to_owned());
-        Ok(self)
-    }
-}
 
 /// Reads a table of numbers in columns, and recognises its separator, decimal mark, names and
 /// units.

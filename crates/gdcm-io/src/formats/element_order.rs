@@ -1,4 +1,4 @@
-//! Order of array elements in files.
+//! Order of array elements in files, and conversion to column-major order.
 //!
 //! This program stores arrays in column-major order: the first index changes fastest. In a file in
 //! row-major order, a 2 x 3 array with the elements a11 a12 a13 / a21 a22 a23 is stored as

@@ -2,42 +2,42 @@
 
 use std::collections::BTreeMap;
 
-use crate::formats::logs::blackbox_frames::{FrameFields, HeaderNumbers};
+use crate::formats::logs::blackbox_fields::{FrameFields, HeaderNumbers};
 
 /// Contents of the header lines before the frames.
 #[derive(Default)]
-pub(super) struct Heading {
+pub(super) struct Header {
     /// Header values by key.
     lines: BTreeMap<String, String>,
     /// Field descriptions by frame letter.
-    frames: BTreeMap<u8, FrameFields>,
+    fields_by_letter: BTreeMap<u8, FrameFields>,
     pub(super) numbers: HeaderNumbers,
     /// Header length \[bytes\].
     pub(super) length: usize,
 }
 
-impl Heading {
+impl Header {
     /// Reads the header of a flight, with which `bytes` begin.
     pub(super) fn read(bytes: &[u8]) -> Self {
-        let mut heading = Self::default();
-        heading.read_lines(bytes);
+        let mut header = Self::default();
+        header.read_lines(bytes);
         for kind in *b"IPSGH" {
-            let fields = heading.fields(char::from(kind));
-            heading.frames.insert(kind, fields);
+            let fields = header.parse_fields(char::from(kind));
+            header.fields_by_letter.insert(kind, fields);
         }
         // The header gives names and signs only for intra frames; predicted frames have the same
         // fields.
-        let intra = heading.frames[&b'I'].clone();
-        if let Some(predicted) = heading.frames.get_mut(&b'P') {
+        let intra = header.fields_by_letter[&b'I'].clone();
+        if let Some(predicted) = header.fields_by_letter.get_mut(&b'P') {
             predicted.names = intra.names;
             predicted.signed = intra.signed;
         }
-        heading.numbers = HeaderNumbers {
-            least_throttle: heading.number("minthrottle"),
-            least_motor: heading.number("motorOutput"),
-            battery: heading.number("vbatref"),
+        header.numbers = HeaderNumbers {
+            least_throttle: header.number("minthrottle"),
+            least_motor: header.number("motorOutput"),
+            battery: header.number("vbatref"),
         };
-        heading
+        header
     }
 
     /// Reads the lines `H key:value` up to the first frame.
@@ -67,7 +67,7 @@ impl Heading {
     }
 
     /// Returns the descriptions of the fields in frames with the letter `kind`.
-    fn fields(&self, kind: char) -> FrameFields {
+    fn parse_fields(&self, kind: char) -> FrameFields {
         FrameFields {
             names: self.field_cells(kind, "name").map(str::to_owned).collect(),
             signed: self
@@ -97,13 +97,13 @@ impl Heading {
 
     /// Returns the names of the fields in the main frames, intra and predicted.
     pub(super) fn main_fields(&self) -> &[String] {
-        &self.frames[&b'I'].names
+        &self.fields_by_letter[&b'I'].names
     }
 
     /// Returns the fields of the frames with the letter `kind`; `None` if a field cannot be
     /// decoded.
-    pub(super) fn frame(&self, kind: u8) -> Option<&FrameFields> {
-        let fields = self.frames.get(&kind)?;
+    pub(super) fn frame_fields(&self, kind: u8) -> Option<&FrameFields> {
+        let fields = self.fields_by_letter.get(&kind)?;
         if fields.is_whole() {
             Some(fields)
         } else {

@@ -1,4 +1,5 @@
-//! Reading of flight records from files, in a reading thread.
+//! Reading of flight records from files: the part that runs in the reading thread, without access
+//! to the window.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};

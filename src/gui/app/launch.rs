@@ -238,6 +238,8 @@ fn no_window(reason: &str, command: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
     use super::*;
 
     fn fault() -> Fault {

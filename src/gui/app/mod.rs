@@ -57,6 +57,7 @@ mod setup;
 mod study_commands;
 mod threads;
 mod update;
+mod wanted_jobs;
 mod window;
 mod window_panels;
 mod zoom_repair;

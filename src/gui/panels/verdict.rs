@@ -245,6 +245,7 @@ mod tests {
 
     use nalgebra::Complex;
 
+    use gdcm_model::dataset::Pair;
     use gdcm_model::progress::Unobserved;
     use gdcm_study::decisions::setting;
     use gdcm_study::decisions::setting_row::Value;

@@ -14,6 +14,7 @@ pub mod number_field;
 pub mod painted_text;
 pub mod palette;
 pub mod panel_layout;
+pub mod sorting;
 pub mod tables;
 pub mod text_fields;
 pub mod window_regions;

@@ -107,15 +107,7 @@ impl Autosave {
                 let lost = lost_studies(folder);
                 replies.send(move |app| app.offer(lost));
             }
-            let keeper = Keeper {
-                folder,
-                keep_after,
-                replies,
-                file: None,
-                pending: None,
-                kept: keeper_kept,
-                restored: Vec::new(),
-            };
+            let keeper = Keeper::new(folder, keep_after, replies, keeper_kept);
             keeper.work(&received);
         };
         std::thread::Builder::new()

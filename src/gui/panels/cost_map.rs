@@ -37,7 +37,7 @@ pub fn columns(state: &State) -> Vec<CostColumn> {
             .settings
             .constrained
             .iter()
-            .filter(|(_, is_held)| !**is_held);
+            .filter(|(_, is_constrained)| !**is_constrained);
         columns.push(CostColumn {
             head: "off".to_owned(),
             pairs: unconstrained.map(|(pair, _)| pair).collect(),

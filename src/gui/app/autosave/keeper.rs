@@ -30,20 +30,39 @@ struct Pending {
 /// State of the recovery thread.
 pub(super) struct Keeper {
     /// Folder of the recovery files; with `None`, decisions remain pending.
-    pub(super) folder: Option<PathBuf>,
+    folder: Option<PathBuf>,
     /// Time between the first pending decision and the writing.
-    pub(super) keep_after: Duration,
-    pub(super) replies: ReplySender,
+    keep_after: Duration,
+    replies: ReplySender,
     /// File of this window, named at the first writing.
-    pub(super) file: Option<RecoveryFile>,
-    pub(super) pending: Option<Pending>,
+    file: Option<RecoveryFile>,
+    pending: Option<Pending>,
     /// Decisions in the file, shared with the window.
-    pub(super) kept: Arc<Mutex<Option<Kept>>>,
+    kept: Arc<Mutex<Option<Kept>>>,
     /// Lost studies that are open again, whose old files are still to be deleted.
-    pub(super) restored: Vec<LostStudy>,
+    restored: Vec<LostStudy>,
 }
 
 impl Keeper {
+    /// Creates the state without pending decisions. `kept` tells the window which decisions are in
+    /// the recovery file.
+    pub(super) fn new(
+        folder: Option<PathBuf>,
+        keep_after: Duration,
+        replies: ReplySender,
+        kept: Arc<Mutex<Option<Kept>>>,
+    ) -> Self {
+        Self {
+            folder,
+            keep_after,
+            replies,
+            file: None,
+            pending: None,
+            kept,
+            restored: Vec::new(),
+        }
+    }
+
     /// Carries out tasks until the window closes.
     pub(super) fn work(mut self, tasks: &Receiver<Task>) {
         loop {

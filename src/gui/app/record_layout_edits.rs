@@ -28,7 +28,7 @@ impl GdcmApp {
         let dataset = Arc::clone(&self.state.study.dataset);
         let change = LayoutChange {
             condition,
-            is_named: row.table.entry_of_dataset(&dataset).is_some(),
+            is_listed: row.table.entry_of_dataset(&dataset).is_some(),
             table: Arc::clone(&row.table),
             former: row.layout.clone(),
             layout,
@@ -81,7 +81,7 @@ struct LayoutChange {
     former: RecordLayout,
     layout: RecordLayout,
     /// Whether the dataset lists the record.
-    is_named: bool,
+    is_listed: bool,
     dataset: Arc<Dataset>,
 }
 
@@ -93,9 +93,9 @@ impl LayoutChange {
         if Arc::ptr_eq(&row.table, &self.table) && row.layout == self.former {
             return Some(self.layout.clone());
         }
-        let is_named = row.table.entry_of_dataset(&self.dataset).is_some();
-        let is_reached = id == self.condition || !self.is_named;
-        if !is_reached || is_named != self.is_named {
+        let is_listed = row.table.entry_of_dataset(&self.dataset).is_some();
+        let is_reached = id == self.condition || !self.is_listed;
+        if !is_reached || is_listed != self.is_listed {
             return None;
         }
         let change = [&self.former, &self.layout];

@@ -39,8 +39,10 @@ const FULL_COST: f64 = 60.0;
 pub(super) struct Cell<'a> {
     pair: Pair,
     name: String,
+    /// Whether the large plot shows the response.
     focused: bool,
     constrained: bool,
+    /// Whether the response has weight in the objective.
     fitted: bool,
     /// Whether the gain constraint of the response conflicts with others.
     in_conflict: bool,

@@ -55,6 +55,7 @@ pub(super) struct ModelRow<'a> {
     id: ModelId,
     model: &'a Model,
     shown: Neighbours<'a>,
+    /// Whether the model is not rejected.
     kept: bool,
     /// Whether the engineer chose the model as representative.
     pinned: bool,

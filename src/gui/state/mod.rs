@@ -6,7 +6,7 @@
 pub mod arrangement;
 pub mod assembling;
 pub mod assembly_columns;
-pub mod assessed_figures;
+pub mod assessment_display;
 pub mod background;
 pub mod channels_view;
 mod condition_identification;

@@ -6,7 +6,7 @@ use gdcm::gui::commands::layout::LayoutCommand;
 use gdcm::gui::commands::selection::SelectionCommand;
 use gdcm::gui::commands::study::StudyCommand;
 use gdcm::gui::state::arrangement::Arrangement;
-use gdcm::gui::state::assessed_figures::AssessedPairs;
+use gdcm::gui::state::assessment_display::AssessedPairs;
 use gdcm::gui::state::pair_set::PairSet;
 use gdcm::gui::state::preferences::Preferences;
 use gdcm::gui::state::view::{View, ViewGroup};

@@ -10,7 +10,6 @@ use gdcm_study::Study;
 use super::GdcmApp;
 use super::analysis_job::{AnalysisJob, Proof};
 use super::background_jobs::BackgroundJobs;
-use super::faults::Fault;
 use super::report_job::ReportJob;
 use super::threads::{Reply, ReplySender};
 use crate::gui::state::notices::MessageBar;

@@ -1,5 +1,9 @@
 //! Starts the program: from the command line to a window on the screen, and the message if there is
 //! none.
+//!
+//! The requested file is read in a thread while the window library starts (`first_file.rs`). Whether an
+//! error means "no window" or "the window has ended" depends on whether a frame was drawn: the first
+//! frame hands over the autosave, which then tells what became of the unsaved decisions.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -59,9 +63,9 @@ pub fn open(path: Option<PathBuf>) -> ExitCode {
         eprintln!("caution: {caution}");
     }
     std::panic::set_hook(Box::new(record_panic));
-    let opening = Arc::new(OnceLock::new());
-    let outcome = caught(|| run(reading, models, &opening));
-    match ending(outcome, opening.get(), &command) {
+    let drawn = Arc::new(OnceLock::new());
+    let outcome = caught(|| run(reading, models, &drawn));
+    match ending(outcome, drawn.get(), &command) {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => fail(&message),
     }
@@ -138,11 +142,11 @@ fn ending(
     }
 }
 
-/// Runs the window until it is closed; `opening` receives the autosave once a frame is drawn.
+/// Runs the window until it is closed; `drawn` receives the autosave once a frame is drawn.
 fn run(
     reading: JoinHandle<Loaded>,
     models: Option<PathBuf>,
-    opening: &Arc<OnceLock<Autosave>>,
+    drawn: &Arc<OnceLock<Autosave>>,
 ) -> eframe::Result {
     let viewport = ViewportBuilder::default()
         .with_title("gdcm")
@@ -156,7 +160,7 @@ fn run(
         dithering: false,
         ..NativeOptions::default()
     };
-    let opening = Arc::clone(opening);
+    let drawn = Arc::clone(drawn);
     eframe::run_native(
         APP_ID,
         options,
@@ -165,7 +169,7 @@ fn run(
                 .join()
                 .unwrap_or_else(|panic| std::panic::resume_unwind(panic));
             let mut app = create_window(creation, loaded, models)?;
-            app.recovery.drawn = opening;
+            app.recovery.drawn = drawn;
             Ok(Box::new(app))
         }),
     )

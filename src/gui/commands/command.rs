@@ -6,7 +6,7 @@ use super::assembling::AssemblingCommand;
 use super::computing::ComputingCommand;
 use super::display::DisplayCommand;
 use super::file::FileCommand;
-use super::form_parts::FormCommand;
+use super::form::FormCommand;
 use super::layout::LayoutCommand;
 use super::output::OutputCommand;
 use super::records::RecordsCommand;

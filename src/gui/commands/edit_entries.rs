@@ -7,7 +7,7 @@ use gdcm_study::Edit;
 
 use super::command::Command;
 use super::entry::{CTRL, CTRL_SHIFT, Entry, Menu, group};
-use super::form_parts::FormCommand;
+use super::form::FormCommand;
 use super::study::StudyCommand;
 use crate::gui::state::window_state::State;
 

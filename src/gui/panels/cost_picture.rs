@@ -3,7 +3,7 @@
 use egui::{Align2, Rect, Ui, pos2, vec2};
 
 use super::condition_rows::{CELL_HEIGHT, ConditionRows, HALF_CELL_WIDTH, paint_cost};
-use super::cost_map::{columns, cost_of_column};
+use super::cost_map::cost_of_column;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{Palette, small};

@@ -1,6 +1,6 @@
 //! Clickable rows of lists: size, background, accessible name.
 
-use egui::{Button, Color32, Rect, Response, Role, Sense, Ui, WidgetInfo, vec2};
+use egui::{Color32, Rect, Response, Role, Sense, Ui, WidgetInfo, vec2};
 
 use super::palette::Palette;
 use super::window_regions::mark_selected_row;

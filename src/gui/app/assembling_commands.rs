@@ -7,7 +7,6 @@ use gdcm_io::files::dataset_file::add_dataset;
 use gdcm_io::files::rules_file::{add_rules, load_rules, rules_path};
 use gdcm_io::files::study_file::relative_folder;
 use gdcm_io::formats::sources_folder;
-
 use gdcm_model::assembly::Rules;
 use gdcm_model::message_text::sanitized_path;
 

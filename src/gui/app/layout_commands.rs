@@ -2,7 +2,7 @@
 
 use super::GdcmApp;
 use crate::gui::commands::layout::LayoutCommand;
-use crate::gui::state::arrangement::Arrangement;
+use crate::gui::state::view_arrangement::Arrangement;
 use crate::gui::widgets::number_field::focus_field;
 use crate::gui::widgets::window_regions::leave_region;
 

@@ -11,11 +11,11 @@ use gdcm_study::decisions::dataset_differences::Difference;
 use gdcm_study::decisions::history::History;
 
 use super::assembling::AssemblyState;
+use super::computed_results::Results;
 use super::display::Display;
 use super::forms::Forms;
 use super::notices::{MessageBar, Notice};
 use super::records::{RecordsBefore, RecordsState};
-use super::results::Results;
 
 /// Recently opened or saved file.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! Background jobs of the window: the continuously updated analysis ("live analysis") and all
-//! others. The functions called by [`BackgroundJobs::start`] list every kind of job with its tools, its
-//! trigger (in `wanted_jobs.rs`) and its destination.
+//! others. The functions called by [`BackgroundJobs::start`] list every kind of job with its tools,
+//! its trigger (in `wanted_jobs.rs`) and its destination.
 //!
 //! The kinds share a thread pool. Order of urgency, and its reasons:
 //!

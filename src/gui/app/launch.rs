@@ -1,9 +1,10 @@
 //! Starts the program: from the command line to a window on the screen, and the message if there is
 //! none.
 //!
-//! The requested file is read in a thread while the window library starts (`first_file.rs`). Whether an
-//! error means "no window" or "the window has ended" depends on whether a frame was drawn: the first
-//! frame hands over the autosave, which then tells what became of the unsaved decisions.
+//! The requested file is read in a thread while the window library starts (`first_file.rs`).
+//! Whether an error means "no window" or "the window has ended" depends on whether a frame was
+//! drawn: the first frame hands over the autosave, which then tells what became of the unsaved
+//! decisions.
 
 use std::error::Error;
 use std::path::PathBuf;

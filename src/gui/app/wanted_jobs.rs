@@ -1,5 +1,5 @@
-//! Jobs that the current display needs: those of the visible views, and those that complete the displayed
-//! results.
+//! Jobs that the current display needs: those of the visible views, and those that complete the
+//! displayed results.
 
 use std::sync::Arc;
 

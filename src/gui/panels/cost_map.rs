@@ -27,8 +27,8 @@ pub struct CostColumn {
     pub is_mean: bool,
 }
 
-/// Returns the columns of the constrained responses; if the study requests couplings, also the column
-/// of the unconstrained responses, which couplings are meant to improve.
+/// Returns the columns of the constrained responses; if the study requests couplings, also the
+/// column of the unconstrained responses, which couplings are meant to improve.
 pub fn columns(state: &State) -> Vec<CostColumn> {
     let mut columns = constrained_columns(state);
     if state.study.settings.couplings != CouplingCorrection::None {

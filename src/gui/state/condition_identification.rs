@@ -1,8 +1,9 @@
 //! Identification of models from the records of a condition: the job, the cautions about its
 //! result, and the models to adopt.
 //!
-//! `ConditionRecords::found` keeps the latest outcome with its job. `ConditionRecords::changed` tells
-//! that the settings have changed since; the cautions about the outcome are then no longer shown.
+//! `ConditionRecords::found` keeps the latest outcome with its job. `ConditionRecords::changed`
+//! tells that the settings have changed since; the cautions about the outcome are then no longer
+//! shown.
 
 use std::sync::Arc;
 

@@ -56,7 +56,8 @@ impl TableKind {
     }
 }
 
-/// Builds a table of this kind from the current state. Values have full precision; cells of missing values are empty.
+/// Builds a table of this kind from the current state. Values have full precision; cells of missing
+/// values are empty.
 pub fn table_of(state: &State, kind: TableKind) -> Table {
     match kind {
         TableKind::Conditions => conditions(state),

@@ -12,7 +12,7 @@ use gdcm_study::stages::engine::WantedFirst;
 use gdcm_study::{Analysis, ConditionAnalysis, Engine, Study};
 
 use super::threads::ReplySender;
-use crate::gui::state::results::FirstResult;
+use crate::gui::state::computed_results::FirstResult;
 
 /// A problem, and its solution proven optimal by another job.
 #[derive(Clone)]

@@ -1,6 +1,6 @@
 //! Background jobs of the window: the continuously updated analysis ("live analysis") and all
 //! others. The functions called by [`BackgroundJobs::start`] list every kind of job with its tools,
-//! its trigger and its destination.
+//! its trigger (in `wanted_jobs.rs`) and its destination.
 //!
 //! The kinds share a thread pool. Order of urgency, and its reasons:
 //!
@@ -21,13 +21,9 @@ use std::io;
 use std::rc::Rc;
 use std::sync::Arc;
 
-use gdcm_method::correction::Outcome;
 use gdcm_model::executor::Executor;
 use gdcm_study::Engine;
-use gdcm_study::jobs::analysis_jobs::{ProofJob, TogglesJob, UncertaintyJob};
-use gdcm_study::jobs::curve_jobs::CurvesJob;
-use gdcm_study::jobs::job::Job;
-use gdcm_study::stages::condition_curves::{CURVE_POINTS, curves_band};
+use gdcm_study::jobs::analysis_jobs::ProofJob;
 use gdcm_study::stages::condition_responses::KnownModels;
 
 use super::GdcmApp;
@@ -35,12 +31,12 @@ use super::job_kind::{AnyJobKind, JobKind, JobKinds};
 use super::job_pool::{JobPool, LaneClass};
 use super::job_queue::JobQueue;
 use super::threads::ReplySender;
+use super::wanted_jobs::{
+    curves_job, keep_wanted, needs, proof_jobs, toggles_job, uncertainty_job,
+};
 use crate::executor::Pool;
 use crate::gui::state::background::Background;
-use crate::gui::state::view::View;
-use crate::gui::state::window_state::State;
 use crate::gui::views::need::Need;
-use crate::gui::views::{are_couplings_judged, couplings_job, overlay_job, view_content};
 
 /// Creates an engine: at the start, and after a panic, which may leave the caches of the old engine
 /// inconsistent.
@@ -279,73 +275,4 @@ impl GdcmApp {
             kind.stop(self);
         }
     }
-}
-
-/// Returns the jobs needed by the visible views, the overlay and the assessed couplings.
-fn needs(state: &State) -> Vec<Need> {
-    let mut needs = Vec::new();
-    for view in View::ALL {
-        if state.display.layout.arrangement.is_shown(view) {
-            needs.extend((view_content(view).needs)(state));
-        }
-    }
-    needs.extend(overlay_job(state).map(Need::Variant));
-    if are_couplings_judged(state) {
-        needs.push(Need::Couplings(couplings_job(state)));
-    }
-    needs
-}
-
-/// Drops the outputs of jobs that are not in `jobs`.
-fn keep_wanted<J: Job>(kept: &mut Vec<(J, J::Output)>, jobs: &[J]) {
-    kept.retain(|(known, _)| jobs.contains(known));
-}
-
-fn curves_job(state: &State) -> CurvesJob {
-    CurvesJob {
-        dataset: Arc::clone(&state.study.dataset).into(),
-        condition: state.condition().id(),
-        grid: (curves_band(&state.study.settings), CURVE_POINTS),
-    }
-}
-
-/// Returns the job that computes the cost of constraining or releasing each entry, in the displayed
-/// condition.
-fn toggles_job(state: &State) -> Option<TogglesJob> {
-    let condition = state.analysis()?.condition(state.condition().id())?.clone();
-    Some(TogglesJob { condition })
-}
-
-/// Returns the jobs that prove the unproven problems, the displayed condition first.
-fn proof_jobs(state: &State) -> Vec<ProofJob> {
-    let Some(analysis) = state.analysis() else {
-        return Vec::new();
-    };
-    let shown = analysis.condition(state.condition().id());
-    let others = analysis.conditions.values().flatten();
-    let mut jobs: Vec<ProofJob> = Vec::new();
-    for condition in shown.into_iter().chain(others) {
-        let job = ProofJob {
-            problem: Arc::clone(&condition.gain_problem),
-        };
-        if matches!(condition.gains.proof.outcome, Outcome::NotProven { .. })
-            && !jobs.contains(&job)
-        {
-            jobs.push(job);
-        }
-    }
-    jobs
-}
-
-/// Returns the job that computes the error bars; `None` while the results are being recomputed or
-/// are not yet drawn, so that the live analysis can use all cores.
-fn uncertainty_job(state: &State) -> Option<UncertaintyJob> {
-    let results = &state.results;
-    state.analysis()?;
-    let is_drawn = results.is_painted || results.uncertainty.is_some();
-    if results.is_behind() || !is_drawn {
-        return None;
-    }
-    let analysis = results.analysis.clone()?.into();
-    Some(UncertaintyJob { analysis })
 }

@@ -88,6 +88,19 @@ pub(super) fn study_name(path: Option<&Path>) -> String {
     }
 }
 
+/// Adds the study extension, unless the name ends in ".json".
+pub(super) fn with_study_extension(path: PathBuf) -> PathBuf {
+    let name = path
+        .file_name()
+        .map(|name| name.to_string_lossy().into_owned())
+        .unwrap_or_default();
+    if name.ends_with(".json") {
+        path
+    } else {
+        path.with_file_name(format!("{name}.{STUDY_EXTENSION}"))
+    }
+}
+
 /// A dataset made from records.
 pub(super) struct DatasetOfRecords {
     pub(super) path: PathBuf,

@@ -5,25 +5,35 @@ use std::path::PathBuf;
 use gdcm_io::Existing;
 
 use super::GdcmApp;
-use super::dialogs::DialogPurpose;
+use super::document_files::with_study_extension;
 use super::faults::caught;
-use super::saving::with_study_extension;
 use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::state::forms::{FormKind, RequirementTable};
 
+/// Purpose for which a file dialog is open.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum DialogPurpose {
+    Open,
+    SaveStudy,
+    ExportFolder,
+    ModelFolder,
+    RecordFolder,
+    RequirementTable(RequirementTable),
+}
+
 impl GdcmApp {
     /// Opens a desktop file dialog unless a dialog is open; a save dialog proposes `file_name`.
     pub(super) fn ask_path(&mut self, purpose: DialogPurpose, file_name: String) {
-        if self.dialogs.dialog_open {
+        if self.is_dialog_open {
             return;
         }
-        self.dialogs.dialog_open = true;
+        self.is_dialog_open = true;
         // Without desktop dialogs, the call fails or panics; this counts as a dialog closed without
         // a choice.
         let ask = move || caught(|| show_dialog(purpose, &file_name)).ok().flatten();
         self.in_thread("the dialog", ask, move |app, chosen| {
-            app.dialogs.dialog_open = false;
+            app.is_dialog_open = false;
             match chosen.flatten() {
                 Some(path) => app.path_chosen(purpose, path),
                 None => app.nothing_chosen(purpose),

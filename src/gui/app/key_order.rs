@@ -1,4 +1,5 @@
-//! Order of typed text and changes of focus: text reaches the intended field even if frames are slow.
+//! Order of typed text and changes of focus: text reaches the intended field even if frames are
+//! slow.
 
 use egui::{Context, Event, Key, Plugin, RawInput};
 

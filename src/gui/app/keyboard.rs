@@ -8,7 +8,7 @@ use crate::gui::commands::command::Command;
 use crate::gui::commands::command_table::command_table;
 use crate::gui::commands::entry::Reach;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::focus::was_focused;
+use crate::gui::widgets::escape_key::was_focused;
 
 /// Returns the commands for keys pressed since the last frame.
 pub fn pressed(ctx: &Context, state: &State) -> Vec<Command> {

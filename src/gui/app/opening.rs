@@ -1,4 +1,10 @@
 //! Opening of datasets and studies. Files are read in threads, so the window never blocks.
+//!
+//! 1. `open` chooses the purpose: to show the file, or to restore lost decisions. `recovery.rs` and
+//!    `reload.rs` start with their own purposes.
+//! 2. `read` reads in a thread.
+//! 3. `answer_opened` asks first if unsaved decisions would be lost, and reports an error.
+//! 4. `show_read` shows what was read, as its purpose requires; for a new study, by `show`.
 
 use std::path::PathBuf;
 
@@ -10,8 +16,8 @@ use gdcm_model::message_text::sanitized_path;
 use gdcm_study::decisions::dataset_differences::Difference;
 
 use super::GdcmApp;
-use super::dialogs::PendingAction;
 use super::document_files::{ReadFor, SavedStudy, study_name};
+use super::postponed_actions::PendingAction;
 use crate::gui::state::forms::FormKind;
 use crate::gui::state::notices::MessageBar;
 use crate::gui::state::preferences::Preferences;

@@ -38,7 +38,7 @@ impl GdcmApp {
             let Some(records) = self.state.records.conditions.get(id) else {
                 continue;
             };
-            match records.job(*id, band, &channels) {
+            match records.identification_job(*id, band, &channels) {
                 Ok(job) => self.state.records.request_job(job),
                 Err(problem) => refusal = Some(format!("condition {id}: {problem}")),
             }

@@ -1,4 +1,5 @@
-//! Flight records in the window: reads them in a thread and adds them to their conditions.
+//! Adds flight records to their conditions: starts a reading thread, which runs the functions of
+//! `record_reading.rs`, and stores the records that it found.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;

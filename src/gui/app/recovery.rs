@@ -1,5 +1,5 @@
-//! Recovery of unsaved decisions: at the next start, the window offers the decisions of a window
-//! that ended without saving them.
+//! Offers to recover unsaved decisions: at the next start, the window offers the decisions of a
+//! window that ended without saving them. `autosave.rs` keeps them.
 
 use std::path::Path;
 use std::sync::{Arc, OnceLock};

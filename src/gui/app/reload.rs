@@ -77,7 +77,7 @@ impl GdcmApp {
 
     /// Selects the file that belongs to the study's dataset, after a reload, or after an undo or
     /// redo across a reload.
-    pub(super) fn follow_dataset(&mut self) {
+    pub(super) fn select_dataset_file(&mut self) {
         let dataset = self.state.study.file_dataset();
         let earlier = self
             .files

@@ -54,7 +54,7 @@ impl GdcmApp {
             known: self.state.records.known_poles(),
             source: ReportSource::from_files(&self.files.loaded, self.files.saved.path.as_deref()),
             path,
-            existing: self.dialogs.existing,
+            existing: self.postponed.existing,
             inputs: self.files.inputs(),
         });
     }

@@ -1,15 +1,14 @@
-//! Saving of the study, also before an action that would lose unsaved decisions.
+//! Saving of the study.
 
 use std::path::{Path, PathBuf};
 
-use gdcm_io::files::study_file::STUDY_EXTENSION;
 use gdcm_io::output_set::OutputSet;
 use gdcm_io::{Existing, FileError, save_study};
 use gdcm_model::message_text::sanitized_path;
 
 use super::GdcmApp;
-use super::dialogs::{DialogPurpose, PendingAction};
-use super::document_files::{SavedStudy, study_name};
+use super::document_files::{SavedStudy, study_name, with_study_extension};
+use super::file_dialogs::DialogPurpose;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::file::FileCommand;
 use crate::gui::state::forms::FormKind;
@@ -40,8 +39,7 @@ impl GdcmApp {
                 );
             }
             Err(error) => {
-                self.dialogs.goes_on_once_saved = false;
-                self.dialogs.postponed = None;
+                self.postponed.forget_losing();
                 self.notify_error(error.to_string());
             }
         }
@@ -64,46 +62,8 @@ impl GdcmApp {
         };
         self.keep_unsaved();
         self.look_for_recent();
-        if self.dialogs.goes_on_once_saved {
+        if self.postponed.goes_on_once_saved {
             self.go_on();
         }
-    }
-
-    /// Asks whether the postponed action may discard unsaved decisions.
-    pub(super) fn ask_to_lose(&mut self, postponed: PendingAction) {
-        self.dialogs.postponed = Some(postponed);
-        self.dialogs.goes_on_once_saved = false;
-        self.state.forms.shown = Some(FormKind::Unsaved);
-    }
-
-    /// Saves the study, then carries out the action postponed until it is saved.
-    pub(super) fn save_and_go_on(&mut self) {
-        self.state.forms.shown = None;
-        self.dialogs.goes_on_once_saved = true;
-        self.save();
-    }
-
-    /// Carries out the action that was postponed because of unsaved decisions.
-    pub(super) fn go_on(&mut self) {
-        self.dialogs.goes_on_once_saved = false;
-        match self.dialogs.postponed.take() {
-            Some(PendingAction::Show(purpose, opened)) => self.show_read(purpose, *opened),
-            Some(PendingAction::Close) => self.close_study(),
-            Some(PendingAction::Quit) => self.quit(),
-            None => {}
-        }
-    }
-}
-
-/// Adds the study extension, unless the name ends in ".json".
-pub(super) fn with_study_extension(path: PathBuf) -> PathBuf {
-    let name = path
-        .file_name()
-        .map(|name| name.to_string_lossy().into_owned())
-        .unwrap_or_default();
-    if name.ends_with(".json") {
-        path
-    } else {
-        path.with_file_name(format!("{name}.{STUDY_EXTENSION}"))
     }
 }

@@ -18,10 +18,10 @@ impl GdcmApp {
             StudyCommand::Undo => self.restore_study(|history, study, records| {
                 history.undo(study, |before| records.exchange(before))
             }),
-            StudyCommand::Forget(edit) => self.restore_study(|history, _, _| history.forget(&edit)),
             StudyCommand::Redo => self.restore_study(|history, study, records| {
                 history.redo(study, |before| records.exchange(before))
             }),
+            StudyCommand::Forget(edit) => self.restore_study(|history, _, _| history.forget(&edit)),
         }
     }
 
@@ -66,7 +66,7 @@ impl GdcmApp {
             .once_held
             .extend(self.state.study.settings.constrained.marked());
         self.state.unsaved = self.files.saved.study.as_ref() != Some(&self.state.study);
-        self.follow_dataset();
+        self.select_dataset_file();
         self.keep_unsaved();
     }
 }

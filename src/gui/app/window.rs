@@ -12,12 +12,12 @@ use gdcm_io::files::opened_file::holds_models;
 
 use super::autosave::Autosave;
 use super::background_jobs::BackgroundJobs;
-use super::computation::Computation;
-use super::dialogs::{Dialogs, PendingAction};
+use super::background_work::BackgroundWork;
 use super::disk_watch::DiskWatch;
 use super::document_files::DocumentFiles;
 use super::key_order::KeyOrder;
 use super::layout_commands::NextFocus;
+use super::postponed_actions::{PendingAction, PostponedActions};
 use super::readers::Readers;
 use super::recovery::{LAST_WAIT, Recovery};
 use super::threads::ReplySender;
@@ -33,7 +33,7 @@ use crate::gui::state::preferences::Preferences;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
-use crate::gui::widgets::{focus, palette};
+use crate::gui::widgets::{escape_key, focus_ring, palette};
 
 /// Time after which the window is drawn again while results are being computed.
 const REPAINT_AFTER: Duration = Duration::from_millis(160);
@@ -45,9 +45,11 @@ pub struct GdcmApp {
     pub(super) ctx: Context,
     pub(super) state: State,
     pub(super) files: DocumentFiles,
-    pub(super) dialogs: Dialogs,
+    /// Whether a file dialog of the desktop is open; there is at most one.
+    pub(super) is_dialog_open: bool,
+    pub(super) postponed: PostponedActions,
     pub(super) readers: Readers,
-    pub(super) work: Computation,
+    pub(super) work: BackgroundWork,
     pub(super) recovery: Recovery,
     /// Focus target in the next frame.
     pub(super) next_focus: Option<NextFocus>,
@@ -89,9 +91,10 @@ impl GdcmApp {
                 directory: setup.directory,
                 home: setup.home,
             },
-            dialogs: Dialogs::new(),
+            is_dialog_open: false,
+            postponed: PostponedActions::new(),
             readers: Readers::default(),
-            work: Computation {
+            work: BackgroundWork {
                 live_job: None,
                 jobs,
                 new_proofs: Vec::new(),
@@ -135,6 +138,11 @@ impl GdcmApp {
         &self.state
     }
 
+    /// Returns the time \[s\] on the window's clock.
+    pub(super) fn now(&self) -> f64 {
+        self.ctx.input(|input| input.time)
+    }
+
     /// Opens or imports the files dropped on the window.
     fn take_dropped_files(&mut self, commands: &mut Vec<Command>) {
         let dropped = self.ctx.input(|input| input.raw.dropped_files.clone());
@@ -163,7 +171,7 @@ impl GdcmApp {
     fn guard_closing(&mut self) {
         if self.ctx.input(|input| input.viewport().close_requested())
             && self.state.unsaved
-            && !self.dialogs.closing
+            && !self.postponed.closing
         {
             self.ctx.send_viewport_cmd(ViewportCommand::CancelClose);
             self.ask_to_lose(PendingAction::Quit);
@@ -221,7 +229,8 @@ impl eframe::App for GdcmApp {
         panels_ui(ui, &mut self.state, &palette, &mut commands);
         forms::forms_ui(&ctx, &mut self.state, &palette, &mut commands);
         tour::tour_ui(&ctx, &self.state, &palette, &mut commands);
-        focus::focus_ring_ui(&ctx, &palette);
+        focus_ring::focus_ring_ui(&ctx, &palette);
+        escape_key::note_focus(&ctx);
         self.recovery
             .drawn
             .get_or_init(|| self.recovery.autosave.clone());

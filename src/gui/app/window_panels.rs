@@ -1,5 +1,5 @@
-//! Arrangement of the window: bars at the top and at the foot, side panels, views in the middle, and
-//! sheets over the views.
+//! Arrangement of the window: bars at the top and at the foot, side panels, views in the middle,
+//! and sheets over the views.
 
 use egui::{CentralPanel, Frame, Margin, Panel, Rect, ScrollArea, Ui, UiBuilder};
 
@@ -12,14 +12,14 @@ use crate::gui::panels::menu_bar::menu_bar_ui;
 use crate::gui::panels::message_bars::message_bars_ui;
 use crate::gui::panels::sheet_frame::sheet_ui;
 use crate::gui::panels::{
-    answer_panel, centre, conditions_panel, explanation, models_panel, rail, reasons, start_page,
-    status_bar,
+    centre, conditions_panel, derivation_sheet, models_panel, rail, reasons, right_panel,
+    start_page, status_bar,
 };
 use crate::gui::state::sheet::Sheet;
 use crate::gui::state::window_state::State;
 use crate::gui::views::assembling::assembling_ui;
-use crate::gui::widgets::controls::restore_panel_size;
 use crate::gui::widgets::palette::Palette;
+use crate::gui::widgets::panel_layout::restore_panel_size;
 
 /// Minimum window width \[pt\] for full names and the full left panel.
 const WIDE: f32 = 1400.0;
@@ -134,7 +134,7 @@ fn right_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Ve
         .size_range(300.0..=520.0);
     panel.show(ui, |ui| {
         steady_ui(ui, |ui| {
-            answer_panel::answer_ui(ui, state, palette, commands)
+            right_panel::right_panel_ui(ui, state, palette, commands)
         })
     });
 }
@@ -159,7 +159,7 @@ fn sheets_ui(ui: &Ui, centre: Rect, state: &State, palette: &Palette, commands: 
         return;
     };
     let is_closed = sheet_ui(ui, centre, sheet, palette, |ui| match sheet {
-        Sheet::Derivation => explanation::derivation_sheet_ui(ui, state, palette, commands),
+        Sheet::Derivation => derivation_sheet::derivation_sheet_ui(ui, state, palette, commands),
         Sheet::Reasons => reasons::reasons_ui(ui, state, palette, commands),
         Sheet::Models => {
             models_panel::bundle_sheet_ui(ui, state, BundleKind::Physics, palette, commands)

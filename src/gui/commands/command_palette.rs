@@ -11,7 +11,8 @@ use super::entry::Entry;
 use crate::gui::commands::form::FormCommand;
 use crate::gui::state::forms::PaletteForm;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{Room, row_text, row_text_within, row_ui};
+use crate::gui::widgets::list_row::row_ui;
+use crate::gui::widgets::painted_text::{Room, row_text, row_text_within};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 
 /// Height of the list \[pt\].

@@ -22,7 +22,7 @@ use super::selection::SelectionCommand;
 use super::view_entries::view_entries;
 use crate::gui::state::forms::FormKind;
 use crate::gui::state::pair_set::PairSet;
-use crate::gui::state::tables::TableKind;
+use crate::gui::state::panel_tables::TableKind;
 use crate::gui::state::view::{View, views_with_figure};
 use crate::gui::state::window_state::State;
 

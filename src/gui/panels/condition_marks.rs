@@ -9,7 +9,8 @@ use gdcm_words::caution::failure_text;
 
 use crate::gui::commands::command::Command;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{entries_ui, painted_text};
+use crate::gui::widgets::controls::entries_ui;
+use crate::gui::widgets::painted_text::painted_text;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium, small};
 
 /// Open tasks of a condition, and its role in the schedule.

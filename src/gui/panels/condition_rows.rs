@@ -1,5 +1,5 @@
 //! Rows of conditions: number, mark, airspeed, and the cells of the cost map. The list and the rail
-//! lay them out differently; the start page paints them as a picture.
+//! lay them out differently; `cost_picture.rs` paints some of them as a picture.
 
 use egui::{
     Align2, Color32, CornerRadius, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Ui, pos2, vec2,
@@ -19,7 +19,9 @@ use crate::gui::commands::display::DisplayCommand;
 use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::state::mapped_cost::MappedCost;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{AT_RIGHT_END, Asks, RowLook, entries_ui, named, painted_text};
+use crate::gui::widgets::controls::{Asks, entries_ui, named};
+use crate::gui::widgets::list_row::RowLook;
+use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium, small};
 
 /// Rows of conditions with their cells of the cost map, as laid out in the current frame.
@@ -30,6 +32,7 @@ pub(super) struct ConditionRows<'a> {
     /// Distance between the columns of cells \[pt\].
     pitch: f32,
     layout: RowLayout,
+    /// Whether these are the narrow rows of the rail, which do not mark the response in focus.
     is_rail: bool,
 }
 
@@ -66,9 +69,9 @@ const RAIL: RowLayout = RowLayout {
 /// Maximum distance between the columns of cells \[pt\].
 const MOST_PITCH: f32 = 26.0;
 /// Half the width of a cell \[pt\].
-const HALF_CELL_WIDTH: f32 = 10.0;
+pub(super) const HALF_CELL_WIDTH: f32 = 10.0;
 /// Height of a cell \[pt\].
-const CELL_HEIGHT: f32 = 12.0;
+pub(super) const CELL_HEIGHT: f32 = 12.0;
 /// Space at the right end of a row, for the mark of open tasks \[pt\].
 const MARK_ROOM: f32 = 16.0;
 
@@ -76,6 +79,17 @@ impl<'a> ConditionRows<'a> {
     /// Lays out rows of `width` \[pt\].
     pub(super) fn list(state: &'a State, width: f32) -> Self {
         Self::new(state, LIST, width - LIST.cells_left - MARK_ROOM)
+    }
+
+    /// Lays out the cells of rows of `width` \[pt\] from `cells_left` on; the caller paints the rest.
+    pub(super) fn picture(state: &'a State, cells_left: f32, width: f32) -> Self {
+        let layout = RowLayout { cells_left, ..LIST };
+        Self::new(state, layout, width - cells_left)
+    }
+
+    /// Returns the columns of the cost map.
+    pub(super) fn columns(&self) -> &[CostColumn] {
+        &self.columns
     }
 
     /// Lays out the columns of cells within a width of `room` \[pt\].
@@ -110,14 +124,20 @@ impl<'a> ConditionRows<'a> {
         }
     }
 
-    /// Returns a column's horizontal centre.
-    fn center(&self, row: Rect, place: usize) -> f32 {
+    /// Returns the horizontal centre of the column at `place`.
+    pub(super) fn center(&self, row: Rect, place: usize) -> f32 {
         row.left() + self.layout.cells_left + self.pitch * place as f32 + HALF_CELL_WIDTH
     }
 
     /// Paints the mark of a condition as in the Net gain view: the shape shows the altitude class,
     /// the fill the weight class.
-    fn paint_mark(&self, ui: &Ui, at: Pos2, flight_state: &FlightState, palette: &Palette) {
+    pub(super) fn paint_mark(
+        &self,
+        ui: &Ui,
+        at: Pos2,
+        flight_state: &FlightState,
+        palette: &Palette,
+    ) {
         let is_filled = self.classes.is_first_weight(flight_state);
         let (fill, stroke) = if is_filled {
             (palette.perturbed, Stroke::NONE)
@@ -286,7 +306,7 @@ impl<'a> ConditionRows<'a> {
 
 /// Paints a cell: the magnitude part of the cost in the left half, the phase part in the right
 /// half.
-fn paint_cost(ui: &Ui, cell: Rect, cost: Cost, palette: &Palette) {
+pub(super) fn paint_cost(ui: &Ui, cell: Rect, cost: Cost, palette: &Palette) {
     let middle = cell.center().x;
     let halves = [
         (cell.with_max_x(middle - 0.5), cost.magnitude),
@@ -327,74 +347,4 @@ fn flight_state_words(state: &FlightState) -> String {
         words.push_str(&format!(", {weight} weight"));
     }
     words
-}
-
-/// Maximum number of conditions in the picture of the start page.
-const MOST_PICTURED: usize = 12;
-/// Height of the headings in the picture \[pt\].
-pub(super) const PICTURE_HEAD: f32 = 18.0;
-/// Height of a row in the picture \[pt\].
-const PICTURE_ROW: f32 = 17.0;
-/// Left edge of the cells in the picture \[pt\].
-const PICTURE_CELLS_LEFT: f32 = 48.0;
-
-/// Returns the height of the picture drawn by [`cost_picture_ui`] \[pt\].
-pub(super) fn cost_picture_height(state: &State) -> f32 {
-    let rows = state.dataset().conditions().len().min(MOST_PICTURED);
-    PICTURE_HEAD + PICTURE_ROW * rows as f32
-}
-
-/// Paints the first conditions as a picture without interaction: marks, airspeeds and costs.
-pub fn cost_picture_ui(ui: &Ui, area: Rect, state: &State, palette: &Palette) {
-    let layout = RowLayout {
-        cells_left: PICTURE_CELLS_LEFT,
-        ..LIST
-    };
-    let map = ConditionRows::new(state, layout, area.width() - PICTURE_CELLS_LEFT);
-    for (place, column) in map.columns.iter().enumerate() {
-        let at = pos2(map.center(area, place), area.top() + 8.0);
-        ui.painter().text(
-            at,
-            Align2::CENTER_CENTER,
-            &column.head,
-            small(),
-            palette.dim_text,
-        );
-    }
-    for (number, condition) in state
-        .dataset()
-        .conditions()
-        .iter()
-        .take(MOST_PICTURED)
-        .enumerate()
-    {
-        let row = Rect::from_min_size(
-            area.min + vec2(0.0, PICTURE_HEAD + PICTURE_ROW * number as f32),
-            vec2(area.width(), PICTURE_ROW),
-        );
-        let flight_state = condition.flight_state();
-        map.paint_mark(
-            ui,
-            pos2(row.left() + 6.0, row.center().y),
-            flight_state,
-            palette,
-        );
-        let airspeed = flight_state.airspeed_kt.to_string();
-        painted_text(
-            ui,
-            row.with_max_x(row.left() + 40.0),
-            AT_RIGHT_END,
-            &airspeed,
-            small(),
-            palette.dim_text,
-        );
-        for (place, column) in map.columns.iter().enumerate() {
-            let Some(worst) = cost_of_column(state, condition.id(), column) else {
-                continue;
-            };
-            let at = pos2(map.center(row, place), row.center().y);
-            let cell = Rect::from_center_size(at, vec2(2.0 * HALF_CELL_WIDTH + 1.0, CELL_HEIGHT));
-            paint_cost(ui, cell, worst.cost, palette);
-        }
-    }
 }

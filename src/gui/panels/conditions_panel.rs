@@ -6,11 +6,11 @@ use super::condition_rows::ConditionRows;
 use super::table_menu::TableHeading;
 use crate::gui::commands::command::Command;
 use crate::gui::state::mapped_cost::MappedCost;
-use crate::gui::state::tables::TableKind;
+use crate::gui::state::panel_tables::TableKind;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::painted_text;
-use crate::gui::widgets::focus::{Region, region_ui};
+use crate::gui::widgets::painted_text::painted_text;
 use crate::gui::widgets::palette::{HEAT_COSTS, Palette, small};
+use crate::gui::widgets::window_regions::{Region, region_ui};
 
 /// Draws every condition with its airspeed and the remaining cost of its constrained responses; a
 /// click shows the condition.

@@ -8,9 +8,11 @@ use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::views::view_content;
-use crate::gui::widgets::controls::{Asks, chevron, in_line_ui, named_switch, restore_panel_size};
-use crate::gui::widgets::focus::{Region, region_ui};
+use crate::gui::widgets::controls::{Asks, named_switch};
+use crate::gui::widgets::painted_text::chevron;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
+use crate::gui::widgets::panel_layout::{in_line_ui, restore_panel_size};
+use crate::gui::widgets::window_regions::{Region, region_ui};
 
 /// Draws the view in the dock, which is folded to its bar in a low window.
 pub(super) fn dock_ui(

@@ -14,11 +14,11 @@ use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::commands::study::StudyCommand;
 use crate::gui::state::forms::FormKind;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{
-    AT_RIGHT_END, Asks, button_ui, in_line_ui, named, painted_text,
-};
+use crate::gui::widgets::controls::{Asks, button_ui, named};
 use crate::gui::widgets::elision::{elided, text_width};
+use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
+use crate::gui::widgets::panel_layout::in_line_ui;
 
 /// Draws the menus, undo and redo, the document title, and the search field for commands.
 pub fn menu_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {

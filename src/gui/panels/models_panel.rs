@@ -6,17 +6,18 @@ use gdcm_method::fidelity::SUGGESTION_RATIO;
 use gdcm_model::dataset::{BundleKind, Model};
 use gdcm_study::Edit;
 
-use super::model_row::{ModelRow, Neighbours, TRIM_ENDS, TrimColumns, method};
+use super::model_row::{ModelRow, Neighbours, method};
 use super::table_menu::{TableHeading, table_menu_ui};
+use super::trim_columns::{TRIM_ENDS, TrimColumns};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
-use crate::gui::state::tables::TableKind;
+use crate::gui::state::panel_tables::TableKind;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{
-    AT_RIGHT_END, Asks, ROW_HEIGHT, chevron, named, named_switch, painted_text,
-};
-use crate::gui::widgets::focus::{Region, region_ui};
+use crate::gui::widgets::controls::{Asks, named, named_switch};
+use crate::gui::widgets::list_row::ROW_HEIGHT;
+use crate::gui::widgets::painted_text::{AT_RIGHT_END, chevron, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium, small};
+use crate::gui::widgets::window_regions::{Region, region_ui};
 
 /// Draws the bundles of the displayed condition in the left panel: the physics models above, the
 /// identified models in a foldable part below.

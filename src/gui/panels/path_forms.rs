@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use gdcm_io::export::{EXPORTERS, ExportRequest, export_contents};
 use gdcm_plot::figure::ColumnWidth;
 
-use super::form::{Form, contents_ui};
+use super::form_parts::{Form, contents_ui};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::file::FileCommand;
 use crate::gui::commands::output::OutputCommand;

@@ -8,12 +8,13 @@ use super::condition_rows::ConditionRows;
 use super::table_menu::table_menu_ui;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::state::panel_tables::TableKind;
 use crate::gui::state::sheet::Sheet;
-use crate::gui::state::tables::TableKind;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{AT_RIGHT_END, Asks, named, painted_text};
-use crate::gui::widgets::focus::{Region, region_ui};
+use crate::gui::widgets::controls::{Asks, named};
+use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium, small};
+use crate::gui::widgets::window_regions::{Region, region_ui};
 
 /// Draws the list as a narrow strip: number, airspeed, constrained response with the highest cost;
 /// buttons open the physics and the identified models.

@@ -17,7 +17,7 @@ use gdcm_words::leads::lead_words;
 use gdcm_words::remark::remark_text;
 use gdcm_words::solution_details::details;
 
-use super::explanation::value_label_ui;
+use super::derivation_sheet::value_label_ui;
 use super::sign_reversal::sign_reversal_entry;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;

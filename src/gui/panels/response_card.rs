@@ -9,7 +9,7 @@ use gdcm_model::units::s_to_ms;
 use gdcm_study::ConditionAnalysis;
 
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{AT_RIGHT_END, painted_text};
+use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
 
 /// Card height \[pt\].

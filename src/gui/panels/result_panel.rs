@@ -15,11 +15,13 @@ use super::table_menu::table_menu_ui;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::commands::selection::SelectionCommand;
+use crate::gui::plot::questions::QUESTION;
+use crate::gui::state::panel_tables::TableKind;
 use crate::gui::state::sheet::Sheet;
-use crate::gui::state::tables::TableKind;
 use crate::gui::state::window_state::State;
 use crate::gui::views::error_bars::error_bar_words;
-use crate::gui::widgets::controls::{AT_RIGHT_END, Asks, QUESTION, named, painted_text};
+use crate::gui::widgets::controls::{Asks, named};
+use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
 
 /// Row height \[pt\].

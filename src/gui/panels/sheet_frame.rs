@@ -7,7 +7,7 @@ use egui::{
 
 use crate::gui::state::sheet::Sheet;
 use crate::gui::widgets::controls::named;
-use crate::gui::widgets::focus::take_escape;
+use crate::gui::widgets::escape_key::take_escape;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
 
 /// Draws a sheet over `centre`; returns whether the engineer has closed it.

@@ -9,8 +9,9 @@ use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::Asks;
-use crate::gui::widgets::focus::{Region, region_place, take_escape};
+use crate::gui::widgets::escape_key::take_escape;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
+use crate::gui::widgets::window_regions::{Region, region_place};
 
 /// Draws the current step, if any: a ring around its region, and a note beside it.
 pub fn tour_ui(ctx: &Context, state: &State, palette: &Palette, commands: &mut Vec<Command>) {

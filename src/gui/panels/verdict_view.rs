@@ -9,8 +9,9 @@ use super::verdict::{Verdict, VerdictRow};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::sheet::Sheet;
-use crate::gui::widgets::controls::{AT_RIGHT_END, Asks, named, painted_text};
+use crate::gui::widgets::controls::{Asks, named};
 use crate::gui::widgets::elision::{elided, text_width};
+use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, TITLE_SIZE, body, medium, small};
 
 /// Draws both verdict rows and the steps.

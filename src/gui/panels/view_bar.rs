@@ -10,9 +10,10 @@ use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::view::{View, ViewGroup};
 use crate::gui::state::window_state::State;
 use crate::gui::views::figure_button::figure_button_ui;
-use crate::gui::widgets::controls::{Asks, button_ui, entries_ui, in_line_ui, named, named_switch};
+use crate::gui::widgets::controls::{Asks, button_ui, entries_ui, named, named_switch};
 use crate::gui::widgets::elision::text_width;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium};
+use crate::gui::widgets::panel_layout::in_line_ui;
 
 /// Draws the groups at the left, the views in the front group beside them, and the tools at the
 /// right.

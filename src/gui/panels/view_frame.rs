@@ -7,9 +7,9 @@ use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::views::figure_button::figure_button_ui;
 use crate::gui::views::{ViewTitle, view_content};
-use crate::gui::widgets::controls::in_line_ui;
-use crate::gui::widgets::focus::{Region, region_ui};
 use crate::gui::widgets::palette::{Palette, TITLE_SIZE, medium};
+use crate::gui::widgets::panel_layout::in_line_ui;
+use crate::gui::widgets::window_regions::{Region, region_ui};
 
 /// Draws a view with its title and tools into an area.
 pub(super) fn view_frame_ui(

@@ -14,8 +14,8 @@ use super::panel_axis::TICKS_HEIGHT;
 use super::panel_text::{AT_RIGHT, caption_font};
 use super::readout::readout_strip_ui;
 use super::reference_lines::PaneLines;
-use crate::gui::widgets::controls::{painted_text, row_text};
 use crate::gui::widgets::elision::elided;
+use crate::gui::widgets::painted_text::{painted_text, row_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 
 /// Gap between two texts in a heading \[pt\].

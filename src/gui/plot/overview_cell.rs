@@ -12,8 +12,8 @@ use super::overview_scene::{MenuCurve, OverviewCell, OverviewEvent, OverviewView
 use super::painter::paint_frame;
 use super::panel_text::AT_RIGHT;
 use super::sketch::{Sketch, range_text};
-use crate::gui::widgets::controls::row_text;
 use crate::gui::widgets::elision::elided;
+use crate::gui::widgets::painted_text::row_text;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 /// Share of a cell's height for the magnitude, if the phase is shown too.

@@ -4,7 +4,8 @@ use egui::{Id, Response};
 
 use gdcm_words::derivation::ExplainTarget;
 
-use crate::gui::widgets::controls::QUESTION;
+/// Heading of the menus that open derivations, and of the sheet that shows one.
+pub const QUESTION: &str = "How was this computed?";
 
 /// Value whose derivation can be displayed.
 #[derive(Clone, Debug)]

@@ -4,8 +4,8 @@ use egui::{FontId, Rect, Role as WidgetRole, Sense, Stroke, Ui, WidgetInfo, vec2
 
 use super::curve_style::Role;
 use super::panel_text::AT_RIGHT;
-use crate::gui::widgets::controls::{painted_text, row_text};
 use crate::gui::widgets::elision::elided;
+use crate::gui::widgets::painted_text::{painted_text, row_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 
 /// Height of the strip \[pt\].

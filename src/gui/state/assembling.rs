@@ -16,7 +16,7 @@ const MOST_STEPS: usize = 200;
 
 /// Progress of reading files.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Reading {
+pub struct ReadingProgress {
     /// Current file, counted from 1.
     pub number: usize,
     /// Total number of files.
@@ -51,7 +51,7 @@ pub struct AssemblyState {
     /// Units still needed to read these tables as frequency responses, by table.
     pub unsaid: BTreeMap<String, Vec<UnsaidUnit>>,
     /// Progress of a running read.
-    pub reading: Option<Reading>,
+    pub reading: Option<ReadingProgress>,
     /// Index of the displayed model.
     pub selected: usize,
     pub sorting: Sorting,

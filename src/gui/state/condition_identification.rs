@@ -1,5 +1,9 @@
 //! Identification of models from the records of a condition: the job, the cautions about its
 //! result, and the models to adopt.
+//!
+//! `ConditionRecords::found` keeps the latest outcome with its job. `ConditionRecords::changed`
+//! tells that the settings have changed since; the cautions about the outcome are then no longer
+//! shown.
 
 use std::sync::Arc;
 
@@ -25,7 +29,7 @@ impl ConditionRecords {
     ///
     /// # Errors
     /// A message, if no record is used, if all are held out, or if a record lacks a reference.
-    pub fn job(
+    pub fn identification_job(
         &self,
         condition: ConditionId,
         band: [f64; 2],

@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 
 use gdcm_plot::figure::axis::FrequencyUnit;
 
-use super::arrangement::Arrangement;
 use super::curve_display::CurveDisplay;
 use super::display::Display;
 use super::opens_with::OpensWith;
+use super::view_arrangement::Arrangement;
 use crate::gui::plot::Role;
 use crate::gui::plot::quantity::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 use crate::gui::widgets::palette::PlotStyle;

@@ -1,6 +1,6 @@
 //! Sheets that cover part of the views.
 
-use crate::gui::widgets::controls::QUESTION;
+use crate::gui::plot::questions::QUESTION;
 
 /// Content shown by a sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! Results that the window shows: which computed results are still valid for the displayed study,
 //! and how old they may be.
 //!
-//! [`Results`](super::results::Results) keeps the last output of each kind of job, together with
+//! [`Results`](super::computed_results::Results) keeps the last output of each kind of job, together with
 //! the job. A newer output replaces it only when its job is complete. Until then the methods below
 //! return the older output, so that a view does not become empty at each change, but only if it
 //! answers the displayed question. They return `None` otherwise:

@@ -11,11 +11,11 @@ use gdcm_study::decisions::dataset_differences::Difference;
 use gdcm_study::decisions::history::History;
 
 use super::assembling::AssemblyState;
+use super::computed_results::Results;
 use super::display::Display;
 use super::forms::Forms;
 use super::notices::{MessageBar, Notice};
 use super::records::{RecordsBefore, RecordsState};
-use super::results::Results;
 
 /// Recently opened or saved file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -132,8 +132,8 @@ impl State {
     }
 
     /// Adapts the displayed selection to a replaced dataset; does nothing if the dataset is the
-    /// same. Keeps the response in focus if the dataset contains
-    /// it; otherwise selects the first on-axis response, or the first response if none is on-axis.
+    /// same. Keeps the response in focus if the dataset contains it; otherwise selects the first
+    /// on-axis response, or the first response if none is on-axis.
     pub fn follow_dataset(&mut self) {
         let dataset = &self.study.dataset;
         if Arc::ptr_eq(dataset, &self.followed) {

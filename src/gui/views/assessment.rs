@@ -15,7 +15,7 @@ use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::plot::{FigureEvent, FigureScene, figure_ui};
-use crate::gui::state::assessed_figures::{AssessedFigures, AssessedPairs, CostPart};
+use crate::gui::state::assessment_display::{AssessedPairs, AssessmentDisplay, CostPart};
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::choice_ui;
@@ -54,7 +54,7 @@ pub fn assessment_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Comma
     }
 }
 
-fn average_choice_ui(ui: &mut Ui, chosen: &mut AssessedFigures) {
+fn average_choice_ui(ui: &mut Ui, chosen: &mut AssessmentDisplay) {
     let averages = [
         (None, "as set", "Median or mean, as in the settings"),
         (
@@ -72,7 +72,7 @@ fn average_choice_ui(ui: &mut Ui, chosen: &mut AssessedFigures) {
     choice_ui(ui, name, &mut chosen.average, &averages);
 }
 
-fn correction_choice_ui(ui: &mut Ui, chosen: &mut AssessedFigures) {
+fn correction_choice_ui(ui: &mut Ui, chosen: &mut AssessmentDisplay) {
     let corrections = [
         (
             AssessedCorrection::Scheduled,
@@ -99,7 +99,7 @@ fn correction_choice_ui(ui: &mut Ui, chosen: &mut AssessedFigures) {
     choice_ui(ui, name, &mut chosen.correction, &corrections);
 }
 
-fn model_choice_ui(ui: &mut Ui, chosen: &mut AssessedFigures) {
+fn model_choice_ui(ui: &mut Ui, chosen: &mut AssessmentDisplay) {
     let models = [
         (
             AssessedModel::Nominal,
@@ -115,7 +115,7 @@ fn model_choice_ui(ui: &mut Ui, chosen: &mut AssessedFigures) {
     choice_ui(ui, "Model assessed", &mut chosen.model, &models);
 }
 
-fn pairs_choice_ui(ui: &mut Ui, chosen: &mut AssessedFigures) {
+fn pairs_choice_ui(ui: &mut Ui, chosen: &mut AssessmentDisplay) {
     let pairs = [
         (
             AssessedPairs::OnAxis,

@@ -6,7 +6,7 @@ use gdcm_study::AssessmentTable;
 use gdcm_words::Table;
 use gdcm_words::assessment::{held_out_verdict, not_assessed_text, summary_text};
 
-use crate::gui::state::assessed_figures::AssessedPairs;
+use crate::gui::state::assessment_display::AssessedPairs;
 use crate::gui::state::window_state::State;
 
 /// Returns the assessed responses in matrix order.

@@ -15,9 +15,10 @@ use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::Toggle;
-use crate::gui::widgets::controls::{is_entered, named, text_field_ui};
+use crate::gui::widgets::controls::named;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 use crate::gui::widgets::tables::{TableLook, table_ui};
+use crate::gui::widgets::text_fields::{is_entered, text_field_ui};
 
 /// Draws all variants, their differences from the current decisions, and the effects.
 pub fn compare_view_ui(

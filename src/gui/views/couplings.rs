@@ -22,8 +22,8 @@ use crate::gui::plot::{FigureScene, figure_ui};
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::choice_ui;
-use crate::gui::widgets::controls::restore_panel_size;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
+use crate::gui::widgets::panel_layout::restore_panel_size;
 use crate::gui::widgets::tables::{Sorting, TableLook, table_grid_ui};
 
 /// Minimum plot size \[pt\].

@@ -22,8 +22,9 @@ use crate::gui::plot::{FigureScene, FigureWords, figure_ui};
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::choice_ui;
-use crate::gui::widgets::controls::{number_entry_ui, restore_panel_size};
+use crate::gui::widgets::number_entry::number_entry_ui;
 use crate::gui::widgets::palette::Palette;
+use crate::gui::widgets::panel_layout::restore_panel_size;
 use crate::gui::widgets::tables::{Sorting, TableLook, table_grid_ui};
 
 /// Minimum plot size \[pt\].

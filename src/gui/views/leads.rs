@@ -14,8 +14,8 @@ use crate::gui::commands::command::Command;
 use crate::gui::plot::{FigureScene, figure_ui};
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::restore_panel_size;
 use crate::gui::widgets::palette::Palette;
+use crate::gui::widgets::panel_layout::restore_panel_size;
 use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
 
 /// Initial table width, as a share of the view's width.

@@ -22,8 +22,9 @@ use crate::gui::state::pair_set::PairSet;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::{Toggle, choice_ui};
-use crate::gui::widgets::controls::{named, restore_panel_size};
+use crate::gui::widgets::controls::named;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
+use crate::gui::widgets::panel_layout::restore_panel_size;
 use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
 
 /// Width of the controls in a single line \[pt\].

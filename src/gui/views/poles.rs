@@ -18,8 +18,8 @@ use crate::gui::plot::{FigureEvent, FigureScene, FigureView, FigureWords, figure
 use crate::gui::state::modes_cache::CachedModes;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::restore_panel_size;
 use crate::gui::widgets::palette::Palette;
+use crate::gui::widgets::panel_layout::restore_panel_size;
 use crate::gui::widgets::tables::{TableLook, table_ui};
 
 /// Ranges of real and imaginary part in the plot of slow modes \[rad/s\], which contains the

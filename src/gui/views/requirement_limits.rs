@@ -15,7 +15,8 @@ use crate::gui::commands::file::FileCommand;
 use crate::gui::commands::form::FormCommand;
 use crate::gui::state::forms::RequirementTable;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{button_ui, number_entry_ui};
+use crate::gui::widgets::controls::button_ui;
+use crate::gui::widgets::number_entry::number_entry_ui;
 use crate::gui::widgets::palette::Palette;
 
 /// Field width \[pt\].

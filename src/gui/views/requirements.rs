@@ -26,8 +26,8 @@ use crate::gui::state::requirements_page::RequirementsPage;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::{PageWords, page_tab_ui};
-use crate::gui::widgets::controls::restore_panel_size;
 use crate::gui::widgets::palette::Palette;
+use crate::gui::widgets::panel_layout::restore_panel_size;
 use crate::gui::widgets::tables::{TableClick, TableLook, table_grid_ui};
 
 /// Text above every page.

@@ -13,7 +13,8 @@ use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::study::StudyCommand;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::choice_ui;
-use crate::gui::widgets::controls::{Entered, NumberField, named_switch};
+use crate::gui::widgets::controls::named_switch;
+use crate::gui::widgets::number_field::{Entered, NumberField};
 use crate::gui::widgets::palette::Palette;
 
 /// Maximum value on a slider; larger values can be typed.

@@ -1,4 +1,7 @@
 //! Controls for choices: check boxes, switches, tabs and drop-down lists.
+//!
+//! [`choice_ui`] changes a value in place; [`DropDown`] returns the chosen entry, which may be a
+//! command.
 
 use egui::{Button, ComboBox, Response, Role, Ui, WidgetInfo};
 

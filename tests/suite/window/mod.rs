@@ -42,7 +42,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 
 use gdcm::executor::Pool;
 use gdcm::gui::app::{GdcmApp, Setup};
-use gdcm::gui::panels::explanation::toggle_costs;
+use gdcm::gui::panels::derivation_sheet::toggle_costs;
 use gdcm::gui::panels::matrix_panel::gain_conflict_marks;
 use gdcm::gui::panels::reasons::remarks_shown;
 use gdcm::gui::plot::{BodeCurve, Pane, Role as CurveRole};

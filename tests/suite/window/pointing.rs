@@ -204,7 +204,7 @@ fn what_a_tooltip_does_not_say_is_behind_the_question() {
         "{:?}",
         found.rests_on
     );
-    let text = gdcm::gui::panels::explanation::derivation_text(&found);
+    let text = gdcm::gui::panels::derivation_sheet::derivation_text(&found);
     for (symbol, meaning) in found.terms() {
         assert!(
             text.contains(&format!("{symbol}\t{meaning}")),

@@ -16,8 +16,9 @@ use super::typed_rules::{number_text, typed_factors, typed_signs, typed_units, u
 use crate::gui::commands::command::Command;
 use crate::gui::commands::form::FormCommand;
 use crate::gui::state::assembling::AssemblyState;
-use crate::gui::widgets::controls::{entry_ui, number_entry_ui};
+use crate::gui::widgets::number_entry::number_entry_ui;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
+use crate::gui::widgets::text_fields::entry_ui;
 
 const FIELD_WIDTH: f32 = 160.0;
 

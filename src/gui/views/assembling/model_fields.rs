@@ -14,7 +14,9 @@ use super::typed_rules::{
 use crate::gui::commands::command::Command;
 use crate::gui::commands::form::FormCommand;
 use crate::gui::state::assembling::AssemblyState;
-use crate::gui::widgets::controls::{entry_ui, named, typed_number};
+use crate::gui::widgets::controls::named;
+use crate::gui::widgets::number_entry::typed_number;
+use crate::gui::widgets::text_fields::entry_ui;
 
 const FIELD_WIDTH: f32 = 200.0;
 

@@ -8,8 +8,10 @@ use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::commands::command::Command;
 use crate::gui::state::assembling::AssemblyState;
 use crate::gui::state::assembly_columns::COLUMNS;
-use crate::gui::widgets::controls::{Asks, ROW_HEIGHT, named, named_switch, painted_text};
+use crate::gui::widgets::controls::{Asks, named, named_switch};
 use crate::gui::widgets::elision::elided_among;
+use crate::gui::widgets::list_row::ROW_HEIGHT;
+use crate::gui::widgets::painted_text::painted_text;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE, small};
 
 /// Index of the column in which incomplete models are marked.

@@ -14,7 +14,7 @@ use super::page::Page;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::widgets::choices::DropDown;
-use crate::gui::widgets::controls::number_entry_ui;
+use crate::gui::widgets::number_entry::number_entry_ui;
 
 const FIELD_WIDTH: f32 = 90.0;
 /// Width of the fields that apply to the displayed record only \[pt\].

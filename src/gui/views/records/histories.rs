@@ -21,8 +21,8 @@ use crate::gui::plot::chart::{Chart, ChartAxis, ChartLine, ChartSpan};
 use crate::gui::plot::chart_view::chart_ui;
 use crate::gui::plot::dragged_range::take_dragged_range;
 use crate::gui::widgets::choices::check_ui;
-use crate::gui::widgets::controls::entry_ui;
 use crate::gui::widgets::palette::Palette;
+use crate::gui::widgets::text_fields::entry_ui;
 
 /// Minimum chart height \[pt\]; further charts scroll.
 const LEAST_HEIGHT: f32 = 84.0;

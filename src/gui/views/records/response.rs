@@ -11,8 +11,9 @@ use super::frame_cache::cached;
 use super::page::Page;
 use crate::gui::plot::chart::{Chart, ChartAxis, ChartBand, ChartLine, ChartMarks, ChartSpan};
 use crate::gui::plot::chart_view::chart_ui;
-use crate::gui::widgets::controls::{named, painted_text};
+use crate::gui::widgets::controls::named;
 use crate::gui::widgets::elision::text_width;
+use crate::gui::widgets::painted_text::painted_text;
 use crate::gui::widgets::palette::{Palette, small};
 
 /// Substitute band \[rad/s\] for an identification without a job.

@@ -10,8 +10,9 @@ use super::page::Page;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{Asks, button_ui, is_entered, text_field_ui};
+use crate::gui::widgets::controls::{Asks, button_ui};
 use crate::gui::widgets::palette::Palette;
+use crate::gui::widgets::text_fields::{is_entered, text_field_ui};
 
 /// Shows the commands that add records, and questions about the added records.
 pub(super) fn source_ui(

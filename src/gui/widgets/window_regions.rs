@@ -1,10 +1,9 @@
-//! Keyboard focus: the window regions that F6 visits, and the focus ring.
+//! Window regions: F6 moves the keyboard focus from region to region, and each remembers its
+//! focused control.
 
 use std::collections::BTreeMap;
 
-use egui::{Context, Id, Key, Modifiers, Rect, Stroke, StrokeKind, Ui, pos2};
-
-use super::palette::Palette;
+use egui::{Context, Id, Rect, Ui, pos2};
 
 /// Window region, in the order in which F6 visits them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -110,7 +109,7 @@ pub fn region_ui<R>(ui: &mut Ui, region: Region, add: impl FnOnce(&mut Ui) -> R)
 }
 
 /// Marks a row as the selected row of its list, in each frame that draws it.
-pub fn begin_with(ctx: &Context, row: Id) {
+pub fn mark_selected_row(ctx: &Context, row: Id) {
     let pass = ctx.cumulative_pass_nr();
     ctx.data_mut(|data| {
         let selected = &mut data.get_temp_mut_or_default::<Regions>(key()).selected;
@@ -169,78 +168,5 @@ pub fn leave_region(ctx: &Context, forward: bool) {
         .or(target.controls.first().copied())
     {
         ctx.memory_mut(|memory| memory.request_focus(id));
-    }
-}
-
-/// Key, in egui's memory, of whether a control had the focus after the last frame.
-fn had_focus() -> Id {
-    Id::unique("had anything the focus")
-}
-
-/// Returns whether a control had the focus after the last frame. Such a control has already used
-/// Escape, and lost its focus.
-pub fn was_focused(ctx: &Context) -> bool {
-    ctx.data(|data| data.get_temp(had_focus()).unwrap_or(false))
-}
-
-/// Consumes Escape in order to close something, unless a focused control has used the key.
-pub fn take_escape(ctx: &Context) -> bool {
-    !was_focused(ctx) && ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape))
-}
-
-/// Ring width \[pt\].
-const WIDTH: f32 = 2.0;
-/// Gap between the ring and its control \[pt\].
-const GAP: f32 = 1.0;
-
-/// Draws the same focus ring around controls, list rows, cells and plots, above all other content.
-pub fn focus_ring_ui(ctx: &Context, palette: &Palette) {
-    let focused = ctx.memory(|memory| memory.focused());
-    ctx.data_mut(|data| data.insert_temp(had_focus(), focused.is_some()));
-    let Some(focused) = focused.and_then(|id| ctx.read_response(id)) else {
-        return;
-    };
-    let in_view = focused.interact_rect;
-    if !in_view.is_positive() {
-        return;
-    }
-    let painter = ctx
-        .layer_painter(focused.layer_id)
-        .with_clip_rect(in_view.expand(GAP + WIDTH));
-    painter.rect_stroke(
-        focused.rect.expand(GAP),
-        3.0,
-        Stroke::new(WIDTH, palette.accent),
-        StrokeKind::Outside,
-    );
-}
-
-#[cfg(test)]
-mod tests {
-    use egui::Color32;
-
-    use super::*;
-
-    /// Computes the relative luminance defined by the Web Content Accessibility Guidelines 2.2.
-    fn luminance(color: Color32) -> f32 {
-        let [r, g, b, _] = egui::Rgba::from(color).to_array();
-        0.2126 * r + 0.7152 * g + 0.0722 * b
-    }
-
-    #[test]
-    fn the_ring_stands_out_from_every_surface_by_three_to_one() {
-        for palette in [Palette::dark(), Palette::light()] {
-            let ring = luminance(palette.accent);
-            for surface in [
-                palette.background,
-                palette.panel,
-                palette.raised,
-                palette.selected,
-            ] {
-                let surface = luminance(surface);
-                let contrast = (ring.max(surface) + 0.05) / (ring.min(surface) + 0.05);
-                assert!(contrast >= 3.0, "{contrast} in {palette:?}");
-            }
-        }
     }
 }

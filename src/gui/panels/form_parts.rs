@@ -9,8 +9,8 @@ use gdcm_study::Analysis;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::form::FormCommand;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{is_entered, name_text_field};
 use crate::gui::widgets::palette::Palette;
+use crate::gui::widgets::text_fields::{is_entered, name_text_field};
 
 /// Form being drawn.
 pub(super) struct Form<'a, 'c> {

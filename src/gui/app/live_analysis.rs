@@ -11,11 +11,9 @@
 //! 5. `take_proof` receives a proof and starts the job again, with the same request number.
 
 use std::sync::Arc;
-use std::sync::mpsc::Receiver;
 
 use gdcm_method::correction::Solution;
 use gdcm_method::correction::problem::ProblemError;
-use gdcm_model::dataset::ConditionId;
 use gdcm_study::Study;
 use gdcm_study::jobs::analysis_jobs::ProofJob;
 use gdcm_study::jobs::curve_jobs::CurvesJob;
@@ -23,37 +21,8 @@ use gdcm_study::stages::condition_curves::ConditionCurves;
 
 use super::GdcmApp;
 use super::analysis_job::{AnalysisJob, Proof, TimedAnalysis};
-use super::background_jobs::BackgroundJobs;
-use super::faults::Fault;
-use super::report_job::ReportJob;
-use super::threads::{Reply, ReplySender};
-use crate::gui::state::notices::MessageBar;
-use crate::gui::views::need::Need;
-
-/// Requested and received results of the computation.
-pub(super) struct Computation {
-    /// Job of the live analysis that is running, waiting or complete.
-    pub(super) live_job: Option<AnalysisJob>,
-    pub(super) jobs: BackgroundJobs,
-    /// Proofs that are not yet part of the results.
-    pub(super) new_proofs: Vec<Proof>,
-    /// Jobs needed by the visible views in addition to the live analysis.
-    pub(super) needs: Vec<Need>,
-    /// Study and condition in the newest request.
-    pub(super) newest_request: Option<(Study, ConditionId)>,
-    /// Report that is being written.
-    pub(super) report_job: Option<ReportJob>,
-    pub(super) replies: ReplySender,
-    /// Replies from threads.
-    pub(super) reply_receiver: Receiver<Reply>,
-}
 
 impl GdcmApp {
-    /// Returns the time \[s\] on the window's clock.
-    pub(super) fn now(&self) -> f64 {
-        self.ctx.input(|input| input.time)
-    }
-
     /// Requests the results for the current study and condition, unless they have been requested
     /// already.
     pub(super) fn request_results(&mut self) {
@@ -102,33 +71,6 @@ impl GdcmApp {
         results.waiting_since = None;
     }
 
-    /// Requests a stopped computation again.
-    pub(super) fn compute_again(&mut self) {
-        self.work.newest_request = None;
-        self.state
-            .message_bars
-            .retain(|bar| !matches!(bar, MessageBar::Fault { .. }));
-        self.work.jobs.resume();
-    }
-
-    /// Applies the replies from the threads.
-    pub(super) fn receive_replies(&mut self) {
-        while let Ok(reply) = self.work.reply_receiver.try_recv() {
-            reply(self);
-        }
-        let now = self.now();
-        let results = &mut self.state.results;
-        results.background = self.work.jobs.running_work();
-        for proof in &self.work.new_proofs {
-            results.background.proofs.push(Arc::clone(&proof.problem));
-        }
-        if results.background.is_busy() {
-            results.background_since.get_or_insert(now);
-        } else {
-            results.background_since = None;
-        }
-    }
-
     /// Shows an analysis and requests the jobs needed to complete it.
     pub(super) fn show_analysis(&mut self, job: AnalysisJob, timed: TimedAnalysis) {
         let now = self.now();
@@ -173,22 +115,6 @@ impl GdcmApp {
         {
             self.state.results.curves = Some((job, curves));
         }
-    }
-
-    /// Reports a panic: the interrupted work, that the decisions are kept, and the details to be
-    /// sent to the authors.
-    pub(super) fn report_fault(&mut self, work: &str, fault: &Fault) {
-        let sentence = format!(
-            "A fault in the program ended {work}; your decisions are kept and can be saved: please send this message, the \
-             saved study and the dataset {} to the program's authors (gdcm {}: {}).",
-            self.files.loaded.origin,
-            env!("CARGO_PKG_VERSION"),
-            fault.words(),
-        );
-        self.state
-            .message_bars
-            .retain(|bar| !matches!(bar, MessageBar::Fault { .. }));
-        self.state.message_bars.push(MessageBar::Fault { sentence });
     }
 }
 

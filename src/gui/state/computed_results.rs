@@ -1,5 +1,10 @@
 //! Computed results with their jobs, and the state of the requests for them.
 //!
+//! Each change of the study or of the displayed condition is a request with a new, greater number.
+//! Its analysis arrives later: until `received` equals `requested`, the displayed results are older
+//! than the settings. If the request was stopped meanwhile, `stopped` is set, and no analysis is on
+//! its way. A stop of other jobs is in `Background::stopped`.
+//!
 //! Most results may be older than the displayed study: read them through the methods of `State` in
 //! `shown_results.rs`, which return a result only where it is still valid.
 

@@ -1,4 +1,4 @@
-//! Selection of responses and display of the assessment.
+//! Display options of the assessment: model, correction, responses, bars or table.
 
 use gdcm_method::fidelity::CostAverage;
 use gdcm_method::schedule::CostChange;
@@ -50,9 +50,9 @@ impl CostPart {
     }
 }
 
-/// Selection of responses and display of the assessment.
+/// Display options of the assessment.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct AssessedFigures {
+pub struct AssessmentDisplay {
     pub model: AssessedModel,
     /// Correction applied to the model.
     pub correction: AssessedCorrection,

@@ -16,10 +16,12 @@ use super::{matrix_panel, response_card, result_panel, settings_panel};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{AT_RIGHT_END, Asks, chevron, named_switch, painted_text};
+use crate::gui::widgets::controls::{Asks, named_switch};
 use crate::gui::widgets::elision::elided;
-use crate::gui::widgets::focus::{Region, region_ui, take_escape};
+use crate::gui::widgets::escape_key::take_escape;
+use crate::gui::widgets::painted_text::{AT_RIGHT_END, chevron, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium, small};
+use crate::gui::widgets::window_regions::{Region, region_ui};
 
 /// Space around everything \[pt\].
 const PADDING: f32 = 12.0;
@@ -34,7 +36,7 @@ const LEAST_WITH_CARD: f32 = 860.0;
 const LEAST_WITH_RESULT: f32 = 600.0;
 
 /// Draws verdict, result and matrix, or the open settings, above the export row.
-pub fn answer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+pub fn right_panel_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let verdict = Verdict::new(state);
     let foot = Frame::new().inner_margin(Margin::ZERO);
     Panel::bottom("export")

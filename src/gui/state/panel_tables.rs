@@ -1,9 +1,10 @@
-//! Tables as text, to be copied and saved.
+//! Tables of the panels (conditions, models, matrix, channels) as text, to be copied and saved.
 
 use gdcm_method::correction::Channel;
 use gdcm_method::fidelity::SUGGESTION_RATIO;
 use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::{BundleKind, Condition, Model, Pair};
+use gdcm_model::number_format::full_precision;
 use gdcm_model::units::s_to_ms;
 use gdcm_plot::figure::all_channels;
 use gdcm_words::Table;
@@ -55,7 +56,8 @@ impl TableKind {
     }
 }
 
-/// Builds the current table. Values have full precision; cells of missing values are empty.
+/// Builds a table of this kind from the current state. Values have full precision; cells of missing
+/// values are empty.
 pub fn table_of(state: &State, kind: TableKind) -> Table {
     match kind {
         TableKind::Conditions => conditions(state),
@@ -63,15 +65,6 @@ pub fn table_of(state: &State, kind: TableKind) -> Table {
         TableKind::IdentifiedModels => models(state, BundleKind::Identified),
         TableKind::Matrix => matrix(state),
         TableKind::Channels => channels(state),
-    }
-}
-
-/// Formats a value with full precision; empty for `None`.
-fn digits(value: Option<f64>) -> String {
-    match value {
-        // Debug writes an exponent where Display would write hundreds of zeros.
-        Some(value) if value.is_finite() => format!("{value:?}"),
-        _ => String::new(),
     }
 }
 
@@ -129,11 +122,11 @@ fn condition_row(state: &State, condition: &Condition) -> Row {
     vec![
         ("condition", id.to_string()),
         ("name", flight.name.clone()),
-        ("airspeed [kt]", digits(Some(flight.airspeed_kt))),
+        ("airspeed [kt]", full_precision(Some(flight.airspeed_kt))),
         ("altitude", flight.altitude.clone().unwrap_or_default()),
-        ("altitude [ft]", digits(flight.altitude_ft)),
+        ("altitude [ft]", full_precision(flight.altitude_ft)),
         ("weight", flight.weight.clone().unwrap_or_default()),
-        ("mass [kg]", digits(flight.mass_kg)),
+        ("mass [kg]", full_precision(flight.mass_kg)),
         ("scheduled", yes_or_no(state.study.choice(id).scheduled)),
         ("suggested outliers not rejected", suggested),
         ("held gains not matched", unmatched_gains),
@@ -177,8 +170,8 @@ fn model_row(state: &State, bundle: BundleKind, model: &Model) -> Row {
         ("chosen as representative", yes_or_no(is_pinned)),
         ("representative", yes_or_no(is_representative)),
         ("states", states),
-        ("mean distance [√J]", digits(distance)),
-        ("discontinuity ratio", digits(ratio)),
+        ("mean distance [√J]", full_precision(distance)),
+        ("discontinuity ratio", full_precision(ratio)),
         ("suggested", suggested),
     ]
 }
@@ -277,7 +270,7 @@ fn response_row(state: &State, pair: Pair) -> Row {
         ("held", yes_or_no(settings.constrained[pair])),
         ("fitted", yes_or_no(!settings.ignored[pair])),
     ];
-    row.extend(values.map(|(heading, value)| (heading, digits(value))));
+    row.extend(values.map(|(heading, value)| (heading, full_precision(value))));
     row
 }
 
@@ -315,6 +308,6 @@ fn channel_row(state: &State, channel: Channel) -> Row {
         ("side", side.to_owned()),
         ("channel", channel.name(&inputs, &outputs)),
     ];
-    row.extend(values.map(|(heading, value)| (heading, digits(value))));
+    row.extend(values.map(|(heading, value)| (heading, full_precision(value))));
     row
 }

@@ -1,5 +1,5 @@
-//! Derivation of a value: its sheet, the labels and menus that open it, and the cost of constraining
-//! or releasing the response.
+//! Derivation of a value ("How was this computed?"): its sheet, and the labels and menus that open
+//! it. For G and D, the sheet adds the cost of constraining or releasing the response.
 
 use egui::{CursorIcon, Grid, Label, Response, RichText, Sense, Ui, WidgetText};
 
@@ -10,8 +10,9 @@ use gdcm_words::sensitivity::toggle_text;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::output::OutputCommand;
 use crate::gui::commands::selection::SelectionCommand;
+use crate::gui::plot::questions::QUESTION;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{Asks, QUESTION, entries_ui};
+use crate::gui::widgets::controls::{Asks, entries_ui};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE, TITLE_SIZE, medium};
 
 /// Draws the derivation of a value in a sheet, updated with the results while it is open.

@@ -1,110 +1,21 @@
-//! Fields for text and numbers, with number formats.
+//! Numeric field that can be dragged and typed into, with unit, limits and accessible name.
+//!
+//! The drawing is egui's [`DragValue`]. This file adds the messages about refused entries and the
+//! restoring of the old value by Escape.
 
 use std::cell::RefCell;
 use std::ops::RangeInclusive;
 
-use egui::{Context, DragValue, Id, Key, Response, Role, TextEdit, Ui, WidgetInfo, vec2};
+use egui::{Context, DragValue, Id, Key, Response, Role, Ui, WidgetInfo, vec2};
 
-use gdcm_model::units::number;
+use gdcm_model::number_format::{gain_text, number, significant};
 use gdcm_study::decisions::setting_row::Digits;
-
-/// Draws a single-line text field with an accessible name.
-pub fn text_field_ui(
-    ui: &mut Ui,
-    name: &str,
-    text: &mut String,
-    hint: &str,
-    width: f32,
-) -> Response {
-    let response = ui.add(
-        TextEdit::singleline(text)
-            .hint_text(hint)
-            .desired_width(width),
-    );
-    name_text_field(&response, name, text);
-    response
-}
-
-/// Names a text field and reports its content to screen readers.
-pub fn name_text_field(response: &Response, name: &str, text: &str) {
-    response.widget_info(|| {
-        let mut info = WidgetInfo::labeled(Role::TextInput, true, name);
-        info.current_text_value = Some(text.to_owned());
-        info
-    });
-}
-
-/// Returns whether editing was ended by Enter.
-pub fn is_entered(ui: &Ui, field: &Response) -> bool {
-    field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter))
-}
-
-/// Height of a text entry \[pt\].
-const ENTRY_HEIGHT: f32 = 20.0;
-
-/// Draws a text field with an accessible name and `value`; returns the typed text after Enter or
-/// when the focus leaves.
-pub fn entry_ui(ui: &mut Ui, name: &str, value: &str, hint: &str, width: f32) -> Option<String> {
-    let id = Id::unique(("entry", name));
-    let edited = ui.data(|data| data.get_temp::<String>(id));
-    let mut text = edited.unwrap_or_else(|| value.to_owned());
-    let edit = TextEdit::singleline(&mut text)
-        .id(id.with("field"))
-        .hint_text(hint);
-    let response = ui.add_sized(vec2(width, ENTRY_HEIGHT), edit);
-    name_text_field(&response, name, &text);
-    if response.lost_focus() {
-        ui.data_mut(|data| data.remove::<String>(id));
-        let is_given_up = ui.input(|input| input.key_pressed(Key::Escape));
-        if is_given_up || text == value {
-            return None;
-        }
-        return Some(text);
-    }
-    if response.has_focus() {
-        ui.data_mut(|data| data.insert_temp(id, text));
-    }
-    None
-}
-
-/// Reason why an entry is refused.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct RefusedEntry(pub String);
-
-/// Like [`entry_ui`], but for a number; refuses any other text with the reason. The inner `None`
-/// means that the field was emptied.
-pub fn number_entry_ui<C: From<RefusedEntry>>(
-    ui: &mut Ui,
-    name: &str,
-    value: &str,
-    hint: &str,
-    width: f32,
-    commands: &mut Vec<C>,
-) -> Option<Option<f64>> {
-    match typed_number(&entry_ui(ui, name, value, hint, width)?) {
-        Ok(number) => Some(number),
-        Err(why) => {
-            commands.push(RefusedEntry(format!("{name}: {why}")).into());
-            None
-        }
-    }
-}
-
-/// Parses a number with a decimal comma or point; `None` for empty text.
-pub fn typed_number(text: &str) -> Result<Option<f64>, String> {
-    let text = text.trim().replace(',', ".");
-    if text.is_empty() {
-        return Ok(None);
-    }
-    match text.parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(Some(value)),
-        _ => Err(format!("expected a number, found \"{text}\"")),
-    }
-}
 
 /// Height of a number field \[pt\].
 const FIELD_HEIGHT: f32 = 18.0;
-/// Number of passes after Escape in which egui may still commit the typed text.
+/// Number of egui passes after Escape in which the typed text must not be committed. egui reports a
+/// loss of focus in two passes, but the key only in the first: in the second, [`DragValue`] would
+/// commit the text that Escape has given up.
 const PASSES_AFTER_ESCAPE: u64 = 2;
 
 /// Numeric input with unit, limits and accessible name.
@@ -126,7 +37,7 @@ pub struct NumberField<'a> {
     pub digits: Digits,
 }
 
-/// Result of an edit in this frame.
+/// Outcome of editing a field in this frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Entered {
     /// New number, if it is valid.
@@ -158,16 +69,24 @@ impl<'a> NumberField<'a> {
     /// Draws the field with `value`. Dragging stays within the range; a typed number is committed
     /// by Enter or by a loss of focus, and Escape restores the old value.
     pub fn ui(&self, ui: &mut Ui, value: f64) -> Entered {
-        let pass = ui.ctx().cumulative_pass_nr();
-        let escaped = ui.data(|data| data.get_temp::<u64>(self.key("escaped")));
-        let is_escaped = escaped.is_some_and(|escaped| pass - escaped <= PASSES_AFTER_ESCAPE);
-        let wrong = RefCell::new(None);
-        let mut entered = value;
-        let mut field = DragValue::new(&mut entered)
+        let is_escaped = self.is_escaped(ui);
+        // The parser is a shared closure, so the text that it cannot parse leaves it in a cell.
+        let unparsed = RefCell::new(None);
+        let mut edited = value;
+        let mut field = DragValue::new(&mut edited)
             .update_while_editing(false)
             .speed(self.step)
             .custom_formatter(|value, _| number_text(self.digits, value))
-            .custom_parser(|text| self.read(text, value, is_escaped, &wrong));
+            .custom_parser(|text| {
+                if is_escaped {
+                    return None;
+                }
+                let number = self.parse(text, value);
+                if number.is_none() {
+                    *unparsed.borrow_mut() = Some(text.trim().to_owned());
+                }
+                number
+            });
         if self.shows_unit {
             field = field.suffix(format!(" {}", self.unit));
         }
@@ -178,47 +97,50 @@ impl<'a> NumberField<'a> {
         };
         let enabled = response.enabled();
         response.widget_info(|| WidgetInfo::labeled(Role::SpinButton, enabled, self.name));
-        if response.lost_focus() && ui.input(|input| input.key_pressed(Key::Escape)) {
-            ui.data_mut(|data| data.insert_temp(self.key("escaped"), pass));
-        }
-        ui.data_mut(|data| data.insert_temp(self.key("field"), response.id));
-        let entered = self.entered(value, entered, wrong.into_inner(), &response);
+        self.note_escape(ui, &response);
+        ui.data_mut(|data| data.insert_temp(field_key(self.name), response.id));
+        let outcome = self.outcome(value, edited, unparsed.into_inner(), &response);
         response.on_hover_text(self.hint);
-        entered
+        outcome
     }
 
-    /// Returns the key of `item`, a value that this field keeps in egui's memory between frames.
-    fn key(&self, item: &str) -> Id {
-        Id::unique((item, self.name))
+    /// Key, in egui's memory, of the pass in which Escape last ended editing.
+    fn escape_key(&self) -> Id {
+        Id::unique(("escaped", self.name))
+    }
+
+    /// Records the pass in which Escape ends editing.
+    fn note_escape(&self, ui: &Ui, response: &Response) {
+        if response.lost_focus() && ui.input(|input| input.key_pressed(Key::Escape)) {
+            let pass = ui.ctx().cumulative_pass_nr();
+            ui.data_mut(|data| data.insert_temp(self.escape_key(), pass));
+        }
+    }
+
+    /// Returns whether Escape has just ended editing; see [`PASSES_AFTER_ESCAPE`].
+    fn is_escaped(&self, ui: &Ui) -> bool {
+        let pass = ui.ctx().cumulative_pass_nr();
+        let escaped = ui.data(|data| data.get_temp::<u64>(self.escape_key()));
+        escaped.is_some_and(|escaped| pass - escaped <= PASSES_AFTER_ESCAPE)
     }
 
     /// Parses the typed number; an unedited text returns the exact old value, which the text may
     /// round.
-    fn read(
-        &self,
-        text: &str,
-        value: f64,
-        is_escaped: bool,
-        wrong: &RefCell<Option<String>>,
-    ) -> Option<f64> {
-        if is_escaped {
-            return None;
-        }
+    fn parse(&self, text: &str, value: f64) -> Option<f64> {
         if text == number_text(self.digits, value) {
             return Some(value);
         }
-        let number = number_in(text, self.unit);
-        if number.is_none() {
-            *wrong.borrow_mut() = Some(text.trim().to_owned());
-        }
-        number
+        number_in(text, self.unit)
     }
 
-    fn entered(
+    /// Accepts or refuses the number `after`, which replaces `before`; `unparsed` is a typed text that
+    /// is not a number. A dragged number stays within the range, and need not be whole before the
+    /// pointer is released.
+    fn outcome(
         &self,
         before: f64,
         after: f64,
-        wrong: Option<String>,
+        unparsed: Option<String>,
         response: &Response,
     ) -> Entered {
         let is_dragged = response.dragged();
@@ -227,23 +149,23 @@ impl<'a> NumberField<'a> {
         } else {
             after
         };
-        let is_allowed =
-            self.range.contains(&after) && (!self.is_whole || after.fract() == 0.0 || is_dragged);
-        let mut entered = Entered {
+        let has_allowed_digits = !self.is_whole || after.fract() == 0.0 || is_dragged;
+        let is_allowed = self.range.contains(&after) && has_allowed_digits;
+        let mut outcome = Entered {
             value: None,
             refusal: None,
             is_dragged,
             is_ended: response.drag_stopped() || response.lost_focus(),
         };
         if after != before && is_allowed {
-            entered.value = Some(after);
+            outcome.value = Some(after);
         }
-        if let Some(text) = wrong {
-            entered.refusal = Some(self.refusal(&format!("\"{text}\""), before));
+        if let Some(text) = unparsed {
+            outcome.refusal = Some(self.refusal(&format!("\"{text}\""), before));
         } else if after != before && !is_allowed {
-            entered.refusal = Some(self.refusal(&number(after), before));
+            outcome.refusal = Some(self.refusal(&number(after), before));
         }
-        entered
+        outcome
     }
 
     /// Returns the refusal, for example "Band from: expected a number from 0.0001 to 12 rad/s,
@@ -270,15 +192,22 @@ impl<'a> NumberField<'a> {
     }
 }
 
+/// Key, in egui's memory, of the id of the field with this name.
+fn field_key(name: &str) -> Id {
+    Id::unique(("field", name))
+}
+
 /// Focuses the field with this name if it is in the window.
 pub fn focus_field(ctx: &Context, name: &str) {
-    if let Some(id) = ctx.data(|data| data.get_temp::<Id>(Id::unique(("field", name)))) {
+    if let Some(id) = ctx.data(|data| data.get_temp::<Id>(field_key(name))) {
         ctx.memory_mut(|memory| memory.request_focus(id));
     }
 }
 
-/// Parses a finite number with or without its unit; a single comma is a decimal separator, and the
-/// minus sign may be typographical.
+/// Parses a finite number with or without its unit, which the field shows and which is therefore often
+/// typed or pasted with the number. The minus sign may be typographical, as in copied text. A single
+/// comma is a decimal separator; "1.000,5" and "1,000,000" are refused, because either mark could
+/// separate thousands.
 fn number_in(text: &str, unit: &str) -> Option<f64> {
     let text = text.trim();
     let text = text
@@ -305,39 +234,9 @@ fn number_text(digits: Digits, value: f64) -> String {
     }
 }
 
-/// Formats three significant digits, without an exponent from 0.001 to 9999.
-fn significant(value: f64) -> String {
-    if value == 0.0 {
-        return "0".to_owned();
-    }
-    let magnitude = value.abs().log10().floor();
-    if (-3.0..4.0).contains(&magnitude) {
-        format!("{value:.*}", (2.0 - magnitude).max(0.0) as usize)
-    } else {
-        format!("{value:.2e}")
-    }
-}
-
-/// Formats a gain with three decimals, or two if the third is zero; a gain below 0.1 with three
-/// significant digits.
-fn gain_text(gain: f64) -> String {
-    if gain < 0.1 {
-        return significant(gain);
-    }
-    let text = format!("{gain:.3}");
-    text.strip_suffix('0').map(str::to_owned).unwrap_or(text)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_number_is_taken_with_a_comma_or_a_point_and_nothing_else_is() {
-        assert_eq!(typed_number(" 1,5 "), Ok(Some(1.5)));
-        assert_eq!(typed_number(""), Ok(None));
-        assert!(typed_number("12 kt").is_err() && typed_number("inf").is_err());
-    }
 
     #[test]
     fn alpha_is_shown_with_three_significant_digits() {

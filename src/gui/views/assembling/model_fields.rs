@@ -18,11 +18,13 @@ use crate::gui::widgets::controls::{entry_ui, named, typed_number};
 
 const FIELD_WIDTH: f32 = 200.0;
 
-/// How the text of a field changes the rule of a model; an empty text removes the setting.
+/// How the text of a field changes the rule of a model; an empty text removes the setting. The
+/// first three kinds return the place in the rule that receives the parsed text.
 enum Effect {
     Text(fn(&mut RowRule) -> &mut Option<String>),
     Number(fn(&mut RowRule) -> &mut Option<f64>),
     Names(fn(&mut RowRule) -> &mut Option<Vec<String>>),
+    /// Parses the text and changes the rule; the error is the reason for refusing the text.
     Parsed(fn(&mut RowRule, &str) -> Result<(), String>),
 }
 
@@ -44,6 +46,7 @@ impl Field {
         }
     }
 
+    /// Changes `rule` as the text requires, or returns the reason for refusing the text.
     fn apply(&self, text: &str, rule: &mut RowRule) -> Result<(), String> {
         match self.effect {
             Effect::Text(place) => *place(rule) = typed_text(text),

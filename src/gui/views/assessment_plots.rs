@@ -12,7 +12,7 @@ use gdcm_words::assessment::{missing_cost_text, not_assessed_text};
 use gdcm_words::derivation::ExplainTarget;
 
 use crate::gui::plot::FigureWords;
-use crate::gui::plot::questions::Question;
+use crate::gui::plot::derivation_menu::Question;
 use crate::gui::state::window_state::State;
 
 /// Bar width, relative to the distance between conditions.

@@ -20,7 +20,7 @@ use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
 const MOST_TABLE: f32 = 330.0;
 
 /// Shows the findings first (significant differences, a superfluous second variable, sources of the
-/// scatter), then the tables from which they follow.
+/// scatter), then the tables of differences, second variables and forms of the schedule.
 pub fn evidence_view_ui(
     ui: &mut Ui,
     state: &mut State,

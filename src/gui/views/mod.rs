@@ -7,6 +7,7 @@ pub mod assessment;
 pub mod assessment_content;
 mod assessment_header;
 mod assessment_plots;
+mod assessment_words;
 mod automatic_settings;
 mod bandwidth;
 mod bandwidth_settings;

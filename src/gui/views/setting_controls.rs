@@ -1,7 +1,8 @@
 //! Controls for the rows of the settings table, by kind of setting: flag, choice, number, slider,
 //! threshold. Settings that the program may determine are in `automatic_settings`.
 //!
-//! A drag pushes a change in each frame; `StudyCommand::EndEdit` joins them into an undo step.
+//! A drag pushes a change in each frame; `StudyCommand::EndEdit` ends the undo step that they
+//! share.
 
 use egui::{Role, Slider, Ui, WidgetInfo};
 

@@ -14,6 +14,7 @@ mod preview;
 mod preview_curve;
 mod problems;
 mod rule_changes;
+mod rule_setters;
 mod source_bar;
 mod typed_rules;
 

@@ -32,7 +32,7 @@ const FIT_MARGIN: f64 = 0.04;
 /// The view moves only at the engineer's request, not when curves are recomputed. For another
 /// response or condition, value ranges that have not been zoomed are fitted once.
 ///
-/// Two kinds of state control the visible ranges: a [`ViewedRange`] records whether the engineer
+/// Two kinds of state control the visible ranges: a `ViewedRange` records whether the engineer
 /// chose it, and `must_fit_frequencies`, `must_fit_values` request a fit in the next frame that has
 /// data. A fit leaves a chosen range unchanged, so a request that concerns chosen ranges releases
 /// them first.

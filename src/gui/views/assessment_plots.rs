@@ -1,4 +1,4 @@
-//! Stacked bars for the change of J in each condition; `assessment_words` describes them.
+//! Stacked bars for the change of J in each condition; `assessment_bar_words` describes them.
 
 use gdcm_method::schedule::CostChange;
 use gdcm_model::dataset::{ConditionId, Pair};

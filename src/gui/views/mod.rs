@@ -4,10 +4,10 @@
 pub mod across;
 pub mod assembling;
 pub mod assessment;
+mod assessment_bar_words;
 pub mod assessment_content;
 mod assessment_header;
 mod assessment_plots;
-mod assessment_words;
 mod automatic_settings;
 mod bandwidth;
 mod bandwidth_settings;

@@ -10,7 +10,7 @@ use gdcm_words::sensitivity::toggle_text;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::output::OutputCommand;
 use crate::gui::commands::selection::SelectionCommand;
-use crate::gui::plot::questions::QUESTION;
+use crate::gui::plot::derivation_menu::QUESTION;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::{Asks, entries_ui};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE, TITLE_SIZE, medium};

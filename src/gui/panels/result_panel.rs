@@ -15,7 +15,7 @@ use super::table_menu::table_menu_ui;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::commands::selection::SelectionCommand;
-use crate::gui::plot::questions::QUESTION;
+use crate::gui::plot::derivation_menu::QUESTION;
 use crate::gui::state::panel_tables::TableKind;
 use crate::gui::state::sheet::Sheet;
 use crate::gui::state::window_state::State;

@@ -8,8 +8,8 @@ use egui::{
 use super::bode_axis::BodeAxis;
 use super::bode_view::BodeView;
 use super::limits_form::{FormAnswer, LimitsForm};
-use super::navigation::ZoomGesture;
 use super::pane_scene::PaneScene;
+use super::zoom_gesture::ZoomGesture;
 
 /// Screen strip along an axis.
 struct AxisStrip<'a> {

@@ -3,35 +3,30 @@
 
 use std::borrow::Cow;
 
-use egui::{CursorIcon, Pos2, Rect, Response, Ui, UiBuilder, Vec2, vec2};
-use egui_plot::PlotTransform;
+use egui::{CursorIcon, Rect, Ui, UiBuilder, Vec2, vec2};
 
 use super::band_handles::band_handles_ui;
 use super::bode_event::BodeEvent;
 use super::bode_headings::BodeHeadings;
+use super::bode_keys::pressed_role;
 use super::bode_layout::BodeLayout;
 use super::bode_pane::pane_ui;
+use super::bode_pointer::{Pointing, handle_click, open_menu, takes_clicks};
 use super::bode_scene::BodeScene;
-use super::bode_view::{BodeView, MenuSubject};
+use super::bode_view::BodeView;
 use super::chips::{Chips, role_chips};
-use super::curve_command::CurveCommand;
 use super::curve_layer::CurveLooks;
 use super::curve_menu::menu_ui;
 use super::drawn_curves::{BodeCurve, CurveId, PANES, Pane};
-use super::navigation::pressed_digit;
-use super::nearest_curve::{Hit, curves_in, nearest_curve};
-use super::painter::use_frame_colors;
+use super::nearest_curve::curves_in;
 use super::pane_scene::PaneScene;
+use super::panel_painter::use_frame_colors;
 use super::panel_text::message_ui;
-use super::reference_lines::PaneLines;
 use super::thinning::is_finite;
 use crate::gui::widgets::palette::Palette;
 
 /// Minimum size with room for two plots \[pt\].
 const LEAST_SIZE: Vec2 = vec2(140.0, 130.0);
-/// Distance from a reference line within which the pointer counts as on the line, even over a curve
-/// \[pt\].
-const ON_LINE: f32 = 1.0;
 
 /// Draws a Bode plot into the remaining space in `ui`.
 pub fn bode_ui(
@@ -134,14 +129,6 @@ fn visible_curves(curves: &[BodeCurve]) -> Cow<'_, [BodeCurve]> {
     Cow::Owned(visible.cloned().collect())
 }
 
-/// Returns the request for a pressed digit, which toggles the role chip with this number.
-fn pressed_role(ui: &Ui, scene: &BodeScene<'_>, palette: &Palette) -> Option<CurveCommand> {
-    let digit = pressed_digit(ui)?;
-    let chips = role_chips(scene.curves, scene.hidden_roles, palette);
-    let chip = chips.get(digit - 1)?;
-    Some(CurveCommand::ToggleRole(chip.role))
-}
-
 /// Returns the chips of all roles, including hidden roles, and of the current restrictions of the
 /// plot.
 fn plot_chips<'a>(scene: &BodeScene<'a>, view: &BodeView, palette: &Palette) -> Chips<'a> {
@@ -234,130 +221,9 @@ impl Panes<'_> {
     }
 }
 
-/// Opens the menu for the curve, or for the empty ground, on a secondary click.
-fn open_menu(
-    response: &Response,
-    scene: &BodeScene<'_>,
-    pointing: Option<Pointing>,
-    view: &mut BodeView,
-) {
-    if response.secondary_clicked()
-        && let Some(pointing) = pointing
-    {
-        let curve = pointing.hit.map(|hit| scene.curves[hit.curve].id.clone());
-        view.menu_subject = Some(MenuSubject {
-            curve,
-            omega: 10f64.powf(pointing.log_omega),
-            reason: String::new(),
-        });
-    }
-}
-
-/// Pointer position in the plots as drawn in the last frame.
-#[derive(Clone, Copy, Debug)]
-struct Pointing {
-    log_omega: f64,
-    hit: Option<Hit>,
-}
-
-impl Pointing {
-    fn find(ui: &Ui, scene: &BodeScene<'_>, view: &BodeView) -> Option<Self> {
-        let pointer = ui.input(|input| input.pointer.hover_pos())?;
-        let is_dragging = ui.input(|input| input.pointer.is_decidedly_dragging());
-        for pane in PANES {
-            let Some(transform) = view.transform(pane) else {
-                continue;
-            };
-            let frame = *transform.frame();
-            if !frame.contains(pointer) || !ui.rect_contains_pointer(frame) {
-                continue;
-            }
-            // During dragging, curves that pass under the pointer are ignored.
-            let mut hit = None;
-            if !is_dragging {
-                hit = curve_at(scene, pane, pointer, transform);
-            }
-            let log_omega = transform.value_from_position(pointer).x;
-            return Some(Self { log_omega, hit });
-        }
-        None
-    }
-}
-
-/// Returns the curve under the pointer: the nearest curve; `None` if a reference line is as near or
-/// within [`ON_LINE`], because reference lines are drawn on top.
-fn curve_at(
-    scene: &BodeScene<'_>,
-    pane: Pane,
-    pointer: Pos2,
-    transform: &PlotTransform,
-) -> Option<Hit> {
-    let hit = nearest_curve(scene.curves, pane, pointer, transform)?;
-    let lines = PaneLines {
-        lines: scene.rules,
-        pane,
-        transform,
-    };
-    match lines.distance(pointer) {
-        Some(distance) if distance <= hit.distance.max(ON_LINE) => None,
-        _ => Some(hit),
-    }
-}
-
-/// Returns whether a click on the curve has an effect: on every curve except the reference.
-fn takes_clicks(scene: &BodeScene<'_>, hit: Hit) -> bool {
-    scene.reference != Some(&scene.curves[hit.curve].id)
-}
-
 fn set_hovered(view: &mut BodeView, hovered: Option<CurveId>, events: &mut Vec<BodeEvent>) {
     if view.hovered != hovered {
         view.hovered.clone_from(&hovered);
         events.push(BodeEvent::Hovered(hovered));
-    }
-}
-
-/// Returns the event of a click on the nearest curve; a click on the reference has no effect. The
-/// second click of a double click undoes the first if the first was on a curve; on empty ground, it
-/// fits the plot.
-fn handle_click(
-    pane: Pane,
-    scene: &BodeScene<'_>,
-    response: &Response,
-    view: &mut BodeView,
-) -> Option<BodeEvent> {
-    if !response.clicked() {
-        return None;
-    }
-    let clicked = clicked_curve(pane, scene, response, view);
-    let before = view.last_clicked.take();
-    if response.double_clicked() {
-        if before.is_none() && clicked.is_none() {
-            view.request_fit();
-            response.ctx.request_repaint();
-        }
-        return before.map(BodeEvent::ClickUndone);
-    }
-    let id = clicked?;
-    if response.ctx.input(|input| input.modifiers.alt) {
-        Some(BodeEvent::Isolated(id))
-    } else {
-        view.last_clicked = Some(id.clone());
-        Some(BodeEvent::Clicked(id))
-    }
-}
-
-/// Returns the clicked curve; `None` for the reference, on which a click has no effect.
-fn clicked_curve(
-    pane: Pane,
-    scene: &BodeScene<'_>,
-    response: &Response,
-    view: &BodeView,
-) -> Option<CurveId> {
-    let pointer = response.interact_pointer_pos()?;
-    let hit = curve_at(scene, pane, pointer, view.transform(pane)?)?;
-    if takes_clicks(scene, hit) {
-        Some(scene.curves[hit.curve].id.clone())
-    } else {
-        None
     }
 }

@@ -12,7 +12,7 @@ use super::drawn_curves::{PANES, Pane};
 use super::end_labels::{EndLabel, height_beside, paint_end_labels};
 use super::panel_axis::TICKS_HEIGHT;
 use super::panel_text::{AT_RIGHT, caption_font};
-use super::readout::readout_strip_ui;
+use super::readout_strip::readout_strip_ui;
 use super::reference_lines::PaneLines;
 use crate::gui::widgets::elision::elided;
 use crate::gui::widgets::painted_text::{painted_text, row_text};

@@ -9,17 +9,19 @@ use super::axis_strip::axis_strips_ui;
 use super::bode_keys::handle_keys;
 use super::bode_layout::VALUE_AXIS_WIDTH;
 use super::bode_view::{BodeView, SelectionBox};
-use super::cached_raster::StillImage;
-use super::curve_layer::{DrawnPane, STALE, add_curve_lines, lies_at_the_bottom};
+use super::cached_raster::RasterImage;
+use super::curve_layer::{STALE, add_curve_lines, lies_at_the_bottom};
+use super::drawn_box::drawn_box_ui;
 use super::drawn_curves::{BodeCurve, DrawnCurves, Pane, VisiblePart};
+use super::drawn_pane::DrawnPane;
 use super::invalid_region::{InvalidStrip, add_hatching};
 use super::layers::{DrawnItem, add_area, add_dotted_vertical, add_shade, add_vertical};
-use super::navigation::{ZoomGesture, drawn_box_ui};
-use super::painter::{Gestures, PanelPainter};
 use super::pane_scene::PaneScene;
 use super::panel_axis::{PanelAxis, TICKS_HEIGHT};
+use super::panel_painter::{Gestures, PanelPainter};
 use super::reference_lines::PaneLines;
 use super::ticks::Ticks;
+use super::zoom_gesture::ZoomGesture;
 use crate::gui::widgets::palette::Palette;
 
 /// Maximum deviation of a drawn line from its curve \[pt\].
@@ -202,7 +204,7 @@ impl<'a> PaneScene<'a> {
 
     /// Draws the curves, the most important on top. If `image` holds the curves at the bottom, it
     /// is drawn instead of their lines; the emphasized curves among them are drawn on top as lines.
-    fn add_curves(self, plot: &mut PlotUi<'a>, drawn: &'a DrawnCurves, image: Option<StillImage>) {
+    fn add_curves(self, plot: &mut PlotUi<'a>, drawn: &'a DrawnCurves, image: Option<RasterImage>) {
         let looks = self.looks;
         let mut curves: Vec<(usize, &BodeCurve)> = self.scene.curves.iter().enumerate().collect();
         if let Some(image) = image {

@@ -12,7 +12,7 @@ use super::chips::Chip;
 use super::curve_style::Role;
 use super::drawn_curves::{BodeCurve, CurveId};
 use super::quantity::BodeQuantity;
-use super::readout::Readout;
+use super::readout_strip::Readout;
 
 /// Content of a Bode plot.
 #[derive(Clone, Copy, Debug, Default)]

@@ -8,10 +8,10 @@ use gdcm_plot::figure::responses::fitted_values;
 
 use super::bode_axis::BodeAxis;
 use super::bode_scene::BodeScene;
-use super::curve_layer::DrawnPane;
 use super::drawn_curves::{BodeCurve, CurveId, PANES, Pane};
+use super::drawn_pane::DrawnPane;
 use super::limits_form::LimitsForm;
-use super::quantity::ValueUnit;
+use super::value_unit::ValueUnit;
 use super::viewed_range::{ViewedRange, bounds_of};
 
 /// Permitted widths of the visible frequency range \[decades\].
@@ -31,6 +31,11 @@ const FIT_MARGIN: f64 = 0.04;
 ///
 /// The view moves only at the engineer's request, not when curves are recomputed. For another
 /// response or condition, value ranges that have not been zoomed are fitted once.
+///
+/// Two kinds of state control the visible ranges: a `ViewedRange` records whether the engineer
+/// chose it, and `must_fit_frequencies`, `must_fit_values` request a fit in the next frame that has
+/// data. A fit leaves a chosen range unchanged, so a request that concerns chosen ranges releases
+/// them first.
 #[derive(Clone, Debug)]
 pub struct BodeView {
     log_omega: ViewedRange,
@@ -71,16 +76,6 @@ pub(super) struct SelectionBox {
     pub(super) pane: Pane,
     /// Place on the screen.
     pub(super) area: Rect,
-}
-
-/// Returns the range of `log10 omega` from the first to the last frequency.
-fn log_omega_of(curves: &[BodeCurve]) -> Option<Range> {
-    Range::spanning(
-        curves
-            .iter()
-            .flat_map(|curve| curve.omega.iter())
-            .map(|omega| omega.log10()),
-    )
 }
 
 impl Default for BodeView {
@@ -317,4 +312,14 @@ impl BodeView {
             }
         }
     }
+}
+
+/// Returns the range of `log10 omega` from the first to the last frequency.
+fn log_omega_of(curves: &[BodeCurve]) -> Option<Range> {
+    Range::spanning(
+        curves
+            .iter()
+            .flat_map(|curve| curve.omega.iter())
+            .map(|omega| omega.log10()),
+    )
 }

@@ -8,12 +8,12 @@ use gdcm_plot::figure::Range;
 use super::chart::{Chart, ChartAxis};
 use super::chart_layers::{add_layers, visible_ends};
 use super::dragged_range::store_dragged_range;
-use super::navigation::ZoomGesture;
-use super::painter::{Follow, Gestures, PanelPainter};
 use super::panel_axis::{LABELLED_HEIGHT, PanelAxis, TICKS_HEIGHT};
+use super::panel_painter::{Follow, Gestures, PanelPainter};
 use super::panel_text::caption_font;
 use super::ticks::{Ticks, VERTICAL_TICK_GAP};
 use super::viewed_range::{ZoomLimit, ranges_of, zoomed_within};
+use super::zoom_gesture::ZoomGesture;
 use crate::gui::widgets::palette::Palette;
 
 const TITLE_HEIGHT: f32 = 18.0;

@@ -1,8 +1,10 @@
-//! Line of chips: places, appearance and accessible names of the single chips.
+//! Lines of chips: places, appearance and accessible names of the single chips.
+
+use std::sync::Arc;
 
 use egui::{
-    Color32, CursorIcon, FontId, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, WidgetInfo,
-    pos2, vec2,
+    Color32, CursorIcon, FontId, Galley, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui,
+    WidgetInfo, pos2, vec2,
 };
 
 use super::curve_style::CurveStyle;
@@ -24,7 +26,7 @@ pub(super) struct ChipFace<'a> {
     pub(super) name: &'a str,
     /// Curve sample, if the chip switches curves.
     pub(super) sample: Option<Sample>,
-    /// Whether the outline has the accent colour.
+    /// Whether the outline has the accent colour even when the pointer is elsewhere.
     pub(super) is_lit: bool,
 }
 
@@ -48,17 +50,17 @@ pub(super) struct ChipRow {
     area: Rect,
     /// Upper left corner of the next chip.
     corner: Pos2,
-    /// Sample length \[pt\].
-    sample: f32,
+    /// Length of curve samples \[pt\].
+    sample_length: f32,
 }
 
 impl ChipRow {
-    /// Starts at the upper left corner of `area`, with samples of a length \[pt\].
-    pub(super) fn new(area: Rect, sample: f32) -> Self {
+    /// Starts at the upper left corner of `area`, with samples of this length \[pt\].
+    pub(super) fn new(area: Rect, sample_length: f32) -> Self {
         Self {
             area,
             corner: area.min,
-            sample,
+            sample_length,
         }
     }
 
@@ -67,20 +69,17 @@ impl ChipRow {
         self.corner.y - self.area.top() + LINE_HEIGHT
     }
 
-    /// Draws a chip: with a curve sample, pale and dashed if the curves are hidden; in the accent
-    /// colour if it has no sample.
+    /// Draws a chip. With a curve sample it is a switch, pale and with a dashed outline while its
+    /// curves are hidden; without a sample it is a button on the ground of selected rows.
     pub(super) fn chip_ui(&mut self, ui: &Ui, face: &ChipFace<'_>, palette: &Palette) -> Response {
-        let color = if face.is_hidden() {
+        let text_color = if face.is_hidden() {
             palette.dim_text
         } else {
             palette.text
         };
-        let font = FontId::proportional(SMALL_SIZE);
-        let galley = ui
-            .painter()
-            .layout_no_wrap(face.text.to_owned(), font, color);
+        let galley = chip_text(ui, face.text, text_color);
         let before = match face.sample {
-            Some(_) => self.sample + SAMPLE_GAP,
+            Some(_) => self.sample_length + SAMPLE_GAP,
             None => 0.0,
         };
         let place = self.next_place(galley.size().x + before + 2.0 * PAD);
@@ -93,19 +92,7 @@ impl ChipRow {
             None => WidgetInfo::labeled(egui::Role::Button, true, face.name),
         });
         let is_lit = face.is_lit || response.hovered() || response.has_focus();
-        let ground = match face.sample {
-            Some(_) => palette.panel,
-            None => palette.selected,
-        };
-        let color = if is_lit { palette.accent } else { palette.line };
-        let line = Stroke::new(1.0, color);
-        if face.is_hidden() {
-            paint_dashed_outline(ui, place, line);
-        } else {
-            let radius = 0.5 * place.height();
-            ui.painter()
-                .rect(place, radius, ground, line, StrokeKind::Inside);
-        }
+        paint_outline(ui, place, face, is_lit, palette);
         if let Some(sample) = face.sample {
             self.paint_sample(ui, place, sample);
         }
@@ -113,7 +100,8 @@ impl ChipRow {
             place.left() + PAD + before,
             place.center().y - 0.5 * galley.size().y,
         );
-        ui.painter().galley(at, galley, color);
+        // The last argument applies only to text that was laid out without a colour.
+        ui.painter().galley(at, galley, text_color);
         response.on_hover_cursor(CursorIcon::PointingHand)
     }
 
@@ -134,11 +122,34 @@ impl ChipRow {
             style.color = style.color.gamma_multiply(0.5);
         }
         let start = pos2(place.left() + PAD, place.center().y);
-        let end = pos2(place.left() + PAD + self.sample, place.center().y);
+        let end = pos2(place.left() + PAD + self.sample_length, place.center().y);
         let mut shapes = Vec::new();
         style.add_shapes(vec![start, end], &mut shapes);
         ui.painter().extend(shapes);
     }
+}
+
+/// Lays out the text of a chip.
+fn chip_text(ui: &Ui, text: &str, color: Color32) -> Arc<Galley> {
+    let font = FontId::proportional(SMALL_SIZE);
+    ui.painter().layout_no_wrap(text.to_owned(), font, color)
+}
+
+/// Paints the ground and the outline of a chip; the outline of a lit chip has the accent colour.
+fn paint_outline(ui: &Ui, place: Rect, face: &ChipFace<'_>, is_lit: bool, palette: &Palette) {
+    let color = if is_lit { palette.accent } else { palette.line };
+    let outline = Stroke::new(1.0, color);
+    if face.is_hidden() {
+        paint_dashed_outline(ui, place, outline);
+        return;
+    }
+    let ground = match face.sample {
+        Some(_) => palette.panel,
+        None => palette.selected,
+    };
+    let radius = 0.5 * place.height();
+    ui.painter()
+        .rect(place, radius, ground, outline, StrokeKind::Inside);
 }
 
 /// Paints the outline of a chip whose curves are hidden.
@@ -167,9 +178,5 @@ fn rounded(place: Rect, radius: f32) -> Vec<Pos2> {
 
 /// Returns the width of a chip without its sample, including the gap to the next chip \[pt\].
 pub(super) fn chip_width(ui: &Ui, text: &str) -> f32 {
-    let font = FontId::proportional(SMALL_SIZE);
-    let galley = ui
-        .painter()
-        .layout_no_wrap(text.to_owned(), font, Color32::PLACEHOLDER);
-    galley.size().x + 2.0 * PAD + GAP
+    chip_text(ui, text, Color32::PLACEHOLDER).size().x + 2.0 * PAD + GAP
 }

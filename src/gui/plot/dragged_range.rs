@@ -1,5 +1,5 @@
-//! Horizontal range selected by dragging in a group of charts. A chart of the group stores the range
-//! while it is drawn; the view takes it from there.
+//! Horizontal range selected by dragging in a group of charts. A chart of the group stores the
+//! range while it is drawn; the view takes it from there.
 
 use egui::{Id, Pos2, Ui};
 use egui_plot::PlotUi;

@@ -11,8 +11,8 @@ use super::figure_marks::{DrawnMarks, MarkScene, RING};
 use super::figure_scene::FigureScene;
 use super::figure_zoom::{navigated_ranges, whole_ranges};
 use super::nearest_dot::{PointedMark, nearest_dot};
-use super::painter::{Gestures, PanelPainter};
 use super::panel_axis::{LABELLED_HEIGHT, PanelAxis, TICKS_HEIGHT, TickSpacing, tick_font};
+use super::panel_painter::{Gestures, PanelPainter};
 use super::panel_text::caption_font;
 use super::ticks::Ticks;
 use super::viewed_range::bounds_of;
@@ -56,7 +56,8 @@ impl PanelView {
     }
 }
 
-/// Panel of a figure at its position.
+/// Panel of a figure at its position on the screen, given by the indices of its plot and of the
+/// panel in the plot.
 pub(super) struct PlacedPanel<'a> {
     pub(super) scene: &'a FigureScene<'a>,
     /// Index of the plot in the figure.

@@ -5,7 +5,7 @@ use egui::{Modifiers, Vec2};
 use gdcm_plot::figure::{Figure, MarkId};
 use gdcm_words::derivation::ExplainTarget;
 
-use super::questions::Question;
+use super::derivation_menu::Question;
 
 /// Descriptions of a figure's plots and marks. A plot is given by its index, a mark by its id and
 /// its axis coordinates.

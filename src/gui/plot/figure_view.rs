@@ -5,12 +5,12 @@ use egui_plot::{PlotPoint, PlotTransform};
 
 use gdcm_plot::figure::{Figure, MarkId, Range};
 
+use super::derivation_menu::QuestionMenu;
 use super::figure_panel::{PanelView, PlacedPanel, PlacedResponse, TITLE_HEIGHT, VALUE_AXIS_WIDTH};
 use super::figure_scene::{FigureEvent, FigureScene};
 use super::nearest_dot::PointedMark;
-use super::painter::use_frame_colors;
+use super::panel_painter::use_frame_colors;
 use super::panel_text::message_ui;
-use super::questions::QuestionMenu;
 use super::tiles::{TiledArea, Tiles, tiles_ui};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 

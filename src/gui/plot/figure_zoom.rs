@@ -7,8 +7,8 @@ use gdcm_plot::figure::axis::Scale;
 use gdcm_plot::figure::figure::Along;
 use gdcm_plot::figure::{Panel, Range};
 
-use super::navigation::ZoomGesture;
 use super::viewed_range::{ZoomLimit, ranges_of, zoomed_within};
+use super::zoom_gesture::ZoomGesture;
 
 /// Maximum visible range, relative to the full range of the panel.
 const FARTHEST: f64 = 10.0;

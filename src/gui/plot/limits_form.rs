@@ -7,22 +7,29 @@ use super::bode_scene::BodeScene;
 use super::drawn_curves::Pane;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
+/// Form with a field for each limit of an axis, and buttons that apply them or fit the axis.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct LimitsForm {
     axis: BodeAxis,
     /// Pane beside which the form is open.
     pane: Pane,
+    /// Lower and upper limit, as typed so far.
     texts: [String; 2],
     /// Reason why the limits are refused.
     trouble: Option<String>,
+    /// Whether the form has not been drawn yet; its first field then takes the focus.
     is_new: bool,
 }
 
+/// Effect of the form in a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) enum FormAnswer {
+    /// No button was clicked.
     #[default]
     Waiting,
+    /// The typed limits are to be shown.
     Show,
+    /// The axis is to be fitted to its curves.
     Fit,
 }
 

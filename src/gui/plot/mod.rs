@@ -1,21 +1,22 @@
 //! Plots: each is drawn from a scene and its state of the last frame, and returns the engineer's
 //! actions.
 //!
-//! Every panel with axes is drawn by `painter`, which also paints the frames of plots without axes
-//! in the overview. A scene (`bode_scene`, `figure_scene`, `chart`, `overview_scene`) describes the
-//! content of plots; the parts below serve all of them:
+//! Every panel with axes is drawn by `panel_painter`, which also paints the frames of plots without
+//! axes in the overview. A scene (`bode_scene`, `figure_scene`, `chart`, `overview_scene`)
+//! describes the content of plots; the parts below serve all of them:
 //!
 //! ```text
-//! painter                     frame, axes, grid and gestures; each scene adds its layers
+//! panel_painter               frame, axes, grid and gestures; each scene adds its layers
 //! panel_axis, ticks           numbers and grid lines
 //! viewed_range                visible ranges and zoom limits
-//! navigation                  wheel, pinching, boxes
+//! zoom_gesture, drawn_box     wheel and pinching; boxes drawn by dragging
 //! nearest_curve, nearest_dot  curve or dot under the pointer
 //! pointed_curve_text          status text for the curve under the pointer
+//! derivation_menu             menu of the values under the pointer that can be derived
 //! thinning                    visible points, no finer than the pixels; drawn_curves keeps them
 //! curve_layer                 order and styles of curves; cached_raster holds the image of many
 //! layers, canvas              areas, lines across a panel; shapes from printed figures
-//! chips, readout              chips above a plot, values at the pointer
+//! chips, readout_strip        chips above a plot, values at the pointer
 //! ```
 
 mod axis_strip;
@@ -27,6 +28,7 @@ mod bode_headings;
 mod bode_keys;
 mod bode_layout;
 mod bode_pane;
+mod bode_pointer;
 pub mod bode_scene;
 pub mod bode_view;
 mod cached_raster;
@@ -41,8 +43,11 @@ pub mod curve_command;
 mod curve_layer;
 mod curve_menu;
 pub mod curve_style;
+pub mod derivation_menu;
 pub mod dragged_range;
+mod drawn_box;
 pub mod drawn_curves;
+mod drawn_pane;
 mod end_labels;
 pub mod figure_legend;
 mod figure_marks;
@@ -53,29 +58,29 @@ mod figure_zoom;
 mod invalid_region;
 mod layers;
 mod limits_form;
-mod navigation;
 pub mod nearest_curve;
 mod nearest_dot;
 pub mod overview;
 mod overview_cell;
 pub mod overview_scene;
-mod painter;
 mod pane_scene;
 mod panel_axis;
+mod panel_painter;
 mod panel_text;
 pub mod pointed_curve_text;
 pub mod quantity;
-pub mod questions;
-pub mod readout;
+pub mod readout_strip;
 mod reference_lines;
 mod sketch;
 mod thinning;
 mod ticks;
 mod tiles;
+pub mod value_unit;
 mod viewed_range;
 
 #[cfg(test)]
 mod tests;
+mod zoom_gesture;
 
 pub use bode::bode_ui;
 pub use bode_scene::BodeScene;

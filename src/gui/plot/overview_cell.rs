@@ -9,7 +9,7 @@ use gdcm_plot::figure::Range;
 use super::curve_menu::model_actions_ui;
 use super::drawn_curves::{BodeCurve, Pane};
 use super::overview_scene::{MenuCurve, OverviewCell, OverviewEvent, OverviewView};
-use super::painter::paint_frame;
+use super::panel_painter::paint_frame;
 use super::panel_text::AT_RIGHT;
 use super::sketch::{Sketch, range_text};
 use crate::gui::widgets::elision::elided;

@@ -8,8 +8,8 @@ use egui_plot::{PlotPoint, PlotTransform};
 use gdcm_model::dataset::Pair;
 
 use super::bode_event::CurveAction;
-use super::curve_layer::DrawnPane;
 use super::drawn_curves::{BodeCurve, CurveId, PANES, Pane};
+use super::drawn_pane::DrawnPane;
 use super::nearest_curve::{Hit, nearest_curve};
 
 /// Response shown in a cell of the overview.

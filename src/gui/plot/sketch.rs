@@ -6,8 +6,9 @@ use egui_plot::PlotTransform;
 use gdcm_model::number_format::decimals;
 use gdcm_plot::figure::Range;
 
-use super::curve_layer::{CurveLooks, DrawnPane, add_curve_lines};
+use super::curve_layer::{CurveLooks, add_curve_lines};
 use super::drawn_curves::{BodeCurve, Pane, VisiblePart};
+use super::drawn_pane::DrawnPane;
 use super::viewed_range::{bounds_of, ranges_of};
 use crate::gui::widgets::palette::Palette;
 

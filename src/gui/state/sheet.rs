@@ -1,6 +1,6 @@
 //! Sheets that cover part of the views.
 
-use crate::gui::plot::questions::QUESTION;
+use crate::gui::plot::derivation_menu::QUESTION;
 
 /// Content shown by a sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -19,8 +19,11 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
+/// Number of frequencies on each curve.
+const POINTS: usize = 300;
 /// Number of steps in the colour key of the airspeeds.
 const KEY_STEPS: u8 = 24;
+/// Size of the colour key \[pt\].
 const KEY_SIZE: egui::Vec2 = vec2(96.0, 8.0);
 
 /// Draws the selector of the models and the colour key of the airspeed, from right to left.
@@ -120,9 +123,6 @@ fn fit_across(state: &mut State) {
         state.display.frequency.across_fitted = Some(asked);
     }
 }
-
-/// Number of frequencies on each curve.
-const POINTS: usize = 300;
 
 /// Returns the job that computes the responses in the view: a model of each condition.
 pub fn across_job(state: &State) -> AcrossJob {

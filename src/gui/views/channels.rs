@@ -1,4 +1,5 @@
-//! Channel gains over airspeed.
+//! Channels view: gain or delay of every channel over airspeed or over the conditions, inputs above
+//! outputs.
 
 use egui::{Align2, FontId, Rect, Ui, pos2, vec2};
 
@@ -14,6 +15,11 @@ use crate::gui::plot::{FigureScene, FigureView, figure_ui};
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
+
+/// Height of the headings "Input channels" and "Output channels" \[pt\].
+const HEADING_HEIGHT: f32 = 20.0;
+/// Gap below each half of the view \[pt\].
+const GAP: f32 = 8.0;
 
 /// Draws the selectors between gains and delays, and between airspeed and conditions, from right to
 /// left.
@@ -43,9 +49,6 @@ pub fn channels_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command
         commands.push(DisplayCommand::ShowChannels(measure, across).into());
     }
 }
-
-const HEADING_HEIGHT: f32 = 20.0;
-const GAP: f32 = 8.0;
 
 /// Draws gain or delay of every channel over airspeed (Figures 3 and 4): inputs above, outputs
 /// below, on the same axes.

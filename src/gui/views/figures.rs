@@ -1,4 +1,5 @@
-//! Exported figures of the views.
+//! Figures of the views, for the screen and for export: the request for a figure, the figure, and
+//! the file name.
 
 use std::sync::Arc;
 
@@ -8,7 +9,7 @@ use gdcm_study::results::couplings_assessment::CouplingsAssessment;
 use gdcm_study::results::requirements::Requirements;
 
 use super::frequency_curves::{bode_options, condition_source};
-use super::over_time::shown_over_time;
+use super::requirement_history_jobs::shown_over_time;
 use super::view_content;
 use crate::gui::plot::BodeView;
 use crate::gui::plot::drawn_curves::PANES;

@@ -4,7 +4,7 @@ use gdcm_model::dataset::{BundleKind, Pair};
 use gdcm_plot::figure::ConditionSource;
 use gdcm_plot::figure::bode::BodeOptions;
 
-use super::variants::overlaid_analysis;
+use super::variant_analyses::overlaid_analysis;
 use crate::gui::plot::{BodeCurve, CurveId};
 use crate::gui::state::window_state::State;
 

@@ -15,7 +15,7 @@ use gdcm_words::derivation::ExplainTarget;
 use super::error_bars::{error_bar_words, shown_uncertainty};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::selection::SelectionCommand;
-use crate::gui::plot::questions::Question;
+use crate::gui::plot::derivation_menu::Question;
 use crate::gui::plot::{FigureEvent, FigureScene, FigureWords};
 use crate::gui::state::window_state::State;
 

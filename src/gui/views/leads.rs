@@ -91,19 +91,19 @@ pub fn leads_table(state: &State) -> Option<Table> {
     let leads = state.shown()?.correction.leads.as_ref()?;
     let price = LeadPrice::new(leads);
     let (inputs, outputs) = state.dataset().names_of_channels();
-    let top = leads.design.band_top_rad_s();
+    let band_top = leads.design.band_top_rad_s();
     let title = match &price {
         Some(price) => limit_text(price),
         None => "No channel has a lead filter".to_owned(),
     };
     let above = match &price {
         Some(price) => price.above_rad_s(),
-        None => top,
+        None => band_top,
     };
     let columns = [
         "channel".to_owned(),
         "lead [ms]".to_owned(),
-        format!("phase at {} [deg]", number(top)),
+        format!("phase at {} [deg]", number(band_top)),
         "replaced servo [rad/s]".to_owned(),
         format!("gain at {} [dB]", number(above)),
     ];
@@ -111,10 +111,11 @@ pub fn leads_table(state: &State) -> Option<Table> {
     for channel in all_channels(state.dataset()) {
         let tau_s = leads.taus_s[channel];
         let filter = leads.filters()[channel];
-        // Without a filter, the phase shift is due to a pure delay alone.
+        // Without a filter, the phase is that of a pure delay; a negative tau_s means a lead, which
+        // needs a filter.
         let phase = match filter {
-            Some(filter) => filter.phase(top),
-            None => -top * tau_s.max(0.0),
+            Some(filter) => filter.phase(band_top),
+            None => -band_top * tau_s.max(0.0),
         };
         let servo = match filter {
             Some(filter) => format!(

@@ -4,12 +4,17 @@
 pub mod across;
 pub mod assembling;
 pub mod assessment;
+mod assessment_bar_words;
 pub mod assessment_content;
+mod assessment_header;
 mod assessment_plots;
+mod automatic_settings;
 mod bandwidth;
+mod bandwidth_settings;
 pub mod bode;
 pub mod channels;
 pub mod compare;
+mod correction_effect;
 pub mod couplings;
 pub mod couplings_use;
 mod cursor_readout;
@@ -18,26 +23,31 @@ pub mod error_bars;
 pub mod evidence;
 pub mod figure_button;
 pub mod figures;
-mod frequency;
 pub(in crate::gui) mod frequency_curves;
+mod frequency_plot;
 pub mod gain_plots;
-pub mod histories;
 pub mod leads;
+mod limit_field;
 mod mode_table;
+mod mode_text;
 pub mod model_error;
 pub mod need;
 pub mod net_gain;
+mod net_gain_header;
 pub mod net_gain_pairs;
-pub mod over_time;
 pub mod overview;
 pub mod poles;
 pub mod records;
+pub mod requirement_histories;
+pub mod requirement_history_jobs;
 pub mod requirement_limits;
 mod requirement_tables;
 pub mod requirements;
-mod schedule_evidence;
+mod scatter_bars;
+mod schedule_tables;
 pub mod setting_controls;
-pub mod variants;
+pub mod variant_analyses;
+mod variant_effects;
 
 use std::sync::Arc;
 
@@ -52,8 +62,9 @@ use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
 use across::{across_header_ui, across_job, across_view_ui};
-use assessment::{assessment_header_ui, assessment_view_ui};
+use assessment::assessment_view_ui;
 use assessment_content::assessed_pairs;
+use assessment_header::assessment_header_ui;
 use bode::bode_view_ui;
 use channels::{channels_header_ui, channels_view_ui};
 use compare::compare_view_ui;
@@ -61,20 +72,20 @@ use couplings::{couplings_header_ui, couplings_view_ui};
 use evidence::evidence_view_ui;
 use leads::leads_view_ui;
 use model_error::{error_header_ui, error_view_ui};
-use need::Need;
-use net_gain::{NET_GAIN_CONTROLS, net_gain_header_ui, net_gain_view_ui, net_gain_words};
+use need::{Need, current_analysis};
+use net_gain::net_gain_view_ui;
+use net_gain_header::{NET_GAIN_CONTROLS, net_gain_header_ui, net_gain_words};
 use net_gain_pairs::net_gain_pairs;
-use over_time::current_analysis;
 use overview::overview_view_ui;
 use poles::{poles_header_ui, poles_view_ui};
 use records::{records_header_ui, records_view_ui, simulation_jobs};
 use requirements::{
     NOT_A_QUALIFICATION, requirements_header_ui, requirements_needs, requirements_view_ui,
 };
-use variants::variant_jobs;
+use variant_analyses::variant_jobs;
 
 pub use couplings_use::{are_couplings_judged, couplings_job, offered_couplings, used_couplings};
-pub use variants::overlay_job;
+pub use variant_analyses::overlay_job;
 
 /// Returns a view's content: drawing function, header, background jobs and figure.
 pub fn view_content(view: View) -> ViewContent {

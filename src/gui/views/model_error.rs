@@ -8,8 +8,8 @@ use gdcm_plot::figure::error::noticed;
 use gdcm_study::results::caution::Undefined;
 use gdcm_words::caution::undefined_text;
 
-use super::frequency::FrequencyPlot;
 use super::frequency_curves::{bode_options, condition_source, error_curves, error_reference};
+use super::frequency_plot::FrequencyPlot;
 use crate::gui::commands::command::Command;
 use crate::gui::plot::BodeScene;
 use crate::gui::plot::curve_command::CurveCommand;

@@ -4,8 +4,8 @@ use egui::Ui;
 
 use gdcm_model::dataset::Pair;
 
-use super::frequency::action_command;
 use super::frequency_curves::bode_curves;
+use super::frequency_plot::action_command;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::commands::selection::SelectionCommand;

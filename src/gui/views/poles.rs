@@ -9,7 +9,7 @@ use gdcm_plot::figure::{Figure, Mark, MarkId, Range, Role};
 use gdcm_study::Edit;
 
 use super::frequency_curves::{bode_options, condition_source};
-use super::mode_table::mode_description;
+use super::mode_text::mode_description;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::commands::selection::SelectionCommand;

@@ -10,7 +10,7 @@ use gdcm_words::requirements::{
     summary_table,
 };
 
-use super::over_time::time_histories_job;
+use super::requirement_history_jobs::time_histories_job;
 use crate::gui::state::requirements_page::RequirementsPage;
 use crate::gui::state::window_state::State;
 

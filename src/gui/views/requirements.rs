@@ -12,10 +12,11 @@ use gdcm_study::results::requirements::Requirements;
 use gdcm_words::Table;
 use gdcm_words::missing_results::{missing_reason_text, reversed_phase_text};
 
-use super::bandwidth::{bandwidth_inputs_ui, bandwidth_plots_ui, bandwidth_row_commands};
-use super::histories::histories_ui;
-use super::need::Need;
-use super::over_time::{current_analysis, over_time_need, time_histories_job};
+use super::bandwidth::{bandwidth_plots_ui, bandwidth_row_commands};
+use super::bandwidth_settings::bandwidth_inputs_ui;
+use super::need::{Need, current_analysis};
+use super::requirement_histories::histories_ui;
+use super::requirement_history_jobs::{over_time_need, time_histories_job};
 use super::requirement_limits::{mode_tolerances_ui, overview_limits_ui};
 use super::requirement_tables::page_tables;
 use crate::gui::commands::command::Command;

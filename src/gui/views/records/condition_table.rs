@@ -90,7 +90,7 @@ pub fn condition_table(state: &State) -> Table {
 fn outcome_cells(state: &State, id: ConditionId, records: &ConditionRecords) -> Vec<String> {
     if let Some(job) = state.records.job_of(id) {
         let text = if job.news().step.is_empty() {
-            "waits"
+            "waiting"
         } else {
             "running"
         };

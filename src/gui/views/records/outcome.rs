@@ -11,12 +11,12 @@ use gdcm_sysid::diagnostics::model_doubts::HELD_OUT;
 use gdcm_sysid::identification::Identification;
 use gdcm_words::channel_time_skew::time_skew_text;
 
+use super::caution_remedies::{
+    Remedy, band_remedy, caution_remedies, remove_common_delay, study_band_remedy,
+};
 use super::frame_cache::{Source, cached};
 use super::page::Page;
 use super::record_list::{BAD_FIT, CHI_SQUARED};
-use super::remedies::{
-    Remedy, band_remedy, caution_remedies, remove_common_delay, study_band_remedy,
-};
 use crate::gui::commands::command::Command;
 use crate::gui::widgets::controls::Asks;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
@@ -72,7 +72,7 @@ fn progress_ui(ui: &mut Ui, page: Page<'_>, job: &IdentifyJob) {
         share = steps.done as f32 / steps.total.max(1) as f32;
         words = news.step;
     } else if let Some(earlier) = state.records.under_way() {
-        words = format!("Waits for condition {}", earlier.condition);
+        words = format!("Waiting for condition {}", earlier.condition);
     }
     ui.add(ProgressBar::new(share).desired_height(6.0));
     ui.label(palette.small(words));

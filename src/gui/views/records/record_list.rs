@@ -1,11 +1,13 @@
-//! Record list: use, fit and problems.
+//! Record list: a row for each record with its use and fit; below, manoeuvre and problems of the
+//! displayed record.
 
 use egui::{Align, Checkbox, Color32, Grid, Label, Layout, RichText, Role, Sense, Ui, vec2};
 
 use gdcm_model::dataset::condition::RecordKind;
-use gdcm_sysid::records::{LaidOutRecord, LayoutProblem};
+use gdcm_sysid::records::LaidOutRecord;
 
 use super::page::Page;
+use super::record_problems::problem_texts;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::widgets::choices::DropDown;
@@ -195,8 +197,8 @@ pub(super) fn cost_text(cost: f64, palette: &Palette) -> RichText {
     RichText::new(format!("{cost:.2}")).color(color)
 }
 
-/// Draws the selector of a record's manoeuvre or, for a part of a record, the button that removes
-/// the part.
+/// Draws the selector of a record's manoeuvre, as the end of the sentence "name: a sweep", and for
+/// a part of a record also the button that removes the part.
 fn kind_ui(
     ui: &mut Ui,
     index: usize,
@@ -220,62 +222,4 @@ fn kind_ui(
             commands.push(RecordsCommand::RemovePart(index).into());
         }
     });
-}
-
-/// Describes problems of a record; several missing columns share one sentence, as do several
-/// unknown units.
-fn problem_texts(problems: &[LayoutProblem]) -> Vec<String> {
-    let mut missing = ChannelProblems::default();
-    let mut without_unit = ChannelProblems::default();
-    let mut others = Vec::new();
-    let mut columns = "";
-    for problem in problems {
-        match problem {
-            LayoutProblem::NoColumn { channel, found, .. } => {
-                columns = found;
-                missing.push(channel, problem);
-            }
-            LayoutProblem::UnsaidUnit { channel, .. } => without_unit.push(channel, problem),
-            _ => others.push(problem.to_string()),
-        }
-    }
-    let mut texts = Vec::new();
-    texts.extend(missing.text(|channels| {
-        format!("no column for {channels}; assign them on page Columns (columns: {columns})")
-    }));
-    texts.extend(without_unit.text(|channels| {
-        format!(
-            "the file does not give the units of {channels}, and their values allow several \
-            units; choose them on page Columns"
-        )
-    }));
-    texts.extend(others);
-    texts
-}
-
-/// Problems of the same kind, which share one sentence.
-#[derive(Default)]
-struct ChannelProblems<'a> {
-    channels: Vec<&'a str>,
-    /// Message of the first problem.
-    first: Option<String>,
-}
-
-impl<'a> ChannelProblems<'a> {
-    fn push(&mut self, channel: &'a str, problem: &LayoutProblem) {
-        self.channels.push(channel);
-        if self.first.is_none() {
-            self.first = Some(problem.to_string());
-        }
-    }
-
-    /// Returns the message of a single problem, or `shared` applied to the names of several
-    /// channels.
-    fn text(self, shared: impl FnOnce(String) -> String) -> Option<String> {
-        if self.channels.len() > 1 {
-            Some(shared(self.channels.join(", ")))
-        } else {
-            self.first
-        }
-    }
 }

@@ -1,4 +1,5 @@
-//! Record files, their missing units, and the commands for all conditions.
+//! Commands that add record files, questions about the added records, and the commands that
+//! identify or use the models of all conditions.
 
 use egui::{Button, Label, Ui};
 

@@ -1,4 +1,5 @@
-//! Analyses of the variants (named decision sets): their jobs and results.
+//! Analyses of the variants (named decision sets): their jobs and results. `compare` lists the
+//! variants, `variant_effects` their effects.
 
 use gdcm_study::Analysis;
 use gdcm_study::decisions::study::Variant;

@@ -11,7 +11,7 @@ use gdcm_words::Table;
 use gdcm_words::time_histories::record_history_table;
 
 use super::figures::figure_of;
-use super::over_time::{over_time, record_job};
+use super::requirement_history_jobs::{over_time, record_job};
 use super::requirement_limits::{requirement_edit, tolerances_ui};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;

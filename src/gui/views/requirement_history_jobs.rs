@@ -1,14 +1,14 @@
-//! Responses over time for the requirements: their jobs and results.
+//! Responses over time for the requirements: the jobs that compute them, and their results.
+//! `requirement_histories` draws the results.
 
 use std::sync::Arc;
 
 use gdcm_plot::figure::{FigureKind, OverTime};
-use gdcm_study::Analysis;
 use gdcm_study::jobs::requirement_jobs::{RecordHistoryJob, TestAnswersJob, TimeHistoriesJob};
 use gdcm_study::results::time_histories::HistoryRecord;
 use gdcm_words::missing_results::{no_record_history_text, no_result_text};
 
-use super::need::Need;
+use super::need::{Need, current_analysis};
 use crate::gui::state::requirements_page::RequirementsPage;
 use crate::gui::state::window_state::State;
 
@@ -58,12 +58,6 @@ fn test_job(state: &State) -> Option<TestAnswersJob> {
         input: state.display.selection.pair.input,
         test: state.study.requirements.test,
     })
-}
-
-/// Returns the analysis with the current settings; `None` while it is being computed.
-pub fn current_analysis(state: &State) -> Option<Arc<Analysis>> {
-    state.analysis()?;
-    state.results.analysis.clone()
 }
 
 /// Returns the computation needed for the responses over time.

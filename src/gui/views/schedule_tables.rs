@@ -1,5 +1,6 @@
-//! Evidence for each form of the schedule: errors in fitted and in left-out conditions, residuals
-//! and coefficients.
+//! Tables about the schedule: error of each form in fitted and in left-out conditions, error of
+//! each degree of the signed delays, residuals, and coefficients; with the cache of the
+//! comparisons.
 
 use std::sync::Arc;
 

@@ -232,7 +232,7 @@ pub(super) fn leave_one_out_section(analysis: &Analysis) -> String {
 }
 
 fn assessment(analysis: &Analysis, correction: AssessedCorrection) -> AssessmentTable {
-    AssessmentTable::of(analysis, nominal_choice(analysis, correction))
+    AssessmentTable::assess(analysis, nominal_choice(analysis, correction))
 }
 
 fn mean(values: &[f64]) -> Option<f64> {

@@ -15,8 +15,9 @@ use gdcm_model::units::{number, s_to_ms, signed, telling};
 use gdcm_study::decisions::requirement_settings::OverviewLimits;
 use gdcm_study::results::required_bandwidth::BandwidthFinding;
 use gdcm_study::results::required_modes::{ModeFinding, ModeNumbers};
+use gdcm_study::results::required_summary::SummaryFinding;
 use gdcm_study::results::requirement_role::RequirementRole;
-use gdcm_study::results::requirements::{Requirements, SummaryFinding};
+use gdcm_study::results::requirements::Requirements;
 use gdcm_study::results::time_histories::TimeHistories;
 
 use crate::missing_results::no_bandwidth_text;

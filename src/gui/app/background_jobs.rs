@@ -28,7 +28,7 @@ use gdcm_study::jobs::analysis_jobs::{ProofJob, TogglesJob, UncertaintyJob};
 use gdcm_study::jobs::curve_jobs::CurvesJob;
 use gdcm_study::jobs::job::Job;
 use gdcm_study::stages::condition_curves::{CURVE_POINTS, curves_band};
-use gdcm_study::stages::condition_responses::KnownModels;
+use gdcm_study::stages::known_models::KnownModels;
 
 use super::GdcmApp;
 use super::job_kind::{AnyJobKind, JobKind, JobKinds};

@@ -10,7 +10,7 @@ use gdcm_model::number_format::counted;
 use gdcm_model::statistics::median;
 use gdcm_model::units::{number, s_to_ms, signed, six_digits, telling, told_apart};
 use gdcm_study::results::analysis::ConditionFailure;
-use gdcm_study::results::coupling_remarks::coupling_cautions;
+use gdcm_study::results::coupling_remark_search::coupling_cautions;
 use gdcm_study::results::remark_kind::RemarkKind;
 use gdcm_study::{ConditionAnalysis, PhaseCorrection};
 use gdcm_words::caution::failure_text;

@@ -55,7 +55,7 @@ const PARTS: [Part; 3] = [
 
 /// Plots ΔJ and its parts over the conditions, for each pair; negative values are improvements.
 pub fn assessment_figure(analysis: &Analysis, pairs: &[Pair], choice: AssessmentChoice) -> Figure {
-    let table = AssessmentTable::of(analysis, choice);
+    let table = AssessmentTable::assess(analysis, choice);
     let dataset = &analysis.study.dataset;
     let mut plots = Vec::new();
     for &pair in pairs {

@@ -110,9 +110,10 @@ use gdcm_model::progress::Unobserved;
 use gdcm_study::jobs::curve_jobs::{AcrossRole, ConditionModes};
 use gdcm_study::results::analysis::Analysis;
 use gdcm_study::results::assessment_table::AssessmentChoice;
-use gdcm_study::results::condition_answers::{RecordHistory, TestAnswers};
 use gdcm_study::results::couplings_assessment::CouplingsAssessment;
+use gdcm_study::results::record_history::RecordHistory;
 use gdcm_study::results::requirements::Requirements;
+use gdcm_study::results::test_input_responses::TestAnswers;
 
 use assessment::{assessment_figure, evidence_figure, usual_choice};
 use bode::{BodeOptions, airspeeds_figure, bode_figure, overview_figure};
@@ -297,7 +298,7 @@ impl FigureRequest {
 
     /// Computes and plots modes and zeros of all models.
     fn poles_figure(&self, source: &ConditionSource<'_>) -> Option<Figure> {
-        let modes = ConditionModes::of(&source.curves.condition, &Unobserved).ok()?;
+        let modes = ConditionModes::compute(&source.curves.condition, &Unobserved).ok()?;
         let zeros = |id: &ModelId| match self.bode.zeros_of {
             Some(pair) => zeros_of_model(source, pair, id),
             None => Vec::new(),

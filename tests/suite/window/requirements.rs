@@ -16,7 +16,8 @@ use gdcm_study::decisions::requirement_settings::RequirementSettings;
 use gdcm_study::results::record_history::RecordHistory;
 use gdcm_study::results::required_bandwidth::BandwidthFinding;
 use gdcm_study::results::requirement_role::RequirementRole;
-use gdcm_words::requirements::{RequirementsOverview, bandwidth_table, summary_table};
+use gdcm_words::requirements::{bandwidth_table, summary_table};
+use gdcm_words::requirements_overview::RequirementsOverview;
 
 use super::assembling::type_into;
 use super::lists::texts_in;

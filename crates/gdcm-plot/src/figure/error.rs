@@ -10,19 +10,16 @@
 
 use std::sync::Arc;
 
-use gdcm_method::fidelity::{CoherenceWeights, Mismatch};
 use gdcm_model::dataset::{BundleKind, Pair};
-use gdcm_model::response::polar_response::PolarCurve;
-use gdcm_model::response::{FrequencyResponse, GainDelay};
-use gdcm_model::units::s_to_ms;
-use gdcm_study::stages::condition_curves::ConditionCurves;
 
+pub use super::error_cache::ErrorCache;
 pub use super::muad::{muad_about, noticed};
 
 use super::axis::{Axis, PhaseErrorUnit};
 use super::bode_curve::{BodeCurve, Pane};
 use super::bode_options::BodeOptions;
 use super::condition_source::ConditionSource;
+use super::error_cache::{ErrorKey, ErrorSource};
 use super::figure::{Figure, Plot};
 use super::frequency_panels::{FrequencyPanels, figure_of_pairs};
 
@@ -114,183 +111,6 @@ impl ConditionSource<'_> {
             }
         }
         drawn
-    }
-}
-
-/// Deviation of a response from the reference, with the phase on the branch of M6b.
-#[derive(Clone, Debug)]
-struct ErrorShape {
-    /// `20 log10 |H_sim| / |H_ref|`.
-    mismatch_db: Vec<f64>,
-    /// `Delta phi(H_sim, H_ref)` \[rad\] (M3, M6b): never the difference between two separately
-    /// unwrapped phases.
-    phase: Vec<f64>,
-}
-
-/// Deviation in the units in which it is drawn.
-#[derive(Clone, Debug)]
-struct DrawnError {
-    /// `20 log10 |H_ref| / |H_sim|`.
-    magnitude_db: Arc<[f64]>,
-    /// `Delta phi` \[deg\] or `Delta phi / omega` \[ms\].
-    phase: Arc<[f64]>,
-}
-
-impl DrawnError {
-    /// Returns the curve with these values over `omega` \[rad/s\].
-    fn apply(&self, curve: BodeCurve, omega: &Arc<[f64]>) -> BodeCurve {
-        curve.with(omega, &self.magnitude_db, &self.phase)
-    }
-}
-
-impl ErrorShape {
-    /// Computes the deviation at the frequencies that count; NaN at the others (M4a). `None` if no
-    /// frequency counts.
-    fn new(
-        simulated: &PolarCurve,
-        reference: &PolarCurve,
-        omega: &[f64],
-        coherence_weights: Option<&CoherenceWeights>,
-    ) -> Option<Self> {
-        let mismatch = Mismatch::new(simulated, reference).coherence_weighted(coherence_weights)?;
-        let phase = mismatch.on_grid(mismatch.phase_difference(omega), omega.len());
-        Some(Self {
-            phase,
-            mismatch_db: mismatch.on_grid(mismatch.magnitude_db.clone(), omega.len()),
-        })
-    }
-
-    /// Returns the deviation, as drawn over `omega` \[rad/s\], after a gain and a delay are added
-    /// to the simulated response (M10); the phase stays on its branch.
-    fn drawn(&self, correction: GainDelay, omega: &[f64], unit: PhaseErrorUnit) -> DrawnError {
-        let magnitude_db = correction
-            .magnitudes_db(&self.mismatch_db, omega)
-            .map(|db| -db)
-            .collect();
-        let phases = correction.phases(&self.phase, omega);
-        let phase = match unit {
-            PhaseErrorUnit::Degree => phases.map(f64::to_degrees).collect(),
-            PhaseErrorUnit::Millisecond => phases
-                .zip(omega)
-                .map(|(phase, omega)| s_to_ms(phase / omega))
-                .collect(),
-        };
-        DrawnError {
-            magnitude_db,
-            phase,
-        }
-    }
-}
-
-/// Choices that determine the deviations of a response.
-#[derive(Clone, Debug, PartialEq)]
-struct ErrorKey {
-    pair: Pair,
-    /// Index of the identified model that serves as the reference.
-    reference: usize,
-    /// Band ends \[rad/s\].
-    band: [f64; 2],
-    /// Minimum coherence of the frequencies that count; `None` if coherence is ignored.
-    least_coherence: Option<f64>,
-    unit: PhaseErrorUnit,
-}
-
-/// Responses and choices from which a deviation is computed.
-#[derive(Clone, Debug)]
-struct ErrorSource {
-    curves: Arc<ConditionCurves>,
-    key: ErrorKey,
-}
-
-impl ErrorSource {
-    fn is_same(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.curves, &other.curves) && self.key == other.key
-    }
-
-    /// Computes the deviation of a response over `omega`, the frequencies in the band. `None` if
-    /// the response or the reference is zero or not finite at any of them.
-    fn shape(&self, response: &FrequencyResponse, omega: &[f64]) -> Option<ErrorShape> {
-        let reference = self.polar(self.curves.identified.get(self.key.reference)?)?;
-        ErrorShape::new(
-            &self.polar(response)?,
-            &reference,
-            omega,
-            self.coherence_weights(omega).as_ref(),
-        )
-    }
-
-    /// Returns a response in the band; `None` if it is zero or not finite at any frequency there.
-    fn polar(&self, response: &FrequencyResponse) -> Option<PolarCurve> {
-        PolarCurve::from_values(response.curve(self.key.pair).get(self.band_indices())?)
-    }
-
-    /// Returns the weights of the frequencies `omega`, derived from the coherence of the reference;
-    /// `None` without coherence.
-    fn coherence_weights(&self, omega: &[f64]) -> Option<CoherenceWeights> {
-        let identified = self.curves.condition.bundle(BundleKind::Identified);
-        let flight = &identified.get(self.key.reference)?.dynamics;
-        let weights = CoherenceWeights::of_model(flight, omega, self.key.least_coherence)?;
-        Some(weights[self.key.pair].clone())
-    }
-
-    /// Returns the indices of the frequencies in the band.
-    fn band_indices(&self) -> std::ops::Range<usize> {
-        let omega = self.curves.grid.omega();
-        let [min, max] = self.key.band;
-        let first = omega.partition_point(|omega| *omega < min);
-        let end = omega.partition_point(|omega| *omega <= max);
-        first..end
-    }
-}
-
-/// Deviation of an uncorrected physics model.
-#[derive(Debug)]
-struct ModelError {
-    shape: ErrorShape,
-    drawn: DrawnError,
-}
-
-/// Deviations of a response for every physics model of a condition, kept until their source
-/// changes.
-#[derive(Debug, Default)]
-pub struct ErrorCache {
-    source: Option<ErrorSource>,
-    omega: Arc<[f64]>,
-    /// Zero at each frequency: the deviation of the reference from itself.
-    zero: Arc<[f64]>,
-    /// In model order; `None` for a model without a deviation.
-    errors: Vec<Option<ModelError>>,
-}
-
-impl ErrorCache {
-    fn refresh(&mut self, source: ErrorSource) {
-        if let Some(known) = &self.source
-            && known.is_same(&source)
-        {
-            return;
-        }
-        self.omega = source.curves.grid.omega()[source.band_indices()].into();
-        self.zero = vec![0.0; self.omega.len()].into();
-        self.errors.clear();
-        for response in &source.curves.physics {
-            let error = source.shape(response, &self.omega).map(|shape| ModelError {
-                drawn: shape.drawn(GainDelay::NONE, &self.omega, source.key.unit),
-                shape,
-            });
-            self.errors.push(error);
-        }
-        self.source = Some(source);
-    }
-
-    /// Returns the deviation of an uncorrected physics model.
-    fn model_shape(&self, model: usize) -> Option<ErrorShape> {
-        let error = self.errors[model].as_ref()?;
-        Some(error.shape.clone())
-    }
-
-    /// Computes the deviation of a response that is not in the cache.
-    fn shape(&self, response: &FrequencyResponse) -> Option<ErrorShape> {
-        self.source.as_ref()?.shape(response, &self.omega)
     }
 }
 

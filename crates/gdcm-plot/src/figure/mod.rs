@@ -45,6 +45,7 @@ pub mod axis;
 pub mod bode;
 mod bode_curve;
 mod bode_options;
+mod change_table;
 mod coherence;
 mod color;
 mod condition_classes;
@@ -55,6 +56,7 @@ mod display_units;
 mod dot_style;
 pub mod drawing;
 pub mod error;
+mod error_cache;
 mod error_references;
 mod evidence;
 #[expect(

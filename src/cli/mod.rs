@@ -57,8 +57,8 @@ use gdcm_io::files::study_file::open_study_of;
 use gdcm_io::reading_budget::ReadingBudget;
 use gdcm_io::{Existing, Opened, load_any};
 use gdcm_model::message_text::sanitized_path;
-use gdcm_study::decisions::setting::Kind;
-use gdcm_study::decisions::setting_table::SETTINGS;
+use gdcm_study::decisions::setting::SETTINGS;
+use gdcm_study::decisions::setting_row::Kind;
 use gdcm_words::dataset_differences::dataset_difference_text;
 
 use crate::executor::start_threads;

@@ -15,8 +15,8 @@ use gdcm_model::message_text::sanitized;
 use gdcm_model::units::number;
 use gdcm_study::Study;
 use gdcm_study::decisions::setting;
-use gdcm_study::decisions::setting::Kind;
-use gdcm_study::decisions::setting_table::SETTINGS;
+use gdcm_study::decisions::setting::SETTINGS;
+use gdcm_study::decisions::setting_row::Kind;
 
 use crate::commands::{Desk, SMALL};
 

@@ -7,7 +7,7 @@ use gdcm_method::correction::Channel;
 use gdcm_model::dataset::{BundleKind, ConditionId, PairTable};
 use gdcm_study::Study;
 use gdcm_study::decisions::choices::BundleChoice;
-use gdcm_study::decisions::setting_table::SETTINGS;
+use gdcm_study::decisions::setting::SETTINGS;
 
 /// A decision that differs between two studies.
 #[derive(Clone, Debug, PartialEq, Eq)]

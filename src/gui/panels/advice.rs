@@ -5,7 +5,7 @@ use gdcm_method::correction::remedy::Remedy;
 use gdcm_model::dataset::{BundleKind, Pair};
 use gdcm_model::units::telling;
 use gdcm_study::decisions::setting;
-use gdcm_study::decisions::setting::Value;
+use gdcm_study::decisions::setting_row::Value;
 use gdcm_study::decisions::signs::SignRole;
 use gdcm_study::results::couplings_assessment::CouplingCost;
 use gdcm_study::{ConditionAnalysis, CouplingCorrection, Edit, PhaseCorrection};

@@ -3,8 +3,8 @@
 use egui::{Grid, Role, Ui, pos2};
 
 use gdcm_study::decisions::setting;
-use gdcm_study::decisions::setting::{Place, Setting};
-use gdcm_study::decisions::setting_table::SETTINGS;
+use gdcm_study::decisions::setting::SETTINGS;
+use gdcm_study::decisions::setting_row::{Place, Setting};
 
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;

@@ -407,7 +407,7 @@ mod tests {
 
     use gdcm_model::progress::Unobserved;
     use gdcm_study::decisions::setting;
-    use gdcm_study::decisions::setting::Value;
+    use gdcm_study::decisions::setting_row::Value;
     use gdcm_study::results::couplings_assessment::UnstablePole;
     use gdcm_study::{CouplingCorrection, Edit, Engine, Study};
 

@@ -5,7 +5,7 @@ use egui::{Role, Slider, Ui, WidgetInfo};
 use gdcm_method::correction::delta::GainSource;
 use gdcm_study::PhaseCorrection;
 use gdcm_study::decisions::setting;
-use gdcm_study::decisions::setting::{Kind, Setting, Value};
+use gdcm_study::decisions::setting_row::{Kind, Setting, Value};
 use gdcm_words::setting_words::setting_words;
 
 use crate::gui::commands::command::Command;

@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 use egui::{Context, DragValue, Id, Key, Response, Role, TextEdit, Ui, WidgetInfo, vec2};
 
 use gdcm_model::units::number;
-use gdcm_study::decisions::setting::Digits;
+use gdcm_study::decisions::setting_row::Digits;
 
 /// Draws a single-line text field with an accessible name.
 pub fn text_field_ui(

@@ -6,7 +6,7 @@ use gdcm_model::units::{number, six_digits};
 use gdcm_plot::figure::assessment::usual_choice;
 use gdcm_plot::figure::condition_source::quantity_symbol;
 use gdcm_study::decisions::setting;
-use gdcm_study::decisions::setting_table::SETTINGS;
+use gdcm_study::decisions::setting::SETTINGS;
 use gdcm_study::{Analysis, AssessmentTable, ConditionAnalysis, Study};
 use gdcm_words::Table;
 use gdcm_words::assessment::summary_text;

@@ -9,7 +9,7 @@ use super::adopted_models::AdoptedModels;
 use super::choices::{BundleChoice, ConditionChoice};
 use super::edit_refusal::{EditRefusal, check_length};
 use super::requirement_settings::RequirementSettings;
-use super::setting::{Setting, Value};
+use super::setting_row::{Setting, Value};
 use super::signs::SignRole;
 use super::study::Study;
 

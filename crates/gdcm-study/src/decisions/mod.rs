@@ -11,7 +11,7 @@ pub mod history;
 pub mod named_decisions;
 pub mod requirement_settings;
 pub mod setting;
-pub mod setting_table;
+pub mod setting_row;
 pub mod settings;
 pub mod signs;
 pub mod study;

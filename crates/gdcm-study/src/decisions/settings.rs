@@ -1,5 +1,5 @@
 //! Every setting that changes a result, with its value as stored in files. Names, ranges and
-//! controls are in [`super::setting_table`].
+//! controls are in [`super::setting`].
 
 use std::fmt;
 

@@ -1,0 +1,473 @@
+//! The type [`Setting`], a row of the settings table, and operations on it: setting, checking,
+//! formatting and parsing a value. The table itself is in `setting.rs`.
+
+use gdcm_method::correction::delta::GainSource;
+use gdcm_method::correction::{GainBounds, GainObjective};
+use gdcm_method::fidelity::CostAverage;
+use gdcm_method::schedule::form_comparison::SCHEDULE_KINDS;
+use gdcm_method::schedule::{DelayScheduling, ScheduleKind, ScheduledQuantity, SecondVariable};
+use gdcm_model::dataset::Band;
+use gdcm_model::number_format::{number, six_digits};
+use gdcm_model::response::LeadOrder;
+
+use super::edit_refusal::EditRefusal;
+use super::settings::{CouplingCorrection, DelayFrom, PhaseCorrection, Settings};
+use super::study::Study;
+
+/// One setting: a row of [`SETTINGS`](super::setting::SETTINGS).
+#[derive(Debug)]
+pub struct Setting {
+    /// Name in running text: "α of the gains".
+    pub name: &'static str,
+    /// Key in files; a dot separates the keys of nested objects: "lead.n".
+    pub key: &'static str,
+    /// Command-line option: "--alpha".
+    pub option: &'static str,
+    /// Value of the option without an argument; `None` where an argument is required.
+    pub bare: Option<&'static str>,
+    pub unit: Unit,
+    /// Type and range of the value.
+    pub kind: Kind,
+    /// Control in the window.
+    pub control: Control,
+}
+
+/// Unit of a setting in files and on a command line, and its displayed unit.
+#[derive(Clone, Copy, Debug)]
+pub struct Unit {
+    /// Unit in files.
+    pub file: &'static str,
+    /// Displayed unit.
+    pub shown: &'static str,
+    /// Factor from the file unit to the displayed unit.
+    pub scale: f64,
+}
+
+/// Type and range of a setting, with access to its field in [`Settings`].
+#[derive(Clone, Copy, Debug)]
+pub enum Kind {
+    Number {
+        range: [f64; 2],
+        whole: bool,
+        get: fn(&Settings) -> f64,
+        set: fn(&mut Settings, f64),
+    },
+    /// A number within a range, or no value.
+    Optional {
+        range: [f64; 2],
+        /// The words for no value: on the command line, and in a sentence.
+        nothing: [&'static str; 2],
+        /// Number that the argument "on" sets; `None` if "on" is not accepted.
+        on: Option<f64>,
+        get: fn(&Settings) -> Option<f64>,
+        set: fn(&mut Settings, Option<f64>),
+    },
+    /// A lower and an upper number within a range, or no value.
+    Range {
+        range: [f64; 2],
+        /// The words for no value: on the command line, and in a sentence; `None` where a value is
+        /// required.
+        nothing: Option<[&'static str; 2]>,
+        get: fn(&Settings) -> Option<[f64; 2]>,
+        set: fn(&mut Settings, Option<[f64; 2]>) -> Result<(), EditRefusal>,
+    },
+    Flag {
+        /// The words for no and yes, in a sentence.
+        words: [&'static str; 2],
+        get: fn(&Settings) -> bool,
+        set: fn(&mut Settings, bool),
+    },
+    Choice {
+        /// For each choice: word on the command line, and word in a sentence and in the window.
+        words: &'static [[&'static str; 2]],
+        get: fn(&Settings) -> usize,
+        set: fn(&mut Settings, usize),
+    },
+}
+
+/// A setting's control in the window.
+#[derive(Clone, Copy, Debug)]
+pub struct Control {
+    pub place: Place,
+    /// Change in the displayed value for each point of dragging.
+    pub step: f64,
+    pub digits: Digits,
+    /// Whether the setting has an effect in a study.
+    pub applies: fn(&Study) -> bool,
+}
+
+/// Number format in the window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Digits {
+    /// Three significant digits.
+    Significant,
+    /// This number of decimals.
+    Decimals(usize),
+    /// A gain: three decimals, or two where the third is zero.
+    Gain,
+}
+
+/// Place of the control of a setting.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// Above the settings table, with a slider.
+    Slider,
+    /// Above the table, on its own line.
+    Top,
+    /// On its own line.
+    Line,
+    /// On the line of the previous setting.
+    Beside,
+    /// Outside the settings panel, in the view that the setting concerns.
+    Elsewhere,
+}
+
+/// A setting's value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value {
+    /// A number in the file unit.
+    Number(f64),
+    /// No value, for settings that allow it.
+    Nothing,
+    Range([f64; 2]),
+    Flag(bool),
+    Choice(usize),
+}
+
+/// A type whose values are a setting's choices.
+pub trait Choice: Copy + PartialEq + 'static {
+    /// All values, in the same order as the words of [`Kind::Choice`].
+    const ALL: &'static [Self];
+
+    /// Returns the index of the value in [`Self::ALL`].
+    fn index(self) -> usize {
+        Self::ALL
+            .iter()
+            .position(|choice| *choice == self)
+            .unwrap_or_default()
+    }
+}
+
+impl Choice for PhaseCorrection {
+    const ALL: &'static [Self] = &[Self::None, Self::Delay, Self::Lead];
+}
+
+impl Choice for CouplingCorrection {
+    const ALL: &'static [Self] = &[Self::None, Self::Mixing, Self::MixingAndFeedback];
+}
+
+impl Choice for DelayFrom {
+    const ALL: &'static [Self] = &[Self::Median, Self::Band];
+}
+
+impl Choice for CostAverage {
+    const ALL: &'static [Self] = &[Self::Median, Self::Mean];
+}
+
+impl Choice for GainObjective {
+    const ALL: &'static [Self] = &[Self::Ratio, Self::Decibel];
+}
+
+impl Choice for GainSource {
+    const ALL: &'static [Self] = &[Self::Representatives, Self::MeanOfPairs];
+}
+
+impl Choice for LeadOrder {
+    const ALL: &'static [Self] = &[Self::Second, Self::First];
+}
+
+impl Choice for ScheduleKind {
+    const ALL: &'static [Self] = &SCHEDULE_KINDS;
+}
+
+impl Choice for DelayScheduling {
+    const ALL: &'static [Self] = &[Self::Automatic, Self::Always, Self::Never];
+}
+
+impl Choice for ScheduledQuantity {
+    const ALL: &'static [Self] = &[Self::LnGain, Self::Gain];
+}
+
+impl Choice for Option<SecondVariable> {
+    const ALL: &'static [Self] = &[
+        None,
+        Some(SecondVariable::Altitude),
+        Some(SecondVariable::Mass),
+    ];
+}
+
+impl<C: Choice> From<C> for Value {
+    fn from(choice: C) -> Self {
+        Self::Choice(choice.index())
+    }
+}
+
+impl From<f64> for Value {
+    fn from(value: f64) -> Self {
+        Self::Number(value)
+    }
+}
+
+impl From<usize> for Value {
+    fn from(count: usize) -> Self {
+        Self::Number(count as f64)
+    }
+}
+
+impl From<bool> for Value {
+    fn from(flag: bool) -> Self {
+        Self::Flag(flag)
+    }
+}
+
+impl From<Option<f64>> for Value {
+    fn from(value: Option<f64>) -> Self {
+        value.map_or(Self::Nothing, Self::Number)
+    }
+}
+
+impl From<Band> for Value {
+    fn from(band: Band) -> Self {
+        Self::Range([band.min(), band.max()])
+    }
+}
+
+impl From<Option<GainBounds>> for Value {
+    fn from(bounds: Option<GainBounds>) -> Self {
+        bounds.map_or(Self::Nothing, |bounds| {
+            Self::Range([bounds.lower, bounds.upper])
+        })
+    }
+}
+
+impl PartialEq for Setting {
+    fn eq(&self, other: &Self) -> bool {
+        self.key == other.key
+    }
+}
+
+impl Setting {
+    /// Returns the present value.
+    pub fn value(&self, settings: &Settings) -> Value {
+        match self.kind {
+            Kind::Number { get, .. } => Value::Number(get(settings)),
+            Kind::Optional { get, .. } => get(settings).into(),
+            Kind::Range { get, .. } => get(settings).map_or(Value::Nothing, Value::Range),
+            Kind::Flag { get, .. } => Value::Flag(get(settings)),
+            Kind::Choice { get, .. } => Value::Choice(get(settings)),
+        }
+    }
+
+    /// Sets a value, or refuses a value outside its range and leaves the settings unchanged.
+    pub(crate) fn set(&self, settings: &mut Settings, value: Value) -> Result<(), EditRefusal> {
+        self.check(value)?;
+        match (self.kind, value) {
+            (Kind::Number { set, .. }, Value::Number(value)) => set(settings, value),
+            (Kind::Optional { set, .. }, Value::Number(value)) => set(settings, Some(value)),
+            (Kind::Optional { set, .. }, _) => set(settings, None),
+            (Kind::Range { set, .. }, Value::Range(ends)) => set(settings, Some(ends))?,
+            (Kind::Range { set, .. }, _) => set(settings, None)?,
+            (Kind::Flag { set, .. }, Value::Flag(value)) => set(settings, value),
+            (Kind::Choice { set, .. }, Value::Choice(index)) => set(settings, index),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Checks a value, and refuses one that the setting does not allow.
+    pub fn check(&self, value: Value) -> Result<(), EditRefusal> {
+        match (self.kind, value) {
+            (Kind::Number { range, whole, .. }, Value::Number(found)) => {
+                self.check_number(found, range, whole)
+            }
+            (Kind::Optional { range, .. }, Value::Number(found)) => {
+                self.check_number(found, range, false)
+            }
+            (Kind::Range { range, nothing, .. }, Value::Range(ends)) => {
+                if nothing.is_none() {
+                    // The band must have a value; [`Band::new`] describes its range in the refusal.
+                    Band::new(ends[0], ends[1])?;
+                    return Ok(());
+                }
+                self.check_ends(ends, range)
+            }
+            (Kind::Choice { words, .. }, Value::Choice(index)) => {
+                let range = [0.0, words.len() as f64 - 1.0];
+                self.check_range("a whole number", index as f64, range)
+            }
+            (Kind::Flag { .. }, Value::Flag(_)) | (Kind::Optional { .. }, Value::Nothing) => Ok(()),
+            (Kind::Range { nothing, .. }, Value::Nothing) if nothing.is_some() => Ok(()),
+            _ => Err(EditRefusal::NotAValue { setting: self.name }),
+        }
+    }
+
+    fn check_number(&self, found: f64, range: [f64; 2], whole: bool) -> Result<(), EditRefusal> {
+        if !whole {
+            return self.check_range(&self.a_number(), found, range);
+        }
+        if found.fract() != 0.0 {
+            return Err(self.out_of_range("a whole number", found, range));
+        }
+        self.check_range("a whole number", found, range)
+    }
+
+    fn check_ends(&self, ends: [f64; 2], range: [f64; 2]) -> Result<(), EditRefusal> {
+        let [lower, upper] = ends;
+        self.check_range("a lower end", lower, range)?;
+        self.check_range("an upper end", upper, [lower, range[1]])
+    }
+
+    fn check_range(&self, what: &str, found: f64, range: [f64; 2]) -> Result<(), EditRefusal> {
+        let is_within = (range[0]..=range[1]).contains(&found);
+        if is_within {
+            Ok(())
+        } else {
+            Err(self.out_of_range(what, found, range))
+        }
+    }
+
+    fn out_of_range(&self, what: &str, found: f64, [least, most]: [f64; 2]) -> EditRefusal {
+        let expected = format!("{what} from {} to {}", number(least), number(most));
+        EditRefusal::OutOfRange {
+            setting: self.name,
+            expected,
+            found,
+        }
+    }
+
+    fn a_number(&self) -> String {
+        if self.unit.file.is_empty() {
+            "a number".to_owned()
+        } else {
+            format!("a number of {}", self.unit.file)
+        }
+    }
+
+    /// Returns the present value in words.
+    pub fn words(&self, settings: &Settings) -> String {
+        self.text(self.value(settings))
+    }
+
+    /// Formats a value, with at most six significant digits: "20 ms", "by the quantile", "median".
+    pub fn text(&self, value: Value) -> String {
+        let unit = match self.unit.shown {
+            "" => String::new(),
+            shown => format!(" {shown}"),
+        };
+        let shown = |value: f64| six_digits(self.unit.scale * value);
+        match (self.kind, value) {
+            (_, Value::Number(value)) => format!("{}{unit}", shown(value)),
+            (_, Value::Range([lower, upper])) => {
+                format!("{} to {}{unit}", shown(lower), shown(upper))
+            }
+            (Kind::Flag { words, .. }, Value::Flag(flag)) => words[usize::from(flag)].to_owned(),
+            (Kind::Choice { words, .. }, Value::Choice(index)) => words[index][1].to_owned(),
+            (Kind::Optional { nothing, .. }, _) => nothing[1].to_owned(),
+            (
+                Kind::Range {
+                    nothing: Some(nothing),
+                    ..
+                },
+                _,
+            ) => nothing[1].to_owned(),
+            _ => String::new(),
+        }
+    }
+
+    /// Returns the syntax of the option's argument: "none|delay|lead", "off|on|NUMBER".
+    pub fn syntax(&self) -> String {
+        match self.kind {
+            Kind::Number { .. } => "NUMBER".to_owned(),
+            Kind::Optional { nothing, on, .. } => {
+                let on = if on.is_some() { "|on" } else { "" };
+                format!("{}{on}|NUMBER", nothing[0])
+            }
+            Kind::Range { .. } => "LO HI".to_owned(),
+            Kind::Flag { .. } => String::new(),
+            Kind::Choice { words, .. } => option_words(words).join("|"),
+        }
+    }
+
+    /// Parses the value from the command line; a flag without argument is set.
+    ///
+    /// # Errors
+    /// The expected values and the text found.
+    pub fn read(&self, arguments: &[&str]) -> Result<Value, String> {
+        match (self.kind, arguments) {
+            (Kind::Flag { .. }, _) => Ok(Value::Flag(true)),
+            (Kind::Number { range, whole, .. }, [text]) => {
+                let number = if whole {
+                    read_whole(text, range)?
+                } else {
+                    read_number(text)?
+                };
+                Ok(Value::Number(number))
+            }
+            (Kind::Optional { nothing, on, .. }, [text]) => read_optional(text, nothing[0], on),
+            (Kind::Range { nothing, .. }, [word])
+                if nothing.is_some_and(|nothing| nothing[0] == *word) =>
+            {
+                Ok(Value::Nothing)
+            }
+            (Kind::Range { .. }, [lower, upper]) => {
+                Ok(Value::Range([read_number(lower)?, read_number(upper)?]))
+            }
+            (Kind::Choice { words, .. }, [text]) => read_choice(text, words),
+            _ => Err(format!(
+                "expected {}, found {}",
+                self.syntax(),
+                arguments.join(" ")
+            )),
+        }
+    }
+}
+
+fn read_number(text: &str) -> Result<f64, String> {
+    text.trim()
+        .parse()
+        .map_err(|_| format!("expected a number, found {text}"))
+}
+
+fn read_whole(text: &str, range: [f64; 2]) -> Result<f64, String> {
+    let [least, most] = range;
+    if let Ok(count) = text.trim().parse::<usize>() {
+        let count = count as f64;
+        if (least..=most).contains(&count) {
+            return Ok(count);
+        }
+    }
+    Err(format!(
+        "expected a whole number from {least} to {most}, found {text}"
+    ))
+}
+
+/// Parses a number, the word for no value, or "on" if it stands for a number.
+fn read_optional(text: &str, nothing: &str, on: Option<f64>) -> Result<Value, String> {
+    if text == nothing {
+        return Ok(Value::Nothing);
+    }
+    if let Some(on) = on
+        && text == "on"
+    {
+        return Ok(Value::Number(on));
+    }
+    text.parse().map(Value::Number).map_err(|_| {
+        let on = if on.is_some() { ", on" } else { "" };
+        format!("expected {nothing}{on} or a number, found {text}")
+    })
+}
+
+fn read_choice(text: &str, words: &[[&str; 2]]) -> Result<Value, String> {
+    let words = option_words(words);
+    if let Some(index) = words.iter().position(|word| *word == text) {
+        return Ok(Value::Choice(index));
+    }
+    let (last, others) = words.split_last().unwrap_or((&"", &[]));
+    let others = others.join(", ");
+    Err(format!("expected {others} or {last}, found {text}"))
+}
+
+/// Returns the words of the choices on the command line.
+fn option_words<'a>(words: &[[&'a str; 2]]) -> Vec<&'a str> {
+    words.iter().map(|[option, _]| *option).collect()
+}

@@ -240,3 +240,66 @@ fn plus_minus(value: f64) -> String {
 fn rounded(value: f64) -> String {
     number((1e6 * value).round() / 1e6)
 }
+
+#[cfg(test)]
+mod tests {
+    use gdcm_study::Execution;
+    use gdcm_study::results::required_modes::KnownPoles;
+    use gdcm_study::results::requirements::requirements_of;
+
+    use super::*;
+    use crate::example_tests::EXAMPLE;
+
+    #[test]
+    fn what_is_beyond_its_limit_is_marked_and_nothing_else() {
+        let analysis = &*EXAMPLE;
+        let dataset = &analysis.study.dataset;
+        let found =
+            requirements_of(analysis, &KnownPoles::default(), &Execution::sequential()).unwrap();
+        let usual = RequirementsOverview::new(&found, dataset, None, &OverviewLimits::default());
+        let heads = RequirementsOverview::HEADS;
+        assert_eq!(usual.table.columns.len() - heads, analysis.conditions.len());
+        let row = usual
+            .table
+            .rows
+            .iter()
+            .position(|row| row[0] == "LAT \u{2192} P: bandwidth")
+            .unwrap();
+        assert_eq!(usual.table.rows[row][1..heads], ["%", "\u{b1}10"]);
+        let pair = found
+            .bandwidth
+            .iter()
+            .find(|of| of.output == "P" && of.input == "LAT")
+            .unwrap()
+            .pair;
+        for (column, id) in usual.table.columns.iter().enumerate().skip(heads) {
+            let id = ConditionId(id.parse().unwrap());
+            let of = |role| {
+                found
+                    .bandwidth_of(id, pair, role)
+                    .and_then(|of| of.omega_bw_rad_s)
+            };
+            let change = of(RequirementRole::Corrected)
+                .zip(of(RequirementRole::Identified))
+                .map(|(of, by)| of / by - 1.0);
+            let shown = usual.table.rows[row][column]
+                .replace('\u{2212}', "-")
+                .parse::<f64>()
+                .ok();
+            assert_eq!(shown, change.map(|change| (100.0 * change).round()), "{id}");
+            assert_eq!(
+                usual.is_outside(row, column),
+                change.is_some_and(|change| change.abs() > 0.1)
+            );
+        }
+        let strict = OverviewLimits {
+            bandwidth: 1e-9,
+            ..OverviewLimits::default()
+        };
+        let strict = RequirementsOverview::new(&found, dataset, None, &strict);
+        let known = (heads..strict.table.columns.len())
+            .find(|column| strict.table.rows[row][*column] != "-")
+            .unwrap();
+        assert!(strict.is_outside(row, known) && !strict.is_outside(row, 0));
+    }
+}

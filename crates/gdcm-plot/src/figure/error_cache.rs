@@ -194,3 +194,64 @@ impl ErrorCache {
         self.source.as_ref()?.shape(response, &self.omega)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use gdcm_model::response::wrap;
+
+    use super::*;
+
+    /// Returns a response with a constant gain \[dB\] and a constant lead \[s\].
+    fn polar(omega: &[f64], gain_db: f64, lead_s: f64) -> PolarCurve {
+        PolarCurve {
+            magnitude_db: vec![gain_db; omega.len()],
+            phase: omega.iter().map(|omega| wrap(omega * lead_s)).collect(),
+        }
+    }
+
+    #[test]
+    fn the_right_gain_and_delay_bring_an_error_to_zero_on_its_branch() {
+        // At 12 rad/s, a lead of 0.6 s is 1.15 turns: the individual phases wrap.
+        let omega: Vec<f64> = (1..=120).map(|k| 0.1 * f64::from(k)).collect();
+        let simulated = polar(&omega, 2.0, 0.6);
+        let reference = polar(&omega, 0.0, 0.0);
+        let error = ErrorShape::new(&simulated, &reference, &omega, None).unwrap();
+        let before = error.drawn(GainDelay::NONE, &omega, PhaseErrorUnit::Millisecond);
+        // Tolerance for rounding errors of angles of several turns, divided by 0.1 rad/s.
+        assert!(
+            before
+                .phase
+                .iter()
+                .all(|delay| (delay - 600.0).abs() < 1e-9)
+                && omega[119] * 0.6 > TAU
+        );
+        assert_eq!(
+            before.magnitude_db[0], -2.0,
+            "the gain of the model is to be reduced"
+        );
+        let after = error.drawn(
+            GainDelay::new(10f64.powf(-0.1), 0.6),
+            &omega,
+            PhaseErrorUnit::Degree,
+        );
+        let values = after.magnitude_db.iter().chain(after.phase.iter());
+        assert!(values.into_iter().all(|value| value.abs() < 1e-10));
+    }
+
+    #[test]
+    fn frequencies_that_do_not_count_are_gaps() {
+        let omega = [1.0, 2.0, 3.0];
+        let polar = PolarCurve {
+            magnitude_db: vec![1.0; 3],
+            phase: vec![0.1; 3],
+        };
+        let coherence_weights = CoherenceWeights::select(&omega, &[0.9, 0.2, 0.9], 0.6, None);
+        let shape = ErrorShape::new(&polar, &polar, &omega, Some(&coherence_weights)).unwrap();
+        assert!(shape.mismatch_db[1].is_nan() && shape.phase[1].is_nan());
+        assert_eq!((shape.mismatch_db[0], shape.phase[2]), (0.0, 0.0));
+        let nothing = CoherenceWeights::select(&omega, &[0.0; 3], 0.6, None);
+        assert!(ErrorShape::new(&polar, &polar, &omega, Some(&nothing)).is_none());
+    }
+}

@@ -58,8 +58,8 @@ fn stages(criterion: &mut Criterion) {
     let grid = FrequencyGrid::logarithmic(dataset.band(), 200);
     let measuring = dataset.measuring_pairs();
     let alone = Execution::sequential();
-    let responses =
-        ConditionResponses::of(condition, (dataset.band(), 200), &alone).expect("nobody stops it");
+    let responses = ConditionResponses::compute(condition, (dataset.band(), 200), &alone)
+        .expect("nobody stops it");
     let comparison_grid = ComparisonGrid {
         grid: &grid,
         coherence: None,
@@ -83,7 +83,7 @@ fn stages(criterion: &mut Criterion) {
         .collect();
     let mut group = criterion.benchmark_group("one condition");
     group.bench_function("responses of models not prepared", |bencher| {
-        bencher.iter(|| ConditionResponses::of(condition, (dataset.band(), 200), &alone));
+        bencher.iter(|| ConditionResponses::compute(condition, (dataset.band(), 200), &alone));
     });
     group.bench_function("distances and ratios", |bencher| {
         bencher.iter(|| {
@@ -179,7 +179,7 @@ fn ratios(_: &mut Criterion) {
     let grid = FrequencyGrid::logarithmic(dataset.band(), 200);
     let alone = Execution::sequential();
     let ours = shortest(20, || {
-        ConditionResponses::of(condition, (dataset.band(), 200), &alone)
+        ConditionResponses::compute(condition, (dataset.band(), 200), &alone)
     });
     let models = [BundleKind::Physics, BundleKind::Identified]
         .map(|kind| condition.bundle(kind))

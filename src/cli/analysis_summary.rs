@@ -10,7 +10,7 @@ use gdcm_model::dataset::Dataset;
 use gdcm_model::message_text::{sanitized, sanitized_path};
 use gdcm_model::units::six_digits;
 use gdcm_study::results::convention_doubt::ConventionDoubt;
-use gdcm_study::results::coupling_remarks::analysis_coupling_remarks;
+use gdcm_study::results::coupling_remark_search::analysis_coupling_remarks;
 use gdcm_study::results::remark_kind::RemarkKind;
 use gdcm_study::{Analysis, AssessedCorrection, AssessmentTable, PhaseCorrection};
 use gdcm_words::assessment::{held_out_verdict, not_assessed_text};
@@ -167,7 +167,7 @@ fn couplings_section(analysis: &Analysis) -> String {
 fn assessment_lines(analysis: &Analysis) -> String {
     let mut text = line("Assessment", &sanitized(&assessment_sentence(analysis)));
     let choice = nominal_choice(analysis, AssessedCorrection::Scheduled);
-    for left_out in AssessmentTable::of(analysis, choice).left_out {
+    for left_out in AssessmentTable::assess(analysis, choice).left_out {
         let why = sanitized(&not_assessed_text(&left_out.why, &analysis.study.dataset));
         let words = format!("condition {}: {why}", left_out.condition);
         text += &line("Left out", &words);

@@ -44,9 +44,10 @@ impl IdentificationTask {
         let RecordGroup { condition, records } = group;
         let band_rad_s = [band.min(), band.max()];
         let mut request =
-            IdentificationRequest::of(records.iter(), preparation.clone(), band_rad_s).map_err(
-                |why| Failure::option("--hold-out", format!("{}{why}", prefix(condition))),
-            )?;
+            IdentificationRequest::from_used(records.iter(), preparation.clone(), band_rad_s)
+                .map_err(|why| {
+                    Failure::option("--hold-out", format!("{}{why}", prefix(condition)))
+                })?;
         arguments.search().set(&mut request.options);
         request.options.references = arguments.references().len();
         Ok(Self {

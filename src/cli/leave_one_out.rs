@@ -61,7 +61,7 @@ pub(super) fn nominal_choice(
 }
 
 fn assessment(analysis: &Analysis, correction: AssessedCorrection) -> AssessmentTable {
-    AssessmentTable::of(analysis, nominal_choice(analysis, correction))
+    AssessmentTable::assess(analysis, nominal_choice(analysis, correction))
 }
 
 /// Returns the mean of some values; `None` if there are none.

@@ -3,7 +3,8 @@
 use gdcm_io::import::record_files::FoundRecords;
 use gdcm_model::dataset::{Band, ConditionId, Dataset};
 use gdcm_model::message_text::{sanitized, sanitized_path};
-use gdcm_study::results::time_histories::{HistoryRecords, TimeHistories, time_histories_of};
+use gdcm_study::results::record_simulations::time_histories_of;
+use gdcm_study::results::time_histories::{HistoryRecords, TimeHistories};
 use gdcm_study::{Analysis, Execution};
 use gdcm_sysid::identification::Preparation;
 use gdcm_sysid::records::record_channels::SaidConversion;

@@ -4,7 +4,9 @@ use std::sync::{Arc, LazyLock};
 
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::results::coupling_remark::{CostSource, CouplingRemark};
-use gdcm_study::results::coupling_remarks::{coupling_cautions, coupling_offer, coupling_remarks};
+use gdcm_study::results::coupling_remark_search::{
+    coupling_cautions, coupling_offer, coupling_remarks,
+};
 use gdcm_study::results::couplings_assessment::{CouplingsAssessment, UnstablePole};
 use gdcm_study::results::remark_kind::RemarkKind;
 use gdcm_study::{CouplingCorrection, Engine, Unobserved};

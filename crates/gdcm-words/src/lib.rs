@@ -10,7 +10,8 @@
 //! [`convention_doubt`] and [`channel_time_skew`] for suspected faults; [`missing_results`] for
 //! results that do not exist; [`coupling_remark`], [`couplings`], [`assessment`], [`schedule`],
 //! [`uncertainty`] for a study; [`decision_differences`] and [`dataset_differences`]. Settings:
-//! [`setting_words`]. Tables: [`table`], [`requirements`], [`time_histories`]. Explained results:
+//! [`setting_words`]. Tables: [`table`], [`requirements`],
+//! [`requirements_overview`], [`time_histories`]. Explained results:
 //! [`derivation`].
 //!
 //! # Example
@@ -38,6 +39,7 @@ pub mod leads;
 pub mod missing_results;
 pub mod remark;
 pub mod requirements;
+pub mod requirements_overview;
 pub mod schedule;
 pub mod sensitivity;
 pub mod setting_words;

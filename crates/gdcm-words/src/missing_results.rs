@@ -3,12 +3,14 @@
 use gdcm_model::dataset::Dataset;
 use gdcm_study::jobs::identification_jobs::SimulationFailure;
 use gdcm_study::results::analysis::NoResult;
-use gdcm_study::results::condition_answers::{NoRecordHistory, NoTestAnswer, NotInHistory};
 use gdcm_study::results::missing_finding::{MissingReason, NoModes, NoRoleModel, NotCompared};
+use gdcm_study::results::record_history::{NoRecordHistory, NotInHistory};
 use gdcm_study::results::required_bandwidth::NoBandwidth;
 use gdcm_study::results::required_modes::NoModeValue;
+use gdcm_study::results::required_summary::NoSummary;
 use gdcm_study::results::requirement_role::RequirementRole;
-use gdcm_study::results::requirements::{NoSummary, ReversedPhase};
+use gdcm_study::results::requirements::ReversedPhase;
+use gdcm_study::results::test_input_responses::NoTestAnswer;
 
 /// Returns why an analysis contains no result of a condition.
 pub fn no_result_text(why: &NoResult) -> String {

@@ -4,7 +4,7 @@
 use gdcm_method::correction::solution::Unmatched;
 use gdcm_model::dataset::Dataset;
 use gdcm_model::units::{number, s_to_ms, signed, telling, told_apart};
-use gdcm_study::results::lead_compensation::LeadOffer;
+use gdcm_study::results::lead_offer::LeadOffer;
 use gdcm_study::results::remark::{
     DelaysApart, FartherResponse, MissedTargets, NeededLead, Remark,
 };

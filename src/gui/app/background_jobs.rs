@@ -24,7 +24,7 @@ use std::sync::Arc;
 use gdcm_model::executor::Executor;
 use gdcm_study::Engine;
 use gdcm_study::jobs::analysis_jobs::ProofJob;
-use gdcm_study::stages::condition_responses::KnownModels;
+use gdcm_study::stages::known_models::KnownModels;
 
 use super::GdcmApp;
 use super::job_kind::{AnyJobKind, JobKind, JobKinds};

@@ -7,7 +7,7 @@ use gdcm_method::correction::{GainObjective, Outcome, Quantity};
 use gdcm_study::decisions::setting;
 use gdcm_study::results::condition_remarks::condition_remarks;
 use gdcm_study::results::coupling_remark::CouplingRemark;
-use gdcm_study::results::coupling_remarks::{coupling_consequences, coupling_offer};
+use gdcm_study::results::coupling_remark_search::{coupling_consequences, coupling_offer};
 use gdcm_study::results::remark::Remark;
 use gdcm_study::results::remark_kind::RemarkKind;
 use gdcm_study::{ConditionAnalysis, Edit};

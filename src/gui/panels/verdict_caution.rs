@@ -5,7 +5,7 @@ use gdcm_method::schedule::ScheduleCaution;
 use gdcm_model::number_format::counted;
 use gdcm_model::units::{number, signed, told_apart};
 use gdcm_study::ConditionAnalysis;
-use gdcm_study::results::coupling_remarks::coupling_cautions;
+use gdcm_study::results::coupling_remark_search::coupling_cautions;
 use gdcm_study::results::remark_kind::RemarkKind;
 
 use crate::gui::state::window_state::State;

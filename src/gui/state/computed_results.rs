@@ -21,9 +21,10 @@ use gdcm_study::jobs::requirement_jobs::{
     RecordHistoryJob, RequirementsJob, TestAnswersJob, TimeHistoriesJob,
 };
 use gdcm_study::results::analysis::{ConditionFailure, NoResult};
-use gdcm_study::results::condition_answers::{NoRecordHistory, RecordHistory, TestAnswers};
 use gdcm_study::results::couplings_assessment::AssessedCouplings;
+use gdcm_study::results::record_history::{NoRecordHistory, RecordHistory};
 use gdcm_study::results::requirements::Requirements;
+use gdcm_study::results::test_input_responses::TestAnswers;
 use gdcm_study::results::time_histories::TimeHistories;
 use gdcm_study::results::uncertainty::Uncertainty;
 use gdcm_study::stages::condition_curves::ConditionCurves;

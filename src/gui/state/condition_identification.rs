@@ -45,7 +45,7 @@ impl ConditionRecords {
         for (_, row) in self.used_rows() {
             rows.push(self.with_references(row, channels)?);
         }
-        let mut request = IdentificationRequest::of(rows.iter(), preparation, band)
+        let mut request = IdentificationRequest::from_used(rows.iter(), preparation, band)
             .map_err(|error| error.to_string())?;
         request.options.references = self.references.len();
         self.search.set(&mut request.options);

@@ -127,7 +127,7 @@ fn fit_across(state: &mut State) {
 /// Returns the job that computes the responses in the view: a model of each condition.
 pub fn across_job(state: &State) -> AcrossJob {
     let grid = (display_band(state.study.settings.band), POINTS);
-    AcrossJob::of(
+    AcrossJob::for_role(
         &state.study.dataset,
         state.analysis(),
         state.display.frequency.across_role,

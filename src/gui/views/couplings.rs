@@ -6,7 +6,7 @@ use gdcm_model::units::telling;
 use gdcm_plot::figure::Figure;
 use gdcm_study::CouplingCorrection;
 use gdcm_study::decisions::setting;
-use gdcm_study::results::coupling_remarks::coupling_remarks;
+use gdcm_study::results::coupling_remark_search::coupling_remarks;
 use gdcm_study::results::couplings_assessment::CouplingsAssessment;
 use gdcm_study::results::remark_kind::RemarkKind;
 use gdcm_words::Table;

@@ -26,7 +26,7 @@ const CONDITIONS_SIDE_BY_SIDE: usize = 12;
 pub(super) fn add_assessment(page: &mut Page, analysis: &Analysis) {
     page.section("Assessment");
     let choice = usual_choice(analysis);
-    let table = AssessmentTable::of(analysis, choice);
+    let table = AssessmentTable::assess(analysis, choice);
     page.paragraph(&format!(
         "Change in J of the nominal model of each condition due to the scheduled correction; J is \
         the deviation from the identified representative, so negative changes are improvements. \

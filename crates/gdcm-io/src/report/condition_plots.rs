@@ -102,7 +102,7 @@ fn add_overview(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOpt
 
 /// Adds a plot of the model poles, with their shifts due to couplings.
 fn add_poles(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOptions) {
-    let Ok(modes) = ConditionModes::of(&source.curves.condition, &Unobserved) else {
+    let Ok(modes) = ConditionModes::compute(&source.curves.condition, &Unobserved) else {
         return;
     };
     let shifts = match source.analysis {

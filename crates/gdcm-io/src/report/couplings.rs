@@ -4,7 +4,7 @@ use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_plot::figure::axis::FrequencyUnit;
 use gdcm_plot::figure::poles::couplings_figure;
 use gdcm_study::results::analysis::Analysis;
-use gdcm_study::results::coupling_remarks::analysis_coupling_remarks;
+use gdcm_study::results::coupling_remark_search::analysis_coupling_remarks;
 use gdcm_study::stages::engine::Engine;
 use gdcm_words::coupling_remark::coupling_remark_text;
 use gdcm_words::couplings::{

@@ -12,7 +12,8 @@ use gdcm_study::results::time_histories::TimeHistories;
 use gdcm_study::{Engine, Study};
 use gdcm_words::Table;
 use gdcm_words::missing_results::{missing_reason_text, no_bandwidth_text, reversed_phase_text};
-use gdcm_words::requirements::{RequirementsOverview, bandwidth_table, mode_table, summary_table};
+use gdcm_words::requirements::{bandwidth_table, mode_table, summary_table};
+use gdcm_words::requirements_overview::RequirementsOverview;
 use gdcm_words::time_histories::{record_table, share_table};
 
 use super::page::Page;

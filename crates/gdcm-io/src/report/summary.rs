@@ -51,7 +51,7 @@ pub fn assessment_sentence(analysis: &Analysis) -> String {
     } else {
         "responses"
     };
-    let table = AssessmentTable::of(analysis, usual_choice(analysis));
+    let table = AssessmentTable::assess(analysis, usual_choice(analysis));
     let found = summary_text(&table.summary(&measuring), dataset);
     let fails_between = match &analysis.schedule {
         Ok(schedule) => schedule.interpolation_fails(),

@@ -2,15 +2,14 @@
 
 use gdcm_method::fidelity::CostAverage;
 use gdcm_method::schedule::CostChange;
-use gdcm_model::dataset::{ConditionId, Dataset, Pair};
-use gdcm_model::units::signed;
+use gdcm_model::dataset::{Dataset, Pair};
 use gdcm_study::results::analysis::Analysis;
 use gdcm_study::results::assessment_table::{
     AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable,
 };
 use gdcm_words::assessment::not_assessed_text;
-use gdcm_words::table::Table;
 
+pub use super::change_table::{ChangeColumn, ChangeTable};
 pub use super::evidence::evidence_figure;
 
 use super::axis::Axis;
@@ -55,7 +54,7 @@ const PARTS: [Part; 3] = [
 
 /// Plots ΔJ and its parts over the conditions, for each pair; negative values are improvements.
 pub fn assessment_figure(analysis: &Analysis, pairs: &[Pair], choice: AssessmentChoice) -> Figure {
-    let table = AssessmentTable::of(analysis, choice);
+    let table = AssessmentTable::assess(analysis, choice);
     let dataset = &analysis.study.dataset;
     let mut plots = Vec::new();
     for &pair in pairs {
@@ -133,44 +132,6 @@ fn left_out_note(x: f64) -> Note {
             upright: true,
         },
         text: "left out".to_owned(),
-    }
-}
-
-/// Contents of a table of ΔJ: a row for each pair, a column for each condition.
-#[derive(Clone, Copy, Debug)]
-pub struct ChangeTable<'a> {
-    pub dataset: &'a Dataset,
-    pub assessment: &'a AssessmentTable,
-    pub pairs: &'a [Pair],
-    pub columns: &'a [ChangeColumn],
-    /// Part of ΔJ to be tabulated, or the whole.
-    pub part: fn(CostChange) -> f64,
-}
-
-/// A column of a [`ChangeTable`].
-#[derive(Clone, Debug)]
-pub struct ChangeColumn {
-    pub condition: ConditionId,
-    pub heading: String,
-}
-
-impl ChangeTable<'_> {
-    /// Tabulates the signed values, with a dash for an unavailable ΔJ.
-    pub fn table(&self, title: impl Into<String>) -> Table {
-        let mut headings = vec!["response".to_owned()];
-        headings.extend(self.columns.iter().map(|column| column.heading.clone()));
-        let mut table = Table::new(title, headings);
-        for &pair in self.pairs {
-            let mut cells = vec![self.dataset.pair_name(pair)];
-            for column in self.columns {
-                cells.push(match self.assessment.change(column.condition, pair) {
-                    Some(change) => signed((self.part)(change), 1),
-                    None => "–".to_owned(),
-                });
-            }
-            table.row(cells);
-        }
-        table
     }
 }
 

@@ -208,7 +208,7 @@ pub fn airspeeds_figure(
     let dataset = &analysis.study.dataset;
     let settings = &analysis.study.settings;
     let grid = (display_band(settings.band), CURVE_POINTS);
-    let job = AcrossJob::of(dataset, Some(analysis), role, grid);
+    let job = AcrossJob::for_role(dataset, Some(analysis), role, grid);
     let across = job.run(&mut (), &Unobserved).ok()?;
     if across.responses.is_empty() {
         return None;

@@ -45,6 +45,7 @@ pub mod axis;
 pub mod bode;
 mod bode_curve;
 mod bode_options;
+mod change_table;
 mod coherence;
 mod color;
 mod condition_classes;
@@ -55,6 +56,7 @@ mod display_units;
 mod dot_style;
 pub mod drawing;
 pub mod error;
+mod error_cache;
 mod error_references;
 mod evidence;
 #[expect(
@@ -110,9 +112,10 @@ use gdcm_model::progress::Unobserved;
 use gdcm_study::jobs::curve_jobs::{AcrossRole, ConditionModes};
 use gdcm_study::results::analysis::Analysis;
 use gdcm_study::results::assessment_table::AssessmentChoice;
-use gdcm_study::results::condition_answers::{RecordHistory, TestAnswers};
 use gdcm_study::results::couplings_assessment::CouplingsAssessment;
+use gdcm_study::results::record_history::RecordHistory;
 use gdcm_study::results::requirements::Requirements;
+use gdcm_study::results::test_input_responses::TestAnswers;
 
 use assessment::{assessment_figure, evidence_figure, usual_choice};
 use bode::{BodeOptions, airspeeds_figure, bode_figure, overview_figure};
@@ -297,7 +300,7 @@ impl FigureRequest {
 
     /// Computes and plots modes and zeros of all models.
     fn poles_figure(&self, source: &ConditionSource<'_>) -> Option<Figure> {
-        let modes = ConditionModes::of(&source.curves.condition, &Unobserved).ok()?;
+        let modes = ConditionModes::compute(&source.curves.condition, &Unobserved).ok()?;
         let zeros = |id: &ModelId| match self.bode.zeros_of {
             Some(pair) => zeros_of_model(source, pair, id),
             None => Vec::new(),

@@ -5,8 +5,9 @@ use gdcm_method::requirements::tolerance_check::ToleranceCheck;
 use gdcm_method::requirements::{RecordCheck, TestInputShape};
 use gdcm_model::dataset::Dataset;
 use gdcm_model::units::number;
-use gdcm_study::results::condition_answers::{QuantityHistory, RecordHistory, TestAnswers};
+use gdcm_study::results::record_history::{QuantityHistory, RecordHistory};
 use gdcm_study::results::requirement_role::RequirementRole;
+use gdcm_study::results::test_input_responses::TestAnswers;
 use gdcm_words::missing_results::{no_test_answer_text, not_in_history_text};
 
 use super::axis::Axis;

@@ -1,5 +1,5 @@
-//! Rows of the settings table, and operations on them: setting, checking, formatting and parsing a
-//! value.
+//! The type [`Setting`], a row of the settings table, and operations on it: setting, checking,
+//! formatting and parsing a value. The table itself is in `setting.rs`.
 
 use gdcm_method::correction::delta::GainSource;
 use gdcm_method::correction::{GainBounds, GainObjective};

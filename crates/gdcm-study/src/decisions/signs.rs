@@ -1,4 +1,5 @@
-//! Channels with reversed sign, and datasets with the reversal applied.
+//! Channels with reversed sign, and datasets with the reversal applied. In names, "turned" means with
+//! reversed sign.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

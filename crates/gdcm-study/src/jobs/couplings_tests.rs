@@ -298,7 +298,7 @@ fn the_example_agrees(fit: &CouplingFit, name: &str) {
         correction: AssessedCorrection::Scheduled,
         average: analysis.study.settings.cost_average,
     };
-    let table = AssessmentTable::of(&analysis, choice);
+    let table = AssessmentTable::assess(&analysis, choice);
     let change = |id: ConditionId| PairTable::from_fn(6, 4, |pair| table.change(id, pair));
     let scheduled = mean_costs(analysis.conditions.keys().map(|&id| change(id)));
     assert_close(
@@ -453,7 +453,7 @@ pub(crate) fn own_and_scheduled(analysis: &Analysis) -> [[f64; 2]; 2] {
         correction: AssessedCorrection::Scheduled,
         average: analysis.study.settings.cost_average,
     };
-    let table = AssessmentTable::of(analysis, choice);
+    let table = AssessmentTable::assess(analysis, choice);
     let change = |id: ConditionId| PairTable::from_fn(6, 4, |pair| table.change(id, pair));
     [
         own,

@@ -49,7 +49,7 @@ impl Job for ModesJob {
     type Output = Arc<ConditionModes>;
 
     fn run(&self, (): &mut (), progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
-        ConditionModes::of(&self.condition, progress).map(Arc::new)
+        ConditionModes::compute(&self.condition, progress).map(Arc::new)
     }
 }
 
@@ -74,7 +74,7 @@ pub struct AcrossCurves {
 
 impl AcrossJob {
     /// Returns the job for a role's model in every condition that has one.
-    pub fn of(
+    pub fn for_role(
         dataset: &Arc<Dataset>,
         analysis: Option<&Analysis>,
         role: AcrossRole,
@@ -201,7 +201,7 @@ impl ConditionModes {
     ///
     /// # Errors
     /// [`Cancelled`] between two models, where `progress` requests it.
-    pub fn of(condition: &Arc<Condition>, progress: &dyn Progress) -> Result<Self, Cancelled> {
+    pub fn compute(condition: &Arc<Condition>, progress: &dyn Progress) -> Result<Self, Cancelled> {
         let models: Vec<&Model> = BundleKind::BOTH
             .into_iter()
             .flat_map(|kind| condition.bundle(kind))

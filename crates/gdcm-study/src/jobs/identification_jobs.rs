@@ -44,7 +44,7 @@ impl IdentificationRequest {
     ///
     /// # Errors
     /// No record is used, or all are held out.
-    pub fn of<'r>(
+    pub fn from_used<'r>(
         records: impl Iterator<Item = &'r LaidOutRecord>,
         preparation: Preparation,
         band: [f64; 2],

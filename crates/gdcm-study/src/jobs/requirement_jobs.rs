@@ -12,14 +12,12 @@ use super::job::Job;
 use crate::decisions::requirement_settings::RequirementSettings;
 use crate::execution::Execution;
 use crate::results::analysis::{Analysis, NoResult};
-use crate::results::condition_answers::{
-    ComparedRecord, NoRecordHistory, RecordHistory, TestAnswers,
-};
+use crate::results::record_history::{ComparedRecord, NoRecordHistory, RecordHistory};
+use crate::results::record_simulations::time_histories_of;
 use crate::results::required_modes::KnownPoles;
 use crate::results::requirements::{Requirements, requirements_of};
-use crate::results::time_histories::{
-    HistoryRecord, HistoryRecords, TimeHistories, time_histories_of,
-};
+use crate::results::test_input_responses::TestAnswers;
+use crate::results::time_histories::{HistoryRecord, HistoryRecords, TimeHistories};
 use crate::results::uncertainty::Uncertainty;
 use crate::shared::Shared;
 

@@ -20,10 +20,9 @@ use crate::execution::Execution;
 use crate::results::analysis::Analysis;
 use crate::results::missing_finding::MissingReason;
 use crate::results::record_comparison::{Trend, common_windows};
+use crate::results::record_simulations::time_histories_of;
 use crate::results::requirement_role::RequirementRole;
-use crate::results::time_histories::{
-    HistoryRecord, HistoryRecords, TimeHistories, time_histories_of,
-};
+use crate::results::time_histories::{HistoryRecord, HistoryRecords, TimeHistories};
 
 const CONDITION: ConditionId = ConditionId(3);
 const SAMPLE_TIME_S: f64 = 0.02;

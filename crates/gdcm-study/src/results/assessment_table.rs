@@ -162,7 +162,7 @@ impl AssessmentTable {
 
     /// Assesses all conditions of an analysis. The stored mismatches are used: each response costs
     /// only two averages over frequency.
-    pub fn of(analysis: &Analysis, choice: AssessmentChoice) -> Self {
+    pub fn assess(analysis: &Analysis, choice: AssessmentChoice) -> Self {
         let mut table = Self::new(choice);
         for id in analysis.study.dataset.ids() {
             table.add(analysis, id);

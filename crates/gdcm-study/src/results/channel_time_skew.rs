@@ -39,6 +39,8 @@ const STANDS_OUT: f64 = 2.5;
 const SD_OVER_MEDIAN: f64 = 1.4826;
 /// Maximum share of the squared phase that a delay may leave unexplained.
 const MOST_LEFT: f64 = 0.2;
+/// Minimum squared phase that a suspect explains, relative to the best suspect.
+const LEAST_OF_BEST: f64 = 0.5;
 
 /// A channel that appears to be logged late, or early, in all records.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,7 +69,7 @@ impl ChannelTimeSkew {
             .iter()
             .map(|suspect| suspect.explained)
             .fold(0.0, f64::max);
-        suspects.retain(|suspect| suspect.explained >= 0.5 * most);
+        suspects.retain(|suspect| suspect.explained >= LEAST_OF_BEST * most);
         suspects
             .into_iter()
             .min_by(|a, b| a.common_s.abs().total_cmp(&b.common_s.abs()))

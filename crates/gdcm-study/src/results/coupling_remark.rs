@@ -12,7 +12,7 @@ use super::couplings_assessment::{AxisCost, CouplingCost, NoPoles, UnstablePole}
 use super::remark_kind::RemarkKind;
 use crate::decisions::settings::CouplingCorrection;
 
-/// A remark on couplings.
+/// A remark on couplings; `coupling_remark_search` finds them.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CouplingRemark {
     /// The requested couplings are unavailable; all results are computed without couplings.
@@ -51,7 +51,8 @@ pub enum CouplingRemark {
         after: Complex<f64>,
         distance_rad_s: f64,
     },
-    /// The error bars do not contain a new fit of the couplings.
+    /// The error bars are computed with fixed couplings, which are not fitted again for each swap of
+    /// models.
     BarsKeepCouplings,
     /// Newly unstable poles of the representatives, or of the other kept physics models.
     NewlyUnstable {

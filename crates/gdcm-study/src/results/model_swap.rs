@@ -19,8 +19,8 @@ pub struct ModelSwap {
 
 /// Results of a condition after every swap of a representative.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ConditionSubstitutions {
+pub struct ConditionSwaps {
     /// Spread of the gains and delays over the swaps.
     pub spread: ConditionSpread,
-    pub substitutions: Vec<ModelSwap>,
+    pub swaps: Vec<ModelSwap>,
 }

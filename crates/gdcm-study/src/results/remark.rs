@@ -11,7 +11,7 @@ use gdcm_model::dataset::{Band, Pair};
 use super::caution::Caution;
 use super::convention_doubt::ConventionDoubt;
 use super::coupling_remark::CouplingRemark;
-use super::lead_compensation::LeadOffer;
+use super::lead_offer::LeadOffer;
 use super::remark_kind::RemarkKind;
 use crate::decisions::settings::PhaseCorrection;
 use crate::decisions::signs::SignRole;

@@ -16,10 +16,8 @@ impl Analysis {
     /// Returns the conditions in the schedule, in the dataset's order: the chosen conditions with a
     /// result.
     pub fn scheduled(&self) -> Vec<ConditionId> {
-        self.study
-            .dataset
-            .ids()
-            .filter(|id| self.study.choice(*id).is_in_schedule() && self.condition(*id).is_some())
+        in_schedule(&self.study, &self.conditions)
+            .map(|result| result.condition.id())
             .collect()
     }
 
@@ -58,7 +56,7 @@ impl Analysis {
     }
 }
 
-/// Returns the scheduled conditions with a result, in the dataset's order.
+/// Returns airspeed and correction of each scheduled condition, to which the schedule is fitted.
 pub(crate) fn scheduled_points<'a>(
     study: &Study,
     outcomes: &'a Outcomes,
@@ -99,7 +97,8 @@ fn has_notable_delay(result: &ConditionAnalysis) -> bool {
         .any(|pair| result.correction.net_delay_s(pair) > NOTABLE_DELAY_S)
 }
 
-/// Returns the scheduled conditions' results, in file order.
+/// Returns the results of the scheduled conditions, in the order of the dataset. Every list of this
+/// file is derived from it.
 pub(crate) fn in_schedule<'a>(
     study: &Study,
     outcomes: &'a Outcomes,

@@ -11,7 +11,7 @@ use gdcm_method::uncertainty::{
 };
 use gdcm_model::dataset::{ConditionId, Pair, PairTable};
 
-use super::model_swap::ConditionSubstitutions;
+use super::model_swap::ConditionSwaps;
 
 /// Maximum difference between airspeeds that count as equal \[kt\] (M13.4).
 pub(crate) const EQUAL_AIRSPEED_KT: f64 = 1.0;
@@ -73,7 +73,7 @@ pub struct ConditionUncertainty {
     /// representatives: the mismatch that remains after a gain correction.
     pub left_in_band: PairTable<Option<f64>>,
     /// Swaps from which the error bars are computed.
-    pub substitutions: ConditionSubstitutions,
+    pub swaps: ConditionSwaps,
 }
 
 /// Scatter components of an on-axis net gain (M13.5).

@@ -122,6 +122,7 @@ fn bundle_distance(
     let rows = execution.each(compared.len(), 1, |index| {
         distances_from(index, &compared, &measured.compared)
     })?;
+    // Models set aside have no row of distances, but count as a step too.
     execution.step(polar.len() - compared.len());
     Ok(BundleDistance::from_rows(rows, measured))
 }

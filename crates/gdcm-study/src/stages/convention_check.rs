@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! phi  phase difference of a response between identified and physics model
+//! W    weight of a frequency, as in J (M4a)
 //! G    ratio of their gains (M6)
 //!
 //! sign  the weighted majority of frequencies has |phi| within 20 deg of half a turn. Attributed to
@@ -273,7 +274,7 @@ pub fn doubts_of_models(
     let mut mismatches = Vec::new();
     for condition in study.dataset.conditions() {
         let key = (settings.band, settings.points);
-        let responses = ConditionResponses::of(condition, key, execution)?;
+        let responses = ConditionResponses::compute(condition, key, execution)?;
         let rejected = &study.choice(condition.id()).identified.rejected;
         let kept = condition
             .bundle(BundleKind::Identified)

@@ -17,7 +17,7 @@ use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_model::response::interpolation::coherence_at;
 use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
 
-use super::condition_responses::GridKey;
+use super::known_models::GridKey;
 use crate::decisions::settings::PhaseCorrection;
 use crate::decisions::study::Study;
 use crate::results::comparison::Comparison;

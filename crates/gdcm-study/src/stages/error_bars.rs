@@ -25,7 +25,7 @@ use gdcm_model::statistics::quantile;
 
 use super::model_swaps::representative_figures;
 use crate::results::analysis::{Analysis, ConditionAnalysis};
-use crate::results::model_swap::ConditionSubstitutions;
+use crate::results::model_swap::ConditionSwaps;
 use crate::results::reported_error::{LN_DB, ReportedErrors};
 use crate::results::uncertainty::{
     AirspeedDifference, ConditionUncertainty, EQUAL_AIRSPEED_KT, PairScatter, ScheduleBands,
@@ -37,14 +37,11 @@ const MOST_DIFFERENCES: usize = 20_000;
 
 impl Uncertainty {
     /// Computes the uncertainty from the swaps of the conditions.
-    pub(crate) fn new(
-        analysis: &Analysis,
-        substitutions: &[(ConditionId, ConditionSubstitutions)],
-    ) -> Self {
+    pub(crate) fn new(analysis: &Analysis, swaps: &[(ConditionId, ConditionSwaps)]) -> Self {
         let study = &analysis.study;
         let level = study.settings.uncertainty.level;
         let pairs: Vec<Pair> = study.dataset.measuring_pairs().marked().collect();
-        let conditions = condition_bars(analysis, substitutions);
+        let conditions = condition_bars(analysis, swaps);
         let (differences, too_many_differences) =
             match airspeed_differences(&study.dataset, &conditions, &pairs) {
                 Ok(differences) => (differences, None),
@@ -66,25 +63,25 @@ impl Uncertainty {
 /// Computes the error bars in every condition with swaps.
 fn condition_bars(
     analysis: &Analysis,
-    substitutions: &[(ConditionId, ConditionSubstitutions)],
+    swaps: &[(ConditionId, ConditionSwaps)],
 ) -> BTreeMap<ConditionId, ConditionUncertainty> {
-    let mut analysed: Vec<(&ConditionAnalysis, &ConditionSubstitutions)> = Vec::new();
-    for (id, substitutions) in substitutions {
+    let mut analysed: Vec<(&ConditionAnalysis, &ConditionSwaps)> = Vec::new();
+    for (id, swaps) in swaps {
         if let Some(result) = analysis.condition(*id) {
-            analysed.push((result, substitutions));
+            analysed.push((result, swaps));
         }
     }
     let sources: Vec<BarSource<'_>> = analysed
         .iter()
-        .map(|(result, substitutions)| bar_source(analysis, result, substitutions))
+        .map(|(result, swaps)| bar_source(analysis, result, swaps))
         .collect();
     let bars = bars(&sources, analysis.study.settings.uncertainty.prior_degrees);
     let mut conditions = BTreeMap::new();
-    for ((result, substitutions), bars) in analysed.into_iter().zip(bars) {
+    for ((result, swaps), bars) in analysed.into_iter().zip(bars) {
         let condition = ConditionUncertainty {
             bars,
             left_in_band: left_in_band(result),
-            substitutions: substitutions.clone(),
+            swaps: swaps.clone(),
         };
         conditions.insert(result.condition.id(), condition);
     }
@@ -96,14 +93,14 @@ fn condition_bars(
 fn bar_source<'a>(
     analysis: &Analysis,
     result: &ConditionAnalysis,
-    substitutions: &'a ConditionSubstitutions,
+    swaps: &'a ConditionSwaps,
 ) -> BarSource<'a> {
     let figures = representative_figures(result);
     let reported = ReportedErrors::new(analysis, result);
     let reported = figures.map(|scalar, _| reported.of_scalar(result, scalar));
     BarSource {
         figures,
-        spread: &substitutions.spread,
+        spread: &swaps.spread,
         reported,
         delay_bounds_s: [
             result.delay_problem.bounds.lower,

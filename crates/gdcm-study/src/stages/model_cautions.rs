@@ -122,7 +122,7 @@ pub fn cautions_of_models(
         let id = condition.id();
         let choice = study.choice(id);
         let responses =
-            ConditionResponses::of(condition, (band, study.settings.points), execution)?;
+            ConditionResponses::compute(condition, (band, study.settings.points), execution)?;
         for kind in BundleKind::BOTH {
             let bundle = MeasuredBundle::new(responses.bundle(kind), &measuring, execution)?;
             let cautions = BundleCautions {

@@ -23,10 +23,11 @@ use gdcm_model::progress::{Cancelled, Progress};
 
 use super::run::Run;
 use crate::decisions::settings::{DelayFrom, PhaseCorrection, Settings};
-use crate::execution::Memo;
+use crate::memo::Memo;
 use crate::results::analysis::ConditionFailure;
 use crate::results::comparison::Mismatches;
-use crate::results::lead_compensation::{LeadCompensated, LeadOffer};
+use crate::results::lead_compensation::LeadCompensated;
+use crate::results::lead_offer::LeadOffer;
 
 /// Solution of a problem, or why there is none.
 pub(crate) type Solved = Result<Arc<Solution>, ProblemError>;

@@ -33,7 +33,7 @@ fn lines_of(analysis: &Analysis, target: &ExplainTarget) -> Option<Vec<String>> 
         if !takes_reported_error(result, scalar) && reports_error(analysis, result) {
             lines.push(SPREAD_ALONE.to_owned());
         }
-        for swap in &found.substitutions.substitutions {
+        for swap in &found.swaps.swaps {
             lines.push(swap_words(result, swap, scalar));
         }
     }

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, Scalar};
 use serde_json::{Value, json};
 
 use gdcm_method::couplings::PoleShift;
-use gdcm_study::results::coupling_remarks::analysis_coupling_remarks;
+use gdcm_study::results::coupling_remark_search::analysis_coupling_remarks;
 use gdcm_study::results::couplings_assessment::{AxisCost, CouplingCost, CouplingsAssessment};
 use gdcm_study::{Analysis, ConditionAnalysis};
 use gdcm_words::coupling_remark::coupling_remark_text;

@@ -6,7 +6,8 @@ use gdcm_method::requirements::BandwidthRule;
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::results::required_bandwidth::BandwidthFinding;
 use gdcm_study::results::required_modes::{ModeFinding, ModeNumbers};
-use gdcm_study::results::requirements::{Requirements, SummaryFinding};
+use gdcm_study::results::required_summary::SummaryFinding;
+use gdcm_study::results::requirements::Requirements;
 use gdcm_study::results::time_histories::{HistoryFinding, TimeHistories, ToleranceFinding};
 use gdcm_words::missing_results::{no_bandwidth_text, no_mode_value_text, no_summary_text};
 

@@ -24,7 +24,7 @@ const PAPER: AssessmentChoice = AssessmentChoice {
 #[test]
 fn the_assessment_of_the_paper_is_that_of_the_analysis() {
     let analysis = &*EXAMPLE_WITH_SUGGESTIONS_REJECTED;
-    let table = AssessmentTable::of(analysis, PAPER);
+    let table = AssessmentTable::assess(analysis, PAPER);
     assert_eq!(table.left_out.len(), 1);
     assert_eq!(
         (table.left_out[0].condition, table.left_out[0].why.code()),
@@ -52,7 +52,7 @@ fn each_conditions_own_optimum_of_the_representative_is_what_its_result_says() {
         correction: AssessedCorrection::Own,
         ..PAPER
     };
-    let table = AssessmentTable::of(analysis, own);
+    let table = AssessmentTable::assess(analysis, own);
     assert_eq!(
         (table.conditions.len(), table.left_out.len()),
         (11, 0),
@@ -71,7 +71,7 @@ fn each_conditions_own_optimum_of_the_representative_is_what_its_result_says() {
 #[test]
 fn the_mean_weighs_single_frequencies_that_the_median_leaves_out() {
     let analysis = &*EXAMPLE_WITH_SUGGESTIONS_REJECTED;
-    let mean = AssessmentTable::of(
+    let mean = AssessmentTable::assess(
         analysis,
         AssessmentChoice {
             average: CostAverage::Mean,
@@ -102,7 +102,7 @@ fn the_mean_weighs_single_frequencies_that_the_median_leaves_out() {
 fn a_sentence_sums_an_assessment_up() {
     let analysis = &*EXAMPLE_WITH_SUGGESTIONS_REJECTED;
     let dataset = &analysis.study.dataset;
-    let table = AssessmentTable::of(analysis, PAPER);
+    let table = AssessmentTable::assess(analysis, PAPER);
     let summary = table.summary(dataset.on_axis());
     assert_eq!(
         summary.compared, 50,

@@ -130,7 +130,7 @@ fn costs_of_the_example_with_leads_agree_for_each_condition_and_under_the_schedu
         correction: AssessedCorrection::Scheduled,
         average: EXAMPLE_WITH_LEADS.study.settings.cost_average,
     };
-    let scheduled = AssessmentTable::of(&EXAMPLE_WITH_LEADS, choice);
+    let scheduled = AssessmentTable::assess(&EXAMPLE_WITH_LEADS, choice);
     let conditions = list(&reference["example"]["conditions"]).iter();
     for (expected, under) in conditions.zip(list(&reference["example"]["scheduled"])) {
         let id = ConditionId(expected["id"].as_i64().unwrap());

@@ -1,14 +1,10 @@
-//! Time responses of the models of a condition for plots (M17.2): to the inputs of a flight record,
-//! with tolerance corridors about the measured outputs; and to a test input, for which there is no
-//! measurement.
+//! Comparison of a flight record with simulations of the models of its condition, for plots with
+//! tolerance corridors about the measured outputs (M17.2).
 
-use nalgebra::DMatrix;
-
-use gdcm_method::requirements::test_input::TestInputError;
 use gdcm_method::requirements::tolerance_check::ToleranceError;
-use gdcm_method::requirements::{RecordCheck, TestInput, Tolerance, ToleranceTable};
+use gdcm_method::requirements::{RecordCheck, Tolerance, ToleranceTable};
 use gdcm_model::dataset::ConditionId;
-use gdcm_model::executor::{Executor, each};
+use gdcm_model::executor::Executor;
 use gdcm_model::simulation::{FlightRecord, Segment, Validation, ValidationError, validate};
 use gdcm_sysid::identification::Preparation;
 use gdcm_sysid::spectra::preparation::segments_of;
@@ -17,16 +13,9 @@ use gdcm_sysid::spectra::preparation_settings::PreparationError;
 use super::analysis::{Analysis, NoResult};
 use super::missing_finding::NoRoleModel;
 use super::record_comparison::{RecordComparison, common_windows, comparison_preparation};
-use super::requirement_role::{RequirementRole, RoleModelError};
+use super::requirement_role::RequirementRole;
 use super::time_histories::HistoryRecord;
 use crate::shared::Shared;
-
-/// Displayed time, as a multiple of the duration of the test input.
-const SHOWN: f64 = 5.0;
-/// Minimum displayed time \[s\].
-const LEAST_SHOWN_S: f64 = 10.0;
-/// Number of samples in the displayed time.
-const STEPS: usize = 1000;
 
 /// A quantity in a flight record: measured, and simulated with each model.
 #[derive(Clone, Debug, PartialEq)]
@@ -94,23 +83,6 @@ impl NoRecordHistory {
         match self {
             Self::NoResult(why) => why.code(),
             Self::NotPrepared(_) => "record-not-prepared",
-        }
-    }
-}
-
-/// Why a model has no response to a test input.
-#[derive(Clone, Debug, PartialEq)]
-pub enum NoTestAnswer {
-    NoModel(RoleModelError),
-    NotSimulated(TestInputError),
-}
-
-impl NoTestAnswer {
-    /// Returns the stable code, for programs and tests.
-    pub fn code(&self) -> &'static str {
-        match self {
-            Self::NoModel(_) => "no-role-model",
-            Self::NotSimulated(_) => "not-simulated",
         }
     }
 }
@@ -198,58 +170,4 @@ fn quantities(
         });
     }
     quantities
-}
-
-/// Responses of a condition's models to a test input, starting from rest.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TestAnswers {
-    pub condition: ConditionId,
-    pub input: usize,
-    /// Test input: shape, amplitude and duration.
-    pub test: TestInput,
-    /// Sample time \[s\]; the first sample is at 0 s.
-    pub sample_time_s: f64,
-    /// The input at every sample, in its unit.
-    pub signal: Vec<f64>,
-    /// Outputs of each model, samples x outputs, in their units.
-    pub models: Vec<(RequirementRole, Result<DMatrix<f64>, NoTestAnswer>)>,
-}
-
-impl TestAnswers {
-    /// Simulates a condition's models with a test input in an input channel.
-    ///
-    /// # Errors
-    /// [`NoResult`] without a result of the condition.
-    pub(crate) fn new(
-        analysis: &Analysis,
-        condition: ConditionId,
-        input: usize,
-        test: TestInput,
-        executor: &dyn Executor,
-    ) -> Result<Self, NoResult> {
-        let result = analysis.result(condition)?;
-        let sample_time_s = LEAST_SHOWN_S.max(SHOWN * test.duration_s) / STEPS as f64;
-        let answers = each(executor, &RequirementRole::ALL, |role| {
-            let model = analysis
-                .role_model(result, *role)
-                .map_err(NoTestAnswer::NoModel)?;
-            test.simulate(&model, input, sample_time_s, STEPS + 1)
-                .map_err(NoTestAnswer::NotSimulated)
-        });
-        Ok(Self {
-            condition,
-            input,
-            test,
-            sample_time_s,
-            signal: test.signal(sample_time_s, STEPS + 1),
-            models: RequirementRole::ALL.into_iter().zip(answers).collect(),
-        })
-    }
-
-    /// Returns the samples' times \[s\].
-    pub fn time_s(&self) -> Vec<f64> {
-        (0..self.signal.len())
-            .map(|sample| sample as f64 * self.sample_time_s)
-            .collect()
-    }
 }

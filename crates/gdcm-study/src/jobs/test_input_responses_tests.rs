@@ -11,8 +11,8 @@ use gdcm_model::progress::Unobserved;
 use super::couplings_tests::EXAMPLE;
 use super::job::Job;
 use super::requirement_jobs::TestAnswersJob;
-use crate::results::condition_answers::TestAnswers;
 use crate::results::requirement_role::RequirementRole;
+use crate::results::test_input_responses::TestAnswers;
 
 fn answers(test: TestInput) -> TestAnswers {
     let analysis = EXAMPLE.analysis.clone();

@@ -334,7 +334,7 @@ fn what_cannot_be_is_refused_with_the_place_and_nothing_is_written() {
         (
             &["--hold-out", "other.csv"],
             "unknown-record",
-            &["--hold-out: \"other.csv\""],
+            &["--hold-out", "\"other.csv\""],
         ),
         (
             &["--hold-out", "sweep_1.csv"],
@@ -784,7 +784,7 @@ fn a_record_in_which_a_channel_is_late_or_turned_is_named_with_the_option_that_p
         "--unit",
         "LAT=%",
     ])
-    .assert_code("unknown-record", &["--delay: \"x\""]);
+    .assert_code("unknown-record", &["--delay", "\"x\""]);
 }
 
 /// Returns the magnitude \[dB\] of the first response of the first identified model in a file, at a

@@ -124,6 +124,7 @@ const CRATES: &[(&str, ModuleTable)] = &[
                 "requirements",
                 &["missing_results", "table", "time_histories"],
             ),
+            ("requirements_overview", &["table", "time_histories"]),
             (
                 "derivation",
                 &["assessment", "uncertainty", "leads", "solution_details"],

@@ -40,7 +40,6 @@
 pub mod decisions;
 pub mod execution;
 pub mod jobs;
-mod memo;
 #[cfg(test)]
 mod reference_tests;
 pub mod results;

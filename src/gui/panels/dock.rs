@@ -60,7 +60,7 @@ pub(super) fn dock_ui(
 
 /// Folded dock height \[pt\].
 const FOLDED: f32 = 34.0;
-/// Minimum window height that unfolds the dock \[pt\].
+/// Minimum window height at which the dock is unfolded by default \[pt\].
 const LEAST_WITH_DOCK: f32 = 680.0;
 /// Height of the dock, as a share of the window's height.
 const DOCK_PART: f32 = 0.252;

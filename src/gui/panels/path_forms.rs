@@ -107,7 +107,8 @@ const PATHS: [PathWords; 10] = [
         title: "Export as…",
         field: "Path of the export",
         hint: "path of the file",
-        explanation: "State-space may be .mat, .json or .npz. gdcm export has more choices.",
+        explanation: "Models in state-space form can be saved as .mat, .json or .npz. \
+            The command gdcm export offers more choices.",
         submit: "Export file",
     },
 ];

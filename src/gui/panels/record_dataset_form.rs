@@ -15,7 +15,8 @@ pub(super) fn record_dataset_ui(form: &mut Form<'_, '_>, wanted: &mut WantedData
     form.title("Dataset from these records");
     form.explain(
         "For identification without a physics model. Separate channels by commas. If the file \
-        does not name unit and column, add them: q [rad/s]=gyro_y, or =#3 for the third column.",
+        gives no unit, or no column has the name of the channel, add them: q [rad/s]=gyro_y, or \
+        q [rad/s]=#3 for the third column.",
     );
     form.ui.add_space(4.0);
     let mut entered = false;

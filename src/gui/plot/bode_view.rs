@@ -271,8 +271,8 @@ impl BodeView {
         self.values[pane as usize].choose(Range::new(a.y, b.y));
     }
 
-    /// Fits all curves, including rejected curves, if requested. Without data, the request stays
-    /// pending.
+    /// Fits the requested axes to all curves, including rejected ones. Without data, the request
+    /// stays pending.
     pub(super) fn fit_if_requested(&mut self, scene: &BodeScene<'_>) {
         let computed = scene
             .omega_range

@@ -75,7 +75,8 @@ impl EvidencePage<'_> {
         if let Some(first) = significant.first() {
             let verdict = difference_verdict(first, self.uncertainty.level);
             ui.label(self.palette.small(format!(
-                "{verdict}; expected: from trim and identification uncertainty"
+                "{verdict}; \"expected\" is the difference expected from the uncertainty of trim and \
+                identification"
             )));
         }
         Grid::new("significant differences")

@@ -350,7 +350,7 @@ fn of_several_conditions_the_one_shown_is_identified_first_and_the_others_say_wh
     );
     window.get_by_label(condition_3).click();
     window.run_steps(3);
-    window.get_by_label("Waits for condition 10");
+    window.get_by_label("Waiting for condition 10");
     window.get_by_label("Stop identifying").click();
     window.run_steps(2);
     assert!(state(&window).records.running.is_empty());

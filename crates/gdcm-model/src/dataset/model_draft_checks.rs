@@ -28,6 +28,7 @@ pub(super) struct ModelBuilder {
 }
 
 impl ModelBuilder {
+    /// Starts without warnings; models must have these numbers of channels.
     pub fn new(outputs: usize, inputs: usize) -> Self {
         Self {
             outputs,

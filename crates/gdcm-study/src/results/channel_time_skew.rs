@@ -76,7 +76,8 @@ impl ChannelTimeSkew {
             .map(|suspect| suspect.channel)
     }
 
-    /// Works as [`ChannelTimeSkew::find`], with the nominal physics model of a condition.
+    /// Like [`ChannelTimeSkew::find`], with the nominal physics model of a condition; `None` also if
+    /// that model is missing.
     pub fn of_condition(
         measured: &ResponseEstimate,
         band: [f64; 2],

@@ -102,12 +102,12 @@ fn feedback_meaning(dataset: &Dataset, feedback: &FeedbackShare) -> FeedbackMean
     }
 }
 
-/// Returns whether the unit of a channel belongs to an angular rate.
+/// Returns whether the channel has a unit of angular rate.
 fn is_rate(channel: &Channel) -> bool {
     ["deg/s", "rad/s", "°/s"].contains(&channel.unit.trim())
 }
 
-/// Returns whether the unit of a channel belongs to an acceleration.
+/// Returns whether the channel has a unit of acceleration.
 fn is_acceleration(channel: &Channel) -> bool {
     matches!(
         channel.unit.trim(),

@@ -69,7 +69,8 @@ impl BundleMetrics {
     }
 }
 
-/// Responses of the models of a bundle in polar form, and the responses in which they are compared.
+/// Frequency responses of a bundle's models in polar form, and the output-input pairs in which the
+/// models are compared.
 pub(crate) struct MeasuredBundle {
     polar: Vec<PolarResponse>,
     pub(crate) measured: MeasuredPairs,

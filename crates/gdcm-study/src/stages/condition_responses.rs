@@ -15,8 +15,8 @@ use gdcm_model::progress::Cancelled;
 use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
 
 use super::known_models::{GridKey, KnownModels, ModelResponses, Purpose};
+use super::memo::Memo;
 use crate::execution::Execution;
-use crate::memo::Memo;
 use crate::results::fitted_couplings::FittedCouplings;
 
 /// A condition's responses on a grid.

@@ -8,7 +8,7 @@ use gdcm_model::dataset::model::ContentHash;
 use gdcm_model::dataset::{Band, Model};
 use gdcm_model::response::{FrequencyGrid, FrequencyResponse, PreparedModel};
 
-use crate::memo::Memo;
+use super::memo::Memo;
 
 /// Band and number of frequencies, on which a response depends besides the dynamics of its model.
 pub type GridKey = (Band, usize);

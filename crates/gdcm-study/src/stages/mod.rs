@@ -18,6 +18,7 @@ pub mod engine;
 pub mod error_bars;
 pub mod known_models;
 pub mod mean_gains;
+mod memo;
 pub mod model_cautions;
 pub mod model_swaps;
 pub mod optima;

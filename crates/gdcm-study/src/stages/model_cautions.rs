@@ -24,8 +24,8 @@ pub(crate) struct BundleCautions<'a> {
 }
 
 impl BundleCautions<'_> {
-    /// Returns the cautions about the kept models: models set aside, models with responses that are
-    /// not finite, measured models with missing responses, and channels assigned by position.
+    /// Returns the cautions about the models that are not rejected: models set aside because they
+    /// lack responses, models with responses that are not finite, measured models with missing responses, and channels assigned by position.
     pub(crate) fn find(&self) -> Vec<Caution> {
         let mut cautions = Vec::new();
         for index in 0..self.condition.bundle(self.kind).len() {

@@ -21,9 +21,9 @@ use gdcm_method::schedule::CostChange;
 use gdcm_model::dataset::PairTable;
 use gdcm_model::progress::{Cancelled, Progress};
 
+use super::memo::Memo;
 use super::run::Run;
 use crate::decisions::settings::{DelayFrom, PhaseCorrection, Settings};
-use crate::memo::Memo;
 use crate::results::analysis::ConditionFailure;
 use crate::results::comparison::Mismatches;
 use crate::results::lead_compensation::LeadCompensated;

@@ -92,7 +92,7 @@ pub enum LayoutProblem {
     /// Neither file nor samples determine the unit.
     #[error(
         "the file does not give the unit of {channel} (column {column}), and its samples can be \
-        in {units}; choose the unit with --unit \"{channel}={unit}\" or on page Columns"
+        in {units}; choose the unit with --unit \"{channel}={unit}\" or on the Columns page"
     )]
     UnsaidUnit {
         channel: String,

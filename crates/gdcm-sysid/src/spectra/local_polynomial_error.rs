@@ -4,7 +4,10 @@
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum LocalPolynomialError {
     /// No lines, inputs or outputs.
-    #[error("there are no spectral lines for a frequency response")]
+    #[error(
+        "a frequency response needs spectral lines, inputs, outputs and frequencies; at least one \
+        of these is missing"
+    )]
     Nothing,
     /// A segment has other channel counts than the first; index of its record, counted from 0.
     #[error("record {} differs from the first in its number of channels", .0 + 1)]

@@ -118,6 +118,7 @@ pub(crate) struct StampedValues {
 }
 
 impl StampedValues {
+    /// Takes the values of a signal at the rows of the record that have a stamp.
     pub fn new(record: &FlightRecord, clock: &Clock, signal: Signal) -> Self {
         let samples = record.channel(&signal);
         Self {

@@ -70,7 +70,7 @@ pub(super) fn net_gain(context: &Context<'_>, pair: Pair) -> Derivation {
         equation: "k_o k_i".to_owned(),
         with_numbers: vec![step],
         rests_on: vec![constraint_words(context, pair, &result.gains, delta)],
-        section: "M11, eq. (12)",
+        section: "M10, eq. (12)",
         value,
     }
 }

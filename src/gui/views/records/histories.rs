@@ -34,7 +34,7 @@ pub(super) fn histories_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comma
         return;
     };
     let Some(flight) = &row.flight else {
-        let text = "First assign the record's columns to channels: page Columns";
+        let text = "First assign the record's columns to channels on the Columns page";
         ui.label(RichText::new(text).color(palette.warning));
         return;
     };

@@ -23,12 +23,12 @@ pub(super) fn problem_texts(problems: &[LayoutProblem]) -> Vec<String> {
     }
     let mut texts = Vec::new();
     texts.extend(missing.text(|channels| {
-        format!("no column for {channels}; assign them on page Columns (columns: {columns})")
+        format!("no column for {channels}; assign them on the Columns page (columns: {columns})")
     }));
     texts.extend(without_unit.text(|channels| {
         format!(
             "the file does not give the units of {channels}, and their values allow several \
-            units; choose them on page Columns"
+            units; choose them on the Columns page"
         )
     }));
     texts.extend(others);

@@ -17,7 +17,6 @@ use crate::formats::text::text_table::TextTable;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Name of the expected contents in error messages.
-
 const EXPECTED: &str = "a table of numbers in columns";
 /// Number of lines before the first row among which a repeated heading is looked up.
 const COMPARED_HEADINGS: usize = 20;

@@ -61,11 +61,7 @@ fn a_condition_that_is_left_out_of_the_schedule_says_so() {
         })
         .unwrap();
     let analysis = analyze(&mut engine, &study);
-    let says = |condition| {
-        said(&analysis, condition)
-            .iter()
-            .any(|remark| *remark == Remark::LeftOutOfSchedule)
-    };
+    let says = |condition| said(&analysis, condition).contains(&Remark::LeftOutOfSchedule);
     assert!(says(3) && !says(4));
 }
 

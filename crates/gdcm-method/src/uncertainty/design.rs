@@ -27,7 +27,7 @@ pub struct Design {
 
 impl Design {
     /// Factorises the design, with a row for each condition. `None` if there are no columns, more
-    /// columns than rows or than [`MOST_COLUMNS`], or linearly dependent columns.
+    /// columns than rows or than `MOST_COLUMNS`, or linearly dependent columns.
     pub fn new(rows: &[Vec<f64>]) -> Option<Self> {
         let columns = rows.first()?.len();
         if rows.len() < columns || columns == 0 || columns > MOST_COLUMNS {

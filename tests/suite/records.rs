@@ -341,24 +341,24 @@ fn what_cannot_be_is_refused_with_the_place_and_nothing_is_written() {
             "wrong-option",
             &["--hold-out: every record is held out"],
         ),
-        (&["--delay", "X=0.02"], "unknown-channel", &["--delay: X "]),
+        (&["--delay", "X=0.02"], "unknown-channel", &["--delay", "X"]),
         (
             &[
                 "--delay", "P=0.02", "--delay", "LON=0.01", "--delay", "X=0.02",
             ],
             "unknown-channel",
-            &["--delay: X "],
+            &["--delay", "X"],
         ),
         (
             &["--delay", "P"],
             "wrong-command-line",
             &["--delay", "CHANNEL=SECONDS"],
         ),
-        (&["--factor", "X=2"], "unknown-channel", &["--factor: X "]),
+        (&["--factor", "X=2"], "unknown-channel", &["--factor", "X"]),
         (
             &["--unit", "P=deg/s", "--factor", "P=2"],
             "given-twice",
-            &["--factor: P "],
+            &["--factor", "P"],
         ),
         (&["--take", "with-plain"], "wrong-command-line", &["--into"]),
     ];

@@ -122,7 +122,7 @@ impl Advice {
     /// Recommends using worthwhile couplings, or removing couplings that are not worthwhile.
     fn on_couplings(state: &State) -> Option<Self> {
         let look = Step::new(
-            "View couplings",
+            "Inspect",
             Command::Layout(LayoutCommand::ShowView(View::Couplings)),
         );
         if let Some((assessment, cost)) = offered_couplings(state) {

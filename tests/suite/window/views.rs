@@ -269,7 +269,7 @@ fn the_evidence_answers_which_differences_are_in_earnest() {
     // Independent numpy code gives a ratio of 5.39. It also rejects the suggested models of
     // condition 10, which does not affect conditions 3 and 5.
     window.get_by_label(
-        "significant: a physical effect, or a model-form error; expected: from trim and identification uncertainty",
+        "significant: a physical effect, or a model-form error; \"expected\" is the difference expected from the uncertainty of trim and identification",
     );
     let line = window.get_by_label("5.4 × expected").rect();
     for words in ["COL → NZ", "conditions 3 and 5 (45 kt)", "13 %"] {

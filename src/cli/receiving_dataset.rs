@@ -95,7 +95,7 @@ impl ReceivingDataset {
             .collect();
         if !without.is_empty() {
             note(&format!(
-                "{}: no records; its identified models remain unchanged",
+                "{}: no records; the identified models remain unchanged",
                 listed_conditions(&without)
             ));
         }

@@ -402,7 +402,7 @@ fn what_cannot_be_is_refused_with_the_place_and_nothing_is_written() {
         "no-records",
         &["--every-condition: ", "7, 10", "cond03"],
     )
-    .assert_reported("sweep_1: left out: ")
+    .assert_reported("sweep_1: left out, ")
     .assert_reported("conditions 7, 10: no records; ");
     fs::rename(
         desk.path("validation.csv"),
@@ -498,7 +498,7 @@ fn records_of_many_conditions_fill_each_its_own_and_leave_the_others_as_they_are
     assert_eq!(ended.status, 0, "{ended:?}");
     assert!(
         ended.error.contains(
-            "note: conditions 1, 2, 4 to 9, 11: no records; its identified models remain"
+            "note: conditions 1, 2, 4 to 9, 11: no records; the identified models remain"
         ),
         "{}",
         ended.error

@@ -13,8 +13,10 @@ use criterion::{Criterion, criterion_group, criterion_main};
 
 use gdcm::executor::Pool;
 use gdcm_io::{embedded_example, load_dataset};
-use gdcm_method::correction::delta::{Delta, delay_upper_s, gain_bounds, mismatch_table};
+use gdcm_method::correction::channel_bounds::{delay_upper_s, gain_bounds};
+use gdcm_method::correction::delta::{Delta, mismatch_table};
 use gdcm_method::fidelity::Discontinuity;
+use gdcm_method::fidelity::discontinuity::PerturbedModel;
 use gdcm_model::dataset::model::Origin;
 use gdcm_model::dataset::{
     Band, BundleKind, Condition, ConditionId, Dataset, Dynamics, Model, ModelId, StateSpace,
@@ -56,8 +58,8 @@ fn stages(criterion: &mut Criterion) {
     let grid = FrequencyGrid::logarithmic(dataset.band(), 200);
     let measuring = dataset.measuring_pairs();
     let alone = Execution::sequential();
-    let responses =
-        ConditionResponses::of(condition, (dataset.band(), 200), &alone).expect("nobody stops it");
+    let responses = ConditionResponses::compute(condition, (dataset.band(), 200), &alone)
+        .expect("nobody stops it");
     let comparison_grid = ComparisonGrid {
         grid: &grid,
         coherence: None,
@@ -72,13 +74,16 @@ fn stages(criterion: &mut Criterion) {
         None,
     );
     let models = condition.bundle(BundleKind::Physics);
-    let perturbations: Vec<_> = models
+    let perturbed: Vec<PerturbedModel<'_>> = models
         .iter()
-        .map(|model| (model.name.as_str(), model.perturbation()))
+        .map(|model| PerturbedModel {
+            name: &model.name,
+            perturbation: model.perturbation(),
+        })
         .collect();
     let mut group = criterion.benchmark_group("one condition");
     group.bench_function("responses of models not prepared", |bencher| {
-        bencher.iter(|| ConditionResponses::of(condition, (dataset.band(), 200), &alone));
+        bencher.iter(|| ConditionResponses::compute(condition, (dataset.band(), 200), &alone));
     });
     group.bench_function("distances and ratios", |bencher| {
         bencher.iter(|| {
@@ -86,7 +91,7 @@ fn stages(criterion: &mut Criterion) {
         });
     });
     group.bench_function("ratios", |bencher| {
-        bencher.iter(|| Discontinuity::fit(&figures.physics, &perturbations, &|| false))
+        bencher.iter(|| Discontinuity::fit(&figures.physics, &perturbed, &|| false))
     });
     group.bench_function("G and D", |bencher| {
         bencher.iter(|| Delta::new(&mismatch, grid.omega()))
@@ -174,7 +179,7 @@ fn ratios(_: &mut Criterion) {
     let grid = FrequencyGrid::logarithmic(dataset.band(), 200);
     let alone = Execution::sequential();
     let ours = shortest(20, || {
-        ConditionResponses::of(condition, (dataset.band(), 200), &alone)
+        ConditionResponses::compute(condition, (dataset.band(), 200), &alone)
     });
     let models = [BundleKind::Physics, BundleKind::Identified]
         .map(|kind| condition.bundle(kind))

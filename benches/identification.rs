@@ -88,7 +88,8 @@ fn main() {
         let own = records
             .iter()
             .filter(|record| record.guess.condition_of(&dataset) == Some(condition.id()));
-        let request = IdentificationRequest::of(own, preparation.clone(), [band.min(), band.max()]);
+        let request =
+            IdentificationRequest::from_used(own, preparation.clone(), [band.min(), band.max()]);
         let request = request.expect("every condition has records");
         let stages = Stages::new();
         let found = request

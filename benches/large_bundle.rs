@@ -104,7 +104,7 @@ fn main() {
     (0..INPUTS).for_each(|channel| measuring[Pair::new(channel, channel)] = true);
     let responses = |executor: &dyn Executor| {
         let execution = Execution::new(executor, &Unobserved, MODELS);
-        ConditionResponses::of(&condition, (band, FREQUENCIES), &execution)
+        ConditionResponses::compute(&condition, (band, FREQUENCIES), &execution)
             .expect("nobody stops it")
     };
     let mut criterion = Criterion::default().sample_size(10).configure_from_args();

@@ -3,11 +3,12 @@
 use gdcm_io::files::corrections_file::{result_paths, write_results};
 use gdcm_io::output_set::make_directory;
 
+use super::analysis_summary::summary;
 use super::failure::Failure;
+use super::leave_one_out::leave_one_out_section;
 use super::result_arguments::AnalyzeArguments;
-use super::schedule_summary::leave_one_out_section;
-use super::study_options::{CommandStudy, ErrorBars, StudyAnalysis, analyze_study};
-use super::summary::summary;
+use super::study_analysis::{ErrorBars, StudyAnalysis, analyze_study};
+use super::study_options::CommandStudy;
 use super::terminal::print;
 
 /// Analyses a study, writes the result files, and prints a summary.

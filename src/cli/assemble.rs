@@ -1,28 +1,27 @@
 //! `gdcm assemble`: makes a dataset from model files.
 
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use gdcm_io::files::dataset_file::add_dataset;
 use gdcm_io::files::rules_file::{add_rules, load_rules, rules_path};
-use gdcm_io::files::study_file::relative_folder;
 use gdcm_io::formats::sources_folder;
 use gdcm_io::output_set::OutputSet;
-use gdcm_model::assembly::declarations::ChannelDeclarations;
-use gdcm_model::assembly::{Assembly, FileScope, FoundModel, Rules, proposed_rules};
+use gdcm_io::relative_folder::relative_folder;
+use gdcm_model::assembly::{Assembly, Rules, proposed_rules};
 use gdcm_model::dataset::Dataset;
 use gdcm_model::message_text::{sanitized, sanitized_path};
+use gdcm_model::number_format::counted;
 use gdcm_model::units::number;
 use gdcm_study::results::analysis::ConditionFailure;
 use gdcm_words::Table;
 
-use super::channel_values::FileValue;
+use super::channel_declarations::{check_declared_once, declare};
 use super::existing;
 use super::failure::Failure;
 use super::found_models::{found_models, given_headings};
 use super::model_arguments::AssembleArguments;
+use super::printed_lines::indented;
 use super::terminal::{caution, coded_caution, error, print};
-use super::text::{counted, indented};
 
 /// Assembles a dataset from the models in files and folders.
 pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
@@ -119,116 +118,6 @@ fn report_missing_references(dataset: &Dataset) {
         let failure = ConditionFailure::NoReference;
         coded_caution(Some(failure.code()), &without, &failure.to_string());
     }
-}
-
-/// Rejects a second declaration of a channel's sign, unit or factor for the same models.
-fn check_declared_once(arguments: &AssembleArguments) -> Result<(), Failure> {
-    let mut signs = BTreeSet::new();
-    for FileValue { channel, scope, .. } in &arguments.sign {
-        if !signs.insert((channel, scope)) {
-            let subject = format!("{channel} of {scope}");
-            return Err(Failure::given_twice("--sign", &subject));
-        }
-    }
-    let mut conversions = BTreeSet::new();
-    for FileValue { channel, scope, .. } in &arguments.unit {
-        if !conversions.insert((channel, scope)) {
-            return Err(converted_already("--unit", channel, scope));
-        }
-    }
-    for FileValue { channel, scope, .. } in &arguments.factor {
-        if !conversions.insert((channel, scope)) {
-            return Err(converted_already("--factor", channel, scope));
-        }
-    }
-    Ok(())
-}
-
-fn converted_already(option: &'static str, channel: &str, scope: &FileScope) -> Failure {
-    let reason = format!("{channel} of {scope} already has a unit or a factor");
-    Failure::coded_option(option, "given-twice", reason)
-}
-
-/// Adds the units, factors and signs given on the command line to the rules.
-fn declare(
-    arguments: &AssembleArguments,
-    models: &[FoundModel],
-    rules: &mut Rules,
-) -> Result<(), Failure> {
-    for unit in &arguments.unit {
-        let declared = ChannelDeclarations {
-            units: [(unit.channel.clone(), unit.value.clone())].into(),
-            ..ChannelDeclarations::default()
-        };
-        check_declared("--unit", unit, models, rules)?;
-        declare_for_scope(&unit.scope, &declared, models, rules);
-    }
-    for factor in &arguments.factor {
-        let declared = ChannelDeclarations {
-            factors: [(factor.channel.clone(), factor.value)].into(),
-            ..ChannelDeclarations::default()
-        };
-        check_declared("--factor", factor, models, rules)?;
-        declare_for_scope(&factor.scope, &declared, models, rules);
-    }
-    for sign in &arguments.sign {
-        let declared = ChannelDeclarations {
-            signs: [(sign.channel.clone(), sign.value)].into(),
-            ..ChannelDeclarations::default()
-        };
-        check_declared("--sign", sign, models, rules)?;
-        declare_for_scope(&sign.scope, &declared, models, rules);
-    }
-    Ok(())
-}
-
-/// Adds a declaration to the rules of a single model if `scope` is its key, otherwise to the rules
-/// of the scope.
-fn declare_for_scope(
-    scope: &FileScope,
-    declared: &ChannelDeclarations,
-    models: &[FoundModel],
-    rules: &mut Rules,
-) {
-    match scope {
-        FileScope::Files(key) if models.iter().any(|model| model.key() == *key) => {
-            rules.rows.entry(key.clone()).or_default().declare(declared);
-        }
-        _ => rules.declare(scope.clone(), declared),
-    }
-}
-
-/// Rejects a declaration for a channel that the dataset lacks, or for files that were not read.
-fn check_declared<T>(
-    option: &'static str,
-    declaration: &FileValue<T>,
-    models: &[FoundModel],
-    rules: &Rules,
-) -> Result<(), Failure> {
-    let channel = &declaration.channel;
-    let names: Vec<&str> = rules
-        .inputs
-        .iter()
-        .chain(&rules.outputs)
-        .map(|rule| rule.name.as_str())
-        .collect();
-    if !names.contains(&channel.as_str()) {
-        let reason = format!(
-            "the dataset has no channel {channel}; it has {}",
-            names.join(", ")
-        );
-        return Err(Failure::coded_option(option, "unknown-channel", reason));
-    }
-    let scope = &declaration.scope;
-    if let FileScope::Files(pattern) = scope
-        && !models.iter().any(|model| scope.holds(model, None))
-    {
-        let reason = format!(
-            "{channel}: no model matches \"{pattern}\"; use the names in the last column (file)"
-        );
-        return Err(Failure::coded_option(option, "unknown-model", reason));
-    }
-    Ok(())
 }
 
 /// Returns the default name of the dataset: the name of the first folder; empty without a folder.

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 
-use gdcm_model::assembly::FileScope;
 use gdcm_study::decisions::signs::SignRole;
 
 /// Value that an option declares for a channel.
@@ -83,7 +82,8 @@ fn valid_sign(text: &str) -> Option<ChannelSign> {
     })
 }
 
-fn sign_factor(text: &str) -> Option<f64> {
+/// Parses a sign: -1 or 1.
+pub(super) fn sign_factor(text: &str) -> Option<f64> {
     match text {
         "-1" | "-" => Some(-1.0),
         "1" | "+1" | "+" => Some(1.0),
@@ -91,7 +91,8 @@ fn sign_factor(text: &str) -> Option<f64> {
     }
 }
 
-fn factor(text: &str) -> Option<f64> {
+/// Parses a finite factor other than 0.
+pub(super) fn factor(text: &str) -> Option<f64> {
     let factor: f64 = text.parse().ok()?;
     if factor.is_finite() && factor != 0.0 {
         Some(factor)
@@ -100,7 +101,8 @@ fn factor(text: &str) -> Option<f64> {
     }
 }
 
-fn text_value(text: &str) -> Option<String> {
+/// Returns a text unless it is empty.
+pub(super) fn text_value(text: &str) -> Option<String> {
     if text.is_empty() {
         None
     } else {
@@ -150,57 +152,6 @@ pub(super) fn channel_delay(text: &str) -> Result<ChannelValue<f64>, String> {
     }
 }
 
-/// Value that an option declares for a channel in some of the assembled files.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FileValue<T> {
-    pub channel: String,
-    pub value: T,
-    /// Files to which the value applies; by default the files of the identified models.
-    pub scope: FileScope,
-}
-
-impl<T> FileValue<T> {
-    /// Parses `CHANNEL=VALUE` or `CHANNEL=VALUE:SCOPE`; `None` if a part is empty or `parse`
-    /// rejects the value.
-    fn parse(text: &str, parse: impl FnOnce(&str) -> Option<T>) -> Option<Self> {
-        let (channel, rest) = text.split_once('=')?;
-        let (value, scope) = rest.split_once(':').unwrap_or((rest, "identified"));
-        let [channel, value, scope] = [channel, value, scope].map(str::trim);
-        if channel.is_empty() || value.is_empty() || scope.is_empty() {
-            return None;
-        }
-        Some(Self {
-            channel: channel.to_owned(),
-            value: parse(value)?,
-            scope: FileScope::from(scope.to_owned()),
-        })
-    }
-}
-
-/// Explanation of the scope syntax, appended to error messages.
-const SCOPE_HINT: &str = "optionally followed by :identified, :physics, :all or :FILE (a model's file or folder pattern)";
-
-pub(super) fn file_sign(text: &str) -> Result<FileValue<f64>, String> {
-    FileValue::parse(text, sign_factor).ok_or_else(|| {
-        format!("expected CHANNEL=1 or CHANNEL=-1, such as NZ=-1, {SCOPE_HINT}; found \"{text}\"")
-    })
-}
-
-pub(super) fn file_unit(text: &str) -> Result<FileValue<String>, String> {
-    FileValue::parse(text, text_value).ok_or_else(|| {
-        format!("expected CHANNEL=UNIT, such as LON=in, {SCOPE_HINT}; found \"{text}\"")
-    })
-}
-
-pub(super) fn file_factor(text: &str) -> Result<FileValue<f64>, String> {
-    FileValue::parse(text, factor).ok_or_else(|| {
-        format!(
-            "expected CHANNEL=X with a number X other than 0, such as LON=8 or NZ=-1, \
-            {SCOPE_HINT}; found \"{text}\""
-        )
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -225,36 +176,6 @@ mod tests {
         for wrong in ["NZ", "NZ=-2", "NZ=-1:none"] {
             assert!(channel_sign(wrong).is_err(), "{wrong}");
         }
-    }
-
-    #[test]
-    fn a_unit_or_a_factor_of_files_names_its_channel_and_scope() {
-        let unit = |scope: FileScope| {
-            Ok(FileValue {
-                channel: "P".to_owned(),
-                value: "rad/s".to_owned(),
-                scope,
-            })
-        };
-        assert_eq!(file_unit("P=rad/s"), unit(FileScope::Identified));
-        assert_eq!(file_unit("P=rad/s:physics"), unit(FileScope::Physics));
-        assert_eq!(
-            file_unit("P = rad/s : c1/x=2.mat"),
-            unit(FileScope::Files("c1/x=2.mat".into()))
-        );
-        let scaled = file_factor("NZ=-9.81:all").unwrap();
-        assert_eq!((scaled.value, scaled.scope), (-9.81, FileScope::All));
-        assert_eq!(
-            file_sign("NZ=-1:flight_*").unwrap().scope,
-            FileScope::Files("flight_*".into())
-        );
-        for wrong in ["P", "P=", "=in", "P=in:"] {
-            assert!(file_unit(wrong).is_err(), "{wrong}");
-        }
-        for wrong in ["P=0", "P=x", "P=inf"] {
-            assert!(file_factor(wrong).is_err(), "{wrong}");
-        }
-        assert!(file_sign("P=2").is_err());
     }
 
     #[test]

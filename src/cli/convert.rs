@@ -4,13 +4,13 @@ use gdcm_io::files::model_collection::add_models;
 use gdcm_io::output_set::OutputSet;
 use gdcm_model::assembly::FoundModel;
 use gdcm_model::message_text::{sanitized, sanitized_path};
+use gdcm_model::number_format::counted;
 
 use super::existing;
 use super::failure::Failure;
 use super::found_models::{found_models, given_headings};
 use super::model_arguments::ConvertArguments;
 use super::terminal::print;
-use super::text::counted;
 
 /// Writes all models in the given files into one JSON file.
 pub(super) fn convert(arguments: &ConvertArguments) -> Result<(), Failure> {

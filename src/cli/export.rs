@@ -8,10 +8,12 @@ use gdcm_method::correction::Pade;
 use gdcm_model::message_text::{sanitized, sanitized_path};
 use gdcm_study::Study;
 
+use super::dataset_lookup::condition_of;
 use super::failure::Failure;
 use super::result_arguments::ExportArguments;
+use super::study_analysis::{ErrorBars, StudyAnalysis, analyze_study};
 use super::study_arguments::StudyArguments;
-use super::study_options::{CommandStudy, ErrorBars, StudyAnalysis, analyze_study, condition_of};
+use super::study_options::CommandStudy;
 use super::terminal::print;
 
 /// Analyses a study, writes the requested export, and prints its notes and cautions.

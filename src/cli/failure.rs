@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use gdcm_io::FileError;
+use gdcm_model::number_format::counted;
 use gdcm_model::progress::Cancelled;
 
-use super::text::{counted, listed_paths};
+use super::printed_lines::listed_paths;
 
 /// Exit status if the command produced no complete result.
 pub(super) const NOT_DONE: u8 = 1;

@@ -17,14 +17,13 @@ use gdcm_study::stages::condition_curves::{CURVE_POINTS, curves_band};
 use gdcm_study::{Analysis, CouplingCorrection, Engine, Study};
 use gdcm_words::caution::failure_text;
 
+use super::dataset_lookup::{channel_names, condition_ids, condition_of, pairs_of};
 use super::failure::Failure;
 use super::option_values::PairChoice;
 use super::progress::TerminalProgress;
 use super::result_arguments::FigureArguments;
-use super::study_options::{
-    CommandStudy, ErrorBars, StudyAnalysis, analyze_study, channel_names, condition_ids,
-    condition_of, pairs_of,
-};
+use super::study_analysis::{ErrorBars, StudyAnalysis, analyze_study};
+use super::study_options::CommandStudy;
 use super::terminal::print;
 
 /// Writes a figure to a file, and prints its path.
@@ -233,7 +232,7 @@ fn figure_condition(
     }
     let Some(id) = arguments.condition else {
         let reason = format!(
-            "{} is a figure of one condition; the dataset has {}",
+            "{} is a figure of one condition; give one of {}",
             arguments.view.name(),
             condition_ids(&study.dataset)
         );

@@ -1,29 +1,30 @@
 //! Flight records read for identification.
+//!
+//! ```text
+//! 1  read the files                                          (found_records)
+//! 2  join the topics of logs, cut the requested parts
+//! 3  assign the columns of each record to channels           (RecordLayouts)
+//! 4  repeat step 3 if a unit became known only from a later record
+//! 5  leave out records with the same samples
+//! ```
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use gdcm_io::import::record_files::{FoundRecords, read_records};
 use gdcm_model::dataset::Dataset;
-use gdcm_model::message_text::sanitized;
-use gdcm_model::units::telling;
 use gdcm_sysid::identification::CautionNote;
 use gdcm_sysid::records::layout_problem::LayoutCaution;
-use gdcm_sysid::records::time_base::median_step;
 use gdcm_sysid::records::{
     LaidOutRecord, RecordChannels, RecordTable, TimeWish, leave_out_copies, with_topics_joined,
 };
-use gdcm_words::Table;
 
 use super::failure::Failure;
 use super::identify_arguments::IdentifyArguments;
-use super::option_values::{RecordPart, record_part};
+use super::option_values::RecordPart;
 use super::progress::ReadingProgress;
-use super::record_parts::{
-    CutRecords, WholeRecord, cut_parts, is_called, is_part, part_without_samples,
-};
+use super::record_parts::{CutRecords, WholeRecord, cut_parts, is_part, part_without_samples};
 use super::terminal::{caution, error, note};
-use super::text::indented;
 
 /// Records read from files, with the messages about them.
 pub(super) struct ReadRecords {
@@ -83,7 +84,7 @@ pub(super) fn laid_out_records(
         }
     } else {
         cut_parts(&tables, &arguments.part, |table| {
-            layouts.lay_out(table.clone(), channels).0
+            layouts.lay_out(table.clone(), channels).0.span_s()
         })?
     };
     let mut records = layouts.lay_out_all(tables, channels);
@@ -264,45 +265,6 @@ fn check_parts(
     Ok(())
 }
 
-/// Holds out the requested records or parts; `wholes` are the records from which parts were cut.
-/// Without a request, the records whose names mark them as validation are held out.
-pub(super) fn hold_out(
-    names: &[String],
-    records: &mut [LaidOutRecord],
-    wholes: &[WholeRecord],
-) -> Result<(), Failure> {
-    if !names.is_empty() {
-        for record in records.iter_mut() {
-            record.guess.held_out = false;
-        }
-    }
-    for name in names {
-        let part = record_part(name).ok();
-        let mut is_found = false;
-        for record in records.iter_mut() {
-            let table = &record.table;
-            let is_held_part = match &part {
-                Some(part) => table.part_s.is_some() && is_part(table, part, wholes),
-                None => false,
-            };
-            if is_held_part || is_called(table, name) {
-                record.guess.held_out = true;
-                is_found = true;
-            }
-        }
-        if !is_found {
-            let reason =
-                format!("no record is called \"{name}\"; give its file among the records too");
-            return Err(Failure::coded_option(
-                "--hold-out",
-                "unknown-record",
-                reason,
-            ));
-        }
-    }
-    Ok(())
-}
-
 /// Reports each record with the same samples as `record`, and returns the cautions about them.
 pub(super) fn report_duplicates(record: &LaidOutRecord) -> Vec<Duplicate> {
     let mut duplicates = Vec::new();
@@ -323,50 +285,4 @@ pub(super) fn report_duplicates(record: &LaidOutRecord) -> Vec<Duplicate> {
         });
     }
     duplicates
-}
-
-/// Returns a table with a line for each record, indented by `indent` spaces.
-pub(super) fn record_table(records: &[LaidOutRecord], indent: usize) -> String {
-    let mut table = Table::new("", ["record", "kind", "samples", "step", "length", ""]);
-    for record in records {
-        let clock = RecordClock::new(record);
-        let held_out = if record.guess.held_out {
-            "held out"
-        } else {
-            ""
-        };
-        table.row([
-            sanitized(&record.table.name),
-            record.guess.kind.word().to_owned(),
-            clock.samples.to_string(),
-            format!("{} s", telling(clock.step_s, 3)),
-            format!("{:.1} s", clock.step_s * clock.samples as f64),
-            held_out.to_owned(),
-        ]);
-    }
-    indented(&table, indent)
-}
-
-/// Time axis of a record as used, after resampling of topics and cutting of parts.
-struct RecordClock {
-    samples: usize,
-    /// Median step \[s\]; NaN if unknown.
-    step_s: f64,
-}
-
-impl RecordClock {
-    fn new(record: &LaidOutRecord) -> Self {
-        let (samples, step_s) = match &record.flight {
-            Some(flight) => (flight.time_s.len(), median_step(&flight.time_s)),
-            None => {
-                let table = &record.table;
-                let time = record.layout.time;
-                (table.rows(), time.and_then(|time| time.step_s(table)))
-            }
-        };
-        Self {
-            samples,
-            step_s: step_s.unwrap_or(f64::NAN),
-        }
-    }
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::{Band, BundleKind, ConditionId, Dataset};
 use gdcm_model::message_text::sanitized_path;
+use gdcm_model::number_format::counted;
 use gdcm_model::simulation::Signal;
 use gdcm_study::jobs::identification_jobs::IdentificationRequest;
 use gdcm_study::results::channel_time_skew::ChannelTimeSkew;
@@ -14,12 +15,12 @@ use gdcm_sysid::identification::{
 use gdcm_sysid::records::LaidOutRecord;
 use gdcm_words::channel_time_skew::time_skew_text;
 
-use super::destination::RecordGroup;
 use super::failure::Failure;
-use super::flight_records::record_table;
+use super::receiving_dataset::RecordGroup;
+
 use super::identify_arguments::IdentifyArguments;
 use super::progress::TerminalProgress;
-use super::text::counted;
+use super::record_table::record_table;
 use crate::executor::Pool;
 
 /// Name of the file with the identified models.
@@ -43,9 +44,10 @@ impl IdentificationTask {
         let RecordGroup { condition, records } = group;
         let band_rad_s = [band.min(), band.max()];
         let mut request =
-            IdentificationRequest::of(records.iter(), preparation.clone(), band_rad_s).map_err(
-                |why| Failure::option("--hold-out", format!("{}{why}", prefix(condition))),
-            )?;
+            IdentificationRequest::from_used(records.iter(), preparation.clone(), band_rad_s)
+                .map_err(|why| {
+                    Failure::option("--hold-out", format!("{}{why}", prefix(condition)))
+                })?;
         arguments.search().set(&mut request.options);
         request.options.references = arguments.references().len();
         Ok(Self {

@@ -46,15 +46,18 @@ pub(super) fn misspelt_command(arguments: &[OsString]) -> Option<Failure> {
 /// insertions, and reversals", 1966).
 fn edit_distance(from: &str, to: &str) -> usize {
     let to: Vec<char> = to.chars().collect();
-    // Distances from the processed part of `from` to each prefix of `to`.
+    // Distances from the processed part of `from` to each prefix of `to`, by the prefix's length.
     let mut distances: Vec<usize> = (0..=to.len()).collect();
     for (row, letter) in from.chars().enumerate() {
-        let mut diagonal = distances[0];
+        // Distance before `letter` of `from` and before the letter `column` of `to`.
+        let mut before_both = distances[0];
         distances[0] = row + 1;
         for column in 0..to.len() {
-            let replaced = diagonal + usize::from(letter != to[column]);
-            diagonal = distances[column + 1];
-            distances[column + 1] = replaced.min(diagonal + 1).min(distances[column] + 1);
+            let replaced = before_both + usize::from(letter != to[column]);
+            let deleted = distances[column + 1] + 1;
+            let inserted = distances[column] + 1;
+            before_both = distances[column + 1];
+            distances[column + 1] = replaced.min(deleted).min(inserted);
         }
     }
     distances[to.len()]

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::channel_values::{FileValue, file_factor, file_sign, file_unit};
+use super::file_values::{FileValue, file_factor, file_sign, file_unit};
 use super::option_values::real_number;
 
 /// Model files of a new dataset, and declarations about them.

@@ -1,9 +1,5 @@
-//! Progress on a terminal, and cancellation by Ctrl+C.
+//! Progress on a terminal.
 
-#[cfg(unix)]
-use std::sync::atomic::{AtomicBool, Ordering};
-#[cfg(unix)]
-use std::sync::{Arc, LazyLock};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -12,17 +8,8 @@ use gdcm_io::FolderProgress;
 use gdcm_model::message_text::sanitized;
 use gdcm_model::progress::Progress;
 
+use super::interruption::Interruptible;
 use super::terminal::shows_progress;
-
-/// Returns where progress bars are drawn: nowhere if standard error is not a terminal or only
-/// results are requested.
-fn progress_target() -> ProgressDrawTarget {
-    if shows_progress() {
-        ProgressDrawTarget::stderr()
-    } else {
-        ProgressDrawTarget::hidden()
-    }
-}
 
 /// Progress of reading files, shown only on a terminal.
 pub(super) struct ReadingProgress {
@@ -54,17 +41,16 @@ impl Drop for ReadingProgress {
     }
 }
 
-/// Delay before the progress bar appears; shorter analyses show none.
+/// Delay before the progress bar appears; shorter work shows none.
 const QUICK: Duration = Duration::from_millis(500);
 
-/// Progress bar on standard error, if that is a terminal, once the analysis has taken half a
-/// second. While the bar exists, Ctrl+C stops the work at its next step, with a message and the
-/// exit status of incomplete work.
+/// Progress bar on standard error, if that is a terminal, once the work has taken [`QUICK`]. While
+/// the bar exists, Ctrl+C stops the work at its next step, with a message and the exit status of
+/// incomplete work.
 pub(super) struct TerminalProgress {
     bar: ProgressBar,
     started: Instant,
-    #[cfg(unix)]
-    _interruptible: Interruptible,
+    interruptible: Interruptible,
 }
 
 impl TerminalProgress {
@@ -80,8 +66,7 @@ impl TerminalProgress {
         Self {
             bar,
             started: Instant::now(),
-            #[cfg(unix)]
-            _interruptible: Interruptible::new(),
+            interruptible: Interruptible::begin(),
         }
     }
 }
@@ -93,16 +78,8 @@ impl Drop for TerminalProgress {
 }
 
 impl Progress for TerminalProgress {
-    #[cfg(unix)]
     fn cancelled(&self) -> bool {
-        Interruptible::is_requested()
-    }
-
-    /// Returns false: without SIGINT, Ctrl+C ends the process at once, which leaves no partial file
-    /// either.
-    #[cfg(not(unix))]
-    fn cancelled(&self) -> bool {
-        false
+        self.interruptible.is_requested()
     }
 
     fn advanced(&self, done: usize, total: usize) {
@@ -114,69 +91,12 @@ impl Progress for TerminalProgress {
     }
 }
 
-/// Marks work that checks for interruptions (SIGINT, Ctrl+C). Without such work, and from the
-/// second interruption on, the process ends at once.
-#[cfg(unix)]
-struct Interruptible;
-
-/// State of interruptions of the process.
-#[cfg(unix)]
-struct Interruption {
-    /// Whether an interruption occurred.
-    is_requested: Arc<AtomicBool>,
-    /// Whether the next interruption ends the process.
-    ends_process: Arc<AtomicBool>,
-}
-
-#[cfg(unix)]
-static INTERRUPTION: LazyLock<Interruption> = LazyLock::new(|| {
-    use signal_hook::consts::SIGINT;
-    use signal_hook::flag;
-    let interruption = Interruption {
-        is_requested: Arc::default(),
-        ends_process: Arc::new(AtomicBool::new(true)),
-    };
-    // The order matters: at the first interruption during work, the first handler still finds
-    // `ends_process` unset, so that only the second interruption ends the process. If a
-    // registration fails, Ctrl+C ends the process.
-    let _ = flag::register_conditional_default(SIGINT, Arc::clone(&interruption.ends_process));
-    let _ = flag::register(SIGINT, Arc::clone(&interruption.ends_process));
-    let _ = flag::register(SIGINT, Arc::clone(&interruption.is_requested));
-    interruption
-});
-
-#[cfg(unix)]
-impl Interruptible {
-    fn new() -> Self {
-        INTERRUPTION.ends_process.store(false, Ordering::SeqCst);
-        Self
-    }
-
-    fn is_requested() -> bool {
-        INTERRUPTION.is_requested.load(Ordering::SeqCst)
-    }
-}
-
-#[cfg(unix)]
-impl Drop for Interruptible {
-    fn drop(&mut self) {
-        INTERRUPTION.ends_process.store(true, Ordering::SeqCst);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    #[cfg(unix)]
-    #[test]
-    fn an_interruption_stops_work_that_reports_its_progress_and_does_not_end_the_process() {
-        use super::{INTERRUPTION, Ordering, Progress, TerminalProgress};
-        let progress = TerminalProgress::new("waiting");
-        assert!(!progress.cancelled());
-        signal_hook::low_level::raise(signal_hook::consts::SIGINT).unwrap();
-        assert!(progress.cancelled());
-        assert!(
-            INTERRUPTION.ends_process.load(Ordering::SeqCst),
-            "the next one ends the process"
-        );
+/// Returns where progress bars are drawn: nowhere if standard error is not a terminal or only
+/// results are requested.
+fn progress_target() -> ProgressDrawTarget {
+    if shows_progress() {
+        ProgressDrawTarget::stderr()
+    } else {
+        ProgressDrawTarget::hidden()
     }
 }

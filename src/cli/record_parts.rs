@@ -1,55 +1,34 @@
 //! Parts of flight records, selected by time (`--part`).
+//!
+//! A record and the parts cut from it have the same source (file and variable within the file), which
+//! differs between records. Cutting keeps the time span of each record ([`WholeRecord`]), because
+//! times may count from its first sample.
 
 use std::path::Path;
 
 use gdcm_model::units::{number, telling};
-use gdcm_sysid::records::{LaidOutRecord, RecordSource, RecordTable};
+use gdcm_sysid::records::{RecordSource, RecordTable};
 
 use super::failure::Failure;
 use super::option_values::RecordPart;
 
-/// Record from which parts are cut.
-pub(super) struct WholeRecord {
-    name: String,
-    source: RecordSource,
-    /// First and last time \[s\] on the record's time axis.
-    span_s: [f64; 2],
-}
-
-impl WholeRecord {
-    /// Describes the record: "prbs runs from 42.30 s to 81.30 s".
-    fn words(&self) -> String {
-        let [first, last] = self.span_s.map(|time_s| telling(time_s, 2));
-        format!("{} runs from {first} s to {last} s", self.name)
-    }
-
-    /// Returns whether a part may belong to this record, judging by the record name given with the
-    /// part.
-    fn matches(&self, part: &RecordPart) -> bool {
-        let Some(record) = &part.record else {
-            return true;
-        };
-        let table = RecordTable {
-            source: self.source.clone(),
-            ..RecordTable::new(self.name.clone(), Vec::new())
-        };
-        is_called(&table, record)
-    }
-}
-
-/// Parts cut from records, and the records with unclear columns, which are kept whole.
+/// Parts cut from records, and the records that could not be cut.
 pub(super) struct CutRecords {
     pub(super) tables: Vec<RecordTable>,
     /// Records from which parts were cut.
     pub(super) wholes: Vec<WholeRecord>,
 }
 
-/// Cuts the requested parts from the records. A record with unclear columns is kept whole, so that
-/// its problems are reported.
+/// Cuts the requested parts from the records. `span_s` returns the first and last time of a record
+/// \[s\], `None` if its columns are unclear; such a record is kept whole, so that its problems are
+/// reported.
+///
+/// # Errors
+/// A part names an unknown record.
 pub(super) fn cut_parts(
     tables: &[RecordTable],
     parts: &[RecordPart],
-    lay_out: impl Fn(&RecordTable) -> LaidOutRecord,
+    span_s: impl Fn(&RecordTable) -> Option<[f64; 2]>,
 ) -> Result<CutRecords, Failure> {
     let mut cut = CutRecords {
         tables: Vec::new(),
@@ -64,7 +43,7 @@ pub(super) fn cut_parts(
                 continue;
             }
             is_found = true;
-            cut.add(table, part, &lay_out);
+            cut.add(table, part, &span_s);
         }
         if !is_found {
             let record = part.record.as_deref().unwrap_or_default();
@@ -81,40 +60,63 @@ impl CutRecords {
         &mut self,
         table: &RecordTable,
         part: &RecordPart,
-        lay_out: impl Fn(&RecordTable) -> LaidOutRecord,
+        span_s: impl Fn(&RecordTable) -> Option<[f64; 2]>,
     ) {
-        let known = self
-            .wholes
-            .iter()
-            .find(|whole| whole.source == table.source);
-        if let Some(whole) = known {
-            let part_s = part.on_clock_s(whole.span_s[0]);
-            self.tables.push(table.part_of_time(part_s));
-        } else if let Some(span_s) = lay_out(table).span_s() {
+        if !self.wholes.iter().any(|whole| whole.is_source_of(table))
+            && let Some(span_s) = span_s(table)
+        {
             self.wholes.push(WholeRecord {
                 name: table.name.clone(),
                 source: table.source.clone(),
                 span_s,
             });
-            let part_s = part.on_clock_s(span_s[0]);
-            self.tables.push(table.part_of_time(part_s));
+        }
+        let whole = self.wholes.iter().find(|whole| whole.is_source_of(table));
+        if let Some(whole) = whole {
+            self.tables.push(table.part_of_time(whole.times_s(part)));
         } else if !self.tables.iter().any(|other| other.source == table.source) {
             self.tables.push(table.clone());
         }
     }
 }
 
-/// Returns whether a record is the requested part; a record with unclear columns matches every
-/// part.
+/// Record from which parts were cut.
+pub(super) struct WholeRecord {
+    name: String,
+    source: RecordSource,
+    /// First and last time \[s\] on the record's time axis.
+    span_s: [f64; 2],
+}
+
+impl WholeRecord {
+    /// Returns whether a table is this record or a part of it.
+    fn is_source_of(&self, table: &RecordTable) -> bool {
+        self.source == table.source
+    }
+
+    /// Returns the first and last time \[s\] of a part on this record's time axis.
+    fn times_s(&self, part: &RecordPart) -> [f64; 2] {
+        part.on_clock_s(self.span_s[0])
+    }
+
+    /// Describes the time span: "prbs runs from 42.30 s to 81.30 s".
+    fn words(&self) -> String {
+        let [first, last] = self.span_s.map(|time_s| telling(time_s, 2));
+        format!("{} runs from {first} s to {last} s", self.name)
+    }
+}
+
+/// Returns whether a table is the requested part; a record with unclear columns, which was not cut,
+/// counts as every part requested of it.
 pub(super) fn is_part(table: &RecordTable, part: &RecordPart, wholes: &[WholeRecord]) -> bool {
     if let Some(record) = &part.record
         && !is_called(table, record)
-        && !is_called_before_part(table, record)
+        && !is_cut_from(table, record)
     {
         return false;
     }
-    match wholes.iter().find(|whole| whole.source == table.source) {
-        Some(whole) => table.part_s == Some(part.on_clock_s(whole.span_s[0])),
+    match wholes.iter().find(|whole| whole.is_source_of(table)) {
+        Some(whole) => table.part_s == Some(whole.times_s(part)),
         None => true,
     }
 }
@@ -122,51 +124,75 @@ pub(super) fn is_part(table: &RecordTable, part: &RecordPart, wholes: &[WholeRec
 /// Returns whether `wanted` identifies a record, by its file, its name, or its name within the
 /// file.
 pub(super) fn is_called(table: &RecordTable, wanted: &str) -> bool {
-    let source = &table.source;
+    identifies(wanted, &table.name, &table.source)
+}
+
+/// Returns whether `wanted` identifies the record with this name and source.
+fn identifies(wanted: &str, name: &str, source: &RecordSource) -> bool {
     let file = Path::new(wanted)
         .file_name()
         .map(|name| name.to_string_lossy().into_owned())
         .unwrap_or_default();
     source.file.rsplit('/').next() == Some(&file)
-        || table.name == *wanted
+        || name == wanted
         || source.variable.as_deref() == Some(wanted)
 }
 
-/// Returns whether a record is a part of the record `wanted`: the name of a part is the name of the
-/// whole record, a comma and the times.
-fn is_called_before_part(table: &RecordTable, wanted: &str) -> bool {
+/// Returns whether a table is a part of the record named `wanted`: the name of a part is the name of
+/// the whole record, a comma and the times.
+fn is_cut_from(table: &RecordTable, wanted: &str) -> bool {
     let rest = table.name.strip_prefix(wanted);
     table.part_s.is_some() && rest.is_some_and(|rest| rest.starts_with(", "))
 }
 
 /// Returns the failure for a part without samples; it lists the time spans of the records.
 pub(super) fn part_without_samples(part: &RecordPart, wholes: &[WholeRecord]) -> Failure {
+    let times = part.words();
+    let spans = listed_spans(part, wholes);
+    let reason = if part.is_from_start {
+        format!("no record has samples in the part {times} (seconds from its start): {spans}")
+    } else {
+        format!(
+            "no record has samples in the part {times} (seconds on its time axis): {spans}{}",
+            from_start_hint(part)
+        )
+    };
+    Failure::coded_option("--part", "no-samples", reason)
+}
+
+/// Lists the time spans of the records to which a part may belong.
+fn listed_spans(part: &RecordPart, wholes: &[WholeRecord]) -> String {
     /// Maximum number of listed time spans.
-    const MOST: usize = 4;
-    let spans: Vec<String> = wholes
-        .iter()
-        .filter(|whole| whole.matches(part))
-        .map(WholeRecord::words)
-        .collect();
-    let shown = &spans[..spans.len().min(MOST)];
-    let mut listed = shown.join("; ");
-    let more = spans.len() - shown.len();
+    const LISTED: usize = 4;
+    let mut spans: Vec<String> = Vec::new();
+    for whole in wholes {
+        let is_wanted = match &part.record {
+            Some(record) => identifies(record, &whole.name, &whole.source),
+            None => true,
+        };
+        if is_wanted {
+            spans.push(whole.words());
+        }
+    }
+    let more = spans.len().saturating_sub(LISTED);
+    spans.truncate(LISTED);
+    let mut listed = spans.join("; ");
     if more > 0 {
         listed += &format!("; {more} more");
     }
-    let times = part.words();
-    let mut reason = if part.is_from_start {
-        format!("no record has samples in the part {times} (seconds from its start): {listed}")
-    } else {
-        format!("no record has samples in the part {times} (seconds on its time axis): {listed}")
-    };
+    listed
+}
+
+/// Returns the hint that the same times may be given from the start of a record; empty for negative
+/// times, which lie before the start.
+fn from_start_hint(part: &RecordPart) -> String {
     let [from, to] = part.part_s;
-    if !part.is_from_start && from >= 0.0 {
-        reason += &format!(
-            " (--part +{}:+{} counts from the start of a record)",
-            number(from),
-            number(to)
-        );
+    if from < 0.0 {
+        return String::new();
     }
-    Failure::coded_option("--part", "no-samples", reason)
+    format!(
+        " (--part +{}:+{} counts from the start of a record)",
+        number(from),
+        number(to)
+    )
 }

@@ -4,15 +4,16 @@ use std::path::Path;
 
 use gdcm_io::report::{ReportSource, ReportSubject, report as compose_report, save_report};
 use gdcm_model::message_text::sanitized_path;
+use gdcm_model::number_format::counted;
 use gdcm_study::results::required_modes::KnownPoles;
 
 use super::failure::Failure;
-use super::histories::{read_histories, simulated_histories};
 use super::progress::TerminalProgress;
 use super::result_arguments::ReportArguments;
-use super::study_options::{CommandStudy, ErrorBars, StudyAnalysis, analyze_study};
+use super::study_analysis::{ErrorBars, StudyAnalysis, analyze_study};
+use super::study_options::CommandStudy;
 use super::terminal::print;
-use super::text::counted;
+use super::time_histories::{read_histories, simulated_histories};
 
 /// Analyses a study and writes the full report.
 pub(super) fn report(arguments: &ReportArguments) -> Result<(), Failure> {
@@ -38,7 +39,7 @@ pub(super) fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     if study_file == loaded.path() {
         study_file = None;
     }
-    let source = ReportSource::of(&loaded, study_file);
+    let source = ReportSource::from_files(&loaded, study_file);
     let progress = TerminalProgress::new("drawing");
     let known = KnownPoles::default();
     let subject = ReportSubject {

@@ -1,31 +1,35 @@
 //! `gdcm requirements`: computes the metrics required for a qualification for the models of every
 //! condition, writes them to files and prints a short table.
 
-use std::collections::BTreeSet;
-
+use gdcm_io::files::levels_and_tolerances::add_tolerances;
 use gdcm_io::files::requirements_file::{
-    REQUIREMENT_FILES, RequirementResults, add_tolerances, requirement_paths, write_requirements,
+    REQUIREMENT_FILES, RequirementResults, requirement_paths, write_requirements,
 };
 use gdcm_io::output_set::{OutputSet, make_directory};
 use gdcm_method::requirements::ModeVerdict;
+use gdcm_model::dataset::Dataset;
 use gdcm_model::message_text::{sanitized, sanitized_path};
-use gdcm_model::units::s_to_ms;
+use gdcm_model::number_format::counted;
 use gdcm_study::Study;
-use gdcm_study::results::required_bandwidth::BandwidthFinding;
+use gdcm_study::results::missing_finding::MissingFinding;
 use gdcm_study::results::required_modes::KnownPoles;
 use gdcm_study::results::requirement_role::RequirementRole;
-use gdcm_study::results::requirements::{MissingFinding, Requirements};
+use gdcm_study::results::requirements::Requirements;
 use gdcm_study::results::time_histories::TimeHistories;
 use gdcm_words::Table;
+use gdcm_words::missing_results::{missing_reason_text, reversed_phase_text};
 use gdcm_words::time_histories::{history_cost_table, output_weights_text, share_table};
 
+use super::bandwidth_summary::bandwidth_section;
+use super::condition_messages::{ConditionMessage, shared_messages};
 use super::failure::Failure;
-use super::histories::{read_histories, simulated_histories};
+use super::printed_lines::{decimals_or_dash, indented, indented_untitled, line};
 use super::progress::TerminalProgress;
 use super::result_arguments::RequirementsArguments;
-use super::study_options::{CommandStudy, ErrorBars, StudyAnalysis, analyze_study};
+use super::study_analysis::{ErrorBars, StudyAnalysis, analyze_study};
+use super::study_options::CommandStudy;
 use super::terminal::{caution_for, note, print};
-use super::text::{ConditionMessage, counted, indented, indented_untitled, line, shared_messages};
+use super::time_histories::{read_histories, simulated_histories};
 
 /// Writes the tolerance table if requested; analyses the study, writes the requirements, and prints
 /// a short table.
@@ -55,11 +59,11 @@ pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Fail
     let results = RequirementResults {
         requirements: &requirements,
         time_histories: &histories,
-        dataset: analysis.study.dataset.name(),
+        dataset: &analysis.study.dataset,
         sha256: &loaded.sha256,
     };
     write_requirements(results, out, outputs)?;
-    report_cautions(&requirements);
+    report_cautions(&requirements, &analysis.study.dataset);
     report_missing(&requirements, &histories);
     let files = format!(
         "{} in {}",
@@ -93,11 +97,10 @@ fn tolerance_line(
     Ok(line("Tolerances", &words))
 }
 
-fn report_cautions(requirements: &Requirements) {
-    let messages = requirements
-        .cautions
-        .iter()
-        .map(|caution| ConditionMessage::new(caution.condition, caution.text.clone()));
+fn report_cautions(requirements: &Requirements, dataset: &Dataset) {
+    let messages = requirements.cautions.iter().map(|caution| {
+        ConditionMessage::new(caution.condition, reversed_phase_text(caution, dataset))
+    });
     for message in shared_messages(messages) {
         caution_for(&message.conditions, &message.text);
     }
@@ -117,178 +120,12 @@ fn report_missing(requirements: &Requirements, histories: &TimeHistories) {
     }
     missing.sort_by_key(|finding| finding.condition.is_some());
     let messages = missing.into_iter().map(|finding| {
-        let words = format!("no {}: {}", finding.what, finding.why);
+        let why = missing_reason_text(&finding.why);
+        let words = format!("no {}: {why}", finding.what);
         ConditionMessage::new(finding.condition, words)
     });
     for message in shared_messages(messages) {
         note(&message.words());
-    }
-}
-
-/// Formats a number with `digits` decimals; a dash for `None`.
-fn cell(value: Option<f64>, digits: usize) -> String {
-    match value {
-        Some(value) => format!("{value:.digits$}"),
-        None => "-".to_owned(),
-    }
-}
-
-/// Bandwidth results of a response, one per role.
-struct ResponseBandwidths<'a> {
-    name: String,
-    findings: &'a [BandwidthFinding],
-}
-
-impl ResponseBandwidths<'_> {
-    fn has_number(&self) -> bool {
-        self.findings.iter().any(has_number)
-    }
-}
-
-fn has_number(finding: &BandwidthFinding) -> bool {
-    finding.omega_bw_rad_s.is_some() || finding.phase_delay_s.is_some()
-}
-
-/// Returns a table of bandwidth and phase delay of the responses for which either is defined, and
-/// the reasons why the other responses have none.
-fn bandwidth_section(study: &Study, requirements: &Requirements) -> String {
-    let responses: Vec<ResponseBandwidths> = requirements
-        .bandwidth
-        .chunk_by(|a, b| (a.condition, a.pair) == (b.condition, b.pair))
-        .map(|findings| ResponseBandwidths {
-            name: study.dataset.pair_name(findings[0].pair),
-            findings,
-        })
-        .collect();
-    let table = bandwidth_table(&responses);
-    let is_marked = table.rows.iter().flatten().any(|cell| cell.contains('*'));
-    let star = if is_marked {
-        "; * depends on the response above the band"
-    } else {
-        ""
-    };
-    let mut text = line(
-        "Bandwidth",
-        &format!("of the attitude [rad/s] / phase delay [ms]{star}:"),
-    );
-    if !table.rows.is_empty() {
-        text += &indented(&table, 2);
-    }
-    text += &absent_lines("No bandwidth", absent_bandwidths(&responses));
-    text + &absent_lines("No delay", absent_delays(&responses))
-}
-
-/// Returns the reasons for missing bandwidths.
-fn absent_bandwidths(responses: &[ResponseBandwidths]) -> Vec<ConditionMessage> {
-    responses
-        .iter()
-        .flat_map(|response| absent_reasons(response, "omega_bw_rad_s"))
-        .map(AbsentReason::into_message)
-        .collect()
-}
-
-/// Returns the reasons for missing phase delays. A reason is omitted if the first result to which
-/// it applies also lacks the bandwidth, for which a reason is given anyway.
-fn absent_delays(responses: &[ResponseBandwidths]) -> Vec<ConditionMessage> {
-    responses
-        .iter()
-        .flat_map(|response| absent_reasons(response, "phase_delay_s"))
-        .filter(|reason| has_number(reason.finding))
-        .map(AbsentReason::into_message)
-        .collect()
-}
-
-fn absent_lines(label: &str, messages: Vec<ConditionMessage>) -> String {
-    let mut text = String::new();
-    for message in shared_messages(messages) {
-        text += &line(label, &sanitized(&message.words()));
-    }
-    text
-}
-
-/// Reason why a bandwidth or phase delay is missing.
-struct AbsentReason<'a> {
-    /// First result to which the reason applies.
-    finding: &'a BandwidthFinding,
-    /// Response, roles and reason: "LON → Q (physics, corrected): …".
-    words: String,
-}
-
-impl AbsentReason<'_> {
-    fn into_message(self) -> ConditionMessage {
-        ConditionMessage::new(self.finding.condition, self.words)
-    }
-}
-
-/// Returns the distinct reasons why a quantity is missing in the results of a response. Each names
-/// its roles, unless it applies to all.
-fn absent_reasons<'a>(response: &ResponseBandwidths<'a>, quantity: &str) -> Vec<AbsentReason<'a>> {
-    let findings = response.findings;
-    let reasons: BTreeSet<&String> = findings
-        .iter()
-        .filter_map(|finding| finding.absent.get(quantity))
-        .collect();
-    let mut absent = Vec::new();
-    for reason in reasons {
-        let without: Vec<&BandwidthFinding> = findings
-            .iter()
-            .filter(|finding| finding.absent.get(quantity) == Some(reason))
-            .collect();
-        let roles: Vec<&str> = without.iter().map(|finding| finding.role.name()).collect();
-        let roles = if without.len() == findings.len() {
-            String::new()
-        } else {
-            format!(" ({})", roles.join(", "))
-        };
-        absent.push(AbsentReason {
-            finding: without[0],
-            words: format!("{}{roles}: {reason}", response.name),
-        });
-    }
-    absent
-}
-
-/// Returns a table with a row for each response that has a bandwidth or a phase delay, and a column
-/// for each role.
-fn bandwidth_table(responses: &[ResponseBandwidths]) -> Table {
-    let mut headings = vec!["condition", "response"];
-    headings.extend(RequirementRole::ALL.map(RequirementRole::name));
-    let mut table = Table::new("", headings);
-    for response in responses {
-        if !response.has_number() {
-            continue;
-        }
-        let findings = response.findings;
-        let mut cells = vec![findings[0].condition.to_string(), sanitized(&response.name)];
-        for role in RequirementRole::ALL {
-            let finding = findings.iter().find(|finding| finding.role == role);
-            cells.push(match finding {
-                Some(finding) => bandwidth_cell(finding),
-                None => "-".to_owned(),
-            });
-        }
-        table.row(cells);
-    }
-    table
-}
-
-/// Formats "2.13 / 112*": bandwidth \[rad/s\] and phase delay \[ms\] of a response; a star marks a
-/// value that depends on the response above the band.
-fn bandwidth_cell(finding: &BandwidthFinding) -> String {
-    format!(
-        "{}{} / {}{}",
-        cell(finding.omega_bw_rad_s, 2),
-        above_mark(finding, "omega_bw_rad_s"),
-        cell(finding.phase_delay_s.map(s_to_ms), 0),
-        above_mark(finding, "phase_delay_s")
-    )
-}
-
-fn above_mark(finding: &BandwidthFinding, quantity: &str) -> &'static str {
-    if finding.rests_above(quantity) {
-        "*"
-    } else {
-        ""
     }
 }
 
@@ -312,11 +149,11 @@ fn summary_section(requirements: &Requirements) -> String {
         let mut cells = vec![findings[0].condition.to_string()];
         for finding in of_roles {
             let mean_j = finding.and_then(|finding| finding.mean_j_on_axis);
-            cells.push(cell(mean_j, 1));
+            cells.push(decimals_or_dash(mean_j, 1));
         }
         for finding in of_roles {
             let share = finding.and_then(|finding| finding.muad_share_on_axis);
-            cells.push(cell(share.map(|share| 100.0 * share), 0));
+            cells.push(decimals_or_dash(share.map(|share| 100.0 * share), 0));
         }
         table.row(cells);
     }
@@ -362,10 +199,10 @@ fn history_section(histories: &TimeHistories) -> String {
     const HEADING: &str = "Time history";
     if histories.records.is_empty() {
         let why = match histories.missing.first() {
-            Some(finding) => finding.why.as_str(),
-            None => "no record was compared",
+            Some(finding) => missing_reason_text(&finding.why),
+            None => "no record was compared".to_owned(),
         };
-        return line(HEADING, &sanitized(why));
+        return line(HEADING, &sanitized(&why));
     }
     let mut table = share_table(histories);
     let count = table.rows.len();

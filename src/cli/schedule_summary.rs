@@ -1,22 +1,15 @@
-//! Printed summary of the schedule: scheduled net gains and delays, the sources of their scatter,
-//! and the assessment in conditions left out of the fit.
+//! Printed summary of the schedule: scheduled net gains and delays over airspeed.
 
 use gdcm_method::schedule::{Schedule, ScheduleCaution, ScheduledQuantity};
 use gdcm_model::dataset::Pair;
 use gdcm_model::message_text::sanitized;
 use gdcm_model::units::{number, s_to_ms};
-use gdcm_study::results::assessment_table::{AssessedModel, AssessmentChoice};
-use gdcm_study::results::uncertainty::Uncertainty;
-use gdcm_study::{Analysis, AssessedCorrection, AssessmentTable, Study};
+use gdcm_study::{Analysis, Study};
 use gdcm_words::Table;
-use gdcm_words::assessment::not_assessed_text;
-use gdcm_words::schedule::delayed_channel_text;
-use gdcm_words::uncertainty::{
-    difference_text, differences_summary, scatter_table, second_variable_text,
-};
+use gdcm_words::schedule::{delayed_channel_text, schedule_caution_text};
 
+use super::printed_lines::{detail, fixed_digits, indented, line};
 use super::terminal::keep_coded_caution;
-use super::text::{detail, fixed_digits, indented, indented_untitled, line};
 
 /// Returns the responses listed in tables: the responses in the objective (on-axis; all if none is
 /// on-axis) and the constrained responses.
@@ -24,19 +17,6 @@ pub(super) fn shown_pairs(study: &Study) -> Vec<Pair> {
     let measuring = study.dataset.measuring_pairs();
     let shown = measuring.map(|pair, measures| *measures || study.settings.constrained[pair]);
     shown.marked().collect()
-}
-
-/// Returns the default choice for assessing a correction: the nominal models, with the average of J
-/// that the study sets.
-pub(super) fn nominal_choice(
-    analysis: &Analysis,
-    correction: AssessedCorrection,
-) -> AssessmentChoice {
-    AssessmentChoice {
-        model: AssessedModel::Nominal,
-        correction,
-        average: analysis.study.settings.cost_average,
-    }
 }
 
 /// Returns tables of the scheduled net gains and delays over airspeed, for the responses in
@@ -51,7 +31,7 @@ pub(super) fn schedule_section(analysis: &Analysis) -> String {
     let dataset = &analysis.study.dataset;
     let (inputs, outputs) = dataset.names_of_channels();
     for caution in &schedule.cautions {
-        let words = caution.words(&inputs, &outputs);
+        let words = schedule_caution_text(caution, &inputs, &outputs);
         if let ScheduleCaution::CostsMore(cost) = caution {
             keep_coded_caution(Some(caution.code()), &[cost.condition], &words);
         }
@@ -126,119 +106,4 @@ fn schedule_table(analysis: &Analysis, schedule: &Schedule, quantity: NetQuantit
         table.row(cells);
     }
     indented(&table, 2)
-}
-
-/// Returns the sources of the scatter, the differences at equal airspeed, and the need for a second
-/// variable. Empty if the error bars were not computed.
-pub(super) fn evidence_section(analysis: &Analysis) -> String {
-    let Some(uncertainty) = &analysis.uncertainty else {
-        return String::new();
-    };
-    let mut text = line(
-        "Scatter",
-        "of the on-axis net gains, and the part explained by trim and identification uncertainty:",
-    );
-    text += &indented_untitled(scatter_table(&analysis.study.dataset, uncertainty));
-    text += &difference_lines(&analysis.study, uncertainty);
-    text + &second_variable_lines(&analysis.study, uncertainty)
-}
-
-/// Returns the significant differences between conditions at equal airspeed.
-fn difference_lines(study: &Study, uncertainty: &Uncertainty) -> String {
-    let level = uncertainty.level;
-    let words = format!(
-        "{} (error bars of {:.0} %, Holm)",
-        differences_summary(uncertainty).trim_end_matches('.'),
-        100.0 * level
-    );
-    let mut text = line("Differences", &words);
-    for difference in &uncertainty.differences {
-        if difference.is_significant(level) {
-            let pair = sanitized(&study.dataset.pair_name(difference.pair));
-            text += &detail(
-                "",
-                &format!("{pair}: {}", difference_text(difference, level)),
-            );
-        }
-    }
-    text
-}
-
-/// Returns the responses that need a second variable, and a caution if the schedule has a variable
-/// that no response needs.
-fn second_variable_lines(study: &Study, uncertainty: &Uncertainty) -> String {
-    let needed: Vec<_> = uncertainty
-        .second_variables
-        .iter()
-        .filter(|test| test.needed)
-        .collect();
-    let mut text = String::new();
-    if let Some(variable) = study.settings.schedule.second
-        && needed.iter().all(|test| test.variable != variable)
-    {
-        let words = format!(
-            "the schedule depends on airspeed and {variable}, although no response needs \
-            {variable}"
-        );
-        text += &line("Caution", &words);
-    }
-    for test in needed {
-        let pair = sanitized(&study.dataset.pair_name(test.pair));
-        text += &line(
-            "Schedule",
-            &format!("{pair}: {}", second_variable_text(test)),
-        );
-    }
-    text
-}
-
-/// Returns the change in J of each condition's nominal model when the schedule is fitted to the
-/// other conditions only.
-pub(super) fn leave_one_out_section(analysis: &Analysis) -> String {
-    let seen = assessment(analysis, AssessedCorrection::Scheduled);
-    let unseen = assessment(analysis, AssessedCorrection::ScheduleOfOthers);
-    let mut text = line(
-        "Left out",
-        "change of J in each condition with a schedule fitted to the others, on-axis mean:",
-    );
-    let mut table = Table::new("", ["condition", "kt", "schedule of all", "of the others"]);
-    for condition in &unseen.conditions {
-        let id = condition.condition;
-        let mean_change = |table: &AssessmentTable| {
-            let mut changes: Vec<f64> = Vec::new();
-            for pair in analysis.study.dataset.measuring_pairs().marked() {
-                changes.extend(table.change(id, pair).map(|change| change.total()));
-            }
-            mean(&changes)
-        };
-        table.row([
-            id.to_string(),
-            fixed_digits(Some(condition.airspeed_kt), 0),
-            fixed_digits(mean_change(&seen), 1),
-            fixed_digits(mean_change(&unseen), 1),
-        ]);
-    }
-    text += &indented(&table, 2);
-    for left_out in &unseen.left_out {
-        let why = sanitized(&not_assessed_text(&left_out.why, &analysis.study.dataset));
-        text += &detail("", &format!("condition {}: {why}", left_out.condition));
-    }
-    if analysis.fitted_couplings().is_some() {
-        let words = "these couplings are fitted to all conditions; for J with couplings fitted \
-            without each condition, see Couplings";
-        text += &detail("", words);
-    }
-    text
-}
-
-fn assessment(analysis: &Analysis, correction: AssessedCorrection) -> AssessmentTable {
-    AssessmentTable::of(analysis, nominal_choice(analysis, correction))
-}
-
-fn mean(values: &[f64]) -> Option<f64> {
-    if values.is_empty() {
-        None
-    } else {
-        Some(values.iter().sum::<f64>() / values.len() as f64)
-    }
 }

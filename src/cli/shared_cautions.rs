@@ -1,68 +1,66 @@
-//! Cautions that recur in many conditions: a table of the remarks of such kinds, and a line for
-//! each other caution.
+//! Cautions of all conditions: a table of the cautions of kinds that usually recur in many
+//! conditions, and a line for each other caution, merged over the conditions with equal text.
+//!
+//! A caution is a [`Remark`] of the kind [`RemarkKind::Caution`].
 
 use gdcm_model::dataset::{ConditionId, Dataset, Pair};
 use gdcm_model::message_text::sanitized;
+use gdcm_study::results::condition_remarks::condition_remarks;
+use gdcm_study::results::remark::Remark;
+use gdcm_study::results::remark_kind::RemarkKind;
 use gdcm_study::{Analysis, ConditionAnalysis};
 use gdcm_words::Table;
-use gdcm_words::condition_remarks::remarks;
 use gdcm_words::leads::lead_limit_words;
-use gdcm_words::remark::{Remark, RemarkKind, Repeated};
+use gdcm_words::remark::{lead_ms_text, lead_offer_texts, raised_gain_text, remark_text};
 
+use super::condition_messages::{ConditionMessage, shared_messages};
+use super::printed_lines::{indented, line};
 use super::terminal::keep_caution;
-use super::text::{ConditionMessage, indented, line, shared_messages};
 
-/// Remarks on a condition that typically recur in other conditions.
-struct RemarkRow {
+/// Cautions about a condition of the recurring kinds, which a table lists.
+struct RecurringRow {
     condition: ConditionId,
-    remarks: Vec<Remark>,
+    cautions: Vec<Remark>,
 }
 
-impl RemarkRow {
-    /// Returns the tabulated facts of the remarks.
-    fn facts(&self) -> impl Iterator<Item = &Repeated> {
-        self.remarks
-            .iter()
-            .filter_map(|remark| remark.repeated.as_ref())
-    }
-}
-
-/// Returns the remarks of recurring kinds as a table, and each other caution once with its
+/// Returns the cautions of recurring kinds as a table, and each other caution once with its
 /// conditions; also adds them to the JSON object.
 pub(super) fn cautions_section(analysis: &Analysis) -> String {
-    let mut rows: Vec<RemarkRow> = Vec::new();
+    let mut rows: Vec<RecurringRow> = Vec::new();
     let mut others: Vec<ConditionMessage> = Vec::new();
-    for condition in analysis.study.dataset.conditions() {
+    let dataset = &analysis.study.dataset;
+    for condition in dataset.conditions() {
         let Some(result) = analysis.condition(condition.id()) else {
             continue;
         };
-        let mut row = RemarkRow {
+        let mut row = RecurringRow {
             condition: result.condition.id(),
-            remarks: Vec::new(),
+            cautions: Vec::new(),
         };
         for caution in condition_cautions(analysis, result) {
-            if caution.repeated.is_some() {
-                row.remarks.push(caution);
+            if caution.is_recurring() {
+                row.cautions.push(caution);
             } else {
-                others.push(ConditionMessage::new(row.condition, caution.text));
+                let text = remark_text(&caution, dataset);
+                others.push(ConditionMessage::new(row.condition, text));
             }
         }
         if let Some(words) = lead_limit_words(result) {
             others.push(ConditionMessage::new(row.condition, words));
         }
-        if !row.remarks.is_empty() {
+        if !row.cautions.is_empty() {
             rows.push(row);
         }
     }
     let mut text = String::new();
     if let [row] = &rows[..]
-        && let [alone] = &row.remarks[..]
+        && let [alone] = &row.cautions[..]
     {
-        // A single remark on a single condition needs no table.
-        let message = ConditionMessage::new(row.condition, alone.text.clone());
+        // A single caution about a single condition needs no table.
+        let message = ConditionMessage::new(row.condition, remark_text(alone, dataset));
         others.insert(0, message);
     } else if !rows.is_empty() {
-        text += &repeated_table(&analysis.study.dataset, &rows);
+        text += &recurring_table(dataset, &rows);
     }
     for message in shared_messages(others) {
         keep_caution(&message.conditions, &message.text);
@@ -74,42 +72,42 @@ pub(super) fn cautions_section(analysis: &Analysis) -> String {
 /// Returns the cautions about a condition, without the doubts about signs and units, which are
 /// printed before all conditions.
 fn condition_cautions(analysis: &Analysis, result: &ConditionAnalysis) -> Vec<Remark> {
-    remarks(&analysis.study, result, None)
+    condition_remarks(&analysis.study, result, None)
         .into_iter()
-        .skip(result.doubts.len())
-        .filter(|remark| remark.kind == RemarkKind::Caution)
+        .filter(|remark| remark.kind() == RemarkKind::Caution)
+        .filter(|remark| !matches!(remark, Remark::ConventionDoubt(_)))
         .collect()
 }
 
 /// Returns an explanation of the columns, followed by a table with a row for each condition, a
-/// column for each response that needs lead or moves away from flight, and columns for other
-/// repeated remarks.
-fn repeated_table(dataset: &Dataset, rows: &[RemarkRow]) -> String {
-    let facts: Vec<&Repeated> = rows.iter().flat_map(RemarkRow::facts).collect();
+/// column for each response that needs lead or moves away from flight, and columns for the other
+/// recurring cautions.
+fn recurring_table(dataset: &Dataset, rows: &[RecurringRow]) -> String {
+    let cautions: Vec<&Remark> = rows.iter().flat_map(|row| &row.cautions).collect();
     let pairs: Vec<Pair> = dataset
         .on_axis()
         .pairs()
-        .filter(|pair| has_entry(&facts, *pair))
+        .filter(|pair| has_entry(&cautions, *pair))
         .collect();
-    let columns: Vec<&RemarkColumn> = COLUMNS
+    let columns: Vec<&RecurringColumn> = COLUMNS
         .iter()
-        .filter(|column| column.cell(&facts, dataset).is_some())
+        .filter(|column| column.cell(&cautions, dataset).is_some())
         .collect();
     let mut headings = vec!["condition".to_owned()];
     headings.extend(pairs.iter().map(|pair| dataset.pair_name(*pair)));
     headings.extend(columns.iter().map(|column| column.heading.to_owned()));
     let mut table = Table::new("", headings);
     for row in rows {
-        let facts: Vec<&Repeated> = row.facts().collect();
+        let cautions: Vec<&Remark> = row.cautions.iter().collect();
         let mut cells = vec![row.condition.to_string()];
-        cells.extend(pairs.iter().map(|pair| pair_cell(&facts, *pair)));
+        cells.extend(pairs.iter().map(|pair| pair_cell(&cautions, *pair)));
         for column in &columns {
-            let cell = column.cell(&facts, dataset);
+            let cell = column.cell(&cautions, dataset);
             cells.push(cell.unwrap_or_else(|| NO_ENTRY.to_owned()));
         }
         table.row(cells);
     }
-    let mut sentences = pair_sentences(&facts);
+    let mut sentences = pair_sentences(&cautions);
     sentences.extend(columns.iter().map(|column| column.sentence));
     let sentence = sentences.join("; ");
     let conditions: Vec<ConditionId> = rows.iter().map(|row| row.condition).collect();
@@ -118,19 +116,19 @@ fn repeated_table(dataset: &Dataset, rows: &[RemarkRow]) -> String {
 }
 
 /// Explains the cell entries of the response columns.
-fn pair_sentences(facts: &[&Repeated]) -> Vec<&'static str> {
+fn pair_sentences(cautions: &[&Remark]) -> Vec<&'static str> {
     let mut sentences = Vec::new();
-    if facts
+    if cautions
         .iter()
-        .any(|fact| matches!(fact, Repeated::NeedsLead(_)))
+        .any(|caution| matches!(caution, Remark::NeedsLead { .. }))
     {
         sentences.push(
             "held responses need lead [ms]: the physics model lags, which no delay can correct",
         );
     }
-    if facts
+    if cautions
         .iter()
-        .any(|fact| matches!(fact, Repeated::Farther(_)))
+        .any(|caution| matches!(caution, Remark::HeldFarther(_)))
     {
         sentences.push(
             "* marks a response that is farther from flight (larger J) than without a correction",
@@ -141,19 +139,19 @@ fn pair_sentences(facts: &[&Repeated]) -> Vec<&'static str> {
 
 /// Returns whether the table has an entry for a response: it needs a lead, or the correction moves
 /// it away from flight.
-fn has_entry(facts: &[&Repeated], pair: Pair) -> bool {
-    needed_lead_ms(facts, pair).is_some() || is_farther(facts, pair)
+fn has_entry(cautions: &[&Remark], pair: Pair) -> bool {
+    needed_lead_ms(cautions, pair).is_some() || is_farther(cautions, pair)
 }
 
 /// Returns the lead \[ms\] that a response needs; `None` if it needs none.
-fn needed_lead_ms<'a>(facts: &[&'a Repeated], pair: Pair) -> Option<&'a str> {
-    for fact in facts {
-        let Repeated::NeedsLead(needed) = fact else {
+fn needed_lead_ms(cautions: &[&Remark], pair: Pair) -> Option<String> {
+    for caution in cautions {
+        let Remark::NeedsLead { needed, .. } = caution else {
             continue;
         };
-        for (needing, lead_ms) in needed {
-            if *needing == pair {
-                return Some(lead_ms);
+        for response in needed {
+            if response.pair == pair {
+                return Some(lead_ms_text(response.lead_s));
             }
         }
     }
@@ -161,78 +159,83 @@ fn needed_lead_ms<'a>(facts: &[&'a Repeated], pair: Pair) -> Option<&'a str> {
 }
 
 /// Returns whether the correction moves a response away from flight.
-fn is_farther(facts: &[&Repeated], pair: Pair) -> bool {
-    facts
-        .iter()
-        .any(|fact| matches!(fact, Repeated::Farther(pairs) if pairs.contains(&pair)))
+fn is_farther(cautions: &[&Remark], pair: Pair) -> bool {
+    cautions.iter().any(|caution| match caution {
+        Remark::HeldFarther(responses) => responses.iter().any(|response| response.pair == pair),
+        _ => false,
+    })
 }
 
 /// Formats the lead that a response needs, with a star if the response moves away from flight.
-fn pair_cell(facts: &[&Repeated], pair: Pair) -> String {
-    let lead_ms = needed_lead_ms(facts, pair).unwrap_or(NO_ENTRY);
-    if is_farther(facts, pair) {
+fn pair_cell(cautions: &[&Remark], pair: Pair) -> String {
+    let lead_ms = needed_lead_ms(cautions, pair).unwrap_or_else(|| NO_ENTRY.to_owned());
+    if is_farther(cautions, pair) {
         format!("{lead_ms} *")
     } else {
-        lead_ms.to_owned()
+        lead_ms
     }
 }
 
 /// Text of an empty cell.
 const NO_ENTRY: &str = "-";
 
-/// A column of the table for a repeated remark other than those on responses.
-struct RemarkColumn {
+/// A column of the table for a recurring caution that does not concern single responses.
+struct RecurringColumn {
     heading: &'static str,
     sentence: &'static str,
-    /// Returns the cell of a remark; `None` if the remark does not belong in the column.
-    format: fn(&Repeated, &Dataset) -> Option<String>,
+    /// Returns the cell of a caution; `None` if the caution does not belong in the column.
+    format: fn(&Remark, &Dataset) -> Option<String>,
 }
 
-impl RemarkColumn {
-    /// Returns the cell of the first remark that belongs in the column.
-    fn cell(&self, facts: &[&Repeated], dataset: &Dataset) -> Option<String> {
-        facts.iter().find_map(|fact| (self.format)(fact, dataset))
+impl RecurringColumn {
+    /// Returns the cell of the first caution that belongs in the column.
+    fn cell(&self, cautions: &[&Remark], dataset: &Dataset) -> Option<String> {
+        cautions
+            .iter()
+            .find_map(|caution| (self.format)(caution, dataset))
     }
 }
 
-const COLUMNS: [RemarkColumn; 3] = [
-    RemarkColumn {
+const COLUMNS: [RecurringColumn; 3] = [
+    RecurringColumn {
         heading: "all",
         sentence: "a common lead (column all [ms]) is better removed at its source: check first the time alignment of the records, \
                    the simulation's integration and sampling delay, then servo and sensor models",
         format: common_lead,
     },
-    RemarkColumn {
+    RecurringColumn {
         heading: "gain",
         sentence: "column gain [dB] is the largest gain increase of the lead filters within the band, which the gains compensate",
         format: raised_gain,
     },
-    RemarkColumn {
+    RecurringColumn {
         heading: "J with leads",
         sentence: "the last column is the mean J of the held responses, without and with a delay or lead in each channel",
         format: cost_with_leads,
     },
 ];
 
-fn common_lead(fact: &Repeated, _: &Dataset) -> Option<String> {
-    match fact {
-        Repeated::CommonLead(lead_ms) => Some(lead_ms.clone()),
+fn common_lead(caution: &Remark, _: &Dataset) -> Option<String> {
+    match caution {
+        Remark::CommonLead { lead_s } => Some(lead_ms_text(*lead_s)),
         _ => None,
     }
 }
 
-fn raised_gain(fact: &Repeated, dataset: &Dataset) -> Option<String> {
-    match fact {
-        Repeated::RaisedGain(most_db, pair) => {
-            Some(format!("{most_db} ({})", dataset.pair_name(*pair)))
-        }
+fn raised_gain(caution: &Remark, dataset: &Dataset) -> Option<String> {
+    match caution {
+        Remark::GainRaised { rise_db, pair } => Some(format!(
+            "{} ({})",
+            raised_gain_text(*rise_db),
+            dataset.pair_name(*pair)
+        )),
         _ => None,
     }
 }
 
-fn cost_with_leads(fact: &Repeated, _: &Dataset) -> Option<String> {
-    match fact {
-        Repeated::LeadsOffered([without, with]) => Some(format!("{without} → {with}")),
+fn cost_with_leads(caution: &Remark, _: &Dataset) -> Option<String> {
+    match caution {
+        Remark::LeadsOffered(offer) => Some(lead_offer_texts(offer).join(" → ")),
         _ => None,
     }
 }

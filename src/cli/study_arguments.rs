@@ -7,6 +7,7 @@ use clap::{Arg, ArgAction, ArgMatches, Args, FromArgMatches};
 
 use gdcm_study::decisions::setting::SETTINGS;
 use gdcm_study::decisions::setting_row::{Kind, Setting};
+use gdcm_words::setting_words::setting_words;
 
 use super::channel_values::{ChannelSign, channel_sign};
 use super::option_values::{PairList, Rejection, pair_list, rejection};
@@ -79,7 +80,7 @@ fn setting_option(setting: &'static Setting) -> Arg {
     };
     let argument = Arg::new(name)
         .long(name.trim_start_matches('-'))
-        .help(format!("{}{unit}", setting.help));
+        .help(format!("{}{unit}", setting_words(setting).help));
     let argument = match setting.kind {
         Kind::Flag { .. } => return argument.action(ArgAction::SetTrue),
         Kind::Range { nothing: None, .. } => argument.value_names(["LO", "HI"]).num_args(2),

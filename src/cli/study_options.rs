@@ -2,25 +2,23 @@
 
 use std::sync::Arc;
 
-use gdcm_io::files::requirements_file::{load_tolerances, read_levels};
+use gdcm_io::files::levels_and_tolerances::{load_tolerances, read_levels};
 use gdcm_io::output_set::OutputSet;
 use gdcm_io::{LoadedDataset, embedded_example};
 use gdcm_method::correction;
-use gdcm_model::dataset::{BundleKind, Channel, ConditionId, Dataset, ModelId, Pair};
+use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
 use gdcm_model::message_text::sanitized;
 use gdcm_study::decisions::requirement_settings::RequirementSettings;
-use gdcm_study::{Analysis, Edit, Engine, Study};
-use gdcm_words::caution::failure_text;
+use gdcm_study::{Edit, Study};
 
 use super::channel_values::{ChannelSign, ChannelValue, first_duplicate};
+use super::condition_messages::listed_conditions;
+use super::dataset_lookup::pairs_of;
 use super::failure::Failure;
 use super::option_values::{PairName, Rejection};
-use super::progress::TerminalProgress;
 use super::study_arguments::{GivenSetting, StudyArguments};
-use super::terminal::{caution, coded_caution};
-use super::text::{ConditionMessage, SharedMessage, listed_conditions, shared_messages};
+use super::terminal::caution;
 use super::{existing, open};
-use crate::executor::Pool;
 
 /// The study that a command analyses, with its files.
 pub(super) struct CommandStudy {
@@ -63,103 +61,8 @@ impl CommandStudy {
     }
 }
 
-/// Whether an analysis computes error bars.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum ErrorBars {
-    Computed,
-    Omitted,
-}
-
-/// An analysis with the engine that computed it.
-pub(super) struct StudyAnalysis {
-    pub(super) analysis: Analysis,
-    pub(super) engine: Engine,
-}
-
-/// Analyses a study; if requested, the suggested outliers are first rejected. With error bars, the
-/// couplings are assessed too. Conditions without a result are reported on standard error.
-///
-/// # Errors
-/// No condition has a result.
-pub(super) fn analyze_study(
-    mut study: Study,
-    arguments: &StudyArguments,
-    bars: ErrorBars,
-) -> Result<StudyAnalysis, Failure> {
-    let mut engine = Engine::with_executor(Box::new(Pool));
-    let progress = TerminalProgress::new("analysing");
-    let mut analysis = engine.analyze(&study, &progress)?;
-    if arguments.reject_suggested && reject_suggested(&mut study, &analysis)? {
-        analysis = engine.analyze(&study, &progress)?;
-    }
-    if bars == ErrorBars::Computed {
-        analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, &progress)?));
-        let assessed = engine.assess_couplings(&study, study.settings.couplings, &progress)?;
-        analysis.coupling_assessment = assessed.and_then(Result::ok);
-    }
-    drop(progress);
-    report_failed_conditions(&analysis)?;
-    Ok(StudyAnalysis { analysis, engine })
-}
-
-/// Reports conditions without a result on standard error.
-///
-/// # Errors
-/// No condition has a result.
-fn report_failed_conditions(analysis: &Analysis) -> Result<(), Failure> {
-    let mut failures = Vec::new();
-    for (id, outcome) in &analysis.conditions {
-        if let Err(failure) = outcome {
-            failures.push((*id, failure));
-        }
-    }
-    let messages = failures.iter().map(|(id, failure)| {
-        ConditionMessage::new(*id, failure_text(failure, &analysis.study.dataset))
-    });
-    let shared = shared_messages(messages);
-    if let Some(first) = shared.first()
-        && failures.len() == analysis.conditions.len()
-    {
-        return Err(Failure::NoResult {
-            reason: first.words(),
-        });
-    }
-    for SharedMessage { conditions, text } in &shared {
-        let failure = failures.iter().find(|(id, _)| conditions.contains(id));
-        let code = failure.map(|(_, failure)| failure.code());
-        coded_caution(code, conditions, text);
-    }
-    Ok(())
-}
-
-/// Returns the condition with the id given by an option; an error if the dataset lacks it.
-pub(super) fn condition_of(dataset: &Dataset, id: i64) -> Result<ConditionId, Failure> {
-    match dataset.condition(ConditionId(id)) {
-        Some(condition) => Ok(condition.id()),
-        None => {
-            let ids = condition_ids(dataset);
-            let reason = format!("the dataset has no condition {id}; it has {ids}");
-            Err(Failure::coded_option(
-                "--condition",
-                "unknown-condition",
-                reason,
-            ))
-        }
-    }
-}
-
-/// Lists the ids of all conditions, separated by commas.
-pub(super) fn condition_ids(dataset: &Dataset) -> String {
-    let ids: Vec<String> = dataset
-        .conditions()
-        .iter()
-        .map(|condition| condition.id().to_string())
-        .collect();
-    ids.join(", ")
-}
-
 /// Applies an edit requested by an option.
-fn apply(study: &mut Study, option: &'static str, edit: &Edit) -> Result<(), Failure> {
+pub(super) fn apply(study: &mut Study, option: &'static str, edit: &Edit) -> Result<(), Failure> {
     study
         .apply(edit)
         .map_err(|refusal| Failure::option(option, refusal))
@@ -278,9 +181,10 @@ pub(super) fn apply_signs(study: &mut Study, signs: &[ChannelSign]) -> Result<()
     } in signs
     {
         let (inputs, outputs) = study.dataset.names_of_channels();
-        let named: Vec<correction::Channel> = correction::Channel::all(inputs.len(), outputs.len())
-            .filter(|channel| channel.name(&inputs, &outputs) == *name)
-            .collect();
+        let named: Vec<correction::Channel> =
+            correction::Channel::inputs_then_outputs(inputs.len(), outputs.len())
+                .filter(|channel| channel.name(&inputs, &outputs) == *name)
+                .collect();
         let [channel] = named[..] else {
             let count = named.len();
             let known = [inputs, outputs].concat().join(", ");
@@ -292,36 +196,6 @@ pub(super) fn apply_signs(study: &mut Study, signs: &[ChannelSign]) -> Result<()
         apply(study, OPTION, &Edit::SetSign { channel, of: *role })?;
     }
     Ok(())
-}
-
-/// Returns the responses listed in an option.
-pub(super) fn pairs_of(
-    dataset: &Dataset,
-    list: &[PairName],
-    option: &'static str,
-) -> Result<Vec<Pair>, Failure> {
-    let mut pairs = Vec::new();
-    for PairName { output, input } in list {
-        let pair = dataset.find_pair(output, input).ok_or_else(|| {
-            let reason = format!(
-                "the dataset has no response {output}/{input}; outputs are {}; inputs are {}",
-                channel_names(dataset.outputs()),
-                channel_names(dataset.inputs())
-            );
-            Failure::coded_option(option, "unknown-response", reason)
-        })?;
-        pairs.push(pair);
-    }
-    Ok(pairs)
-}
-
-/// Lists channel names, separated by commas.
-pub(super) fn channel_names(channels: &[Channel]) -> String {
-    let names: Vec<&str> = channels
-        .iter()
-        .map(|channel| channel.name.as_str())
-        .collect();
-    names.join(", ")
 }
 
 /// Constrains the listed responses and releases all others.
@@ -364,18 +238,4 @@ fn reject(study: &mut Study, rejection: &Rejection) -> Result<(), Failure> {
             Err(Failure::coded_option(OPTION, "ambiguous-model", reason))
         }
     }
-}
-
-/// Rejects the suggested outliers; returns whether any was not yet rejected.
-fn reject_suggested(study: &mut Study, analysis: &Analysis) -> Result<bool, Failure> {
-    let before = study.clone();
-    for (&condition, outcome) in &analysis.conditions {
-        let models = match outcome {
-            Ok(result) => result.suggested(),
-            Err(_) => Default::default(),
-        };
-        let edit = Edit::reject_physics(condition, &models);
-        apply(study, "--reject-suggested", &edit)?;
-    }
-    Ok(*study != before)
 }

@@ -7,12 +7,12 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use serde::Serialize;
 
 use gdcm_io::file_error::system_words;
-use gdcm_io::json_text::write_pretty;
+use gdcm_io::json_writing::write_pretty;
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::message_text::{sanitized, shortened_message};
 
+use super::condition_messages::with_conditions;
 use super::failure::Failure;
-use super::text::with_conditions;
 
 /// Output format of a command.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

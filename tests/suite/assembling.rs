@@ -811,9 +811,9 @@ fn names_are_said_for_the_channels_of_one_model_and_a_wrong_number_of_them_is_to
         nz.iter().any(|kind| kind.to_string().contains("NZ")),
         "the model has another output now: {nz:?}"
     );
-    let wrong_count = ProblemKind::Names {
+    let wrong_count = ProblemKind::NameCount {
         side: ChannelSide::Output,
-        said: 2,
+        given: 2,
         found: 1,
     };
     let two_names = kinds(&["Q", "P"]);

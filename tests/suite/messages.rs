@@ -10,7 +10,7 @@ use gdcm_io::files::study_file::open_study;
 use gdcm_io::{DatasetOrigin, load_dataset, load_dataset_bytes, save_study};
 use gdcm_method::correction::GainBounds;
 use gdcm_model::dataset::Band;
-use gdcm_model::dataset::dataset::{GREATEST_OMEGA, LEAST_OMEGA};
+use gdcm_model::dataset::band::{GREATEST_OMEGA, LEAST_OMEGA};
 use gdcm_model::message_text::sanitized;
 use gdcm_model::units::number;
 use gdcm_study::Study;

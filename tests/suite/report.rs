@@ -14,9 +14,10 @@ use gdcm_io::{load_dataset, save_study};
 use gdcm_method::requirements::ToleranceTable;
 use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
 use gdcm_model::progress::{Cancelled, Progress, Unobserved};
+use gdcm_study::results::record_simulations::time_histories_of;
 use gdcm_study::results::required_modes::KnownPoles;
 use gdcm_study::results::requirement_role::RequirementRole;
-use gdcm_study::results::time_histories::{HistoryRecords, time_histories_of};
+use gdcm_study::results::time_histories::HistoryRecords;
 use gdcm_study::{Analysis, Edit, Engine, Execution, Study};
 use gdcm_sysid::identification::Preparation;
 use gdcm_sysid::records::{LaidOutRecord, RecordChannels, TimeWish};
@@ -58,7 +59,7 @@ static ANALYSIS: LazyLock<Analysis> = LazyLock::new(|| {
 static REPORT: LazyLock<String> = LazyLock::new(|| {
     report(
         without_records(&ANALYSIS),
-        &ReportSource::of(&FEW, None),
+        &ReportSource::from_files(&FEW, None),
         &mut Engine::default(),
         &Unobserved,
     )
@@ -179,7 +180,7 @@ fn requirements_are_those_of_the_command_and_time_histories_stand_where_there_ar
     let (inputs, outputs) = FEW.dataset.names_of_channels();
     let [inputs, outputs]: [Vec<&str>; 2] =
         [&inputs, &outputs].map(|of| of.iter().map(String::as_str).collect());
-    let records = [HistoryRecords::of(
+    let records = [HistoryRecords::from_used(
         ConditionId(3),
         &records,
         Preparation::of(&inputs, &outputs),
@@ -187,7 +188,7 @@ fn requirements_are_those_of_the_command_and_time_histories_stand_where_there_ar
     let table = ToleranceTable::default();
     let histories =
         time_histories_of(&analysis, &records, &table, &Execution::sequential()).unwrap();
-    let source = ReportSource::of(&FEW, None);
+    let source = ReportSource::from_files(&FEW, None);
     let subject = ReportSubject {
         histories: Some(&histories),
         ..without_records(&analysis)
@@ -284,7 +285,7 @@ fn the_same_study_makes_the_same_bytes() {
             .unwrap();
         report(
             without_records(&analysis),
-            &ReportSource::of(&FEW, None),
+            &ReportSource::from_files(&FEW, None),
             &mut Engine::default(),
             &Unobserved,
         )
@@ -300,7 +301,7 @@ fn the_report_of_the_whole_example_is_not_too_long() {
     let analysis = Engine::default()
         .analyze(&Study::new(EXAMPLE.dataset.clone()), &Unobserved)
         .unwrap();
-    let source = ReportSource::of(&EXAMPLE, None);
+    let source = ReportSource::from_files(&EXAMPLE, None);
     let text = report(
         without_records(&analysis),
         &source,
@@ -329,7 +330,7 @@ impl Progress for Impatient {
 #[test]
 fn a_report_that_is_not_wanted_any_more_is_given_up() {
     let impatient = Impatient(AtomicUsize::new(2));
-    let source = ReportSource::of(&FEW, None);
+    let source = ReportSource::from_files(&FEW, None);
     assert_eq!(
         report(
             without_records(&ANALYSIS),
@@ -491,7 +492,7 @@ fn the_window_writes_the_report_beside_and_asks_before_it_overwrites() {
     let analysis = state(&window).results.analysis.clone().unwrap();
     let expected = report(
         without_records(&analysis),
-        &ReportSource::of(&FEW, None),
+        &ReportSource::from_files(&FEW, None),
         &mut Engine::default(),
         &Unobserved,
     )

@@ -11,7 +11,7 @@ use gdcm_words::table::Table;
 use crate::file_error::FileError;
 use crate::output_set::OutputSet;
 
-/// Writes records of equal length, one per line; each cell passes through [`plain`].
+/// Writes records of equal length, one per line; each cell passes through [`safe_cell`].
 pub(crate) fn write_records<R>(
     file: &mut dyn Write,
     records: impl Iterator<Item = R>,
@@ -22,7 +22,7 @@ where
 {
     let mut table = csv::Writer::from_writer(file);
     for record in records {
-        let cells = record.into_iter().map(|cell| plain(cell.as_ref()));
+        let cells = record.into_iter().map(|cell| safe_cell(cell.as_ref()));
         table.write_record(cells).map_err(io_error)?;
     }
     table.flush()
@@ -42,7 +42,7 @@ fn io_error(error: csv::Error) -> io::Error {
 /// A string that begins with `=`, `+`, `-` or `@` and is not a number is preceded by an apostrophe;
 /// control characters and invisible characters become escape sequences. Numbers have the ASCII
 /// minus, and zero has no sign. A lone dash, which marks a missing value, is unchanged.
-pub(crate) fn plain(cell: &str) -> String {
+pub(crate) fn safe_cell(cell: &str) -> String {
     let number = cell.replacen('\u{2212}', "-", 1);
     if number.parse::<f64>().is_ok() {
         return without_sign_of_zero(&number).to_owned();
@@ -118,7 +118,7 @@ mod tests {
             ("\t=1", "\\t=1"),
             ("Δφ – 5", "Δφ – 5"),
         ] {
-            assert_eq!(plain(cell), written);
+            assert_eq!(safe_cell(cell), written);
         }
         let mut table = Table::new("=title", ["=1+1"]);
         table.row(["@x"]);

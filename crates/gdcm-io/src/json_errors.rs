@@ -1,4 +1,9 @@
 //! Translates serde_json errors into terms familiar to engineers.
+//!
+//! serde_json gives most details only in the texts of its messages, such as "missing field `name`",
+//! so this file depends on their wording; `tests/suite/dataset_file/wrong_text.rs` and
+//! `wrong_content.rs` of this crate fail if it changes. A text with another wording is reported as
+//! it is.
 
 use std::path::Path;
 
@@ -9,7 +14,8 @@ use gdcm_model::dataset::location::Location;
 use gdcm_model::message_text::{sanitized, shortened};
 use gdcm_model::units::number;
 
-use crate::file_error::{ContentError, ContentFault, FileError};
+use crate::content_fault::{ContentError, ContentFault};
+use crate::file_error::FileError;
 
 /// Line and column in a text, counted from 1; the column in bytes.
 #[derive(Clone, Copy)]
@@ -133,18 +139,13 @@ fn data_fault(reason: &str, position: Position) -> ContentFault {
             found: found.to_owned(),
         };
     }
-    for start in ["invalid type: ", "invalid value: ", INVALID_LENGTH] {
-        if let Some(rest) = reason.strip_prefix(start)
-            && let Some((found, expected)) = rest.rsplit_once(", expected ")
-        {
-            let found = found_words(found, start == INVALID_LENGTH);
-            return ContentFault::Type {
-                expected: expected_words(expected),
-                found: shortened(&sanitized(&found)),
-                line,
-                column,
-            };
-        }
+    if let Some((found, expected)) = mismatch(reason) {
+        return ContentFault::Type {
+            expected: expected_words(expected),
+            found: shortened(&sanitized(&found)),
+            line,
+            column,
+        };
     }
     ContentFault::Text {
         reason: shortened(&sanitized(reason)),
@@ -153,8 +154,19 @@ fn data_fault(reason: &str, position: Position) -> ContentFault {
     }
 }
 
-/// Start of serde's messages about the length of a list.
-const INVALID_LENGTH: &str = "invalid length ";
+/// Splits a message about a value of the wrong type, value or length: "invalid type: string "x",
+/// expected f64". Returns the value found, in JSON terms, and serde's words for the expected value.
+fn mismatch(reason: &str) -> Option<(String, &str)> {
+    if let Some(rest) = reason.strip_prefix("invalid length ") {
+        let (length, expected) = rest.rsplit_once(", expected ")?;
+        return Some((format!("{length} entries"), expected));
+    }
+    let rest = reason
+        .strip_prefix("invalid type: ")
+        .or_else(|| reason.strip_prefix("invalid value: "))?;
+    let (found, expected) = rest.rsplit_once(", expected ")?;
+    Some((found_words(found), expected))
+}
 
 /// Returns the text between the prefix `start` and the suffix `end`; `None` if either is missing.
 fn text_between(text: &str, start: &str, end: &str) -> Option<String> {
@@ -163,10 +175,7 @@ fn text_between(text: &str, start: &str, end: &str) -> Option<String> {
 }
 
 /// Translates serde's words for the value found into JSON terms.
-fn found_words(found: &str, is_length: bool) -> String {
-    if is_length {
-        return format!("{found} entries");
-    }
+fn found_words(found: &str) -> String {
     let unquoted = found.replace('`', "");
     // Shorten the number: serde writes all its digits.
     if let Some(Ok(value)) = unquoted.strip_prefix("floating point ").map(str::parse) {

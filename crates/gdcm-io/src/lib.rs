@@ -12,21 +12,32 @@
 //! # Ok::<(), gdcm_io::FileError>(())
 //! ```
 
+pub mod content_fault;
 pub mod csv_text;
 pub mod export;
 pub mod export_fault;
 pub mod file_error;
+pub mod file_reading;
 pub mod files;
 pub mod formats;
+mod gzip;
 pub mod import;
+mod json_arrays;
+mod json_empty_members;
 mod json_errors;
 mod json_lists;
-pub mod json_text;
-mod location;
+mod json_location;
+mod json_outline;
+mod json_path;
+mod json_reading;
+pub mod json_writing;
 pub mod output_set;
 pub mod reading_budget;
+pub mod relative_folder;
 pub mod report;
-pub mod source;
+mod unknown_keys;
+pub mod user_paths;
+mod variable_fault;
 
 pub use gdcm_model::dataset::limits::LARGEST_TEXT;
 
@@ -34,7 +45,8 @@ pub use crate::file_error::FileError;
 pub use crate::files::dataset_file::{
     DatasetOrigin, LoadedDataset, embedded_example, load_dataset, load_dataset_bytes,
 };
-pub use crate::files::study_file::{Opened, load_any, save_study};
+pub use crate::files::opened_file::{Opened, load_any};
+pub use crate::files::study_file::save_study;
 pub use crate::formats::FolderProgress;
 pub use crate::formats::mat::write as write_mat;
 pub use crate::import::model_files::read_models;

@@ -1,8 +1,11 @@
 //! Files that are written completely or not at all, individually or as a set.
 
+mod set_lock;
+mod temporary_files;
+
 use std::collections::BTreeSet;
-use std::fs::{self, File};
-use std::io::{self, BufWriter, ErrorKind, Write};
+use std::fs;
+use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 #[cfg(unix)]
 use std::sync::{Arc, atomic::AtomicBool};
@@ -10,8 +13,10 @@ use std::sync::{Arc, atomic::AtomicBool};
 use sha2::{Digest, Sha256};
 use tempfile::NamedTempFile;
 
+use self::set_lock::SetLock;
+use self::temporary_files::{directory_of, kept_aside, remove_leftovers, write_temporary_file};
 use super::file_error::FileError;
-use super::source::kind_of;
+use super::file_reading::kind_of;
 
 /// Treatment of existing files at the paths of new files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -190,21 +195,6 @@ impl OutputSet {
     }
 }
 
-/// Writes a temporary file, flushed to the disk, that will replace `target`.
-fn write_temporary_file(
-    target: &Path,
-    directory: &Path,
-    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> io::Result<NamedTempFile> {
-    let mut temporary = temporary_file(target, directory)?;
-    let mut buffered = BufWriter::new(temporary.as_file_mut());
-    write(&mut buffered)?;
-    buffered.flush()?;
-    drop(buffered);
-    temporary.as_file().sync_all()?;
-    Ok(temporary)
-}
-
 /// Whether an output path leads to the file of an input, through any links. An input that is a pipe
 /// or a device does not count, and is not opened.
 fn is_same_file(path: &Path, input: &Path) -> bool {
@@ -217,41 +207,6 @@ fn is_same_file(path: &Path, input: &Path) -> bool {
 /// Returns the line about a file in the format of `sha256sum`.
 fn checksum(name: &str, bytes: &[u8]) -> String {
     format!("{:x}  {name}\n", Sha256::digest(bytes))
-}
-
-/// Lock for renaming the files of a set in a directory: a locked file there, for which the next set
-/// waits. The lock is released when its process ends, for whatever reason.
-struct SetLock {
-    path: PathBuf,
-    _file: File,
-}
-
-impl SetLock {
-    /// Waits for the lock; `None` if the file system has no locks.
-    fn acquire(directory: &Path) -> Option<Self> {
-        let path = directory.join(format!("{PREFIX}lock{SUFFIX}"));
-        loop {
-            let file = File::options()
-                .create(true)
-                .truncate(false)
-                .write(true)
-                .open(&path)
-                .ok()?;
-            file.lock().ok()?;
-            let locked = same_file::Handle::from_file(file.try_clone().ok()?).ok()?;
-            // The previous owner may have removed the file whose lock was awaited.
-            if same_file::Handle::from_path(&path).is_ok_and(|there| there == locked) {
-                return Some(Self { path, _file: file });
-            }
-        }
-    }
-}
-
-impl Drop for SetLock {
-    fn drop(&mut self) {
-        // A file that cannot be removed now is removed as a leftover later.
-        let _ = fs::remove_file(&self.path);
-    }
 }
 
 /// A file that has been renamed to its path.
@@ -288,30 +243,6 @@ impl Placed {
     }
 }
 
-/// Creates a second name for a file, or a copy if the file system has no hard links; removed when
-/// dropped.
-fn kept_aside(target: &Path) -> io::Result<NamedTempFile> {
-    named().make_in(directory_of(target), |path| {
-        match fs::hard_link(target, path) {
-            Err(error) if error.kind() != ErrorKind::AlreadyExists => drop(fs::copy(target, path)?),
-            linked => linked?,
-        }
-        // Before the lock is taken, another process may remove the file as a leftover. Its absence
-        // is returned as `AlreadyExists`, so that `make_in` tries another name.
-        let removed = ErrorKind::AlreadyExists;
-        let file = match File::open(path) {
-            Err(error) if error.kind() == ErrorKind::NotFound => return Err(removed.into()),
-            opened => opened?,
-        };
-        let _ = file.try_lock();
-        if path.exists() {
-            Ok(file)
-        } else {
-            Err(removed.into())
-        }
-    })
-}
-
 /// Writes a file, replacing an existing file; on an error, the existing file is unchanged. A link
 /// is followed: its target is replaced.
 pub(super) fn write_whole(
@@ -342,71 +273,9 @@ pub fn report_size_limit() {
     let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::<AtomicBool>::default());
 }
 
-const PREFIX: &str = ".gdcm-";
-const SUFFIX: &str = ".tmp";
-
-fn named() -> tempfile::Builder<'static, 'static> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(PREFIX).suffix(SUFFIX);
-    builder
-}
-
-fn directory_of(file: &Path) -> &Path {
-    match file.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    }
-}
-
-/// Creates a temporary file, locked as long as it is open. The system releases the lock when the
-/// process ends, for whatever reason.
-fn temporary_file(target: &Path, directory: &Path) -> io::Result<NamedTempFile> {
-    let mut builder = named();
-    // Use the permissions of the replaced file; for a new file, reading and writing for all,
-    // reduced by the process's mask.
-    #[cfg(unix)]
-    builder.permissions(
-        fs::metadata(target)
-            .map(|found| found.permissions())
-            .unwrap_or_else(|_| {
-                use std::os::unix::fs::PermissionsExt;
-                fs::Permissions::from_mode(0o666)
-            }),
-    );
-    loop {
-        // Keep only the kind of the error: the builder's message would name the temporary file.
-        let temporary = builder
-            .tempfile_in(directory)
-            .map_err(|error| io::Error::from(error.kind()))?;
-        // Ignore a failure: on a file system without locks, `remove_leftovers` cannot lock a file
-        // either and removes nothing.
-        let _ = temporary.as_file().lock();
-        // Try again if another process removed the file as a leftover before it was locked.
-        if temporary.path().exists() {
-            return Ok(temporary);
-        }
-    }
-}
-
-/// Removes temporary files of killed runs, recognised by the missing lock.
-fn remove_leftovers(directory: &Path) {
-    for entry in fs::read_dir(directory).into_iter().flatten().flatten() {
-        let is_ours = entry
-            .file_name()
-            .to_str()
-            .is_some_and(|name| name.starts_with(PREFIX) && name.ends_with(SUFFIX));
-        if is_ours
-            && entry.file_type().is_ok_and(|kind| kind.is_file())
-            && let Ok(file) = File::options().write(true).open(entry.path())
-            && file.try_lock().is_ok()
-        {
-            let _ = fs::remove_file(entry.path());
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::temporary_files::PREFIX;
     use super::*;
 
     fn names(directory: &Path) -> Vec<String> {

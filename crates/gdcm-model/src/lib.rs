@@ -11,7 +11,7 @@
 //! | [`assembly`] | models from many files into one dataset: roles, channels, conversions |
 //! | [`names`] | channel aliases and signs, response names, patterns of file names |
 //! | [`units`] | physical units and conversions |
-//! | [`number_format`] | numbers as text: the only place that chooses digits, signs and exponents |
+//! | [`number_format`] | numbers as text: formats shared by messages, files, plots and the window |
 //! | [`executor`], [`progress`] | parallel tasks, progress and cancellation |
 //! | [`message_text`], [`whole_number`] | sanitised text, and whole numbers in JSON |
 //!
@@ -19,7 +19,7 @@
 //!
 //! ```
 //! use gdcm_model::dataset::{Pair, StateSpace};
-//! use gdcm_model::response::eigenvalues::poles;
+//! use gdcm_model::response::mode::poles;
 //! use nalgebra::dmatrix;
 //!
 //! // q = 1 / (s + 2) times the stick

@@ -1,4 +1,12 @@
 //! Text made safe for messages: escaped and shortened.
+//!
+//! | function | text | shortened |
+//! |---|---|---|
+//! | [`sanitized`], [`sanitized_path`] | any; a path | no |
+//! | [`quoted`] | given by a user or a file | after 80 characters, in quotation marks |
+//! | [`shortened`] | the same, without escapes and quotation marks | after 80 characters |
+//! | [`shortened_name`] | a name or a path | in the middle, if longer than 400 characters |
+//! | [`shortened_message`] | a whole message | in the middle, if longer than 2000 characters |
 
 use std::path::Path;
 
@@ -43,6 +51,7 @@ pub fn shortened_message(text: &str) -> String {
     /// Maximum length \[characters\]: longer than any message of the program with sixty column
     /// names.
     const LONGEST: usize = 2000;
+    /// Length of what remains at each end \[characters\].
     const KEPT: usize = 900;
     let words: Vec<String> = text.split(' ').map(shortened_name).collect();
     without_middle(&words.join(" "), LONGEST, KEPT)
@@ -52,6 +61,7 @@ pub fn shortened_message(text: &str) -> String {
 pub fn shortened_name(text: &str) -> String {
     /// Maximum length \[characters\]: longer than most file paths.
     const LONGEST: usize = 400;
+    /// Length of what remains at each end \[characters\].
     const KEPT: usize = 40;
     without_middle(text, LONGEST, KEPT)
 }
@@ -70,6 +80,7 @@ fn without_middle(text: &str, longest: usize, kept: usize) -> String {
 
 /// Returns the first 80 characters of a text, followed by an ellipsis if it is longer.
 pub fn shortened(text: &str) -> String {
+    /// Maximum length \[characters\].
     const LONGEST: usize = 80;
     match text.char_indices().nth(LONGEST) {
         Some((end, _)) => format!("{}…", &text[..end]),

@@ -1,8 +1,25 @@
-//! Conversion of numbers to text: the only place where digits, signs and exponents are chosen.
+//! Conversion of numbers to text: the formats shared by messages, files, plots and the window.
 //!
-//! Text for messages and for tables in a terminal uses a hyphen as minus sign ([`number`],
-//! [`telling`]); text in plots, windows and sentences uses a true minus sign ([`decimals`],
-//! [`compact`], [`signed`], [`five_digits`]).
+//! Text for messages, files and tables in a terminal uses a hyphen as minus sign; text in plots,
+//! windows and sentences uses a true minus sign.
+//!
+//! | function | digits | minus sign |
+//! |---|---|---|
+//! | [`number`] | shortest text that parses to the same number | hyphen |
+//! | [`full_precision`] | the same, for files; empty if not finite | hyphen |
+//! | [`six_digits`] | at most 6 significant | hyphen |
+//! | [`compact`] | at most 6 significant, without trailing zeros | true |
+//! | [`five_digits`] | 5 significant | true |
+//! | [`significant`] | 3 significant | hyphen |
+//! | [`three_digits`] | 3 significant; below 1, 3 decimals | hyphen |
+//! | [`rounded_to_three_digits`] | at most 3 significant, without trailing zeros | positive values |
+//! | [`gain_text`] | 3 decimals, or 2; below 0.1, 3 significant | positive values |
+//! | [`decimals`], [`decimals_or_dash`] | given decimals | true |
+//! | [`signed`] | given decimals, with plus sign | true |
+//! | [`telling`] | given decimals; of a smaller nonzero value, 2 significant | hyphen |
+//! | [`told_apart`] | given decimals, or as many as distinguish two values | hyphen |
+//!
+//! Counts with their nouns: [`counted`].
 
 /// The true minus sign, which is as wide as a plus sign.
 const MINUS: char = '\u{2212}';
@@ -18,6 +35,15 @@ pub fn number(value: f64) -> String {
         exponent
     } else {
         plain
+    }
+}
+
+/// Formats a count with its noun, whose plural ends in s: "1 state", "3 states".
+pub fn counted(count: usize, noun: &str) -> String {
+    if count == 1 {
+        format!("1 {noun}")
+    } else {
+        format!("{count} {noun}s")
     }
 }
 
@@ -70,18 +96,17 @@ pub fn signed(change: f64, decimals: usize) -> String {
     if is_nothing {
         text[1..].to_owned()
     } else {
-        text.replace('-', "−")
+        with_minus_sign(&text)
     }
 }
 
 /// Formats a value with up to six significant digits and a true minus sign, without trailing zeros.
 pub fn compact(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return if value == 0.0 {
-            "0".to_owned()
-        } else {
-            value.to_string()
-        };
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    if !value.is_finite() {
+        return value.to_string();
     }
     let decimals = (5 - value.abs().log10().floor() as i64).clamp(0, 12) as usize;
     let text = format!("{value:.decimals$}");
@@ -108,7 +133,7 @@ pub fn decimals_or_dash(value: Option<f64>, count: usize) -> String {
 
 /// Replaces hyphens by true minus signs.
 pub fn with_minus_sign(number: &str) -> String {
-    number.replace('-', "\u{2212}")
+    number.replace('-', &MINUS.to_string())
 }
 
 /// Formats a value with five significant digits and a true minus sign.

@@ -1,4 +1,8 @@
 //! Progress and cancellation of long computations.
+//!
+//! A computation reports to a [`Progress`], which its caller provides. If it consists of several
+//! parts, [`Shares`] adds up their shares of the whole, and a [`Portion`] is the [`Progress`] of a
+//! single part.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -33,57 +37,6 @@ impl Progress for Unobserved {
     fn advanced(&self, _done: usize, _total: usize) {}
 }
 
-/// Part of a computation, which converts its own progress to a share of the whole.
-pub struct Portion<'a> {
-    shares: &'a Shares<'a>,
-    share: f64,
-    name: &'static str,
-    /// Share reported so far, 0 to `share`.
-    reported: Mutex<f64>,
-}
-
-impl<'a> Portion<'a> {
-    /// Creates a part that amounts to `share` (0 to 1) of the whole and is reported as the step
-    /// `name`.
-    pub fn new(shares: &'a Shares<'a>, share: f64, name: &'static str) -> Self {
-        Self {
-            shares,
-            share,
-            name,
-            reported: Mutex::new(0.0),
-        }
-    }
-
-    /// Reports that the part is complete.
-    ///
-    /// # Errors
-    /// [`Cancelled`] if the computation was cancelled.
-    pub fn finish(self) -> Result<(), Cancelled> {
-        self.report(1.0)
-    }
-
-    /// Reports that `done` (0 to 1) of the part is complete; a smaller value than before is
-    /// ignored.
-    fn report(&self, done: f64) -> Result<(), Cancelled> {
-        // `into_inner`: a thread that panicked while it held the lock leaves a valid value.
-        let mut reported = self.reported.lock().unwrap_or_else(PoisonError::into_inner);
-        let rise = (done.min(1.0) * self.share - *reported).max(0.0);
-        *reported += rise;
-        self.shares.advance(rise, self.name)
-    }
-}
-
-impl Progress for Portion<'_> {
-    fn cancelled(&self) -> bool {
-        self.shares.progress().cancelled()
-    }
-
-    fn advanced(&self, done: usize, total: usize) {
-        // `let _`: the part itself checks for cancellation.
-        let _ = self.report(done as f64 / total.max(1) as f64);
-    }
-}
-
 /// Error of a computation that was cancelled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the analysis was stopped")]
@@ -93,6 +46,7 @@ pub struct Cancelled;
 /// reported total never decreases.
 pub struct Shares<'a> {
     progress: &'a dyn Progress,
+    /// Completed share, 0 to 1.
     done: Mutex<f64>,
 }
 
@@ -141,6 +95,59 @@ impl<'a> Shares<'a> {
         self.progress
             .advanced((*total * PARTS) as usize, PARTS as usize);
         Ok(())
+    }
+}
+
+/// Part of a computation, which converts its own progress to a share of the whole.
+pub struct Portion<'a> {
+    whole: &'a Shares<'a>,
+    /// Share of the whole that this part amounts to, 0 to 1.
+    share: f64,
+    /// Name of the step under which the part is reported.
+    name: &'static str,
+    /// Share reported so far, 0 to `share`.
+    reported: Mutex<f64>,
+}
+
+impl<'a> Portion<'a> {
+    /// Creates a part that amounts to `share` (0 to 1) of the whole and is reported as the step
+    /// `name`.
+    pub fn new(whole: &'a Shares<'a>, share: f64, name: &'static str) -> Self {
+        Self {
+            whole,
+            share,
+            name,
+            reported: Mutex::new(0.0),
+        }
+    }
+
+    /// Reports that the part is complete.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if the computation was cancelled.
+    pub fn finish(self) -> Result<(), Cancelled> {
+        self.report(1.0)
+    }
+
+    /// Reports that `done` (0 to 1) of the part is complete; a smaller value than before is
+    /// ignored.
+    fn report(&self, done: f64) -> Result<(), Cancelled> {
+        // `into_inner`: a thread that panicked while it held the lock leaves a valid value.
+        let mut reported = self.reported.lock().unwrap_or_else(PoisonError::into_inner);
+        let rise = (done.min(1.0) * self.share - *reported).max(0.0);
+        *reported += rise;
+        self.whole.advance(rise, self.name)
+    }
+}
+
+impl Progress for Portion<'_> {
+    fn cancelled(&self) -> bool {
+        self.whole.progress().cancelled()
+    }
+
+    fn advanced(&self, done: usize, total: usize) {
+        // `let _`: the part itself checks for cancellation.
+        let _ = self.report(done as f64 / total.max(1) as f64);
     }
 }
 

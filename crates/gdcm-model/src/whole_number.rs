@@ -6,7 +6,8 @@ use std::marker::PhantomData;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, Unexpected, Visitor};
 
-/// Integer types that can be deserialised from a whole number.
+/// Integer types that can be deserialised from a whole number. All are read through `i64`, so that a
+/// larger number is rejected.
 pub trait WholeNumber: TryFrom<i64> {
     /// Description of the expected value, for error messages.
     const EXPECTED: &'static str;
@@ -27,7 +28,7 @@ impl WholeNumber for usize {
 /// Deserialises an integer, also if written with a zero fraction (`7.0`); used as
 /// `#[serde(deserialize_with = "…")]`.
 pub fn whole<'de, T: WholeNumber, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
-    deserializer.deserialize_any(Whole(PhantomData))
+    deserializer.deserialize_any(WholeVisitor(PhantomData))
 }
 
 /// Deserialises as [`whole`], or null as `None`; used for an optional key with `#[serde(default)]`.
@@ -37,13 +38,14 @@ pub fn whole_or_none<'de, T: WholeNumber, D: Deserializer<'de>>(
     /// Wraps a whole number, so that it can be deserialised inside an option.
     #[derive(Deserialize)]
     #[serde(bound = "T: WholeNumber", transparent)]
-    struct Held<T>(#[serde(deserialize_with = "whole")] T);
-    Ok(Option::deserialize(deserializer)?.map(|Held(number)| number))
+    struct Wrapped<T>(#[serde(deserialize_with = "whole")] T);
+    Ok(Option::deserialize(deserializer)?.map(|Wrapped(number)| number))
 }
 
-struct Whole<T>(PhantomData<T>);
+/// Visitor that accepts integers, and floating-point numbers without a fraction.
+struct WholeVisitor<T>(PhantomData<T>);
 
-impl<T: WholeNumber> Visitor<'_> for Whole<T> {
+impl<T: WholeNumber> Visitor<'_> for WholeVisitor<T> {
     type Value = T;
 
     fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -3,10 +3,10 @@
 use gdcm_model::progress::Cancelled;
 use gdcm_model::simulation::Signal;
 
-use crate::spectra::gaps::names;
-use crate::spectra::local_polynomial::LocalPolynomialError;
+use crate::spectra::local_polynomial_error::LocalPolynomialError;
 use crate::spectra::preparation_settings::PreparationError;
 use crate::spectra::scales::ScalingError;
+use crate::spectra::signal_names::names;
 
 /// Maximum order that may be requested.
 pub const HIGHEST_ORDER: usize = 60;

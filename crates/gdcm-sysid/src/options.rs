@@ -95,7 +95,7 @@ impl Options {
 
     /// Returns a channel with its name; the name is empty for a channel that does not exist.
     pub(crate) fn signal(&self, role: ChannelSide, index: usize) -> Signal {
-        let channels = role.of(&self.preparation.inputs, &self.preparation.outputs);
+        let channels = role.pick(&self.preparation.inputs, &self.preparation.outputs);
         Signal {
             role,
             index,

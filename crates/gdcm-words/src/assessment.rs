@@ -76,7 +76,7 @@ pub fn held_out_verdict(analysis: &Analysis, choice: AssessmentChoice) -> Option
     if held_out.is_empty() {
         return None;
     }
-    let table = AssessmentTable::of(analysis, choice);
+    let table = AssessmentTable::assess(analysis, choice);
     let of_held_out = change_words(analysis, &table, |id| study.choice(id).held_out);
     let of_others = change_words(analysis, &table, |id| !study.choice(id).held_out);
     Some(format!(

@@ -3,7 +3,7 @@
 use gdcm_model::dataset::{Dataset, Pair};
 use gdcm_model::units::number;
 use gdcm_study::results::analysis::ConditionFailure;
-use gdcm_study::results::caution::{Caution, NotFinite, USUAL_GAINS, Undefined};
+use gdcm_study::results::caution::{Caution, GainOutOfRange, NotFinite, USUAL_GAINS, Undefined};
 
 /// Range of computable gains in words.
 const GAIN_RANGE: &str = "the computable range is 1e-50 to 1e50";
@@ -29,80 +29,35 @@ pub fn failure_text(failure: &ConditionFailure, dataset: &Dataset) -> String {
 
 /// Returns a caution in words; `pair_name` names a response.
 pub fn caution_text(caution: &Caution, pair_name: impl Fn(Pair) -> String) -> String {
-    let names = |pairs: &[Pair]| {
-        pairs
-            .iter()
-            .map(|pair| pair_name(*pair))
-            .collect::<Vec<_>>()
-            .join(", ")
-    };
     match caution {
         Caution::HeldButUndefined { pair, why } => {
             format!("{} is not held: {}", pair_name(*pair), undefined_text(*why))
         }
         Caution::NoSuggestions(error) => error.to_string(),
-        Caution::SetAside {
-            model,
-            lacks,
-            zero,
-            why,
-            pinned,
-        } => {
-            let why = match why {
-                None if zero == lacks => "zero over the whole band".to_owned(),
-                None => "zero somewhere in the band".to_owned(),
-                Some(why) if zero.is_empty() => not_finite_text(why),
-                Some(why) => format!(
-                    "{} zero at every frequency with a value; of the others, {}",
-                    names(zero),
-                    not_finite_text(why)
-                ),
-            };
-            let pin = if *pinned {
-                "; although it was chosen as representative, it is not used"
-            } else {
-                ""
-            };
-            format!(
-                "{model} is set aside: it has no {}, which another model of its bundle has \
-                 ({why}){pin}",
-                names(lacks)
-            )
-        }
+        Caution::SetAside { .. } => set_aside_text(caution, &pair_name),
         Caution::NotFinite {
             model,
             responses,
             why,
         } => format!(
             "{model} has no {} over the whole band: {}",
-            names(responses),
+            names(responses, &pair_name),
             not_finite_text(why)
         ),
         Caution::MissingResponses { model, responses } => format!(
             "{model} has no {}: every value in its file is zero; the response may not have been \
             measured, or its channels have other names. Add the response, or reject the model",
-            names(responses)
+            names(responses, &pair_name)
         ),
         Caution::GainsOutOfRange {
             physics,
             identified,
             responses,
-        } => {
-            let gains: Vec<String> = responses
-                .iter()
-                .map(|gain| format!("1e{} in {}", gain.power_of_ten, pair_name(gain.pair)))
-                .collect();
-            format!(
-                "the gain between physics model \"{physics}\" and identified model \
-                \"{identified}\" is about {}, but {GAIN_RANGE}: these responses are not \
-                compared; check the units and the matrices of both models",
-                gains.join(", ")
-            )
-        }
+        } => gains_out_of_range_text(physics, identified, responses, &pair_name),
         Caution::NumericallyNothing { model, responses } => format!(
             "of {model}, {} are numerically zero ({NOTHING}) and are treated as zero: they have \
             no G and no D",
-            names(responses)
+            names(responses, &pair_name)
         ),
         Caution::NotCoherent {
             threshold,
@@ -134,6 +89,64 @@ pub fn caution_text(caution: &Caution, pair_name: impl Fn(Pair) -> String) -> St
             USUAL_GAINS.end()
         ),
     }
+}
+
+/// Returns the names of responses, separated by commas.
+fn names(pairs: &[Pair], pair_name: &impl Fn(Pair) -> String) -> String {
+    let names: Vec<String> = pairs.iter().map(|pair| pair_name(*pair)).collect();
+    names.join(", ")
+}
+
+/// Describes a model that is set aside, and why; empty for any other caution.
+fn set_aside_text(caution: &Caution, pair_name: &impl Fn(Pair) -> String) -> String {
+    let Caution::SetAside {
+        model,
+        lacks,
+        zero,
+        why,
+        pinned,
+    } = caution
+    else {
+        return String::new();
+    };
+    let why = match why {
+        None if zero == lacks => "zero over the whole band".to_owned(),
+        None => "zero somewhere in the band".to_owned(),
+        Some(why) if zero.is_empty() => not_finite_text(why),
+        Some(why) => format!(
+            "{} zero at every frequency with a value; of the others, {}",
+            names(zero, pair_name),
+            not_finite_text(why)
+        ),
+    };
+    let pin = if *pinned {
+        "; although it was chosen as representative, it is not used"
+    } else {
+        ""
+    };
+    format!(
+        "{model} is set aside: it has no {}, which another model of its bundle has ({why}){pin}",
+        names(lacks, pair_name)
+    )
+}
+
+/// Describes the gains between two models that are outside the computable range.
+fn gains_out_of_range_text(
+    physics: &str,
+    identified: &str,
+    responses: &[GainOutOfRange],
+    pair_name: &impl Fn(Pair) -> String,
+) -> String {
+    let gains: Vec<String> = responses
+        .iter()
+        .map(|gain| format!("1e{} in {}", gain.power_of_ten, pair_name(gain.pair)))
+        .collect();
+    format!(
+        "the gain between physics model \"{physics}\" and identified model \"{identified}\" is \
+         about {}, but {GAIN_RANGE}: these responses are not compared; check the units and the \
+         matrices of both models",
+        gains.join(", ")
+    )
 }
 
 /// Returns why a response has no G and no D; begins with "its response".

@@ -1,14 +1,18 @@
-//! Tests of the sentences about the couplings in the example.
+//! Tests of the remarks on the couplings in the example.
 
 use std::sync::{Arc, LazyLock};
 
 use gdcm_model::dataset::ConditionId;
+use gdcm_study::results::coupling_remark::{CostSource, CouplingRemark};
+use gdcm_study::results::coupling_remark_search::{
+    coupling_cautions, coupling_offer, coupling_remarks,
+};
 use gdcm_study::results::couplings_assessment::{CouplingsAssessment, UnstablePole};
+use gdcm_study::results::remark_kind::RemarkKind;
 use gdcm_study::{CouplingCorrection, Engine, Unobserved};
 
-use crate::couplings::{coupling_cautions, coupling_offer, coupling_remarks};
+use crate::coupling_remark::coupling_remark_text;
 use crate::example_tests::EXAMPLE;
-use crate::remark::RemarkKind;
 
 /// Assessment of mixing and feedback for the reference dataset.
 static ASSESSED: LazyLock<Arc<CouplingsAssessment>> = LazyLock::new(|| {
@@ -25,23 +29,26 @@ static ASSESSED: LazyLock<Arc<CouplingsAssessment>> = LazyLock::new(|| {
 
 #[test]
 fn the_diagnosis_comes_first() {
-    let said = coupling_remarks(&ASSESSED, &EXAMPLE.study.dataset);
-    let swashplate = said.iter().position(|of| {
-        of.text.starts_with("LAT receives ") && of.text.contains("swashplate phase of ")
+    let remarks = coupling_remarks(&ASSESSED, &EXAMPLE.study.dataset);
+    let swashplate = remarks.iter().position(|remark| {
+        matches!(remark, CouplingRemark::Mixing(share)
+            if share.to == 1 && share.swashplate_phase_deg.is_some())
     });
-    let verdict = said.iter().position(|of| {
-        of.text
-            .starts_with("Off-axis J of conditions left out of the fit is ")
+    let verdict = remarks.iter().position(|remark| {
+        matches!(remark, CouplingRemark::Costs(benefit) if benefit.source == CostSource::LeftOut)
     });
-    assert!(swashplate.unwrap() < verdict.unwrap(), "{said:#?}");
+    let swashplate = swashplate.unwrap();
+    assert!(swashplate < verdict.unwrap(), "{remarks:#?}");
+    let words = coupling_remark_text(&remarks[swashplate], &EXAMPLE.study.dataset);
+    assert!(words.starts_with("LAT receives "), "{words}");
     assert!(
-        said.iter()
-            .all(|of| !of.text.contains("switch the couplings off")),
-        "{said:#?}"
+        remarks
+            .iter()
+            .all(|remark| remark.code() != "couplings-not-worthwhile"),
+        "{remarks:#?}"
     );
-    assert!(coupling_offer(&ASSESSED).unwrap().starts_with(
-        "With mixing and feedback, off-axis J of conditions left out of the fit would be "
-    ));
+    let offer = coupling_offer(&ASSESSED).unwrap();
+    assert_eq!(offer.code(), "couplings-offered");
 }
 
 #[test]
@@ -56,19 +63,21 @@ fn an_unstable_pole_in_the_band_is_told_before_faster_ones_beyond_it() {
     let mut assessed = (**ASSESSED).clone();
     assessed.unstable = vec![unstable("fast", 90.0, false), unstable("slow", 2.0, true)];
     assessed.left_out_fits.pop();
-    let said = coupling_cautions(&assessed, &EXAMPLE.study.dataset);
-    let poles = said
+    let cautions = coupling_cautions(&assessed);
+    let poles = cautions
         .iter()
-        .find(|of| of.text.contains("become unstable"))
+        .find(|caution| caution.code() == "newly-unstable")
         .unwrap();
-    assert_eq!(poles.kind, RemarkKind::Trouble);
+    assert_eq!(poles.kind(), RemarkKind::Trouble);
     let words = "2 poles of other kept physics models become unstable with the couplings: within \
                  the band, condition 4, slow at 2.000 rad/s; condition 4, fast at 90.000 rad/s.";
-    assert_eq!(poles.text, words);
+    assert_eq!(coupling_remark_text(poles, &EXAMPLE.study.dataset), words);
     assert!(
-        said.iter()
-            .any(|of| of.text.contains("are based on 10 of 11 conditions")),
-        "{said:#?}"
+        cautions.contains(&CouplingRemark::PartlyLeftOut {
+            fits: 10,
+            conditions: 11
+        }),
+        "{cautions:#?}"
     );
 }
 
@@ -76,9 +85,9 @@ fn an_unstable_pole_in_the_band_is_told_before_faster_ones_beyond_it() {
 fn without_leads_a_feedback_is_said_to_take_their_place() {
     assert_eq!(ASSESSED.want_leads, 0, "leads are given");
     let has_caution = |assessment: &CouplingsAssessment| {
-        coupling_cautions(assessment, &EXAMPLE.study.dataset)
+        coupling_cautions(assessment)
             .iter()
-            .any(|remark| remark.code == "feedback-as-lead")
+            .any(|remark| remark.code() == "feedback-as-lead")
     };
     let mut assessed = (**ASSESSED).clone();
     assert!(!has_caution(&assessed));

@@ -6,10 +6,12 @@
 //! terminal, the window, the report and the exported files. It computes nothing except the numbers
 //! in its sentences.
 //!
-//! Sentences: [`remark`] and [`condition_remarks`], with [`leads`] and [`missed_targets`], for a
-//! condition; [`caution`], [`convention_doubt`] and [`channel_time_skew`] for suspected faults;
-//! [`couplings`], [`assessment`], [`schedule`], [`uncertainty`] for a study; [`decisions`] for its
-//! decisions. Tables: [`table`], [`requirements`], [`time_histories`]. Explained results:
+//! Sentences: [`remark`], [`conflict_text`], [`leads`], [`lead_price`], [`solution_details`] and [`sensitivity`] for a condition; [`caution`],
+//! [`convention_doubt`] and [`channel_time_skew`] for suspected faults; [`missing_results`] for
+//! results that do not exist; [`coupling_remark`], [`couplings`], [`assessment`], [`schedule`],
+//! [`uncertainty`] for a study; [`decision_differences`] and [`dataset_differences`]. Settings:
+//! [`setting_words`]. Tables: [`table`], [`requirements`],
+//! [`requirements_overview`], [`time_histories`]. Explained results:
 //! [`derivation`].
 //!
 //! # Example
@@ -25,16 +27,23 @@
 pub mod assessment;
 pub mod caution;
 pub mod channel_time_skew;
-pub mod condition_remarks;
+pub mod conflict_text;
 pub mod convention_doubt;
+pub mod coupling_remark;
 pub mod couplings;
-pub mod decisions;
+pub mod dataset_differences;
+pub mod decision_differences;
 pub mod derivation;
+pub mod lead_price;
 pub mod leads;
-pub mod missed_targets;
+pub mod missing_results;
 pub mod remark;
 pub mod requirements;
+pub mod requirements_overview;
 pub mod schedule;
+pub mod sensitivity;
+pub mod setting_words;
+pub mod solution_details;
 pub mod table;
 pub mod time_histories;
 pub mod uncertainty;

@@ -1,89 +1,225 @@
-//! Remarks: sentences about a result, with their kind and suggested decisions.
+//! Sentences of the remarks on the result of a condition, identical in the window and in a
+//! terminal.
 
-use gdcm_method::correction::Channel;
-use gdcm_model::dataset::Pair;
-use gdcm_study::PhaseCorrection;
-use gdcm_study::decisions::signs::SignRole;
+use gdcm_method::correction::solution::Unmatched;
+use gdcm_model::dataset::Dataset;
+use gdcm_model::units::{number, s_to_ms, signed, telling, told_apart};
+use gdcm_study::results::lead_offer::LeadOffer;
+use gdcm_study::results::remark::{
+    DelaysApart, FartherResponse, MissedTargets, NeededLead, Remark,
+};
 
-/// Kind of a remark: whether a request was fulfilled.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RemarkKind {
-    /// The request was fulfilled.
-    Good,
-    /// The request was fulfilled, with a caution.
-    Caution,
-    /// The request could not be fulfilled.
-    Trouble,
+use crate::caution::caution_text;
+use crate::conflict_text::{agreement_text, conflict_text, miss_text, remedy_text};
+use crate::convention_doubt::doubt_text;
+use crate::coupling_remark::coupling_remark_text;
+use crate::schedule::schedule_caution_text;
+
+/// Returns a remark in one or two sentences.
+pub fn remark_text(remark: &Remark, dataset: &Dataset) -> String {
+    match remark {
+        Remark::ConventionDoubt(doubt) => doubt_text(doubt, dataset),
+        Remark::ChannelTurned { channel, role } => format!(
+            "The sign of {} is reversed in {}, relative to the file.",
+            channel.name_in(dataset),
+            role.models()
+        ),
+        Remark::GainsMatched { held, tolerance_db } => matched_gains_text(*held, *tolerance_db),
+        Remark::GainsMissed(missed) | Remark::LeadsMissed(missed) => {
+            missed_targets_text(missed, dataset)
+        }
+        Remark::GainsRemedy(remedy) => {
+            let (inputs, outputs) = dataset.names_of_channels();
+            remedy_text(remedy, &inputs, &outputs)
+        }
+        Remark::DelaysMatched { held, is_exact } => {
+            let accuracy = if *is_exact {
+                "exactly"
+            } else {
+                "to the displayed precision"
+            };
+            format!("All {held} held delays are matched {accuracy}.")
+        }
+        Remark::NeedsLead { needed, held } => needed_lead_text(needed, *held, dataset),
+        Remark::DelayMissed {
+            miss,
+            band_top_rad_s,
+        } => named_miss_text(miss, *band_top_rad_s, dataset),
+        Remark::CommonLead { lead_s } => format!(
+            "All held responses need about {} ms of lead. First check the time alignment of the \
+            records, and the integration and sampling delay of the simulation, then the servo and \
+            sensor models: a common lag is better removed at its source than corrected.",
+            lead_ms_text(*lead_s)
+        ),
+        Remark::LeadsNegligible => {
+            "No phase correction is needed: every delay or lead is below 2 ms.".to_owned()
+        }
+        Remark::LeadsMatched { held } => matched_leads_text(*held),
+        Remark::GainRaised { rise_db, pair } => format!(
+            "The lead filters raise the gain within the band by up to {} dB ({}); the channel \
+            gains compensate for this.",
+            raised_gain_text(*rise_db),
+            dataset.pair_name(*pair)
+        ),
+        Remark::NotADelay {
+            responses,
+            by_leads,
+        } => not_a_delay_text(responses, *by_leads, dataset),
+        Remark::LeadsOffered(offer) => {
+            let [without, with] = lead_offer_texts(offer);
+            format!(
+                "All held responses need lead: with a delay or lead in each channel, their mean \
+                J would be about {with} instead of {without}."
+            )
+        }
+        Remark::LoopAgrees(conflict) => {
+            let (inputs, outputs) = dataset.names_of_channels();
+            agreement_text(conflict, &inputs, &outputs)
+        }
+        Remark::CoherenceUsed { responses } => {
+            format!("J, G and D of {responses} responses are weighted by coherence.")
+        }
+        Remark::HeldFarther(responses) => held_farther_text(responses, dataset),
+        Remark::FreeFarther { farther, compared } => format!(
+            "{farther} of the {compared} responses that are not held are farther from flight \
+            than without a correction."
+        ),
+        Remark::LeftOutOfSchedule => {
+            "This condition is left out of the schedule: its gains do not enter the fit.".to_owned()
+        }
+        Remark::Caution(caution) => caution_text(caution, |pair| dataset.pair_name(pair)),
+        Remark::Schedule(caution) => {
+            let (inputs, outputs) = dataset.names_of_channels();
+            format!(
+                "Schedule: {}.",
+                schedule_caution_text(caution, &inputs, &outputs)
+            )
+        }
+        Remark::Coupling(remark) => coupling_remark_text(remark, dataset),
+    }
 }
 
-/// A remark on a result, with the decision that it suggests, if any.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Remark {
-    /// Stable code, for programs and tests.
-    pub code: &'static str,
-    pub kind: RemarkKind,
-    /// One or two sentences.
-    pub text: String,
-    /// The response that the user may exclude from the objective, if suggested.
-    pub ignore: Option<Pair>,
-    /// The phase correction that the user may choose instead, if suggested.
-    pub phase: Option<PhaseCorrection>,
-    /// The channel whose sign the user may reverse or, if the role is `None`, restore.
-    pub turn: Option<(Channel, Option<SignRole>)>,
-    /// Content for a common table, used if many conditions have this remark.
-    pub repeated: Option<Repeated>,
+fn matched_gains_text(held: usize, tolerance_db: Option<f64>) -> String {
+    match (held, tolerance_db) {
+        (0, _) => "No gain is held.".to_owned(),
+        (1, _) => "The held gain is matched exactly.".to_owned(),
+        (count, Some(tolerance_db)) => format!(
+            "All {count} held gains are matched within {} dB.",
+            number(tolerance_db)
+        ),
+        (count, None) => format!("All {count} held gains are matched exactly."),
+    }
 }
 
-/// Content of a remark that many conditions have; such remarks are collected in a table.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Repeated {
-    /// Constrained responses need lead: each response with its lead \[ms\].
-    NeedsLead(Vec<(Pair, String)>),
-    /// All constrained responses need about this lead \[ms\].
-    CommonLead(String),
-    /// Constrained responses that are farther from flight with the correction than without it.
-    Farther(Vec<Pair>),
-    /// Maximum gain increase \[dB\] within the band due to the lead filters, and the response in
-    /// which it occurs.
-    RaisedGain(String, Pair),
-    /// Mean J over the constrained responses, without and with leads.
-    LeadsOffered([String; 2]),
+fn matched_leads_text(held: usize) -> String {
+    match held {
+        0 => "No delay or lead is held.".to_owned(),
+        1 => "The held response gets the delay or lead that it needs.".to_owned(),
+        count => format!("All {count} held responses get the delay or lead that they need."),
+    }
 }
 
-impl Remark {
-    /// Creates a remark without a suggested decision.
-    pub fn new(code: &'static str, kind: RemarkKind, text: String) -> Self {
-        Self {
-            code,
-            kind,
-            text,
-            ignore: None,
-            phase: None,
-            turn: None,
-            repeated: None,
+/// Describes all constrained responses that miss their targets, or a conflict among the constraints
+/// that causes this.
+fn missed_targets_text(missed: &MissedTargets, dataset: &Dataset) -> String {
+    match missed {
+        MissedTargets::Responses {
+            misses,
+            band_top_rad_s,
+        } => {
+            let texts: Vec<String> = misses
+                .iter()
+                .map(|miss| named_miss_text(miss, *band_top_rad_s, dataset))
+                .collect();
+            texts.join(" ")
+        }
+        MissedTargets::Conflict(conflict) => {
+            let (inputs, outputs) = dataset.names_of_channels();
+            conflict_text(conflict, &inputs, &outputs)
         }
     }
+}
 
-    /// Creates the remark that a request was fulfilled.
-    pub fn good(code: &'static str, text: impl Into<String>) -> Self {
-        Self::new(code, RemarkKind::Good, text.into())
-    }
+fn named_miss_text(miss: &Unmatched, band_top_rad_s: f64, dataset: &Dataset) -> String {
+    let (inputs, outputs) = dataset.names_of_channels();
+    miss_text(miss, band_top_rad_s, &inputs, &outputs)
+}
 
-    /// Creates the remark that a request was fulfilled, with a caution.
-    pub fn caution(code: &'static str, text: impl Into<String>) -> Self {
-        Self::new(code, RemarkKind::Caution, text.into())
-    }
+fn needed_lead_text(needed: &[NeededLead], held: usize, dataset: &Dataset) -> String {
+    let subject = match (needed.len(), held) {
+        (1, 1) => "The held response needs".to_owned(),
+        (1, _) => format!("1 of {held} held responses needs"),
+        (count, _) if count == held => format!("All {held} held responses need"),
+        (count, _) => format!("{count} of {held} held responses need"),
+    };
+    let leads: Vec<String> = needed
+        .iter()
+        .map(|needed| {
+            format!(
+                "{} {} ms",
+                dataset.pair_name(needed.pair),
+                lead_ms_text(needed.lead_s)
+            )
+        })
+        .collect();
+    format!(
+        "{subject} lead, because the physics model lags: {}. A delay cannot provide it.",
+        leads.join(", ")
+    )
+}
 
-    /// Creates the remark that a request could not be fulfilled.
-    pub fn trouble(code: &'static str, text: impl Into<String>) -> Self {
-        Self::new(code, RemarkKind::Trouble, text.into())
-    }
+fn not_a_delay_text(responses: &[DelaysApart], by_leads: bool, dataset: &Dataset) -> String {
+    let apart: Vec<String> = responses
+        .iter()
+        .map(|response| {
+            format!(
+                "{} {} ms by eq. (9), {} ms over the band",
+                dataset.pair_name(response.pair),
+                signed(s_to_ms(response.median_s), 0),
+                signed(s_to_ms(response.band_s), 0)
+            )
+        })
+        .collect();
+    let remedy = if by_leads {
+        ", which a lead filter cannot correct"
+    } else {
+        ""
+    };
+    format!(
+        "The missing phase is not due to a delay, but to a zero or a mode in the band{remedy}: {}.",
+        apart.join("; ")
+    )
+}
 
-    /// Returns the remark with content for the common table of many conditions.
-    pub(crate) fn repeated(self, repeated: Repeated) -> Self {
-        Self {
-            repeated: Some(repeated),
-            ..self
-        }
-    }
+fn held_farther_text(responses: &[FartherResponse], dataset: &Dataset) -> String {
+    let texts: Vec<String> = responses
+        .iter()
+        .map(|response| {
+            let cost = response.cost;
+            let (before, after) = told_apart(cost.uncorrected.total(), cost.corrected.total(), 0);
+            format!(
+                "{} (J {before} → {after})",
+                dataset.pair_name(response.pair)
+            )
+        })
+        .collect();
+    format!(
+        "Held, but farther from flight than without a correction: {}.",
+        texts.join(", ")
+    )
+}
+
+/// Formats a lead in whole milliseconds.
+pub fn lead_ms_text(lead_s: f64) -> String {
+    telling(s_to_ms(lead_s), 0)
+}
+
+/// Formats the absolute value of a gain increase \[dB\].
+pub fn raised_gain_text(rise_db: f64) -> String {
+    telling(rise_db.abs(), 1)
+}
+
+/// Formats J without and with leads.
+pub fn lead_offer_texts(offer: &LeadOffer) -> [String; 2] {
+    [telling(offer.without, 0), telling(offer.with, 0)]
 }

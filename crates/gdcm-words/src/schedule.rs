@@ -1,9 +1,63 @@
-//! Sentences that compare the schedule with the conditions' own corrections.
+//! Sentences about the schedule: cautions, and its delays compared with the conditions' own
+//! corrections.
 
 use gdcm_method::correction::Channel;
+use gdcm_method::schedule::ScheduleCaution;
 use gdcm_model::dataset::Dataset;
-use gdcm_model::units::s_to_ms;
+use gdcm_model::units::{s_to_ms, signed, told_apart};
 use gdcm_study::results::schedule_losses::DelayedChannel;
+
+/// Describes a caution about the schedule, with these channel names.
+pub fn schedule_caution_text(
+    caution: &ScheduleCaution,
+    inputs: &[String],
+    outputs: &[String],
+) -> String {
+    match caution {
+        ScheduleCaution::DegreeLowered { asked, clusters } => format!(
+            "degree {asked} needs {} distinct airspeeds, but the conditions have only \
+            {clusters}: the degree is lowered to {}",
+            asked + 1,
+            clusters - 1
+        ),
+        ScheduleCaution::Overshoot {
+            channel,
+            between_kt: [low, high],
+            airspeed_kt,
+            gain,
+            range: [least, most],
+        } => {
+            let name = channel.name(inputs, outputs);
+            format!(
+                "between {low:.1} and {high:.1} kt the gain of {name} overshoots: {gain:.3} at {airspeed_kt:.1} kt, \
+                 where the conditions' gains range from {least:.3} to {most:.3}; lower the degree or use a table"
+            )
+        }
+        ScheduleCaution::SignedDelayApart {
+            channel,
+            condition,
+            tau_s,
+            elsewhere_s,
+        } => format!(
+            "{}: the signed delay is {} ms in condition {condition}, but on average {} ms in \
+            the other conditions; it cannot be scheduled over airspeed",
+            channel.name(inputs, outputs),
+            signed(s_to_ms(*tau_s), 0),
+            signed(s_to_ms(*elsewhere_s), 0)
+        ),
+        ScheduleCaution::NotPositive => {
+            "a scheduled gain is not positive at an airspeed between the conditions".to_owned()
+        }
+        ScheduleCaution::CostsMore(cost) => {
+            // Rounded to enough digits that both values differ.
+            let (scheduled, own) = told_apart(cost.scheduled, cost.own, 0);
+            format!(
+                "condition {}, model {}: mean on-axis J {scheduled} with the schedule, {own} with the condition's own correction",
+                cost.condition, cost.model
+            )
+        }
+    }
+}
 
 /// Describes the longest delay of a channel, and the number of other conditions with a delay:
 /// "delay of output NX: 5.3 ms in condition 4".

@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::number_format::{decimals_or_dash, with_minus_sign};
 use gdcm_model::units::telling;
-use gdcm_study::results::condition_answers::RecordHistory;
 use gdcm_study::results::record_comparison::Trend;
+use gdcm_study::results::record_history::RecordHistory;
 use gdcm_study::results::requirement_role::RequirementRole;
 use gdcm_study::results::time_histories::{HistoryFinding, TimeHistories, ToleranceFinding};
 

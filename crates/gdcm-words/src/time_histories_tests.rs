@@ -8,10 +8,9 @@ use gdcm_method::requirements::ToleranceTable;
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::simulation::{FirstOrderHold, FlightRecord};
 use gdcm_study::results::record_comparison::Trend;
+use gdcm_study::results::record_simulations::time_histories_of;
 use gdcm_study::results::requirement_role::RequirementRole;
-use gdcm_study::results::time_histories::{
-    HistoryRecord, HistoryRecords, ToleranceFinding, time_histories_of,
-};
+use gdcm_study::results::time_histories::{HistoryRecord, HistoryRecords, ToleranceFinding};
 use gdcm_study::{Analysis, Execution};
 use gdcm_sysid::identification::Preparation;
 

@@ -1,6 +1,7 @@
 //! Sentences and tables about the uncertainty of results (M13).
 
-use gdcm_method::uncertainty::{Scalar, VarianceDecomposition};
+use gdcm_method::uncertainty::bar::BarRemark;
+use gdcm_method::uncertainty::{Bar, Scalar, VarianceDecomposition};
 use gdcm_model::dataset::Dataset;
 use gdcm_model::units::signed;
 use gdcm_study::Analysis;
@@ -10,6 +11,21 @@ use crate::table::Table;
 
 /// Placeholder for a missing value.
 const NONE: &str = "–";
+
+/// Returns the remarks on an error bar in words.
+pub fn bar_remark_texts(bar: &Bar) -> Vec<&'static str> {
+    bar.remarks().into_iter().map(bar_remark_text).collect()
+}
+
+fn bar_remark_text(remark: BarRemark) -> &'static str {
+    match remark {
+        BarRemark::NoTrim => "uncertainty of the trim not included",
+        BarRemark::NoIdentification => "uncertainty of the identification not included",
+        BarRemark::NoSpread => "the bundle has no spread",
+        BarRemark::FromCoherence => "identification part from the coherence",
+        BarRemark::FromModelBand => "identification part from the model's confidence band",
+    }
+}
 
 /// Returns the verdict on a difference at equal airspeed, at a confidence level.
 pub fn difference_verdict(difference: &AirspeedDifference, level: f64) -> &'static str {
@@ -256,7 +272,7 @@ pub fn bar_table(analysis: &Analysis, uncertainty: &Uncertainty) -> Table {
                 percent(bar.trim.map(|part| part.variance.sqrt())),
                 percent(bar.identification.map(|part| part.variance.sqrt())),
                 percent(condition.left_in_band[pair]),
-                bar.remarks().join(", "),
+                bar_remark_texts(bar).join(", "),
             ]);
         }
     }

@@ -12,10 +12,20 @@ use gdcm_study::stages::engine::WantedFirst;
 use gdcm_study::{Analysis, ConditionAnalysis, Engine, Study};
 
 use super::threads::ReplySender;
-use crate::gui::state::results::FirstResult;
+use crate::gui::state::computed_results::FirstResult;
 
 /// A problem, and its solution proven optimal by another job.
-pub(super) type Proof = (Arc<Problem>, Arc<Solution>);
+#[derive(Clone)]
+pub(super) struct Proof {
+    pub(super) problem: Arc<Problem>,
+    pub(super) solution: Arc<Solution>,
+}
+
+/// An analysis and its computing time.
+pub(super) struct TimedAnalysis {
+    pub(super) analysis: Arc<Analysis>,
+    pub(super) elapsed_ms: f64,
+}
 
 /// Request for the live analysis of a study. All parts are shared, so a copy is cheap.
 #[derive(Clone)]
@@ -23,7 +33,7 @@ pub(super) struct AnalysisJob {
     /// Job number. A later proof causes another job, with a new number, for the same request.
     pub(super) number: u64,
     /// Request number; it increases with each request.
-    pub(super) generation: u64,
+    pub(super) request: u64,
     pub(super) study: Study,
     /// The displayed condition, whose result and curves are computed first.
     pub(super) condition: ConditionId,
@@ -39,13 +49,13 @@ impl AnalysisJob {
     pub(super) fn has_proof_of(&self, problem: &Arc<Problem>) -> bool {
         self.proofs
             .iter()
-            .any(|(proven, _)| Arc::ptr_eq(problem, proven))
+            .any(|proof| Arc::ptr_eq(problem, &proof.problem))
     }
 
     /// Sends the result of the displayed condition before the whole analysis is complete.
     fn send_first(&self, outcome: &Result<ConditionAnalysis, ConditionFailure>) {
         let first = FirstResult {
-            generation: self.generation,
+            request: self.request,
             dataset: Arc::clone(&self.study.dataset),
             condition: self.condition,
             outcome: outcome.clone(),
@@ -74,20 +84,22 @@ impl PartialEq for AnalysisJob {
 
 impl Job for AnalysisJob {
     type Tools = Engine;
-    /// The analysis and its computing time \[ms\].
-    type Output = (Arc<Analysis>, f64);
+    type Output = TimedAnalysis;
 
     fn run(&self, engine: &mut Engine, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
         let started = Instant::now();
-        for (problem, solution) in &self.proofs {
-            engine.take_gains(problem, solution);
+        for proof in &self.proofs {
+            engine.take_gains(&proof.problem, &proof.solution);
         }
         let first = WantedFirst {
             condition: self.condition,
             tell: &|outcome| self.send_first(outcome),
         };
         let analysis = engine.analyze_first(&self.study, Some(first), progress)?;
-        Ok((Arc::new(analysis), 1e3 * started.elapsed().as_secs_f64()))
+        Ok(TimedAnalysis {
+            analysis: Arc::new(analysis),
+            elapsed_ms: 1e3 * started.elapsed().as_secs_f64(),
+        })
     }
 
     /// Returns whether this job should continue although a newer job waits: always if both have the
@@ -95,7 +107,7 @@ impl Job for AnalysisJob {
     /// the newer job needs too. Without this rule, only the displayed condition would be updated
     /// during a steady drag.
     fn serves(&self, newer: &Self, done: usize, total: usize) -> bool {
-        if self.generation == newer.generation {
+        if self.request == newer.request {
             return true;
         }
         // The models are compared once only the last step of each condition remains: its optimum,

@@ -1,20 +1,25 @@
-//! Thread that keeps unsaved decisions in a recovery file.
+//! Recovery of unsaved decisions: the window's handle to the thread that keeps them in a recovery
+//! file.
+//!
+//! [`Autosave`] sends tasks to the thread, whose state is the [`Keeper`] in `autosave/keeper.rs`.
+//! `recovery.rs` offers the kept decisions at the next start.
+
+mod keeper;
 
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
-use std::time::{Duration, Instant, SystemTime};
+use std::time::{Duration, SystemTime};
 
-use gdcm_io::files::user_state::{LostStudy, RecoveryFile, lost_studies};
-use gdcm_io::{FileError, LoadedDataset};
+use gdcm_io::LoadedDataset;
+use gdcm_io::files::recovery_file::{LostStudy, lost_studies};
 use gdcm_study::Study;
 
+use self::keeper::Keeper;
 use super::threads::ReplySender;
 
 /// Folder for recovery files in the program's directory.
 const FOLDER: &str = "recovery";
-/// Delay before a retry after a failure, such as a full disk.
-const AGAIN_AFTER: Duration = Duration::from_secs(10);
 /// Waiting time if no work is pending.
 const NEVER: Duration = Duration::from_secs(3600);
 
@@ -102,15 +107,7 @@ impl Autosave {
                 let lost = lost_studies(folder);
                 replies.send(move |app| app.offer(lost));
             }
-            let keeper = Keeper {
-                folder,
-                keep_after,
-                replies,
-                file: None,
-                pending: None,
-                kept: keeper_kept,
-                restored: Vec::new(),
-            };
+            let keeper = Keeper::new(folder, keep_after, replies, keeper_kept);
             keeper.work(&received);
         };
         std::thread::Builder::new()
@@ -165,148 +162,6 @@ impl Autosave {
 /// Locks a mutex; the content is consistent even after a panic under the lock.
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// Decisions that are not yet in the recovery file.
-struct Pending {
-    unsaved: Box<Unsaved>,
-    /// Time of the latest of these decisions.
-    decided: SystemTime,
-    due: Instant,
-}
-
-/// State of the recovery thread.
-struct Keeper {
-    folder: Option<PathBuf>,
-    keep_after: Duration,
-    replies: ReplySender,
-    file: Option<RecoveryFile>,
-    pending: Option<Pending>,
-    kept: Arc<Mutex<Option<Kept>>>,
-    restored: Vec<LostStudy>,
-}
-
-impl Keeper {
-    /// Carries out tasks until the window closes.
-    fn work(mut self, tasks: &Receiver<Task>) {
-        loop {
-            match tasks.recv_timeout(self.wait()) {
-                Ok(Task::Keep(unsaved, decided)) => self.postpone(unsaved, decided),
-                Ok(Task::Clear) => {
-                    let cleared = self.clear();
-                    self.report(cleared);
-                }
-                Ok(Task::Restored(lost)) => self.restored.push(lost),
-                Ok(Task::Discard(lost)) => self.report(lost.remove()),
-                Ok(Task::Flush(answer)) => {
-                    let remains = self.flush();
-                    // Ignore a failure: after a timeout, no one receives the reply.
-                    let _ = answer.send(remains);
-                }
-                Err(RecvTimeoutError::Timeout) => {
-                    let kept = self.keep();
-                    self.report(kept);
-                }
-                Ok(Task::Close) | Err(RecvTimeoutError::Disconnected) => return,
-            }
-        }
-    }
-
-    /// Returns the time until the pending decisions are due.
-    fn wait(&self) -> Duration {
-        match &self.pending {
-            Some(pending) => pending.due.saturating_duration_since(Instant::now()),
-            None => NEVER,
-        }
-    }
-
-    /// Replaces the pending decisions by newer ones; the time at which they are due does not
-    /// change.
-    fn postpone(&mut self, unsaved: Box<Unsaved>, decided: SystemTime) {
-        let due = match &self.pending {
-            Some(pending) => pending.due,
-            None if self.folder.is_some() => Instant::now() + self.keep_after,
-            None => Instant::now() + NEVER,
-        };
-        self.pending = Some(Pending {
-            unsaved,
-            decided,
-            due,
-        });
-    }
-
-    /// Deletes the recovery file, and those of restored decisions.
-    fn clear(&mut self) -> Result<(), FileError> {
-        self.pending = None;
-        *locked(&self.kept) = None;
-        if let Some(file) = &mut self.file {
-            file.clear()?;
-        }
-        self.remove_restored()
-    }
-
-    /// Keeps the pending decisions now; returns the resulting state.
-    fn flush(&mut self) -> Remains {
-        let kept = self.keep();
-        let trouble = match (&self.pending, &self.folder) {
-            (None, _) => None,
-            (Some(_), None) => Some("there is no directory in which to keep them".to_owned()),
-            (Some(_), Some(_)) => kept.err().map(|error| error.to_string()),
-        };
-        Remains::new(locked(&self.kept).clone(), trouble)
-    }
-
-    /// Keeps the pending decisions; on an error, they remain pending for a retry.
-    fn keep(&mut self) -> Result<(), FileError> {
-        let Some(folder) = &self.folder else {
-            return Ok(());
-        };
-        let Some(pending) = self.pending.take() else {
-            return Ok(());
-        };
-        match write_recovery(&pending.unsaved, &mut self.file, folder) {
-            Ok(path) => {
-                let at = pending.decided;
-                *locked(&self.kept) = Some(Kept { path, at });
-                self.remove_restored()
-            }
-            Err(error) => {
-                let due = Instant::now() + AGAIN_AFTER;
-                self.pending = Some(Pending { due, ..pending });
-                Err(error)
-            }
-        }
-    }
-
-    /// Removes the recovery files of restored decisions, which have been kept anew or saved; stops
-    /// at the first error.
-    fn remove_restored(&mut self) -> Result<(), FileError> {
-        for lost in self.restored.drain(..) {
-            lost.remove()?;
-        }
-        Ok(())
-    }
-
-    fn report(&self, done: Result<(), FileError>) {
-        if let Err(error) = done {
-            let message = format!("unsaved decisions cannot be stored for recovery: {error}");
-            self.replies.send(|app| app.notify_error(message));
-        }
-    }
-}
-
-/// Writes the recovery file and returns its path. The first call reserves the file name.
-fn write_recovery(
-    unsaved: &Unsaved,
-    file: &mut Option<RecoveryFile>,
-    folder: &Path,
-) -> Result<PathBuf, FileError> {
-    let file = match file {
-        Some(file) => file,
-        None => file.insert(RecoveryFile::claim(folder)?),
-    };
-    file.write(&unsaved.study, &unsaved.loaded, unsaved.saved_as.as_deref())?;
-    Ok(file.path().to_owned())
 }
 
 #[cfg(test)]

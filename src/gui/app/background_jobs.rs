@@ -1,12 +1,12 @@
 //! Background jobs of the window: the continuously updated analysis ("live analysis") and all
-//! others. One table, [`BackgroundJobs::start`], lists every kind of job with its tools, its
-//! trigger and its destination.
+//! others. The functions called by [`BackgroundJobs::start`] list every kind of job with its tools,
+//! its trigger (in `wanted_jobs.rs`) and its destination.
 //!
 //! The kinds share a thread pool. Order of urgency, and its reasons:
 //!
 //! | class  | kinds                                  | reason                              |
 //! |--------|----------------------------------------|-------------------------------------|
-//! | answer | live analysis                          | follows every drag                  |
+//! | live   | live analysis                          | follows every drag                  |
 //! | short  | curves, modes                          | first picture of the condition      |
 //! | short  | assessment, conditions, requirements   | tables and plots in visible views   |
 //! | short  | test input, record history, simulation | time responses in visible views     |
@@ -21,26 +21,22 @@ use std::io;
 use std::rc::Rc;
 use std::sync::Arc;
 
-use gdcm_method::correction::Outcome;
 use gdcm_model::executor::Executor;
 use gdcm_study::Engine;
-use gdcm_study::jobs::analysis_jobs::{ProofJob, TogglesJob, UncertaintyJob};
-use gdcm_study::jobs::curve_jobs::CurvesJob;
-use gdcm_study::jobs::job::Job;
-use gdcm_study::stages::condition_curves::{CURVE_POINTS, curves_band};
-use gdcm_study::stages::condition_responses::KnownModels;
+use gdcm_study::jobs::analysis_jobs::ProofJob;
+use gdcm_study::stages::known_models::KnownModels;
 
 use super::GdcmApp;
 use super::job_kind::{AnyJobKind, JobKind, JobKinds};
 use super::job_pool::{JobPool, LaneClass};
 use super::job_queue::JobQueue;
 use super::threads::ReplySender;
+use super::wanted_jobs::{
+    curves_job, keep_wanted, needs, proof_jobs, toggles_job, uncertainty_job,
+};
 use crate::executor::Pool;
-use crate::gui::state::results::Background;
-use crate::gui::state::view::View;
-use crate::gui::state::window_state::State;
+use crate::gui::state::background::Background;
 use crate::gui::views::need::Need;
-use crate::gui::views::{are_couplings_judged, couplings_job, overlay_job, view_content};
 
 /// Creates an engine: at the start, and after a panic, which may leave the caches of the old engine
 /// inconsistent.
@@ -84,7 +80,7 @@ impl BackgroundJobs {
             known: KnownModels::default(),
         };
         let mut kinds = JobKinds::new(&pool, replies);
-        add_live_answer(&mut kinds, &engines);
+        add_live_analysis(&mut kinds, &engines);
         add_short_kinds(&mut kinds, &engines);
         add_long_kinds(&mut kinds, &engines);
         let kinds = Rc::new(kinds.into_kinds());
@@ -138,14 +134,14 @@ fn cores() -> Box<dyn Executor> {
 
 fn no_tools() {}
 
-fn add_live_answer(kinds: &mut JobKinds<'_>, engines: &Engines) {
-    let answers = JobKind::new(
-        |app| app.work.asked.iter().cloned().collect(),
-        GdcmApp::answered,
+fn add_live_analysis(kinds: &mut JobKinds<'_>, engines: &Engines) {
+    let analyses = JobKind::new(
+        |app| app.work.live_job.iter().cloned().collect(),
+        GdcmApp::show_analysis,
     )
     .with_report(|queue, background| background.analysis = queue.progress())
-    .with_withdrawal(GdcmApp::answer_stopped);
-    kinds.add(LaneClass::Answer, engines.sharing(), answers);
+    .with_withdrawal(GdcmApp::live_analysis_stopped);
+    kinds.add(LaneClass::Live, engines.sharing(), analyses);
 }
 
 /// Adds the kinds whose jobs usually end within a second, the most urgent first.
@@ -212,7 +208,7 @@ fn add_long_kinds(kinds: &mut JobKinds<'_>, engines: &Engines) {
     .with_report(|queue, background| background.time_histories = queue.progress());
     kinds.add(LaneClass::Long, cores, time_histories);
     let reports = JobKind::new(
-        |app| app.work.reporting.iter().cloned().collect(),
+        |app| app.work.report_job.iter().cloned().collect(),
         GdcmApp::report_written,
     )
     .with_report(|queue, background| background.report = queue.progress())
@@ -222,7 +218,7 @@ fn add_long_kinds(kinds: &mut JobKinds<'_>, engines: &Engines) {
         |app| uncertainty_job(&app.state).into_iter().collect(),
         |app, job, uncertainty| app.state.results.uncertainty = Some((job, uncertainty)),
     )
-    .with_report(|queue, background| background.bars = queue.progress());
+    .with_report(|queue, background| background.error_bars = queue.progress());
     kinds.add(LaneClass::Long, engines.sharing(), bars);
     let identifications = JobKind::new(
         |app| app.state.records.by_urgency(app.state.condition().id()),
@@ -279,73 +275,4 @@ impl GdcmApp {
             kind.stop(self);
         }
     }
-}
-
-/// Returns the jobs needed by the visible views, the overlay and the assessed couplings.
-fn needs(state: &State) -> Vec<Need> {
-    let mut needs = Vec::new();
-    for view in View::ALL {
-        if state.display.layout.arrangement.is_shown(view) {
-            needs.extend((view_content(view).needs)(state));
-        }
-    }
-    needs.extend(overlay_job(state).map(Need::Variant));
-    if are_couplings_judged(state) {
-        needs.push(Need::Couplings(couplings_job(state)));
-    }
-    needs
-}
-
-/// Drops the outputs of jobs that are not in `jobs`.
-fn keep_wanted<J: Job>(kept: &mut Vec<(J, J::Output)>, jobs: &[J]) {
-    kept.retain(|(known, _)| jobs.contains(known));
-}
-
-fn curves_job(state: &State) -> CurvesJob {
-    CurvesJob {
-        dataset: Arc::clone(&state.study.dataset).into(),
-        condition: state.condition().id(),
-        grid: (curves_band(&state.study.settings), CURVE_POINTS),
-    }
-}
-
-/// Returns the job that computes the cost of constraining or releasing each entry, in the displayed
-/// condition.
-fn toggles_job(state: &State) -> Option<TogglesJob> {
-    let condition = state.analysis()?.condition(state.condition().id())?.clone();
-    Some(TogglesJob { condition })
-}
-
-/// Returns the jobs that prove the unproven problems, the displayed condition first.
-fn proof_jobs(state: &State) -> Vec<ProofJob> {
-    let Some(analysis) = state.analysis() else {
-        return Vec::new();
-    };
-    let shown = analysis.condition(state.condition().id());
-    let others = analysis.conditions.values().flatten();
-    let mut jobs: Vec<ProofJob> = Vec::new();
-    for condition in shown.into_iter().chain(others) {
-        let job = ProofJob {
-            problem: Arc::clone(&condition.gain_problem),
-        };
-        if matches!(condition.gains.proof.outcome, Outcome::NotProven { .. })
-            && !jobs.contains(&job)
-        {
-            jobs.push(job);
-        }
-    }
-    jobs
-}
-
-/// Returns the job that computes the error bars; `None` while the results are being recomputed or
-/// are not yet drawn, so that the live analysis can use all cores.
-fn uncertainty_job(state: &State) -> Option<UncertaintyJob> {
-    let results = &state.results;
-    state.analysis()?;
-    let is_drawn = results.is_painted || results.uncertainty.is_some();
-    if results.is_behind() || !is_drawn {
-        return None;
-    }
-    let analysis = results.analysis.clone()?.into();
-    Some(UncertaintyJob { analysis })
 }

@@ -10,4 +10,22 @@ impl GdcmApp {
             ComputingCommand::Compute => self.compute_again(),
         }
     }
+
+    /// Stops the work shown next to the Stop button: the file being read, or else the computation.
+    pub(super) fn stop_work(&mut self) {
+        let opening = self.state.opening.take();
+        let records = self.state.records.reading.take();
+        let Some(name) = opening.or_else(|| records.clone()) else {
+            return self.stop_jobs();
+        };
+        self.readers.opener.give_up();
+        self.readers.record_reader.give_up();
+        if records.is_some() {
+            // This entry, even if it is empty, prevents another automatic search for records.
+            self.records_of(self.state.condition().id());
+        }
+        self.notify_done(format!(
+            "stopped reading {name}; the open study is unchanged"
+        ));
+    }
 }

@@ -4,13 +4,14 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
-use gdcm_io::source::{FileStamp, file_sha256};
+use gdcm_io::file_reading::file_sha256;
+use gdcm_io::user_paths::FileStamp;
 
 use super::threads::ReplySender;
 
 /// Changed content of the watched file.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Seen {
+pub(super) struct ChangedFile {
     pub(super) path: PathBuf,
     pub(super) sha256: String,
 }
@@ -45,9 +46,9 @@ impl DiskWatch {
     }
 }
 
-/// State of the watched file at the last check.
+/// The watched file at the last check.
 #[derive(Default)]
-struct Known {
+struct LastCheck {
     path: PathBuf,
     /// Modification time and length at the last check.
     stamp: Option<FileStamp>,
@@ -56,19 +57,19 @@ struct Known {
     sha256: Option<String>,
 }
 
-impl Known {
+impl LastCheck {
     /// Checks the file once; returns its content if it has changed. A file that is being written is
     /// read once time and length are equal in two checks.
-    fn look(&mut self, path: &Path) -> Option<Seen> {
+    fn check(&mut self, path: &Path) -> Option<ChangedFile> {
         if self.path != path {
-            *self = Known {
+            *self = LastCheck {
                 path: path.to_owned(),
-                ..Known::default()
+                ..LastCheck::default()
             };
         }
         // A missing file may be about to be replaced; the open dataset remains until the file
         // reappears.
-        let stamp = FileStamp::of(path)?;
+        let stamp = FileStamp::read(path)?;
         let is_unchanged = self.stamp == Some(stamp);
         self.stamp = Some(stamp);
         if !is_unchanged || self.read == Some(stamp) {
@@ -76,7 +77,7 @@ impl Known {
         }
         let sha256 = file_sha256(path).ok()?;
         // The file was written again in the meantime: wait for the next check.
-        if FileStamp::of(path) != Some(stamp) {
+        if FileStamp::read(path) != Some(stamp) {
             return None;
         }
         self.read = Some(stamp);
@@ -85,21 +86,21 @@ impl Known {
         }
         self.sha256 = Some(sha256.clone());
         let path = path.to_owned();
-        Some(Seen { path, sha256 })
+        Some(ChangedFile { path, sha256 })
     }
 }
 
 /// Checks the watched file at every interval until the window ends.
 fn poll(paths: &Receiver<Option<PathBuf>>, every: Duration, replies: &ReplySender) {
-    let mut known = Known::default();
+    let mut last = LastCheck::default();
     let mut watched = None;
     loop {
         match paths.recv_timeout(every) {
             Ok(path) => watched = path,
             Err(RecvTimeoutError::Disconnected) => return,
             Err(RecvTimeoutError::Timeout) => {
-                if let Some(seen) = watched.as_deref().and_then(|path| known.look(path)) {
-                    replies.send(move |app| app.file_seen(&seen));
+                if let Some(changed) = watched.as_deref().and_then(|path| last.check(path)) {
+                    replies.send(move |app| app.file_changed(&changed));
                 }
             }
         }
@@ -114,21 +115,21 @@ mod tests {
     fn a_file_is_reported_once_it_rests_and_again_only_when_its_bytes_change() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("data.json");
-        let mut known = Known::default();
-        assert_eq!(known.look(&path), None, "there is none");
+        let mut last = LastCheck::default();
+        assert_eq!(last.check(&path), None, "there is none");
         std::fs::write(&path, "one").unwrap();
-        assert_eq!(known.look(&path), None, "it may be being written");
-        let first = known.look(&path).expect("it rests");
-        assert_eq!(known.look(&path), None, "reported already");
+        assert_eq!(last.check(&path), None, "it may be being written");
+        let first = last.check(&path).expect("it rests");
+        assert_eq!(last.check(&path), None, "reported already");
         std::fs::write(&path, "one, and more").unwrap();
-        assert_eq!(known.look(&path), None);
-        assert_ne!(known.look(&path).expect("it rests").sha256, first.sha256);
+        assert_eq!(last.check(&path), None);
+        assert_ne!(last.check(&path).expect("it rests").sha256, first.sha256);
         // The file is rewritten with the same bytes: another modification time, but the same hash.
         std::fs::remove_file(&path).unwrap();
         std::thread::sleep(Duration::from_millis(20));
         std::fs::write(&path, "one, and more").unwrap();
         assert_eq!(
-            [known.look(&path), known.look(&path), known.look(&path)],
+            [last.check(&path), last.check(&path), last.check(&path)],
             [None, None, None]
         );
     }

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use gdcm_io::LoadedDataset;
 use gdcm_io::files::study_file::STUDY_EXTENSION;
-use gdcm_io::source::at_home;
+use gdcm_io::user_paths::at_home;
+use gdcm_model::message_text::sanitized;
 use gdcm_study::Study;
 use gdcm_sysid::records::RecordChannels;
 
@@ -76,6 +77,27 @@ impl DocumentFiles {
             .cloned()
             .chain(self.loaded.origin.file())
             .collect()
+    }
+}
+
+/// Returns a study's file name, or a substitute without a path.
+pub(super) fn study_name(path: Option<&Path>) -> String {
+    match path.and_then(Path::file_name) {
+        Some(name) => sanitized(&name.to_string_lossy()),
+        None => "untitled study".to_owned(),
+    }
+}
+
+/// Adds the study extension, unless the name ends in ".json".
+pub(super) fn with_study_extension(path: PathBuf) -> PathBuf {
+    let name = path
+        .file_name()
+        .map(|name| name.to_string_lossy().into_owned())
+        .unwrap_or_default();
+    if name.ends_with(".json") {
+        path
+    } else {
+        path.with_file_name(format!("{name}.{STUDY_EXTENSION}"))
     }
 }
 

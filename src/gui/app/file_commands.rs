@@ -7,7 +7,8 @@ use egui::ViewportCommand;
 use gdcm_io::Existing;
 
 use super::GdcmApp;
-use super::dialogs::{DialogPurpose, PendingAction};
+use super::file_dialogs::DialogPurpose;
+use super::postponed_actions::PendingAction;
 use crate::gui::commands::file::FileCommand;
 
 impl GdcmApp {
@@ -35,12 +36,12 @@ impl GdcmApp {
             FileCommand::Reload => self.reload(),
             FileCommand::KeepOpen => self.keep_open(),
             FileCommand::LookForRecent => self.read_recent(None),
-            FileCommand::Quit if self.state.unsaved && !self.dialogs.closing => {
+            FileCommand::Quit if self.state.unsaved && !self.postponed.closing => {
                 self.ask_to_lose(PendingAction::Quit)
             }
             FileCommand::Quit => self.quit(),
             FileCommand::SaveStudy => self.save(),
-            FileCommand::SaveStudyAs(path) => self.save_as(path, self.dialogs.existing),
+            FileCommand::SaveStudyAs(path) => self.save_as(path, self.postponed.existing),
         }
     }
 
@@ -51,7 +52,7 @@ impl GdcmApp {
 
     /// Closes the window and deletes the recovery file.
     pub(super) fn quit(&mut self) {
-        self.dialogs.closing = true;
+        self.postponed.closing = true;
         // The decisions are saved, or the engineer has agreed to lose them.
         self.recovery.autosave.clear();
         self.ctx.send_viewport_cmd(ViewportCommand::Close);

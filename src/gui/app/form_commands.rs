@@ -1,7 +1,5 @@
 //! Commands of forms and messages.
 
-use gdcm_io::Existing;
-
 use super::GdcmApp;
 use crate::gui::commands::form::FormCommand;
 use crate::gui::state::forms::FormKind;
@@ -23,7 +21,7 @@ impl GdcmApp {
             }
             FormCommand::Refuse(why) => self.notify_error(why),
             FormCommand::DismissNotice => self.state.notice = None,
-            FormCommand::CloseBar(bar) => self.state.bars.retain(|shown| *shown != bar),
+            FormCommand::CloseBar(bar) => self.state.message_bars.retain(|shown| *shown != bar),
             FormCommand::Overwrite => self.overwrite(),
             FormCommand::SaveAndGoOn => self.save_and_go_on(),
             FormCommand::DiscardAndGoOn => {
@@ -45,22 +43,11 @@ impl GdcmApp {
         }
         // Keep the postponed action if it is to continue after this form, which asks for a path to
         // save to.
-        if !(self.dialogs.goes_on_once_saved && form == Some(FormKind::Save)) {
-            self.dialogs.postponed = None;
-            self.dialogs.goes_on_once_saved = false;
+        if !(self.postponed.goes_on_once_saved && form == Some(FormKind::Save)) {
+            self.postponed.forget_losing();
         }
-        self.dialogs.overwriting = None;
+        self.postponed.overwriting = None;
         self.state.forms.existing.clear();
         self.state.forms.shown = form;
-    }
-
-    /// Repeats the command for which overwriting was confirmed.
-    fn overwrite(&mut self) {
-        self.state.forms.existing.clear();
-        if let Some(command) = self.dialogs.overwriting.take() {
-            self.dialogs.existing = Existing::Replace;
-            self.carry_out_one(command);
-            self.dialogs.existing = Existing::Keep;
-        }
     }
 }

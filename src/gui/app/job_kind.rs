@@ -6,7 +6,7 @@ use super::GdcmApp;
 use super::job_pool::{JobPool, LaneClass};
 use super::job_queue::{Ending, JobQueue};
 use super::threads::ReplySender;
-use crate::gui::state::results::Background;
+use crate::gui::state::background::Background;
 
 /// A kind of job, described by functions.
 pub(super) struct JobKind<J: Job> {

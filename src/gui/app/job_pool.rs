@@ -5,7 +5,7 @@ use std::num::NonZero;
 use std::sync::Arc;
 use std::{io, thread};
 
-use super::threads::Mailbox;
+use super::mailbox::Mailbox;
 
 /// Queue whose jobs run one after the other.
 pub(super) trait Lane: Send + Sync {
@@ -20,7 +20,7 @@ pub(super) trait Lane: Send + Sync {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LaneClass {
     /// The live analysis.
-    Answer,
+    Live,
     /// Jobs that usually end within a second.
     Short,
     /// Jobs that may take minutes.
@@ -31,7 +31,7 @@ pub(super) enum LaneClass {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Server {
     /// Reserved for the live analysis.
-    Answer,
+    Live,
     /// Reserved for short jobs.
     Short,
     /// Serves every lane except the live analysis.
@@ -41,9 +41,9 @@ enum Server {
 impl Server {
     fn serves(self, class: LaneClass) -> bool {
         match self {
-            Self::Answer => class == LaneClass::Answer,
+            Self::Live => class == LaneClass::Live,
             Self::Short => class == LaneClass::Short,
-            Self::Shared => class != LaneClass::Answer,
+            Self::Shared => class != LaneClass::Live,
         }
     }
 }
@@ -108,7 +108,7 @@ impl JobPool {
         let pool = Self {
             schedule: Arc::default(),
         };
-        pool.spawn("live answer", Server::Answer)?;
+        pool.spawn("live answer", Server::Live)?;
         pool.spawn("short jobs", Server::Short)?;
         for number in 1..=shared {
             pool.spawn(&format!("jobs {number}"), Server::Shared)?;
@@ -281,7 +281,7 @@ mod tests {
     #[test]
     fn long_jobs_leave_the_threads_of_the_live_answer_and_of_short_jobs_free() {
         let pool = TestPool::with_shared_threads(2);
-        let answer = pool.add_lane("answer", LaneClass::Answer);
+        let answer = pool.add_lane("answer", LaneClass::Live);
         let curves = pool.add_lane("curves", LaneClass::Short);
         let lanes = ["report", "error bars", "identification"]
             .map(|name| pool.add_lane(name, LaneClass::Long));
@@ -315,8 +315,8 @@ mod tests {
         let pool = TestPool::with_shared_threads(1);
         let curves = pool.add_lane("curves", LaneClass::Short);
         let modes = pool.add_lane("modes", LaneClass::Short);
-        let answer = pool.add_lane("answer", LaneClass::Answer);
-        let other_answer = pool.add_lane("other answer", LaneClass::Answer);
+        let answer = pool.add_lane("answer", LaneClass::Live);
+        let other_answer = pool.add_lane("other answer", LaneClass::Live);
         curves.add_jobs(1);
         assert_eq!(pool.next_start(), "curves");
         modes.add_jobs(1);

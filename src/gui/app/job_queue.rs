@@ -1,6 +1,11 @@
 //! Queue of a kind of job: a lane in the job pool, whose jobs run in sequence. Jobs that compare
 //! equal are treated as the same job; this is how running, finished and stopped jobs are
 //! recognised.
+//!
+//! The window calls [`JobQueue::want`] after each frame with the jobs that it needs now. A free
+//! thread of the pool takes the first of them that is unfinished ([`Lane::begin`]), runs it and
+//! delivers its ending ([`Lane::run`]). A running job that is no longer
+//! wanted is cancelled, unless it serves a wanted one ([`Job::serves`]).
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -9,8 +14,9 @@ use std::time::{Duration, Instant};
 use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_study::jobs::job::Job;
 
+use super::faults::{Fault, caught};
 use super::job_pool::{JobPool, Lane, LaneClass, Waker};
-use super::threads::{Fault, caught};
+use crate::gui::state::background::Steps;
 
 /// A job's output, or the fault that ended it; a cancelled job has no ending.
 pub(super) type Ending<J> = Result<<J as Job>::Output, Fault>;
@@ -22,9 +28,13 @@ const CANCEL_GRACE: Duration = Duration::from_millis(60);
 #[derive(Debug)]
 struct Run {
     started: Instant,
+    /// Whether the job is no longer requested.
     outdated: AtomicBool,
+    /// Whether the job was stopped.
     stopped: AtomicBool,
+    /// Completed steps.
     done: AtomicUsize,
+    /// All steps; 0 until the job reports them.
     total: AtomicUsize,
 }
 
@@ -40,11 +50,11 @@ impl Run {
     }
 
     /// Returns completed and total steps.
-    fn steps(&self) -> (usize, usize) {
-        (
-            self.done.load(Ordering::Relaxed),
-            self.total.load(Ordering::Relaxed),
-        )
+    fn steps(&self) -> Steps {
+        Steps {
+            done: self.done.load(Ordering::Relaxed),
+            total: self.total.load(Ordering::Relaxed),
+        }
     }
 }
 
@@ -68,6 +78,7 @@ struct Running<J> {
     run: Arc<Run>,
 }
 
+/// Requested jobs and their states.
 struct Orders<J> {
     /// Requested jobs, the most urgent first.
     wanted: Vec<J>,
@@ -78,6 +89,7 @@ struct Orders<J> {
     done: Vec<J>,
     /// Requested jobs that were stopped, by hand or by a fault.
     stopped: Vec<J>,
+    /// Whether the queue was dropped: no further job starts.
     closed: bool,
 }
 
@@ -240,10 +252,10 @@ impl<J: Job> JobQueue<J> {
             orders.done.retain(|job| jobs.contains(job));
             orders.stopped.retain(|job| jobs.contains(job));
             if let Some(Running { job, run }) = &orders.running {
-                let (done, total) = run.steps();
+                let steps = run.steps();
                 let is_wanted = jobs
                     .iter()
-                    .any(|wanted| wanted == job || job.serves(wanted, done, total));
+                    .any(|wanted| wanted == job || job.serves(wanted, steps.done, steps.total));
                 run.outdated.store(!is_wanted, Ordering::Release);
             }
             orders.wanted = jobs;
@@ -275,12 +287,12 @@ impl<J: Job> JobQueue<J> {
     }
 
     /// Returns completed and total steps while a requested job is incomplete.
-    pub(super) fn progress(&self) -> Option<(usize, usize)> {
+    pub(super) fn progress(&self) -> Option<Steps> {
         let orders = self.lane.orders();
         orders.unfinished().next()?;
         let steps = match &orders.running {
             Some(running) => running.run.steps(),
-            None => (0, 0),
+            None => Steps::default(),
         };
         Some(steps)
     }

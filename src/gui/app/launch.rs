@@ -1,90 +1,40 @@
-//! Starts the program: from the command line to a window on the screen.
+//! Starts the program: from the command line to a window on the screen, and the message if there is
+//! none.
+//!
+//! The requested file is read in a thread while the window library starts (`first_file.rs`).
+//! Whether an error means "no window" or "the window has ended" depends on whether a frame was
+//! drawn: the first frame hands over the autosave, which then tells what became of the unsaved
+//! decisions.
 
 use std::error::Error;
-use std::ops::RangeInclusive;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
 use std::thread::JoinHandle;
-use std::time::Duration;
 
 use eframe::NativeOptions;
 use egui::ViewportBuilder;
 
-use gdcm_io::files::study_file::holds_models;
-use gdcm_io::files::user_state::recent_files;
-use gdcm_io::reading_budget::ReadingBudget;
-use gdcm_io::source::file_exists;
-use gdcm_io::{FileError, Opened, embedded_example, load_any};
-use gdcm_model::message_text::{sanitized, sanitized_path, shortened_message};
-use gdcm_study::Engine;
-use gdcm_study::stages::engine::LIVE_PROOF;
+use gdcm_io::Opened;
+use gdcm_io::files::opened_file::holds_models;
+use gdcm_model::message_text::sanitized_path;
 
+use super::GdcmApp;
 use super::autosave::Autosave;
+use super::faults::{Fault, caught, record_panic};
+use super::first_file::{Loaded, last_opened, load_and_report};
 use super::recovery::{LAST_WAIT, end_words};
-use super::threads::{Fault, caught};
+use super::setup::{APP_ID, Setup};
 use super::window::PREFERENCES;
-use super::{EngineMaker, GdcmApp, threads};
-use crate::executor::{Pool, start_threads};
+use super::zoom_repair::repair_zoom;
+use crate::executor::start_threads;
 use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::commands::file::FileCommand;
-use crate::gui::state::opens_with::OpensWith;
-use crate::gui::state::preferences::Preferences;
 
-/// Application id on the desktop, and name of the data directory.
-pub(super) const APP_ID: &str = "gdcm";
 /// Exit status if the window could not be opened or panicked.
 const NO_WINDOW: u8 = 1;
 /// Exit status if the requested file could not be read.
 const WRONG_FILE: u8 = 2;
-
-/// Setup of the window; tests use other values than the program.
-#[derive(Clone)]
-pub struct Setup {
-    pub engine: EngineMaker,
-    /// Directory for recovery files and the recent-files list; with `None`, neither is kept.
-    pub directory: Option<PathBuf>,
-    /// Directory that replaces `~` in typed paths; `None` leaves `~` as it is.
-    pub home: Option<PathBuf>,
-    /// Whether the first start offers the guided tour.
-    pub offers_tour: bool,
-    /// Maximum time between a decision and its storage in the recovery file.
-    pub keep_after: Duration,
-    /// Interval between checks of the dataset file for changes.
-    pub look_every: Duration,
-    pub preferences: Preferences,
-    /// Problem found before the window was opened; shown first.
-    pub trouble: Option<String>,
-}
-
-impl Default for Setup {
-    fn default() -> Self {
-        Self {
-            engine: Arc::new(|| {
-                Engine::with_executor(Box::new(Pool)).with_proofs_within(LIVE_PROOF)
-            }),
-            directory: None,
-            home: None,
-            offers_tour: false,
-            keep_after: Duration::from_secs(2),
-            look_every: Duration::from_millis(1500),
-            preferences: Preferences::default(),
-            trouble: None,
-        }
-    }
-}
-
-impl Setup {
-    /// Returns the program's setup, with the directories given by the platform.
-    pub(super) fn of_program() -> Self {
-        Self {
-            directory: eframe::storage_dir(APP_ID),
-            home: std::env::home_dir(),
-            offers_tour: true,
-            ..Self::default()
-        }
-    }
-}
 
 /// Opens the window on a dataset or a study, or on the embedded example, and returns once the
 /// window is closed. A folder, or a file from another program, opens the import of models.
@@ -113,10 +63,10 @@ pub fn open(path: Option<PathBuf>) -> ExitCode {
     {
         eprintln!("caution: {caution}");
     }
-    std::panic::set_hook(Box::new(threads::note));
-    let opening = Arc::new(OnceLock::new());
-    let outcome = caught(|| run(reading, models, &opening));
-    match ending(outcome, opening.get(), &command) {
+    std::panic::set_hook(Box::new(record_panic));
+    let drawn = Arc::new(OnceLock::new());
+    let outcome = caught(|| run(reading, models, &drawn));
+    match ending(outcome, drawn.get(), &command) {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => fail(&message),
     }
@@ -193,59 +143,11 @@ fn ending(
     }
 }
 
-/// Result of reading the requested file; the example if there is none.
-struct Loaded {
-    /// The study to open, or the fault in the embedded example.
-    opened: Result<Opened, String>,
-    /// Fault in the requested file; the window then opens the example.
-    trouble: Option<String>,
-}
-
-fn load(path: Option<PathBuf>) -> Loaded {
-    let Some(path) = path else {
-        return Loaded {
-            opened: load_example(),
-            trouble: None,
-        };
-    };
-    match load_any(&path, &ReadingBudget::default()) {
-        Ok(opened) => Loaded {
-            opened: Ok(opened),
-            trouble: None,
-        },
-        Err(error) => Loaded {
-            opened: load_example(),
-            trouble: Some(short_message(&error)),
-        },
-    }
-}
-
-fn load_example() -> Result<Opened, String> {
-    match embedded_example() {
-        Ok(example) => Ok(Opened::Dataset(example)),
-        Err(error) => Err(short_message(&error)),
-    }
-}
-
-fn short_message(error: &FileError) -> String {
-    shortened_message(&sanitized(&error.to_string()))
-}
-
-/// Loads a file. A fault is also printed on the terminal, where it remains visible if no window
-/// opens.
-fn load_and_report(path: Option<PathBuf>) -> Loaded {
-    let loaded = load(path);
-    if let Some(trouble) = &loaded.trouble {
-        eprintln!("error: {trouble}");
-    }
-    loaded
-}
-
-/// Runs the window until it is closed; `opening` receives the autosave once a frame is drawn.
+/// Runs the window until it is closed; `drawn` receives the autosave once a frame is drawn.
 fn run(
     reading: JoinHandle<Loaded>,
     models: Option<PathBuf>,
-    opening: &Arc<OnceLock<Autosave>>,
+    drawn: &Arc<OnceLock<Autosave>>,
 ) -> eframe::Result {
     let viewport = ViewportBuilder::default()
         .with_title("gdcm")
@@ -259,7 +161,7 @@ fn run(
         dithering: false,
         ..NativeOptions::default()
     };
-    let opening = Arc::clone(opening);
+    let drawn = Arc::clone(drawn);
     eframe::run_native(
         APP_ID,
         options,
@@ -268,7 +170,7 @@ fn run(
                 .join()
                 .unwrap_or_else(|panic| std::panic::resume_unwind(panic));
             let mut app = create_window(creation, loaded, models)?;
-            app.recovery.drawn = opening;
+            app.recovery.drawn = drawn;
             Ok(Box::new(app))
         }),
     )
@@ -297,7 +199,7 @@ fn create_window(
     } else {
         last_opened(&setup)
     };
-    let mut app = GdcmApp::with(&creation.egui_ctx, opened, setup)?;
+    let mut app = GdcmApp::with_setup(&creation.egui_ctx, opened, setup)?;
     if let Some(path) = last {
         app.dispatch(FileCommand::Open(path));
     }
@@ -305,46 +207,6 @@ fn create_window(
         app.dispatch(AssemblingCommand::Add(vec![models]));
     }
     Ok(app)
-}
-
-/// Returns the file that was open last; `None` if the preferences do not ask for it or it no longer
-/// exists.
-fn last_opened(setup: &Setup) -> Option<PathBuf> {
-    if setup.preferences.opens_with != OpensWith::LastStudy {
-        return None;
-    }
-    recent_files(setup.directory.as_deref()?)
-        .into_iter()
-        .find(|path| file_exists(path))
-}
-
-/// Usable zoom factors.
-const ZOOM: RangeInclusive<f64> = 0.2..=5.0;
-
-/// Replaces an unusable zoom factor in the preferences with 1; returns a caution about it.
-fn repair_zoom(preferences: &Path) -> Option<String> {
-    const KEY: &str = "zoom_factor:";
-    let text = std::fs::read_to_string(preferences).ok()?;
-    let start = text.find(KEY)? + KEY.len();
-    let end = start + text[start..].find([',', ')'])?;
-    let stored = &text[start..end];
-    if let Ok(zoom) = stored.trim().parse::<f64>()
-        && ZOOM.contains(&zoom)
-    {
-        return None;
-    }
-    let problem = format!(
-        "{}: expected a zoom factor from {} to {}, found {}",
-        sanitized_path(preferences),
-        ZOOM.start(),
-        ZOOM.end(),
-        sanitized(stored)
-    );
-    let repaired = format!("{}1.0{}", &text[..start], &text[end..]);
-    Some(match std::fs::write(preferences, repaired) {
-        Ok(()) => format!("{problem}; it was reset to 1"),
-        Err(error) => format!("{problem}; it cannot be repaired: {error}"),
-    })
 }
 
 /// Returns why no window can be opened, as far as can be detected in advance: on Linux, if neither
@@ -381,6 +243,8 @@ fn no_window(reason: &str, command: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
     use super::*;
 
     fn fault() -> Fault {
@@ -427,49 +291,5 @@ mod tests {
             "{words}"
         );
         assert!(words.ends_with("every decision was saved"), "{words}");
-    }
-
-    #[test]
-    fn a_wrong_file_opens_the_example_and_is_reported() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("broken.json");
-        std::fs::write(&path, "{\"format\": ").unwrap();
-        let loaded = load(Some(path));
-        assert!(
-            matches!(loaded.opened, Ok(Opened::Dataset(example)) if example.path().is_none()),
-            "the example"
-        );
-        assert!(loaded.trouble.unwrap().contains("broken.json"));
-        let example = load(None);
-        assert!(example.opened.is_ok());
-        assert_eq!(example.trouble, None);
-    }
-
-    #[test]
-    fn an_unusable_zoom_factor_is_replaced_with_a_message_and_other_preferences_stay() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("app.ron");
-        let text = |zoom: &str| {
-            format!(
-                "{{\"egui\": \"(options:(sync:true,zoom_factor:{zoom},reduce_texture_memory:false))\"}}"
-            )
-        };
-        for (stored, kept) in [
-            ("0.0", "1.0"),
-            ("NaN", "1.0"),
-            ("5.5", "1.0"),
-            ("0.2", "0.2"),
-            ("1.25", "1.25"),
-        ] {
-            std::fs::write(&path, text(stored)).unwrap();
-            let caution = repair_zoom(&path);
-            assert_eq!(caution.is_some(), stored != kept, "{stored}: {caution:?}");
-            if let Some(caution) = caution {
-                assert!(caution.contains(stored), "{caution}");
-                assert!(caution.contains("from 0.2 to 5"), "{caution}");
-            }
-            assert_eq!(std::fs::read_to_string(&path).unwrap(), text(kept));
-        }
-        assert_eq!(repair_zoom(&folder.path().join("none.ron")), None);
     }
 }

@@ -2,9 +2,9 @@
 
 use super::GdcmApp;
 use crate::gui::commands::layout::LayoutCommand;
-use crate::gui::state::arrangement::Arrangement;
-use crate::gui::widgets::controls::focus_field;
-use crate::gui::widgets::focus::leave_region;
+use crate::gui::state::view_arrangement::Arrangement;
+use crate::gui::widgets::number_field::focus_field;
+use crate::gui::widgets::window_regions::leave_region;
 
 /// Target of a requested change of focus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,16 +1,17 @@
-//! Commands that copy and write results.
+//! Commands that copy and write results; the methods are in `exports.rs`, `figure_saving.rs` and
+//! `report_job.rs`.
 
 use super::GdcmApp;
-use super::dialogs::DialogPurpose;
+use super::file_dialogs::DialogPurpose;
 use crate::gui::commands::output::OutputCommand;
-use crate::gui::state::tables::table_of;
+use crate::gui::state::panel_tables::table_of;
 
 impl GdcmApp {
     pub(super) fn carry_out_output(&mut self, command: OutputCommand) {
         match command {
             OutputCommand::CopyTable(kind) => {
                 self.ctx.copy_text(table_of(&self.state, kind).text());
-                self.done(format!("copied the table of {}", kind.name()));
+                self.notify_done(format!("copied the table of {}", kind.name()));
             }
             OutputCommand::AskSaveTable(kind) => {
                 self.ask_save_table(kind.name(), table_of(&self.state, kind).into())

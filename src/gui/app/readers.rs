@@ -1,4 +1,5 @@
-//! Threads that read files; a newer reading may replace an older one.
+//! Readings of files in threads: a newer reading may replace an older one, whose result is then
+//! ignored, and the engineer may stop it.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,7 +9,9 @@ use gdcm_io::FolderProgress;
 /// The newest reading for a purpose; several threads may take part in it.
 #[derive(Default)]
 pub(super) struct Reader {
+    /// Number of the newest reading.
     newest: u64,
+    /// Stop flag shared with the threads of that reading.
     stop: Arc<AtomicBool>,
 }
 

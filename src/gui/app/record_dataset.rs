@@ -103,7 +103,7 @@ impl GdcmApp {
                 self.open(origin.path.clone(), None);
                 self.files.made_of_records = Some(origin);
             }
-            Err(error) => self.written(
+            Err(error) => self.notify_written(
                 Err(error),
                 FormKind::RecordDataset,
                 RecordsCommand::MakeDataset.into(),

@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use gdcm_model::dataset::ConditionId;
+use gdcm_model::number_format::counted;
 use gdcm_study::Edit;
 use gdcm_study::decisions::adopted_models::{AdoptedModels, OfferedModels};
 use gdcm_study::jobs::identification_jobs::IdentifyJob;
@@ -27,7 +28,7 @@ impl GdcmApp {
     /// Requests identification in these conditions; replaces a waiting job for the same condition.
     pub(super) fn identify_conditions(&mut self, conditions: &[ConditionId]) {
         if self.state.records.running.is_empty() {
-            self.state.records.asked = 0;
+            self.state.records.requested_count = 0;
         }
         let mut refusal = None;
         for id in conditions {
@@ -37,7 +38,7 @@ impl GdcmApp {
             let Some(records) = self.state.records.conditions.get(id) else {
                 continue;
             };
-            match records.job(*id, band, &channels) {
+            match records.identification_job(*id, band, &channels) {
                 Ok(job) => self.state.records.request_job(job),
                 Err(problem) => refusal = Some(format!("condition {id}: {problem}")),
             }
@@ -54,9 +55,9 @@ impl GdcmApp {
     /// Stops running and waiting identification jobs; they can be started again.
     pub(super) fn stop_identifying(&mut self) {
         let unfinished = std::mem::take(&mut self.state.records.running).len();
-        let requested = self.state.records.asked;
+        let requested = self.state.records.requested_count;
         if requested > 1 && unfinished > 0 {
-            self.done(format!(
+            self.notify_done(format!(
                 "stopped identifying after {} of {requested} conditions",
                 requested.saturating_sub(unfinished)
             ));
@@ -73,9 +74,9 @@ impl GdcmApp {
             return;
         }
         self.state.records.running.retain(|other| *other != job);
-        let requested = self.state.records.asked;
+        let requested = self.state.records.requested_count;
         if self.state.records.running.is_empty() && requested > 1 {
-            self.done(format!(
+            self.notify_done(format!(
                 "finished: models of {requested} conditions identified"
             ));
             self.state.records.page = RecordsPage::Conditions;
@@ -100,13 +101,14 @@ impl GdcmApp {
         let before = self.state.study.clone();
         self.decide(&Edit::TakeModels(adopted));
         if self.state.study != before {
+            let models = counted(models, "model");
             let conditions = if names.len() == 1 {
                 "condition"
             } else {
                 "conditions"
             };
             let names = names.join(", ");
-            self.done(format!("adopted {models} models in {conditions} {names}"));
+            self.notify_done(format!("adopted {models} in {conditions} {names}"));
         }
     }
 

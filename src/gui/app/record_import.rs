@@ -1,4 +1,5 @@
-//! Flight records in the window: reads them in a thread and adds them to their conditions.
+//! Adds flight records to their conditions: starts a reading thread, which runs the functions of
+//! `record_reading.rs`, and stores the records that it found.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -7,6 +8,7 @@ use std::sync::atomic::AtomicBool;
 
 use gdcm_io::{DatasetOrigin, FileError};
 use gdcm_model::dataset::ConditionId;
+use gdcm_model::number_format::counted;
 use gdcm_sysid::records::{LaidOutRecord, RecordChannels, leave_out_copies};
 
 use super::GdcmApp;
@@ -117,7 +119,7 @@ impl GdcmApp {
                 return;
             }
             app.state.records.reading = None;
-            if let Some(found) = found.and_then(|found| app.unless_error(found)) {
+            if let Some(found) = found.and_then(|found| app.value_or_notify(found)) {
                 app.take_records(found, start);
             }
             // Create an entry, even without records, to prevent a repeated search.
@@ -152,7 +154,7 @@ impl GdcmApp {
         if !added.is_empty() {
             self.store_added_records(added, start);
         } else if own_count > 0 {
-            self.done(counted_records(own_count));
+            self.notify_done(counted(own_count, "record"));
         }
     }
 
@@ -209,10 +211,10 @@ impl GdcmApp {
             counts.conditions += 1;
         }
         if !before.conditions.is_empty() {
-            let label = format!("add {}", counted_records(counts.new + counts.read_again));
+            let label = format!("add {}", counted(counts.new + counts.read_again, "record"));
             self.record_edited(label, before);
         }
-        self.done(counts.words());
+        self.notify_done(counts.words());
     }
 }
 
@@ -243,25 +245,17 @@ impl AddedCounts {
         };
         let mut parts = Vec::new();
         if self.new > 0 {
-            parts.push(format!("{}{conditions} added", counted_records(self.new)));
+            parts.push(format!("{}{conditions} added", counted(self.new, "record")));
         }
         if self.read_again > 0 {
-            parts.push(format!("{} read again", counted_records(self.read_again)));
+            parts.push(format!("{} read again", counted(self.read_again, "record")));
         }
         if self.known > 0 && parts.is_empty() {
-            let known = counted_records(self.known);
+            let known = counted(self.known, "record");
             parts.push(format!("nothing added: {known} already loaded"));
         } else if self.known > 0 {
             parts.push(format!("{} already loaded", self.known));
         }
         parts.join("; ")
-    }
-}
-
-fn counted_records(count: usize) -> String {
-    if count == 1 {
-        "1 record".to_owned()
-    } else {
-        format!("{count} records")
     }
 }

@@ -1,4 +1,5 @@
-//! Reading of flight records from files, in a reading thread.
+//! Reading of flight records from files: the part that runs in the reading thread, without access
+//! to the window.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -37,7 +38,7 @@ pub(super) struct OwnRecords {
 }
 
 /// A record that the dataset lists, and its condition.
-struct NamedRecord<'a> {
+struct ListedRecord<'a> {
     condition: ConditionId,
     entry: &'a ConditionRecord,
 }
@@ -82,22 +83,22 @@ impl OwnRecords {
         if let DatasetOrigin::File(path) = &self.origin {
             let folder = path.parent().unwrap_or(Path::new(""));
             for (file, records) in self.records_by_file(ids) {
-                read_named_records(&folder.join(file), &records, &channels, stop, found);
+                read_listed_records(&folder.join(file), &records, &channels, stop, found);
             }
         }
         Ok(())
     }
 
     /// Groups listed records by file, so that a file with several records is read once.
-    fn records_by_file(&self, ids: &[ConditionId]) -> BTreeMap<&str, Vec<NamedRecord<'_>>> {
-        let mut by_file: BTreeMap<&str, Vec<NamedRecord<'_>>> = BTreeMap::new();
+    fn records_by_file(&self, ids: &[ConditionId]) -> BTreeMap<&str, Vec<ListedRecord<'_>>> {
+        let mut by_file: BTreeMap<&str, Vec<ListedRecord<'_>>> = BTreeMap::new();
         for id in ids {
             for entry in self.entries(*id) {
-                let named = NamedRecord {
+                let listed = ListedRecord {
                     condition: *id,
                     entry,
                 };
-                by_file.entry(&entry.file).or_default().push(named);
+                by_file.entry(&entry.file).or_default().push(listed);
             }
         }
         by_file
@@ -105,16 +106,16 @@ impl OwnRecords {
 }
 
 /// Reads the listed records in a file into `found`.
-fn read_named_records(
+fn read_listed_records(
     path: &Path,
-    records: &[NamedRecord<'_>],
+    records: &[ListedRecord<'_>],
     channels: &RecordChannels,
     stop: &Arc<AtomicBool>,
     found: &mut ReadRecords,
 ) {
     let variables: Vec<Option<&str>> = records
         .iter()
-        .map(|named| named.entry.variable.as_deref())
+        .map(|listed| listed.entry.variable.as_deref())
         .collect();
     let budget = ReadingBudget::default().stopped_by(Arc::clone(stop));
     let tables = match load_records(path, &variables, &budget) {
@@ -124,7 +125,7 @@ fn read_named_records(
             return;
         }
     };
-    for (NamedRecord { condition, entry }, table) in records.iter().zip(tables) {
+    for (ListedRecord { condition, entry }, table) in records.iter().zip(tables) {
         let table = match table {
             Ok(table) => table,
             Err(error) => {

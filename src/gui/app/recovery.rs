@@ -1,5 +1,5 @@
-//! Recovery of unsaved decisions: at the next start, the window offers the decisions of a window
-//! that ended without saving them.
+//! Offers to recover unsaved decisions: at the next start, the window offers the decisions of a
+//! window that ended without saving them. `autosave.rs` keeps them.
 
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
@@ -8,15 +8,14 @@ use std::time::{Duration, SystemTime};
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
 
-use gdcm_io::files::user_state::LostStudy;
+use gdcm_io::files::recovery_file::LostStudy;
 use gdcm_io::{Opened, load_any};
 use gdcm_model::message_text::{sanitized, sanitized_path};
 
 use super::GdcmApp;
 use super::autosave::{Autosave, Kept, Remains, Task, Unsaved};
-use super::document_files::ReadFor;
-use super::files::study_name;
-use crate::gui::state::notices::Bar;
+use super::document_files::{ReadFor, study_name};
+use crate::gui::state::notices::MessageBar;
 
 /// Maximum time that a closing window waits for the disk to store the latest decisions.
 pub(super) const LAST_WAIT: Duration = Duration::from_secs(2);
@@ -46,7 +45,7 @@ impl GdcmApp {
     pub(super) fn offer(&mut self, lost: Vec<LostStudy>) {
         for lost in lost {
             let sentence = offer_words(&lost, &TimeZone::system());
-            self.state.bars.push(Bar::Recovery {
+            self.state.message_bars.push(MessageBar::Recovery {
                 offer: self.recovery.offers.len(),
                 sentence,
             });
@@ -99,7 +98,7 @@ impl GdcmApp {
         self.close_offer(offer);
         self.look_for_recent();
         self.study_changed();
-        self.done(message);
+        self.notify_done(message);
     }
 
     /// Discards lost decisions and their recovery file.
@@ -112,8 +111,8 @@ impl GdcmApp {
 
     fn close_offer(&mut self, closed: usize) {
         self.state
-            .bars
-            .retain(|bar| !matches!(bar, Bar::Recovery { offer, .. } if *offer == closed));
+            .message_bars
+            .retain(|bar| !matches!(bar, MessageBar::Recovery { offer, .. } if *offer == closed));
     }
 }
 

@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use gdcm_io::files::dataset_file::load_dataset_within;
 use gdcm_io::{LoadedDataset, Opened};
-use gdcm_words::decisions::dataset_difference_text;
+use gdcm_words::dataset_differences::dataset_difference_text;
 
 use super::GdcmApp;
-use super::disk_watch::Seen;
+use super::disk_watch::ChangedFile;
 use super::document_files::ReadFor;
-use crate::gui::state::notices::Bar;
+use crate::gui::state::notices::MessageBar;
 
 impl GdcmApp {
     pub(super) fn watch_disk(&mut self) {
@@ -17,13 +17,13 @@ impl GdcmApp {
     }
 
     /// Offers to reload the dataset if the content of its file has changed.
-    pub(super) fn file_seen(&mut self, seen: &Seen) {
-        if self.files.loaded.path() != Some(&seen.path) {
+    pub(super) fn file_changed(&mut self, changed: &ChangedFile) {
+        if self.files.loaded.path() != Some(&changed.path) {
             return;
         }
         self.keep_open();
-        if seen.sha256 != self.files.loaded.sha256 {
-            self.state.bars.push(Bar::Changed {
+        if changed.sha256 != self.files.loaded.sha256 {
+            self.state.message_bars.push(MessageBar::Changed {
                 name: self.files.loaded.file_name(),
             });
         }
@@ -32,8 +32,8 @@ impl GdcmApp {
     /// Closes the offer to reload; the open dataset remains until its file changes again.
     pub(super) fn keep_open(&mut self) {
         self.state
-            .bars
-            .retain(|bar| !matches!(bar, Bar::Changed { .. }));
+            .message_bars
+            .retain(|bar| !matches!(bar, MessageBar::Changed { .. }));
     }
 
     /// Reads the dataset's file again; the open dataset is replaced once the file has been read.
@@ -55,8 +55,8 @@ impl GdcmApp {
         }
         self.keep_open();
         self.state
-            .bars
-            .retain(|bar| !matches!(bar, Bar::Differences { .. }));
+            .message_bars
+            .retain(|bar| !matches!(bar, MessageBar::Differences { .. }));
         let name = loaded.file_name();
         let (study, differences) = self.state.study.reconciled(Arc::clone(&loaded.dataset));
         let before = std::mem::replace(&mut self.state.study, study);
@@ -67,15 +67,17 @@ impl GdcmApp {
         self.study_changed();
         let sentences: Vec<String> = differences.iter().map(dataset_difference_text).collect();
         if sentences.is_empty() {
-            self.done(format!("reloaded {name}: every decision still applies"));
+            self.notify_done(format!("reloaded {name}: every decision still applies"));
         } else {
-            self.state.bars.push(Bar::Differences { name, sentences });
+            self.state
+                .message_bars
+                .push(MessageBar::Differences { name, sentences });
         }
     }
 
     /// Selects the file that belongs to the study's dataset, after a reload, or after an undo or
     /// redo across a reload.
-    pub(super) fn follow_dataset(&mut self) {
+    pub(super) fn select_dataset_file(&mut self) {
         let dataset = self.state.study.file_dataset();
         let earlier = self
             .files

@@ -14,7 +14,7 @@ use gdcm_study::results::time_histories::HistoryRecords;
 use gdcm_study::{Analysis, Engine};
 
 use super::GdcmApp;
-use super::files::study_name;
+use super::document_files::study_name;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::output::OutputCommand;
 use crate::gui::state::forms::FormKind;
@@ -23,7 +23,7 @@ impl GdcmApp {
     /// Asks where to write the report; shows an error if the newest results are not available.
     pub(super) fn ask_report(&mut self) {
         let analysis = self.analysis_to_write("write the report");
-        if self.unless_error(analysis).is_none() {
+        if self.value_or_notify(analysis).is_none() {
             return;
         }
         let study = self.files.saved.path.as_deref();
@@ -38,7 +38,8 @@ impl GdcmApp {
 
     /// Starts writing the report; asks before overwriting a file.
     pub(super) fn write_report(&mut self, path: PathBuf) {
-        let Some(analysis) = self.unless_error(self.analysis_to_write("write the report")) else {
+        let Some(analysis) = self.value_or_notify(self.analysis_to_write("write the report"))
+        else {
             return;
         };
         let path = self.files.at_home(path);
@@ -46,23 +47,23 @@ impl GdcmApp {
             return self.report_failed(error, path);
         }
         self.state.forms.shown = None;
-        self.work.reporting = Some(ReportJob {
+        self.work.report_job = Some(ReportJob {
             // `asked_with`: the live analysis ignores the requirements and may contain older ones.
             analysis: Arc::new(analysis.asked_with(&self.state.study.requirements)),
             records: self.state.records.history_records(),
             known: self.state.records.known_poles(),
-            source: ReportSource::of(&self.files.loaded, self.files.saved.path.as_deref()),
+            source: ReportSource::from_files(&self.files.loaded, self.files.saved.path.as_deref()),
             path,
-            existing: self.dialogs.existing,
+            existing: self.postponed.existing,
             inputs: self.files.inputs(),
         });
     }
 
     /// Shows a notice with the path of the written report, or handles the error.
     pub(super) fn report_written(&mut self, job: ReportJob, outcome: Result<(), FileError>) {
-        self.work.reporting = None;
+        self.work.report_job = None;
         match outcome {
-            Ok(()) => self.done(format!("wrote the report {}", sanitized_path(&job.path))),
+            Ok(()) => self.notify_done(format!("wrote the report {}", sanitized_path(&job.path))),
             Err(error) => self.report_failed(error, job.path),
         }
     }
@@ -70,12 +71,12 @@ impl GdcmApp {
     /// Asks whether to overwrite the file if it exists; shows any other error.
     fn report_failed(&mut self, error: FileError, path: PathBuf) {
         let again = Command::Output(OutputCommand::WriteReport(path));
-        self.written(Err(error), FormKind::Report, again);
+        self.notify_written(Err(error), FormKind::Report, again);
     }
 
     /// Shows an error if a running report was stopped, by the engineer or by a panic.
     pub(super) fn give_up_report(&mut self) {
-        if let Some(job) = self.work.reporting.take() {
+        if let Some(job) = self.work.report_job.take() {
             let path = sanitized_path(&job.path);
             self.notify_error(format!("{path} was not written: the report was stopped"));
         }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use gdcm_io::FileError;
-use gdcm_io::files::requirements_file::{add_tolerances, load_tolerances, read_levels};
+use gdcm_io::files::levels_and_tolerances::{add_tolerances, load_tolerances, read_levels};
 use gdcm_model::message_text::sanitized_path;
 use gdcm_study::Edit;
 use gdcm_study::decisions::requirement_settings::RequirementSettings;
@@ -20,7 +20,7 @@ impl GdcmApp {
         let path = self.files.at_home(path);
         let mut settings = RequirementSettings::clone(&self.state.study.requirements);
         let read = read_table_into(&mut settings, table, &path);
-        let Some(cautions) = self.unless_error(read) else {
+        let Some(cautions) = self.value_or_notify(read) else {
             return;
         };
         self.state.forms.shown = None;
@@ -52,7 +52,7 @@ impl GdcmApp {
         let path = self.files.at_home(path);
         let tolerances = &self.state.study.requirements.tolerances;
         let written = self.write_all(&[], |outputs| add_tolerances(tolerances, &path, outputs));
-        self.saved_to(
+        self.notify_saved(
             written,
             &path,
             FormKind::WriteTolerances,

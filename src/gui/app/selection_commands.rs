@@ -21,7 +21,7 @@ impl GdcmApp {
             SelectionCommand::HoverCondition(condition) => {
                 display.selection.hovered_condition = Some(condition)
             }
-            SelectionCommand::Tell(words) => display.selection.told = Some(words),
+            SelectionCommand::Tell(words) => display.selection.pointed_words = Some(words),
             SelectionCommand::Isolate(model) => {
                 let isolated = &mut display.selection.isolated;
                 *isolated = if isolated.as_ref() == Some(&model) {
@@ -30,7 +30,7 @@ impl GdcmApp {
                     Some(model)
                 };
             }
-            SelectionCommand::Explain(asked) => display.selection.asked = asked,
+            SelectionCommand::Explain(target) => display.selection.explained = target,
             SelectionCommand::EndIsolation => {
                 display.selection.isolated = None;
                 display.curves.selected.clear();

@@ -13,13 +13,15 @@ impl GdcmApp {
         match command {
             StudyCommand::Edit(edit) => self.decide(&edit),
             StudyCommand::EndEdit => self.state.history.seal(),
-            StudyCommand::Undo => self.take_study(|history, study, records| {
+            // A step may also contain an edit of flight records, which are not part of the study:
+            // `exchange` restores them.
+            StudyCommand::Undo => self.restore_study(|history, study, records| {
                 history.undo(study, |before| records.exchange(before))
             }),
-            StudyCommand::Forget(edit) => self.take_study(|history, _, _| history.forget(&edit)),
-            StudyCommand::Redo => self.take_study(|history, study, records| {
+            StudyCommand::Redo => self.restore_study(|history, study, records| {
                 history.redo(study, |before| records.exchange(before))
             }),
+            StudyCommand::Forget(edit) => self.restore_study(|history, _, _| history.forget(&edit)),
         }
     }
 
@@ -38,7 +40,7 @@ impl GdcmApp {
 
     /// Replaces the study by the state that `find` takes from the history; does nothing if there is
     /// none.
-    fn take_study(
+    fn restore_study(
         &mut self,
         find: impl FnOnce(&mut History<RecordsBefore>, &Study, &mut RecordsState) -> Option<Study>,
     ) {
@@ -54,8 +56,8 @@ impl GdcmApp {
         }
     }
 
-    /// Updates everything that depends on the study: the notice, the mark for unsaved decisions,
-    /// the selected dataset file and the recovery file.
+    /// Updates everything that depends on the study: the notice, the responses that were ever
+    /// constrained, the mark for unsaved decisions, the selected dataset file and the recovery file.
     pub(super) fn study_changed(&mut self) {
         self.state.notice = None;
         self.state
@@ -64,7 +66,7 @@ impl GdcmApp {
             .once_held
             .extend(self.state.study.settings.constrained.marked());
         self.state.unsaved = self.files.saved.study.as_ref() != Some(&self.state.study);
-        self.follow_dataset();
+        self.select_dataset_file();
         self.keep_unsaved();
     }
 }

@@ -1,13 +1,10 @@
-//! Carries out commands; no other code changes the displayed state.
-
-use std::fmt::Display;
+//! Carries out commands. Views change the state only through commands, except for their own caches,
+//! zoom, sorting and typed texts. Each group of commands has a file of its own.
 
 use gdcm_model::dataset::{ConditionId, ModelId};
-use gdcm_model::message_text::{sanitized, shortened_message};
 
 use super::GdcmApp;
 use crate::gui::commands::command::Command;
-use crate::gui::state::notices::{Notice, NoticeKind};
 
 /// Elements under the pointer.
 struct Pointed {
@@ -22,17 +19,21 @@ struct Pointed {
 impl GdcmApp {
     /// Carries out a command as a click or a key would.
     pub fn dispatch(&mut self, command: impl Into<Command>) {
-        self.carry_out_one(command.into());
+        self.carry_out_command(command.into());
         self.ctx.request_repaint();
     }
 
     /// Carries out the commands of a frame.
+    ///
+    /// No repaint is requested for a command: it stems from a key, a click or a movement of the
+    /// pointer, after which egui draws another frame by itself. The elements under the pointer may
+    /// also change without input, when the content moves under a resting pointer.
     pub(super) fn carry_out(&mut self, commands: Vec<Command>) {
         let before = self.take_pointed();
         for command in commands {
-            self.carry_out_one(command);
+            self.carry_out_command(command);
         }
-        if !self.is_pointed(&before) {
+        if !self.is_same_pointed(&before) {
             self.ctx.request_repaint();
         }
     }
@@ -43,22 +44,22 @@ impl GdcmApp {
         Pointed {
             model: display.selection.hovered.take(),
             condition: display.selection.hovered_condition.take(),
-            description: display.selection.told.take(),
+            description: display.selection.pointed_words.take(),
             cursor: display.curves.cursor.take(),
         }
     }
 
     /// Returns whether the elements under the pointer are the same as `before`.
-    fn is_pointed(&self, before: &Pointed) -> bool {
+    fn is_same_pointed(&self, before: &Pointed) -> bool {
         let selection = &self.state.display.selection;
         selection.hovered == before.model
             && selection.hovered_condition == before.condition
-            && selection.told == before.description
+            && selection.pointed_words == before.description
             && self.state.display.curves.cursor == before.cursor
     }
 
     /// Carries out a command without drawing a frame.
-    pub(super) fn carry_out_one(&mut self, command: Command) {
+    pub(super) fn carry_out_command(&mut self, command: Command) {
         match command {
             Command::Study(command) => self.carry_out_study(command),
             Command::Selection(command) => self.carry_out_selection(command),
@@ -69,35 +70,8 @@ impl GdcmApp {
             Command::Form(command) => self.carry_out_form(command),
             Command::Computing(command) => self.carry_out_computing(command),
             Command::Curves(command) => self.carry_out_curve(command),
-            Command::Assembling(command) => self.assemble(command),
-            Command::Records(command) => self.records(command),
+            Command::Assembling(command) => self.carry_out_assembling(command),
+            Command::Records(command) => self.carry_out_records(command),
         }
-    }
-
-    /// Shows a notice about a completed action.
-    pub(super) fn done(&mut self, text: String) {
-        self.state.notice = Some(Notice {
-            kind: NoticeKind::Done,
-            text: shortened_message(&sanitized(&text)),
-        });
-    }
-
-    /// Returns the value; shows an error as a notice and returns `None`.
-    pub(super) fn unless_error<T, E: Display>(&mut self, made: Result<T, E>) -> Option<T> {
-        match made {
-            Ok(value) => Some(value),
-            Err(error) => {
-                self.notify_error(error.to_string());
-                None
-            }
-        }
-    }
-
-    /// Shows a notice about a failed action.
-    pub(super) fn notify_error(&mut self, text: String) {
-        self.state.notice = Some(Notice {
-            kind: NoticeKind::Trouble,
-            text: shortened_message(&sanitized(&text)),
-        });
     }
 }

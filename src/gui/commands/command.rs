@@ -14,7 +14,7 @@ use super::selection::SelectionCommand;
 use super::study::StudyCommand;
 use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::state::forms::FormKind;
-use crate::gui::widgets::controls::RefusedEntry;
+use crate::gui::widgets::number_entry::RefusedEntry;
 use crate::gui::widgets::tables::TableRequest;
 
 /// Request caused by a click, a key or a menu entry. Views push commands; the window carries them

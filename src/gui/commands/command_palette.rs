@@ -11,7 +11,8 @@ use super::entry::Entry;
 use crate::gui::commands::form::FormCommand;
 use crate::gui::state::forms::PaletteForm;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{Room, row_text, row_text_within, row_ui};
+use crate::gui::widgets::list_row::row_ui;
+use crate::gui::widgets::painted_text::{Room, row_text, row_text_within};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 
 /// Height of the list \[pt\].
@@ -39,7 +40,7 @@ pub fn command_palette_ui(
     if field_ui(ui, &mut form.query, opens) {
         form.chosen = 0;
     }
-    let mut found = answers(entries.iter().map(|entry| entry.name.as_str()), &form.query);
+    let mut found = matching_names(entries.iter().map(|entry| entry.name.as_str()), &form.query);
     found.truncate(MOST_ROWS);
     form.chosen = (form.chosen + down)
         .saturating_sub(up)
@@ -130,9 +131,9 @@ fn entry_ui(ui: &mut Ui, entry: &Entry, chosen: bool, palette: &Palette) -> egui
 
 /// Score of the match between a name and a query; a better match compares greater.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct AnswerScore {
+pub struct MatchScore {
     /// False for an undo or redo command, unless the query asks for it: its name contains the last
-    /// decision, whose words would match otherwise.
+    /// decision, whose words would match otherwise. (`false` compares smaller than `true`.)
     is_asked: bool,
     /// Sum of the word scores.
     words: usize,
@@ -146,7 +147,7 @@ pub struct AnswerScore {
 ///
 /// Every word of the query must occur in the name, in any order: as a whole word (4), at the
 /// beginning of a word (3), inside a word (2), or at least as letters in the same order (1).
-pub fn answer_score(name: &str, query: &str) -> Option<AnswerScore> {
+pub fn match_score(name: &str, query: &str) -> Option<MatchScore> {
     let name = name.to_lowercase();
     let query = query.to_lowercase();
     let command = name.split(['(', ':']).next().unwrap_or_default();
@@ -156,7 +157,7 @@ pub fn answer_score(name: &str, query: &str) -> Option<AnswerScore> {
         words += word_score(&name, word)?;
         words_of_command += word_score(command, word).unwrap_or_default();
     }
-    Some(AnswerScore {
+    Some(MatchScore {
         is_asked: is_asked(&name, &query),
         words,
         words_of_command,
@@ -192,10 +193,10 @@ fn word_score(name: &str, word: &str) -> Option<usize> {
 
 /// Returns the indices of the names that match the query, best first; for an empty query, all
 /// indices in order.
-pub fn answers<'a>(names: impl Iterator<Item = &'a str>, query: &str) -> Vec<usize> {
-    let mut found: Vec<(AnswerScore, usize)> = names
+pub fn matching_names<'a>(names: impl Iterator<Item = &'a str>, query: &str) -> Vec<usize> {
+    let mut found: Vec<(MatchScore, usize)> = names
         .enumerate()
-        .filter_map(|(place, name)| Some((answer_score(name, query)?, place)))
+        .filter_map(|(place, name)| Some((match_score(name, query)?, place)))
         .collect();
     if !query.trim().is_empty() {
         found.sort_by_key(|(score, _)| Reverse(*score));
@@ -236,7 +237,7 @@ mod tests {
     ];
 
     fn found(query: &str) -> Vec<&'static str> {
-        answers(NAMES.into_iter(), query)
+        matching_names(NAMES.into_iter(), query)
             .into_iter()
             .map(|place| NAMES[place])
             .collect()
@@ -267,10 +268,10 @@ mod tests {
             "Reject (condition 10)",
             "Condition 10: 60 kt, low altitude",
         ];
-        let first = |query: &str| names[answers(names.into_iter(), query)[0]];
+        let first = |query: &str| names[matching_names(names.into_iter(), query)[0]];
         assert_eq!(first("cond 10"), names[2]);
         assert_eq!(first("undo"), names[0]);
-        assert_eq!(answers(names.into_iter(), "cond 10"), [2, 1, 0]);
+        assert_eq!(matching_names(names.into_iter(), "cond 10"), [2, 1, 0]);
     }
 
     #[test]

@@ -6,6 +6,7 @@ use gdcm_plot::figure::FigureFormat;
 use gdcm_study::decisions::adopted_models::OfferedModels;
 use gdcm_study::decisions::setting::SETTINGS;
 use gdcm_study::decisions::setting_row::{Kind, Value};
+use gdcm_words::setting_words::setting_words;
 
 use super::command::Command;
 use super::curve_entries::curve_entries;
@@ -21,7 +22,7 @@ use super::selection::SelectionCommand;
 use super::view_entries::view_entries;
 use crate::gui::state::forms::FormKind;
 use crate::gui::state::pair_set::PairSet;
-use crate::gui::state::tables::TableKind;
+use crate::gui::state::panel_tables::TableKind;
 use crate::gui::state::view::{View, views_with_figure};
 use crate::gui::state::window_state::State;
 
@@ -116,11 +117,13 @@ fn setting_entries(state: &State) -> Vec<Entry> {
     let mut entries = Vec::new();
     for setting in SETTINGS {
         let option = setting.option.trim_start_matches('-');
+        let texts = setting_words(setting);
         match setting.kind {
             Kind::Number { .. } | Kind::Optional { .. } => {
-                entries.push(field_entry(setting.name, option, setting.control.label));
+                entries.push(field_entry(setting.name, option, texts.label));
             }
-            Kind::Range { ends, .. } => {
+            Kind::Range { .. } => {
+                let ends = texts.ends;
                 let lower = format!("lower end of the {}", setting.name);
                 let upper = format!("upper end of the {}", setting.name);
                 entries.push(field_entry(&lower, option, ends[0]));
@@ -128,10 +131,10 @@ fn setting_entries(state: &State) -> Vec<Entry> {
             }
             Kind::Choice { words, get, .. } => {
                 let now = get(&state.study.settings);
-                for (index, [_, text, _]) in words.iter().enumerate() {
-                    let name = format!("{}: {text}", setting.control.label);
+                for (index, [_, text]) in words.iter().enumerate() {
+                    let name = format!("{}: {text}", texts.label);
                     let edit = setting.to(Value::Choice(index));
-                    entries.push(Entry::new(name, setting.help, edit).enabled(index != now));
+                    entries.push(Entry::new(name, texts.help, edit).enabled(index != now));
                 }
             }
             Kind::Flag { .. } => {}

@@ -5,7 +5,7 @@ use gdcm_plot::figure::axis::FrequencyUnit;
 use gdcm_plot::figure::gains::{Across, Measure};
 use gdcm_study::AcrossRole;
 
-use crate::gui::state::assessed_figures::AssessedFigures;
+use crate::gui::state::assessment_display::AssessmentDisplay;
 use crate::gui::state::mapped_cost::MappedCost;
 use crate::gui::state::pair_set::PairSet;
 use crate::gui::state::requirements_page::RequirementsPage;
@@ -33,7 +33,7 @@ pub enum DisplayCommand {
     /// Selects the model that is drawn for every condition.
     ShowAcross(AcrossRole),
     /// Changes the assessed quantity or its representation.
-    Assess(AssessedFigures),
+    Assess(AssessmentDisplay),
     /// Shows a page of the Requirements view.
     ShowRequirements(RequirementsPage),
     /// Selects time responses to a test input (`true`) or to the inputs of the records.

@@ -170,17 +170,21 @@ fn kept_model_entries(id: ModelId, is_pinned: bool) -> [Entry; 3] {
     let name = format!("{} model {}", id.bundle, id.name);
     let ask = Command::Form(FormCommand::AskReason(id.clone()));
     let reject = Edit::Reject(id.clone());
-    let (representative, edit) = if is_pinned {
-        let edit = Edit::Unpin {
-            condition: id.condition,
-            bundle: id.bundle,
-        };
-        (
+    let representative = if is_pinned {
+        Entry::new(
             format!("Use the medoid as representative instead of {name}"),
-            edit,
+            "The medoid is the representative unless another model is chosen",
+            Edit::Unpin {
+                condition: id.condition,
+                bundle: id.bundle,
+            },
         )
     } else {
-        (format!("Use {name} as representative"), Edit::Pin(id))
+        Entry::new(
+            format!("Use {name} as representative"),
+            "Replaces the medoid as representative of the bundle",
+            Edit::Pin(id),
+        )
     };
     [
         Entry::new(
@@ -189,10 +193,6 @@ fn kept_model_entries(id: ModelId, is_pinned: bool) -> [Entry; 3] {
             reject,
         ),
         Entry::new(format!("Reject {name} with a reason…"), REASON, ask),
-        Entry::new(
-            representative,
-            "A chosen representative replaces the medoid",
-            edit,
-        ),
+        representative,
     ]
 }

@@ -15,7 +15,19 @@ use crate::gui::state::window_state::State;
 
 /// Returns the entries of the File menu.
 pub(super) fn file_entries(state: &State) -> Vec<Entry> {
-    let open = [
+    let export = export_entries().map(|entry| entry.enabled(state.analysis().is_some()));
+    let quit = [Entry::new("Quit", "Close the window", FileCommand::Quit).keys(CTRL, Key::Q)];
+    group(Menu::File, 0, open_entries())
+        .chain(group(Menu::File, 1, save_entries()))
+        .chain(group(Menu::File, 2, export))
+        .chain(group(Menu::File, 3, page_entries()))
+        .chain(group(Menu::File, 4, begin_entries(state)))
+        .chain(group(Menu::File, 5, quit))
+        .collect()
+}
+
+fn open_entries() -> [Entry; 5] {
+    [
         Entry::new(
             "Open…",
             "Choose a dataset or a study in the desktop's dialog",
@@ -43,8 +55,11 @@ pub(super) fn file_entries(state: &State) -> Vec<Entry> {
             "To the condition in their names, otherwise to the displayed condition",
             RecordsCommand::AskFiles,
         ),
-    ];
-    let save = [
+    ]
+}
+
+fn save_entries() -> [Entry; 2] {
+    [
         Entry::new(
             "Save study",
             "Write the study to its file",
@@ -57,8 +72,11 @@ pub(super) fn file_entries(state: &State) -> Vec<Entry> {
             FileCommand::AskSaveStudy,
         )
         .keys(CTRL_SHIFT, Key::S),
-    ];
-    let export = [
+    ]
+}
+
+fn export_entries() -> [Entry; 3] {
+    [
         Entry::new(
             "Export corrections…",
             "Write corrections.json, corrections.csv and assessment.csv",
@@ -75,9 +93,11 @@ pub(super) fn file_entries(state: &State) -> Vec<Entry> {
             "For MATLAB, Python, C or a lookup table; corrected models as state-space",
             Command::show_form(FormKind::ExportAs),
         ),
-    ];
-    let export = export.map(|entry| entry.enabled(state.analysis().is_some()));
-    let pages = [
+    ]
+}
+
+fn page_entries() -> [Entry; 2] {
+    [
         Entry::new(
             "Close",
             "Close the study and show the start page",
@@ -89,21 +109,17 @@ pub(super) fn file_entries(state: &State) -> Vec<Entry> {
             "Three ways to begin, and recent files",
             LayoutCommand::ShowStart(true),
         ),
-    ];
-    let begin = OpensWith::ALL.map(|choice| {
+    ]
+}
+
+/// Returns an entry for each content that the program may show at its start.
+fn begin_entries(state: &State) -> [Entry; 3] {
+    OpensWith::ALL.map(|choice| {
         Entry::new(
             choice.name(),
             "When the program is started without a file",
             LayoutCommand::BeginWith(choice),
         )
         .enabled(state.display.layout.opens_with != choice)
-    });
-    let quit = [Entry::new("Quit", "Close the window", FileCommand::Quit).keys(CTRL, Key::Q)];
-    group(Menu::File, 0, open)
-        .chain(group(Menu::File, 1, save))
-        .chain(group(Menu::File, 2, export))
-        .chain(group(Menu::File, 3, pages))
-        .chain(group(Menu::File, 4, begin))
-        .chain(group(Menu::File, 5, quit))
-        .collect()
+    })
 }

@@ -4,7 +4,7 @@ use gdcm_model::dataset::ModelId;
 use gdcm_study::Edit;
 
 use crate::gui::state::forms::FormKind;
-use crate::gui::state::notices::Bar;
+use crate::gui::state::notices::MessageBar;
 
 /// Shows, answers or closes a form or a message.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,7 +18,7 @@ pub enum FormCommand {
     /// Continues with the action that loses unsaved decisions.
     DiscardAndGoOn,
     /// Closes a message bar.
-    CloseBar(Bar),
+    CloseBar(MessageBar),
     /// Takes the decision requested by a form, and closes the form.
     DecideInForm(Edit),
     /// Asks for the reason for which a model is rejected.

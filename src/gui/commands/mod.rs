@@ -1,4 +1,8 @@
 //! Commands, and the table from which menus, keys and palette are made.
+//!
+//! `command.rs` joins the groups of commands, one file each; `gui/app/…_commands.rs` carries them
+//! out. `command_table.rs` lists them as entries (`entry.rs`) with names and keys, and
+//! `command_palette.rs` searches the list.
 
 pub mod assembling;
 pub mod command;

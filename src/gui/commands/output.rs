@@ -7,7 +7,7 @@ use gdcm_io::export::ExportFormat;
 use gdcm_plot::figure::{ColumnWidth, FigureFormat};
 use gdcm_words::Table;
 
-use crate::gui::state::tables::TableKind;
+use crate::gui::state::panel_tables::TableKind;
 use crate::gui::state::view::View;
 
 /// Copies a result to the clipboard, or writes it to a file.

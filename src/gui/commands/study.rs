@@ -10,7 +10,7 @@ pub enum StudyCommand {
     /// Completes the current decision, for example when a slider is released.
     EndEdit,
     Undo,
-    /// Removes a decision from the history if it is the last.
-    Forget(Edit),
     Redo,
+    /// Undoes a decision if it is the last, and removes it from the history.
+    Forget(Edit),
 }

@@ -10,7 +10,7 @@ use gdcm_study::decisions::signs::SignRole;
 use gdcm_study::results::couplings_assessment::CouplingCost;
 use gdcm_study::{ConditionAnalysis, CouplingCorrection, Edit, PhaseCorrection};
 
-use super::explanation::turn_entry;
+use super::sign_reversal::sign_reversal_entry;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::layout::LayoutCommand;
@@ -100,7 +100,7 @@ impl Advice {
     }
 
     fn reverse_channel(state: &State, channel: Channel) -> Self {
-        let (label, command) = turn_entry(state, channel, Some(SignRole::Identified));
+        let (label, command) = sign_reversal_entry(state, channel, Some(SignRole::Identified));
         Self {
             steps: vec![Step::new(label, command), Step::reasons("Why?")],
             note: "its sign seems reversed".to_owned(),
@@ -122,7 +122,7 @@ impl Advice {
     /// Recommends using worthwhile couplings, or removing couplings that are not worthwhile.
     fn on_couplings(state: &State) -> Option<Self> {
         let look = Step::new(
-            "View couplings",
+            "Inspect",
             Command::Layout(LayoutCommand::ShowView(View::Couplings)),
         );
         if let Some((assessment, cost)) = offered_couplings(state) {

@@ -3,12 +3,14 @@
 use egui::{Rect, RichText, Stroke, Ui};
 
 use gdcm_model::dataset::{Condition, ConditionId};
+use gdcm_model::number_format::counted;
 use gdcm_study::Edit;
 use gdcm_words::caution::failure_text;
 
 use crate::gui::commands::command::Command;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{entries_ui, painted_text};
+use crate::gui::widgets::controls::entries_ui;
+use crate::gui::widgets::painted_text::painted_text;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium, small};
 
 /// Open tasks of a condition, and its role in the schedule.
@@ -162,18 +164,22 @@ impl Marks {
 
     /// "3 suggested as outliers, not rejected".
     fn open_tasks(&self) -> Vec<String> {
-        let counted = [
-            (self.suggested, "suggested as outliers, not rejected"),
-            (self.unmatched_gains, "held gains not matched"),
-            (
-                self.unmatched_delays,
-                "held delays not matched (without those that need lead)",
-            ),
-        ];
-        counted
-            .into_iter()
-            .filter(|(count, _)| *count > 0)
-            .map(|(count, words)| format!("{count} {words}"))
-            .collect()
+        let mut tasks = Vec::new();
+        match self.suggested {
+            0 => {}
+            1 => tasks.push("1 suggested as an outlier, not rejected".to_owned()),
+            count => tasks.push(format!("{count} suggested as outliers, not rejected")),
+        }
+        if self.unmatched_gains > 0 {
+            let gains = counted(self.unmatched_gains, "held gain");
+            tasks.push(format!("{gains} not matched"));
+        }
+        if self.unmatched_delays > 0 {
+            let delays = counted(self.unmatched_delays, "held delay");
+            tasks.push(format!(
+                "{delays} not matched (without those that need lead)"
+            ));
+        }
+        tasks
     }
 }

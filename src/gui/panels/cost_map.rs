@@ -1,6 +1,6 @@
-//! Cost map: magnitude and phase part of J for every constrained response in every condition, as
-//! shades of a single hue. With couplings, a further column shows the mean over the other
-//! responses.
+//! Values of the cost map: magnitude and phase part of J for every constrained response in every
+//! condition. With couplings, a further column has the mean over the unconstrained responses.
+//! `condition_rows.rs` paints the values as shades.
 
 use gdcm_method::fidelity::Cost;
 use gdcm_model::dataset::{ConditionId, Pair};
@@ -17,38 +17,43 @@ const MOST_COLUMNS: usize = 8;
 /// unconstrained responses.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CostColumn {
+    /// Short heading, which the tooltips of the cells complete: the output of the response, the
+    /// input, or "off" for the unconstrained responses, most of which are off-axis.
     pub head: String,
     pub pairs: Vec<Pair>,
-    /// Whether the column shows the mean over its responses instead of the maximum.
+    /// Whether the column shows the mean over its responses instead of the maximum. Every
+    /// constrained response is to be matched, so the worst counts; the unconstrained responses are
+    /// judged as a whole.
     pub is_mean: bool,
 }
 
-/// Returns the columns of the constrained responses, and with couplings a column of the responses
-/// that the couplings improve.
+/// Returns the columns of the constrained responses; if the study requests couplings, also the
+/// column of the unconstrained responses, which couplings are meant to improve.
 pub fn columns(state: &State) -> Vec<CostColumn> {
-    let mut columns = held_columns(state);
+    let mut columns = constrained_columns(state);
     if state.study.settings.couplings != CouplingCorrection::None {
-        let others = state
+        let unconstrained = state
             .study
             .settings
             .constrained
             .iter()
-            .filter(|(_, is_held)| !**is_held);
+            .filter(|(_, is_constrained)| !**is_constrained);
         columns.push(CostColumn {
             head: "off".to_owned(),
-            pairs: others.map(|(pair, _)| pair).collect(),
+            pairs: unconstrained.map(|(pair, _)| pair).collect(),
             is_mean: true,
         });
     }
     columns
 }
 
-fn held_columns(state: &State) -> Vec<CostColumn> {
+/// Returns a column for each constrained response or, if there are too many, for each input.
+fn constrained_columns(state: &State) -> Vec<CostColumn> {
     let dataset = state.dataset();
-    let held: Vec<Pair> = state.study.settings.constrained.marked().collect();
+    let constrained: Vec<Pair> = state.study.settings.constrained.marked().collect();
     let mut columns = Vec::new();
-    if held.len() <= MOST_COLUMNS {
-        for pair in held {
+    if constrained.len() <= MOST_COLUMNS {
+        for pair in constrained {
             columns.push(CostColumn {
                 head: dataset.outputs()[pair.output].name.clone(),
                 pairs: vec![pair],
@@ -58,7 +63,7 @@ fn held_columns(state: &State) -> Vec<CostColumn> {
         return columns;
     }
     for (input, channel) in dataset.inputs().iter().enumerate() {
-        let pairs: Vec<Pair> = held
+        let pairs: Vec<Pair> = constrained
             .iter()
             .copied()
             .filter(|pair| pair.input == input)
@@ -77,16 +82,19 @@ fn held_columns(state: &State) -> Vec<CostColumn> {
 /// Returns J of a response in a condition, for the mapped correction; `None` without a result.
 pub fn cost_of(state: &State, condition: ConditionId, pair: Pair) -> Option<Cost> {
     let analysis = state.analysis()?;
-    if state.display.judging.mapped_cost == MappedCost::Scheduled {
-        let Ok(costs) = analysis.assessment.get(&condition)? else {
-            return None;
-        };
-        return costs[pair].map(|change| change.corrected);
-    }
-    let result = analysis.condition(condition)?;
     match state.display.judging.mapped_cost {
-        MappedCost::Before => result.before_couplings().representative.cost[pair],
-        _ => result.cost[pair].map(|change| change.corrected),
+        MappedCost::Before => {
+            let result = analysis.condition(condition)?;
+            result.before_couplings().representative.cost[pair]
+        }
+        MappedCost::Own => {
+            let result = analysis.condition(condition)?;
+            result.cost[pair].map(|change| change.corrected)
+        }
+        MappedCost::Scheduled => {
+            let costs = analysis.assessment.get(&condition)?.as_ref().ok()?;
+            costs[pair].map(|change| change.corrected)
+        }
     }
 }
 

@@ -1,28 +1,29 @@
-//! Forms in front of the window: export options, questions, record datasets, help.
+//! Forms in front of the window: draws the requested form. Short forms, such as questions, are
+//! here; the others are in `path_forms.rs`, `record_dataset_form.rs`, `keys_page.rs` and the
+//! command palette.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use egui::{Context, Id, Label, Modal, RichText, Role, ScrollArea, Ui};
+use egui::{Context, Id, Modal, RichText, Role, ScrollArea, Ui};
 
 use gdcm_io::files::export_contents::ExportContents;
 use gdcm_model::dataset::{Condition, ConditionId};
 use gdcm_study::Edit;
-use gdcm_study::decisions::differences::Difference;
-use gdcm_words::decisions::dataset_difference_text;
+use gdcm_study::decisions::dataset_differences::Difference;
+use gdcm_words::dataset_differences::dataset_difference_text;
 
-use super::form::{Form, contents_ui};
-use super::help::keys_page_ui;
+use super::form_parts::{Form, contents_ui};
+use super::keys_page::keys_page_ui;
 use super::path_forms::path_ui;
+use super::record_dataset_form::record_dataset_ui;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::command_palette::command_palette_ui;
 use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::output::OutputCommand;
-use crate::gui::commands::records::RecordsCommand;
 use crate::gui::state::forms::FormKind;
-use crate::gui::state::records::WantedDataset;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{is_entered, named_switch, text_field_ui};
+use crate::gui::widgets::controls::named_switch;
 use crate::gui::widgets::palette::Palette;
 
 /// Draws the requested form, if any. Its field has the focus when it opens; Enter submits the form;
@@ -246,90 +247,4 @@ fn reason_ui(form: &mut Form<'_, '_>, state: &mut State) {
         );
         form.cancel_ui(false);
     });
-}
-
-/// Maximum number of listed record columns.
-const MOST_COLUMNS: usize = 60;
-
-/// Draws the form for a new dataset from the open records: channels, band, path.
-fn record_dataset_ui(form: &mut Form<'_, '_>, wanted: &mut WantedDataset) {
-    form.title("Dataset from these records");
-    form.explain(
-        "For identification without a physics model. Separate channels by commas. If the file \
-        does not name unit and column, add them: q [rad/s]=gyro_y, or =#3 for the third column.",
-    );
-    form.ui.add_space(4.0);
-    let mut entered = false;
-    form.line(|form| {
-        form.labelled("inputs");
-        let hint = "LON, LAT, or M [N m]=moment";
-        entered |= form.text_ui("Inputs of the dataset", &mut wanted.inputs, hint);
-    });
-    form.line(|form| {
-        form.labelled("outputs");
-        let name = "Outputs of the dataset";
-        entered |= wide_field_ui(
-            form.ui,
-            name,
-            &mut wanted.outputs,
-            "P, Q, or q [rad/s]=gyro_y",
-        );
-    });
-    form.line(|form| {
-        form.labelled("file");
-        let name = "Path of the dataset of records";
-        entered |= wide_field_ui(form.ui, name, &mut wanted.path, "path of a .json.gz file");
-    });
-    form.line(|form| {
-        form.labelled("band");
-        let names = [
-            "Lower end of the band to identify",
-            "Upper end of the band to identify",
-        ];
-        for (name, end) in names.iter().zip(&mut wanted.band) {
-            text_field_ui(form.ui, name, end, "rad/s", 60.0);
-        }
-        form.explain("rad/s");
-    });
-    let columns = column_words(&wanted.columns);
-    ScrollArea::vertical()
-        .id_salt("columns of the records")
-        .max_height(96.0)
-        .show(form.ui, |ui| {
-            ui.add(Label::new(form.palette.small(columns)).wrap());
-        });
-    for problem in &wanted.problems {
-        form.ui
-            .add(Label::new(form.palette.small_warning(problem)).wrap());
-    }
-    let is_ready = [&wanted.inputs, &wanted.outputs, &wanted.path]
-        .iter()
-        .all(|text| !text.trim().is_empty());
-    form.line(|form| {
-        form.submit_ui(
-            "Make the dataset",
-            is_ready,
-            entered,
-            Some(RecordsCommand::MakeDataset.into()),
-        );
-        form.cancel_ui(false);
-    });
-}
-
-/// Draws a text field that extends to the end of the line; returns whether Enter was pressed in it.
-fn wide_field_ui(ui: &mut Ui, name: &str, text: &mut String, hint: &str) -> bool {
-    let width = ui.available_width() - 8.0;
-    let field = text_field_ui(ui, name, text, hint, width);
-    is_entered(ui, &field)
-}
-
-/// "columns: time, gyro_x, gyro_y, and 12 more".
-fn column_words(columns: &[String]) -> String {
-    let shown = &columns[..columns.len().min(MOST_COLUMNS)];
-    let mut words = format!("columns: {}", shown.join(", "));
-    let more = columns.len() - shown.len();
-    if more > 0 {
-        words.push_str(&format!(", and {more} more"));
-    }
-    words
 }

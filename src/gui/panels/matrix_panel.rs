@@ -1,44 +1,37 @@
-//! Constraint matrix: every response with G, D and J, constrained or free.
+//! Constraint matrix: the channel names and the cells of all responses; outputs are rows, inputs
+//! are columns. `matrix_cell.rs` draws a cell.
 
-use egui::{
-    Align2, Color32, FontId, Key, Pos2, Rect, Response, RichText, Role, ScrollArea, Sense, Stroke,
-    StrokeKind, Ui, WidgetInfo, pos2, vec2,
-};
+use std::collections::BTreeSet;
+
+use egui::{Align2, Pos2, Rect, ScrollArea, Sense, Ui, pos2, vec2};
 
 use gdcm_method::correction::Channel;
-use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::Pair;
-use gdcm_model::number_format::decimals;
-use gdcm_model::units::s_to_ms;
-use gdcm_study::decisions::signs::SignRole;
-use gdcm_study::results::caution::Undefined;
-use gdcm_study::{ConditionAnalysis, Edit};
-use gdcm_words::ExplainTarget;
-use gdcm_words::caution::undefined_text;
+use gdcm_study::ConditionAnalysis;
 
-use super::explanation::{gain_conflict_marks, question_menu_ui, turn_entry};
-use super::response_card::{card_grid_ui, is_not_reduced};
+use super::matrix_cell::Cell;
 use super::table_menu::table_menu_ui;
 use crate::gui::commands::command::Command;
-use crate::gui::commands::selection::SelectionCommand;
-use crate::gui::state::results::Sureness;
-use crate::gui::state::tables::TableKind;
+use crate::gui::state::panel_tables::TableKind;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::choices::check_ui;
-use crate::gui::widgets::controls::{entries_ui, named_switch, painted_text};
-use crate::gui::widgets::focus::{Region, region_ui};
+use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium, small};
+use crate::gui::widgets::window_regions::{Region, region_ui};
 
-/// Minimum and maximum cell height \[pt\].
-const CELL_HEIGHTS: [f32; 2] = [34.0, 44.0];
+/// Height of the title line \[pt\].
+const TITLE_HEIGHT: f32 = 20.0;
+/// Minimum cell height \[pt\].
+const LEAST_CELL_HEIGHT: f32 = 34.0;
+/// Maximum cell height \[pt\].
+const MOST_CELL_HEIGHT: f32 = 44.0;
 /// Gap between two cells \[pt\].
 const GAP: f32 = 3.0;
+/// Minimum distance between the left edges of two cells \[pt\].
 const LEAST_CELL_WIDTH: f32 = 58.0;
+/// Width of the output names beside the rows \[pt\].
 const ROW_LABEL_WIDTH: f32 = 28.0;
+/// Height of the input names above the columns \[pt\].
 const HEADER_HEIGHT: f32 = 20.0;
-const LOCK_SIZE: f32 = 13.0;
-/// J at which an underline spans its cell.
-const FULL_COST: f64 = 60.0;
 
 /// Draws every response as a cell, within a height of `room` points. A click on the cell shows the
 /// response in the large plot; a click on its box, a double click or the space bar constrains or
@@ -50,7 +43,8 @@ pub fn matrix_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let (rect, heading) = ui.allocate_exact_size(vec2(ui.available_width(), 20.0), Sense::hover());
+    let (rect, heading) =
+        ui.allocate_exact_size(vec2(ui.available_width(), TITLE_HEIGHT), Sense::hover());
     painted_text(
         ui,
         rect,
@@ -62,10 +56,10 @@ pub fn matrix_ui(
     key_ui(ui, rect, palette);
     table_menu_ui(ui, &heading, TableKind::Matrix, commands);
     let outputs = state.dataset().outputs().len();
-    let pitch = (room - 20.0 - HEADER_HEIGHT) / outputs as f32;
+    let pitch = (room - TITLE_HEIGHT - HEADER_HEIGHT) / outputs as f32;
     let grid = CellGrid {
-        room: room - 20.0,
-        cell_height: (pitch - GAP).clamp(CELL_HEIGHTS[0], CELL_HEIGHTS[1]),
+        room: room - TITLE_HEIGHT,
+        cell_height: (pitch - GAP).clamp(LEAST_CELL_HEIGHT, MOST_CELL_HEIGHT),
     };
     region_ui(ui, Region::Matrix, |ui| {
         grid.ui(ui, state, palette, commands)
@@ -81,7 +75,7 @@ fn key_ui(ui: &Ui, row: Rect, palette: &Palette) {
         ("before", palette.quiet_mark),
     ] {
         let upto = row.with_max_x(right);
-        let place = painted_text(ui, upto, -0.01, words, small(), palette.dim_text);
+        let place = painted_text(ui, upto, AT_RIGHT_END, words, small(), palette.dim_text);
         let mark = Rect::from_center_size(pos2(place.left() - 9.0, row.center().y), vec2(9.0, 3.0));
         ui.painter().rect_filled(mark, 1.5, color);
         right = mark.left() - 10.0;
@@ -90,7 +84,7 @@ fn key_ui(ui: &Ui, row: Rect, palette: &Palette) {
         painted_text(
             ui,
             row.with_max_x(right),
-            -0.01,
+            AT_RIGHT_END,
             "J",
             small(),
             palette.dim_text,
@@ -106,31 +100,35 @@ struct CellGrid {
 }
 
 impl CellGrid {
+    /// Draws channel names and cells. A matrix larger than the available space scrolls separately,
+    /// so that verdict and export keep their places.
     fn ui(&self, ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
         let outputs = state.dataset().outputs();
         let inputs = state.dataset().inputs();
-        let width = ((ui.available_width() - ROW_LABEL_WIDTH + GAP) / inputs.len() as f32)
+        let column_pitch = ((ui.available_width() - ROW_LABEL_WIDTH + GAP) / inputs.len() as f32)
             .max(LEAST_CELL_WIDTH);
-        let pitch = self.cell_height + GAP;
+        let row_pitch = self.cell_height + GAP;
         let size = vec2(
-            ROW_LABEL_WIDTH + width * inputs.len() as f32 - GAP,
-            HEADER_HEIGHT + pitch * outputs.len() as f32,
+            ROW_LABEL_WIDTH + column_pitch * inputs.len() as f32 - GAP,
+            HEADER_HEIGHT + row_pitch * outputs.len() as f32,
         );
         let (in_conflict, blamed) = state.shown().map(gain_conflict_marks).unwrap_or_default();
         let focus = state.display.selection.pair;
-        // A matrix larger than the available space scrolls separately, so that verdict and export
-        // keep their places.
         ScrollArea::both()
             .id_salt("constraint matrix")
             .max_height(self.room)
             .show(ui, |ui| {
                 let (area, _) = ui.allocate_exact_size(size, Sense::hover());
+                let places = CellPlaces {
+                    area,
+                    column_pitch,
+                    row_pitch,
+                    cell_height: self.cell_height,
+                };
                 for (input, channel) in inputs.iter().enumerate() {
-                    let x =
-                        area.left() + ROW_LABEL_WIDTH + width * input as f32 + 0.5 * (width - GAP);
                     ChannelName {
                         name: &channel.name,
-                        place: pos2(x, area.top() + 0.5 * HEADER_HEIGHT),
+                        place: places.input_name(input),
                         align: Align2::CENTER_CENTER,
                         is_blamed: blamed.contains(&Channel::Input(input)),
                         is_focused: input == focus.input,
@@ -138,30 +136,65 @@ impl CellGrid {
                     .paint(ui, palette);
                 }
                 for (output, channel) in outputs.iter().enumerate() {
-                    let top = area.top() + HEADER_HEIGHT + pitch * output as f32;
                     ChannelName {
                         name: &channel.name,
-                        place: pos2(
-                            area.left() + ROW_LABEL_WIDTH - 8.0,
-                            top + 0.5 * self.cell_height,
-                        ),
+                        place: places.output_name(output),
                         align: Align2::RIGHT_CENTER,
                         is_blamed: blamed.contains(&Channel::Output(output)),
                         is_focused: output == focus.output,
                     }
                     .paint(ui, palette);
                     for input in 0..inputs.len() {
-                        let left = area.left() + ROW_LABEL_WIDTH + width * input as f32;
-                        let rect = Rect::from_min_size(
-                            pos2(left, top),
-                            vec2(width - GAP, self.cell_height),
-                        );
                         let pair = Pair { output, input };
-                        Cell::new(state, pair, in_conflict.contains(&pair))
-                            .ui(ui, rect, palette, commands);
+                        Cell::new(state, pair, in_conflict.contains(&pair)).ui(
+                            ui,
+                            places.cell(pair),
+                            palette,
+                            commands,
+                        );
                     }
                 }
             });
+    }
+}
+
+/// Places of cells and names on the screen; outputs are rows, inputs are columns.
+struct CellPlaces {
+    /// Area of all cells with the names above and beside them.
+    area: Rect,
+    /// Distance between the left edges of two cells \[pt\].
+    column_pitch: f32,
+    /// Distance between the upper edges of two cells \[pt\].
+    row_pitch: f32,
+    cell_height: f32,
+}
+
+impl CellPlaces {
+    fn left(&self, input: usize) -> f32 {
+        self.area.left() + ROW_LABEL_WIDTH + self.column_pitch * input as f32
+    }
+
+    fn top(&self, output: usize) -> f32 {
+        self.area.top() + HEADER_HEIGHT + self.row_pitch * output as f32
+    }
+
+    fn cell(&self, pair: Pair) -> Rect {
+        Rect::from_min_size(
+            pos2(self.left(pair.input), self.top(pair.output)),
+            vec2(self.column_pitch - GAP, self.cell_height),
+        )
+    }
+
+    /// Centre of an input name.
+    fn input_name(&self, input: usize) -> Pos2 {
+        let center = self.left(input) + 0.5 * (self.column_pitch - GAP);
+        pos2(center, self.area.top() + 0.5 * HEADER_HEIGHT)
+    }
+
+    /// Right end of an output name.
+    fn output_name(&self, output: usize) -> Pos2 {
+        let right = self.area.left() + ROW_LABEL_WIDTH - 8.0;
+        pos2(right, self.top(output) + 0.5 * self.cell_height)
     }
 }
 
@@ -194,335 +227,15 @@ impl ChannelName<'_> {
     }
 }
 
-struct Cell<'a> {
-    pair: Pair,
-    name: String,
-    focused: bool,
-    constrained: bool,
-    fitted: bool,
-    /// Whether the gain constraint of the response conflicts with others.
-    in_conflict: bool,
-    shown: Option<&'a ConditionAnalysis>,
-    state: &'a State,
-    sureness: Sureness<'a>,
-}
-
-impl<'a> Cell<'a> {
-    fn new(state: &'a State, pair: Pair, in_conflict: bool) -> Self {
-        Self {
-            pair,
-            name: state.dataset().pair_name(pair),
-            focused: state.display.selection.pair == pair,
-            constrained: state.study.settings.constrained[pair],
-            fitted: !state.study.settings.ignored[pair],
-            in_conflict,
-            shown: state.shown(),
-            state,
-            sureness: state.sureness(),
-        }
+/// Returns the responses and channels of conflicting gain constraints, and the channels whose sign
+/// or unit is doubtful.
+pub fn gain_conflict_marks(shown: &ConditionAnalysis) -> (BTreeSet<Pair>, BTreeSet<Channel>) {
+    let mut pairs = BTreeSet::new();
+    let mut channels = BTreeSet::new();
+    for conflict in &shown.gains.conflicts {
+        pairs.extend(conflict.entries.iter().copied());
+        channels.extend(conflict.channels());
     }
-
-    /// Returns the reason why G is undefined; `None` if it is defined, or without a result.
-    fn undefined(&self) -> Option<Undefined> {
-        self.shown?.comparison.undefined[self.pair]
-    }
-
-    fn ui(&self, ui: &mut Ui, rect: Rect, palette: &Palette, commands: &mut Vec<Command>) {
-        let response = ui.interact(
-            rect,
-            ui.scope_id().with(("cell", self.pair)),
-            Sense::click(),
-        );
-        let response = named_switch(
-            response,
-            Role::Button,
-            self.focused,
-            format!("Response {}", self.name),
-        );
-        if response.gained_focus() {
-            response.scroll_to_me(None);
-        }
-        let is_pointed = response.contains_pointer() || response.has_focus();
-        self.paint(ui, rect, is_pointed, palette);
-        let lock = self.lock_ui(ui, rect, is_pointed, palette);
-        let space = response.has_focus() && ui.input(|input| input.key_pressed(Key::Space));
-        if lock.clicked() || response.double_clicked() || space {
-            if self.constrained || self.undefined().is_none() {
-                commands.push(Edit::Hold(self.pair, !self.constrained).into());
-            }
-        } else if response.clicked() {
-            commands.push(SelectionCommand::FocusPair(self.pair).into());
-        }
-        response.context_menu(|ui| self.menu_ui(ui, commands));
-        response.on_hover_ui(|ui| self.tooltip_ui(ui, palette));
-    }
-
-    /// Draws the box that constrains or releases the response, at the end of the G line; visible
-    /// under the pointer.
-    fn lock_ui(&self, ui: &mut Ui, rect: Rect, is_pointed: bool, palette: &Palette) -> Response {
-        let corner = rect.right_top() + vec2(-LOCK_SIZE, 1.0);
-        let place = Rect::from_min_size(corner, vec2(LOCK_SIZE, LOCK_SIZE));
-        let response = ui.interact(
-            place.expand(2.0),
-            ui.scope_id().with(("hold", self.pair)),
-            Sense::click(),
-        );
-        let name = format!("Hold {}", self.name);
-        response.widget_info(|| {
-            WidgetInfo::selected(
-                Role::CheckBox,
-                self.undefined().is_none(),
-                self.constrained,
-                &name,
-            )
-        });
-        if !(is_pointed || response.contains_pointer() || response.has_focus()) {
-            return response;
-        }
-        let square = place.shrink(2.0);
-        if self.constrained {
-            ui.painter().rect_filled(square, 2.0, palette.accent);
-            let stroke = Stroke::new(1.6, palette.on_accent());
-            let tick = [
-                square.left_center() + vec2(2.0, 0.3),
-                square.center() + vec2(-0.7, 2.4),
-                square.right_top() + vec2(-1.8, 2.6),
-            ];
-            ui.painter().line(tick.to_vec(), stroke);
-        } else if self.undefined().is_none() {
-            ui.painter().rect_stroke(
-                square,
-                2.0,
-                Stroke::new(1.0, palette.text),
-                StrokeKind::Inside,
-            );
-        }
-        let hint = if let Some(why) = self.undefined() {
-            format!("{} cannot be held: {}", self.name, undefined_text(why))
-        } else if self.constrained {
-            "Held: net gain exact, delay as far as possible; click to release".to_owned()
-        } else {
-            "Free; click to hold the net gain exactly, the delay as far as possible".to_owned()
-        };
-        response.on_hover_text(hint)
-    }
-
-    fn paint(&self, ui: &Ui, rect: Rect, is_pointed: bool, palette: &Palette) {
-        let painter = ui.painter();
-        let fill = if self.constrained {
-            palette.selected
-        } else if is_pointed {
-            palette.raised
-        } else {
-            Color32::TRANSPARENT
-        };
-        let outline = if self.focused {
-            Stroke::new(2.0, palette.accent)
-        } else if self.in_conflict {
-            Stroke::new(2.0, palette.warning)
-        } else if self.constrained {
-            Stroke::new(1.0, Color32::TRANSPARENT)
-        } else {
-            Stroke::new(1.0, palette.line)
-        };
-        painter.rect(rect, 4.0, fill, outline, StrokeKind::Inside);
-        self.paint_values(ui, rect, is_pointed, palette);
-    }
-
-    /// Paints G above D \[ms\], each with the half-width of its error bar and its part of J as an
-    /// underline.
-    fn paint_values(&self, ui: &Ui, rect: Rect, is_pointed: bool, palette: &Palette) {
-        let Some(shown) = self.shown else { return };
-        let gain = shown.wanted_gain(self.pair);
-        let delay_s = shown.wanted_delay_s(self.pair);
-        let (Some(gain), Some(delay_s)) = (gain, delay_s) else {
-            let nothing = matches!(self.undefined(), Some(Undefined::NumericallyNothing(_)));
-            let words = if nothing { "nothing" } else { "no G" };
-            ui.painter().text(
-                rect.center(),
-                Align2::CENTER_CENTER,
-                words,
-                small(),
-                palette.dim_text,
-            );
-            return;
-        };
-        let change = shown.cost[self.pair];
-        let gain_half = self.sureness.half(Scalar::Gain(self.pair));
-        let delay_half = self.sureness.half(shown.wanted_delay(self.pair));
-        let middle = rect.top() + 0.5 * rect.height();
-        let upper = CellValue {
-            half: rect.with_max_y(middle),
-            text: decimals(gain, 2),
-            font: medium(BODY_SIZE),
-            bar: gain_half.map(|half| format!("±{:.0}", 100.0 * half)),
-            underline: change.map(|change| CostParts {
-                before: change.uncorrected.magnitude,
-                after: change.corrected.magnitude,
-            }),
-            end_room: if is_pointed { LOCK_SIZE } else { 6.0 },
-        };
-        let lower = CellValue {
-            half: rect.with_min_y(middle - 1.0),
-            text: decimals(s_to_ms(delay_s), 0),
-            font: small(),
-            bar: delay_half.map(|half| format!("±{:.0}", s_to_ms(half))),
-            underline: change.map(|change| CostParts {
-                before: change.uncorrected.phase,
-                after: change.corrected.phase,
-            }),
-            end_room: 6.0,
-        };
-        let color = if self.fitted {
-            palette.text
-        } else {
-            palette.quiet_text
-        };
-        upper.paint(ui, color, palette);
-        lower.paint(ui, color, palette);
-    }
-
-    fn menu_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        let hold = format!("Hold {} exactly", self.name);
-        if let Some(is_on) = check_ui(ui, self.constrained, hold, "") {
-            commands.push(Edit::Hold(self.pair, is_on).into());
-            ui.close();
-        }
-        let fit = format!("Include {} in the objective", self.name);
-        if let Some(is_on) = check_ui(ui, self.fitted, fit, "") {
-            commands.push(Edit::Fit(self.pair, is_on).into());
-            ui.close();
-        }
-        entries_ui(
-            ui,
-            [(
-                "Hold only the on-axis responses",
-                Edit::ConstrainOnAxis.into(),
-            )],
-            commands,
-        );
-        let turns = Channel::of(self.pair).map(|channel| self.turn(channel));
-        entries_ui(ui, turns, commands);
-        if let Some(shown) = self.shown
-            && self.undefined().is_none()
-        {
-            let id = shown.condition.id();
-            let pair = self.pair;
-            let values = [
-                ("G", ExplainTarget::DeltaGain(id, pair)),
-                ("D", ExplainTarget::DeltaDelay(id, pair)),
-                ("Net gain", ExplainTarget::NetGain(id, pair)),
-                ("Net delay", ExplainTarget::NetDelay(id, pair)),
-                ("J before", ExplainTarget::CostBefore(id, pair)),
-                ("J after", ExplainTarget::CostAfter(id, pair)),
-            ];
-            question_menu_ui(
-                ui,
-                values.map(|(name, asked)| (name.to_owned(), asked)).into(),
-                commands,
-            );
-        }
-    }
-
-    /// Returns the menu entry that reverses the identified sign of a channel, or restores it.
-    fn turn(&self, channel: Channel) -> (String, Command) {
-        let is_turned = self.state.study.signs.contains_key(&channel);
-        let role = if is_turned {
-            None
-        } else {
-            Some(SignRole::Identified)
-        };
-        turn_entry(self.state, channel, role)
-    }
-
-    /// Draws four aligned rows. The derivation of every value is in the submenu
-    /// [`QUESTION`](crate::gui::widgets::controls::QUESTION) of the cell's menu.
-    fn tooltip_ui(&self, ui: &mut Ui, palette: &Palette) {
-        let held = if self.constrained { "held" } else { "free" };
-        let ignored = if self.fitted {
-            ""
-        } else {
-            ", ignored in the objective"
-        };
-        ui.label(RichText::new(format!("{}, {held}{ignored}", self.name)).font(medium(BODY_SIZE)));
-        if let Some(why) = self.undefined() {
-            ui.label(format!("No G, no D and no J: {}", undefined_text(why)));
-            return;
-        }
-        card_grid_ui(ui, self.state, self.pair, palette);
-    }
-}
-
-/// Magnitude or phase part of J, before and after the correction.
-struct CostParts {
-    before: f64,
-    after: f64,
-}
-
-/// Value in the upper or lower half of a cell.
-struct CellValue {
-    half: Rect,
-    text: String,
-    font: FontId,
-    /// Half-width of the error bar: "±12".
-    bar: Option<String>,
-    underline: Option<CostParts>,
-    /// Space reserved at the right end \[pt\].
-    end_room: f32,
-}
-
-impl CellValue {
-    fn paint(self, ui: &Ui, color: Color32, palette: &Palette) {
-        let mut line = self.half.shrink2(vec2(6.0, 0.0));
-        line.max.x = self.half.right() - self.end_room;
-        let line = line.translate(vec2(0.0, -1.5));
-        let value = painted_text(ui, line, 0.0, &self.text, self.font, color);
-        if let Some(bar) = self.bar {
-            let galley = ui.painter().layout_no_wrap(bar, small(), palette.dim_text);
-            // A three-digit half-width does not fit beside a three-digit value; both are in the
-            // tooltip and in the card.
-            let place = pos2(
-                line.right() - galley.size().x,
-                line.center().y - 0.5 * galley.size().y,
-            );
-            if place.x > value.right() {
-                ui.painter().galley(place, galley, palette.dim_text);
-            }
-        }
-        if let Some(parts) = self.underline {
-            underline(ui, self.half, parts, palette);
-        }
-    }
-}
-
-/// Paints the part of J before the correction (pale) and after it (orange if a part above 1 has not
-/// decreased by at least 0.1).
-fn underline(ui: &Ui, half: Rect, parts: CostParts, palette: &Palette) {
-    paint_cost_bar(ui, half, parts.before, palette.quiet_mark);
-    let after_color = if is_not_reduced(parts.before, parts.after) {
-        palette.warning
-    } else {
-        palette.text
-    };
-    paint_cost_bar(ui, half, parts.after, after_color);
-}
-
-/// Paints a bar whose length is proportional to the cost; a tip at its end marks a cost beyond
-/// [`FULL_COST`].
-fn paint_cost_bar(ui: &Ui, half: Rect, cost: f64, color: Color32) {
-    let y = half.bottom() - 2.5;
-    let room = half.width() - 8.0;
-    let part = (cost / FULL_COST).clamp(0.0, 1.0) as f32;
-    let place = Rect::from_min_size(pos2(half.left() + 4.0, y), vec2(part * room, 2.5));
-    ui.painter().rect_filled(place, 1.0, color);
-    if cost > FULL_COST {
-        let tip = pos2(place.right(), y + 1.25);
-        let points = vec![
-            tip + vec2(0.0, -2.8),
-            tip + vec2(3.0, 0.0),
-            tip + vec2(0.0, 2.8),
-        ];
-        ui.painter()
-            .add(egui::Shape::convex_polygon(points, color, Stroke::NONE));
-    }
+    channels.extend(shown.doubts.iter().map(|doubt| doubt.channel));
+    (pairs, channels)
 }

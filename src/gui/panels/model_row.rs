@@ -1,90 +1,26 @@
 //! Row in the list of a bundle: box, star, trim or name, discontinuity ratio or order.
 
-use std::collections::BTreeMap;
-
 use egui::{Checkbox, Grid, Rect, RichText, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
 use gdcm_method::fidelity::SUGGESTION_RATIO;
 use gdcm_model::dataset::model::Origin;
 use gdcm_model::dataset::{BundleKind, Model, ModelId};
-use gdcm_model::number_format::compact;
 use gdcm_study::{ConditionAnalysis, Edit};
 use gdcm_words::caution::caution_text;
 use gdcm_words::derivation::ExplainTarget;
 
-use super::explanation::question_menu_ui;
+use super::derivation_sheet::question_menu_ui;
+use super::trim_columns::{TRIM_ENDS, TrimColumns, trim_words};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::output::OutputCommand;
 use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{
-    Asks, ROW_HEIGHT, elided_among, entries_ui, named, named_switch, painted_text, row_text,
-};
+use crate::gui::widgets::controls::{Asks, entries_ui, named, named_switch};
+use crate::gui::widgets::elision::elided_among;
+use crate::gui::widgets::list_row::ROW_HEIGHT;
+use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text, row_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium};
-
-/// Right edges of the trim columns \[pt from the row's left edge\].
-pub(super) const TRIM_ENDS: [f32; 3] = [70.0, 114.0, 154.0];
-
-/// Trim coordinates that have a column each.
-pub(super) struct TrimColumns {
-    keys: Vec<String>,
-    pub(super) heads: Vec<String>,
-}
-
-impl TrimColumns {
-    /// Creates the columns; `None` if a model has no trim, if there are no coordinates, or if there
-    /// are more coordinates than columns.
-    pub(super) fn new(models: &[Model]) -> Option<Self> {
-        let mut keys: Vec<String> = Vec::new();
-        for model in models {
-            for key in model.perturbation()?.keys() {
-                if !keys.contains(key) {
-                    keys.push(key.clone());
-                }
-            }
-        }
-        if keys.is_empty() || keys.len() > TRIM_ENDS.len() {
-            return None;
-        }
-        let heads = keys.iter().map(|key| trim_head(key)).collect();
-        Some(Self { keys, heads })
-    }
-
-    /// Returns the offsets of a model, "·" for zero; `None` if all are zero.
-    fn offsets(&self, model: &Model) -> Option<Vec<String>> {
-        let trim = model.perturbation()?;
-        if trim.values().all(|offset| *offset == 0.0) {
-            return None;
-        }
-        let mut offsets = Vec::new();
-        for key in &self.keys {
-            offsets.push(match trim.get(key) {
-                Some(offset) if *offset != 0.0 => signed_compact(*offset),
-                _ => "·".to_owned(),
-            });
-        }
-        Some(offsets)
-    }
-}
-
-/// Returns a short heading: "V kt" for "airspeed_kt".
-fn trim_head(key: &str) -> String {
-    match key {
-        "airspeed_kt" => "V kt".to_owned(),
-        "rate_of_climb_fpm" => "climb".to_owned(),
-        "roll_deg" => "roll °".to_owned(),
-        "pitch_deg" => "pitch °".to_owned(),
-        "yaw_deg" | "heading_deg" => "yaw °".to_owned(),
-        other => other
-            .split('_')
-            .next()
-            .unwrap_or(other)
-            .chars()
-            .take(6)
-            .collect(),
-    }
-}
 
 /// Discontinuity ratio at which the bar has its full length.
 const FULL_RATIO: f64 = 4.0;
@@ -114,13 +50,18 @@ impl<'a> Neighbours<'a> {
     }
 }
 
+/// Model of the displayed condition, as its row shows it.
 pub(super) struct ModelRow<'a> {
     id: ModelId,
     model: &'a Model,
     shown: Neighbours<'a>,
+    /// Whether the model is not rejected.
     kept: bool,
+    /// Whether the engineer chose the model as representative.
     pinned: bool,
+    /// Whether the model is the representative: the chosen model, or else the medoid.
     represents: bool,
+    /// Whether the pointer is over the model, here or in a plot.
     pointed: bool,
     /// Mean distance to the other kept models.
     score: Option<f64>,
@@ -317,7 +258,11 @@ impl<'a> ModelRow<'a> {
             Edit::Pin(self.id.clone())
         };
         response.asks(edit, commands);
-        let hint = if !can_represent {
+        response.on_hover_text(self.star_hint(can_represent));
+    }
+
+    fn star_hint(&self, can_represent: bool) -> &'static str {
+        if !can_represent {
             "Cannot be the representative: rejected or set aside"
         } else if self.pinned && self.set_aside.is_some() {
             "Chosen as representative, but set aside; click to use the medoid"
@@ -327,8 +272,7 @@ impl<'a> ModelRow<'a> {
             "Representative (medoid); click to keep it as representative"
         } else {
             "Click to use as representative"
-        };
-        response.on_hover_text(hint);
+        }
     }
 
     /// Paints "set aside", the discontinuity ratio with its bar, or the order ("measured" without
@@ -398,7 +342,7 @@ impl<'a> ModelRow<'a> {
                 palette.text
             };
             let upto = rect.with_max_x(rect.left() + end);
-            let place = painted_text(ui, upto, -0.01, offset, body(), color);
+            let place = painted_text(ui, upto, AT_RIGHT_END, offset, body(), color);
             if !self.kept && offset != "·" {
                 ui.painter()
                     .hline(place.x_range(), place.center().y, Stroke::new(1.0, color));
@@ -428,7 +372,7 @@ impl<'a> ModelRow<'a> {
     }
 
     /// Draws the name above at most five aligned rows. The derivation of every value is in the
-    /// submenu [`QUESTION`](crate::gui::widgets::controls::QUESTION) of the row's menu.
+    /// submenu [`QUESTION`](crate::gui::plot::questions::QUESTION) of the row's menu.
     fn tooltip_ui(&self, ui: &mut Ui, palette: &Palette) {
         ui.label(RichText::new(&self.model.name).font(medium(BODY_SIZE)));
         Grid::new("model")
@@ -474,25 +418,6 @@ impl<'a> ModelRow<'a> {
     fn is_suspect(&self) -> bool {
         self.ratio.is_some_and(|ratio| ratio > SUGGESTION_RATIO)
     }
-}
-
-/// "airspeed_kt +5, roll_deg −3".
-fn trim_words(trim: &BTreeMap<String, f64>) -> String {
-    let offsets = trim.iter().filter(|(_, offset)| **offset != 0.0);
-    let offsets: Vec<String> = offsets
-        .map(|(name, offset)| format!("{name} {}", signed_compact(*offset)))
-        .collect();
-    if offsets.is_empty() {
-        "no perturbation".to_owned()
-    } else {
-        offsets.join(", ")
-    }
-}
-
-/// "+5", "−3".
-fn signed_compact(value: f64) -> String {
-    let sign = if value > 0.0 { "+" } else { "" };
-    format!("{sign}{}", compact(value))
 }
 
 /// Returns the identification method; `None` for other models.

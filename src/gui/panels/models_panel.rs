@@ -6,15 +6,18 @@ use gdcm_method::fidelity::SUGGESTION_RATIO;
 use gdcm_model::dataset::{BundleKind, Model};
 use gdcm_study::Edit;
 
-use super::model_row::{ModelRow, Neighbours, TRIM_ENDS, TrimColumns, method};
+use super::model_row::{ModelRow, Neighbours, method};
 use super::table_menu::{TableHeading, table_menu_ui};
+use super::trim_columns::{TRIM_ENDS, TrimColumns};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
-use crate::gui::state::tables::TableKind;
+use crate::gui::state::panel_tables::TableKind;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{Asks, ROW_HEIGHT, chevron, named, named_switch, painted_text};
-use crate::gui::widgets::focus::{Region, region_ui};
+use crate::gui::widgets::controls::{Asks, named, named_switch};
+use crate::gui::widgets::list_row::ROW_HEIGHT;
+use crate::gui::widgets::painted_text::{AT_RIGHT_END, chevron, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium, small};
+use crate::gui::widgets::window_regions::{Region, region_ui};
 
 /// Draws the bundles of the displayed condition in the left panel: the physics models above, the
 /// identified models in a foldable part below.
@@ -162,10 +165,10 @@ fn fold_ui(
     if let Some(order) = order {
         words = format!("order {order} · {words}");
     }
-    let place = painted_text(ui, row, -0.01, &words, small(), palette.dim_text);
+    let place = painted_text(ui, row, AT_RIGHT_END, &words, small(), palette.dim_text);
     if order.is_some() {
         let star = row.with_max_x(place.left() - 3.0);
-        painted_text(ui, star, -0.01, "★", small(), palette.identified);
+        painted_text(ui, star, AT_RIGHT_END, "★", small(), palette.identified);
     }
     table_menu_ui(
         ui,
@@ -227,7 +230,7 @@ fn heads_ui(ui: &mut Ui, trims: Option<&TrimColumns>, palette: &Palette) {
     if let Some(trims) = trims {
         for (head, end) in trims.heads.iter().zip(TRIM_ENDS) {
             let upto = row.with_max_x(row.left() + end);
-            painted_text(ui, upto, -0.01, head, small(), palette.dim_text);
+            painted_text(ui, upto, AT_RIGHT_END, head, small(), palette.dim_text);
         }
     }
     painted_text(ui, row, -1.0, "discontinuity", small(), palette.dim_text);

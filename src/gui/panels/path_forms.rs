@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use gdcm_io::export::{EXPORTERS, ExportRequest, export_contents};
 use gdcm_plot::figure::ColumnWidth;
 
-use super::form::{Form, contents_ui};
+use super::form_parts::{Form, contents_ui};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::file::FileCommand;
 use crate::gui::commands::output::OutputCommand;
@@ -107,7 +107,8 @@ const PATHS: [PathWords; 10] = [
         title: "Export as…",
         field: "Path of the export",
         hint: "path of the file",
-        explanation: "State-space may be .mat, .json or .npz. gdcm export has more choices.",
+        explanation: "Models in state-space form can be saved as .mat, .json or .npz. \
+            The command gdcm export offers more choices.",
         submit: "Export file",
     },
 ];

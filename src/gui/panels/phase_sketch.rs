@@ -162,14 +162,14 @@ impl PhaseSketch {
             Align2::LEFT_BOTTOM,
             "flight",
             small(),
-            palette.name_of(palette.identified),
+            palette.label_color(palette.identified),
         );
         ui.painter().text(
             self.point(middle, self.corrected[middle]) + vec2(-8.0, 0.0),
             Align2::RIGHT_TOP,
             "corrected",
             small(),
-            palette.name_of(palette.corrected),
+            palette.label_color(palette.corrected),
         );
     }
 }

@@ -5,15 +5,20 @@ use egui::{Button, CollapsingHeader, Rect, RichText, Role, Ui, vec2};
 use gdcm_method::correction::sensitivity::kkt_residual;
 use gdcm_method::correction::{GainObjective, Outcome, Quantity};
 use gdcm_study::decisions::setting;
+use gdcm_study::results::condition_remarks::condition_remarks;
+use gdcm_study::results::coupling_remark::CouplingRemark;
+use gdcm_study::results::coupling_remark_search::{coupling_consequences, coupling_offer};
+use gdcm_study::results::remark::Remark;
+use gdcm_study::results::remark_kind::RemarkKind;
 use gdcm_study::{ConditionAnalysis, Edit};
 use gdcm_words::caution::failure_text;
-use gdcm_words::condition_remarks::{details, remarks};
-use gdcm_words::couplings::{coupling_consequences, coupling_offer, no_couplings};
 use gdcm_words::derivation::ExplainTarget;
 use gdcm_words::leads::lead_words;
-use gdcm_words::remark::{Remark, RemarkKind};
+use gdcm_words::remark::remark_text;
+use gdcm_words::solution_details::details;
 
-use super::explanation::{turn_entry, value_label_ui};
+use super::derivation_sheet::value_label_ui;
+use super::sign_reversal::sign_reversal_entry;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::view::View;
@@ -27,21 +32,21 @@ pub fn remarks_shown(state: &State, shown: &ConditionAnalysis) -> Vec<Remark> {
     let schedule = state
         .analysis()
         .and_then(|analysis| analysis.schedule.as_ref().ok());
-    let mut remarks = remarks(&state.study, shown, schedule);
-    remarks.extend(coupling_remarks(state));
+    let mut remarks = condition_remarks(&state.study, shown, schedule);
+    remarks.extend(coupling_remarks(state).into_iter().map(Remark::Coupling));
     remarks
 }
 
 /// Returns the benefit and cost of the couplings in use, or the reason for their absence; empty if
 /// none are requested.
-pub fn coupling_remarks(state: &State) -> Vec<Remark> {
+pub fn coupling_remarks(state: &State) -> Vec<CouplingRemark> {
     let Some(analysis) = state.analysis() else {
         return Vec::new();
     };
-    match analysis.asked_couplings() {
-        Err(why) => vec![no_couplings(&why)],
-        Ok(None) => Vec::new(),
-        Ok(Some(_)) => match used_couplings(state) {
+    match &analysis.couplings {
+        Some(Err(error)) => vec![CouplingRemark::Unavailable(error.clone())],
+        None => Vec::new(),
+        Some(Ok(_)) => match used_couplings(state) {
             Some(assessment) => coupling_consequences(assessment, state.dataset()),
             None => Vec::new(),
         },
@@ -148,20 +153,20 @@ fn remarks_ui(
     commands: &mut Vec<Command>,
 ) {
     for remark in remarks {
-        remark_ui(ui, palette, remark);
-        if let Some(pair) = remark.ignore {
+        remark_ui(ui, state, palette, remark);
+        if let Some(pair) = remark.suggested_exclusion() {
             let name = state.dataset().pair_name(pair);
             let button = ui.small_button("Ignore response");
             named(button, Role::Button, format!("Ignore {name}"))
                 .on_hover_text("No weight in the objective, in every condition")
                 .asks(Edit::Fit(pair, false), commands);
         }
-        if let Some((channel, role)) = remark.turn {
-            let (label, turn) = turn_entry(state, channel, role);
+        if let Some(sign) = remark.suggested_sign() {
+            let (label, turn) = sign_reversal_entry(state, sign.channel, sign.role);
             let button = Button::new(label).small();
             button_ui(ui, button, EVERYWHERE, turn, commands);
         }
-        if let Some(phase) = remark.phase {
+        if let Some(phase) = remark.suggested_phase() {
             let label = format!("Correct the phase by {}", setting::PHASE.text(phase.into()));
             let button = Button::new(label).small();
             button_ui(ui, button, EVERYWHERE, setting::PHASE.to(phase), commands);
@@ -239,8 +244,8 @@ fn couplings_offer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &
         return;
     };
     let couplings = assessment.couplings;
-    if let Some(text) = coupling_offer(assessment) {
-        remark_ui(ui, palette, &Remark::good("couplings-offered", text));
+    if let Some(offer) = coupling_offer(assessment) {
+        remark_ui(ui, state, palette, &Remark::Coupling(offer));
     }
     let button = Button::new(format!("Use {}", couplings.name())).small();
     let use_them = setting::COUPLINGS.to(couplings);
@@ -249,12 +254,12 @@ fn couplings_offer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &
     entries_ui(ui, [("Look at the couplings", show)], commands);
 }
 
-fn remark_ui(ui: &mut Ui, palette: &Palette, remark: &Remark) {
-    let color = match remark.kind {
+fn remark_ui(ui: &mut Ui, state: &State, palette: &Palette, remark: &Remark) {
+    let color = match remark.kind() {
         RemarkKind::Good => palette.good,
         RemarkKind::Caution | RemarkKind::Trouble => palette.warning,
     };
-    let text = RichText::new(&remark.text).size(SMALL_SIZE);
+    let text = RichText::new(remark_text(remark, state.dataset())).size(SMALL_SIZE);
     let shown = ui.horizontal(|ui| {
         ui.add_space(8.0);
         ui.vertical(|ui| ui.label(text));

@@ -9,7 +9,7 @@ use gdcm_model::units::s_to_ms;
 use gdcm_study::ConditionAnalysis;
 
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::painted_text;
+use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
 
 /// Card height \[pt\].
@@ -34,11 +34,11 @@ pub struct CardRow {
 
 /// Returns the rows of a response: gain, delay, and both parts of J.
 pub fn card_rows(state: &State, shown: &ConditionAnalysis, pair: Pair) -> Vec<CardRow> {
-    let sureness = state.sureness();
+    let value_uncertainty = state.value_uncertainty();
     let mut rows = Vec::new();
     if let Some(gain) = shown.wanted_gain(pair) {
-        let half = sureness
-            .half(Scalar::Gain(pair))
+        let half = value_uncertainty
+            .half_width(Scalar::Gain(pair))
             .map(|half| format!("{} %", decimals(100.0 * half, 1)));
         rows.push(CardRow {
             name: "gain G",
@@ -50,8 +50,8 @@ pub fn card_rows(state: &State, shown: &ConditionAnalysis, pair: Pair) -> Vec<Ca
     }
     if let Some(delay_s) = shown.wanted_delay_s(pair) {
         let left_ms = s_to_ms(delay_s - shown.correction.net_delay_s(pair));
-        let half = sureness
-            .half(shown.wanted_delay(pair))
+        let half = value_uncertainty
+            .half_width(shown.wanted_delay(pair))
             .map(|half_s| milliseconds(s_to_ms(half_s)));
         rows.push(CardRow {
             name: "delay D",
@@ -112,9 +112,9 @@ pub fn card_ui(ui: &mut Ui, state: &State, palette: &Palette) {
     // Distances of the text ends from the right edge; negative, because the text is aligned to the
     // right.
     let ends = [inner.width() * 0.54, inner.width() * 0.78, inner.width()]
-        .map(|end| end - inner.width() - 0.01);
+        .map(|end| end - inner.width() + AT_RIGHT_END);
     let level = state
-        .sureness()
+        .value_uncertainty()
         .level()
         .map(|level| format!("± {:.0} %", 100.0 * level))
         .unwrap_or_default();

@@ -9,22 +9,27 @@ use gdcm_model::units::s_to_ms;
 use gdcm_study::ConditionAnalysis;
 use gdcm_words::ExplainTarget;
 use gdcm_words::leads::servo_words;
+use gdcm_words::solution_details::proof_text;
 
 use super::table_menu::table_menu_ui;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::commands::selection::SelectionCommand;
+use crate::gui::plot::derivation_menu::QUESTION;
+use crate::gui::state::panel_tables::TableKind;
 use crate::gui::state::sheet::Sheet;
-use crate::gui::state::tables::TableKind;
 use crate::gui::state::window_state::State;
-use crate::gui::views::gain_plots::bar_words;
-use crate::gui::widgets::controls::{Asks, QUESTION, named, painted_text};
+use crate::gui::views::error_bars::error_bar_words;
+use crate::gui::widgets::controls::{Asks, named};
+use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
 
 /// Row height \[pt\].
 const ROW: f32 = 18.0;
-/// Right edges of gains and delays, as shares of the width of a side.
-const ENDS: [f32; 2] = [0.5, 0.85];
+/// Right edge of the gains, as a share of the width of a side.
+const GAIN_END: f32 = 0.5;
+/// Right edge of the delays, as a share of the width of a side.
+const DELAY_END: f32 = 0.85;
 
 /// Draws gain and delay of every channel; in a low window only the smallest and the largest gain.
 pub fn result_ui(
@@ -43,7 +48,7 @@ pub fn result_ui(
         } else {
             state.results.absence()
         };
-        painted_text(ui, rect, -0.01, words, small(), palette.dim_text);
+        painted_text(ui, rect, AT_RIGHT_END, words, small(), palette.dim_text);
         return;
     };
     proof_ui(ui, rect, state.is_proving(shown), shown, palette, commands);
@@ -66,15 +71,15 @@ pub fn result_ui(
     );
     let width = 0.5 * (area.width() - 12.0);
     let inputs = Side {
-        of_inputs: true,
-        side: Rect::from_min_size(area.min, vec2(width, area.height())),
+        is_input_side: true,
+        place: Rect::from_min_size(area.min, vec2(width, area.height())),
         state,
         shown,
         palette,
     };
     let outputs = Side {
-        of_inputs: false,
-        side: Rect::from_min_size(
+        is_input_side: false,
+        place: Rect::from_min_size(
             pos2(area.right() - width, area.top()),
             vec2(width, area.height()),
         ),
@@ -100,7 +105,7 @@ fn proof_ui(
         Outcome::NotProven { .. } if is_proving => ("proof running", palette.dim_text),
         Outcome::NotProven { .. } => ("not proven", palette.warning),
     };
-    let place = painted_text(ui, row, -0.01, words, small(), color);
+    let place = painted_text(ui, row, AT_RIGHT_END, words, small(), color);
     let response = ui.interact(
         place.expand(3.0),
         ui.scope_id().with("proof"),
@@ -109,15 +114,15 @@ fn proof_ui(
     let response = named(response, Role::Button, words);
     response
         .on_hover_cursor(CursorIcon::PointingHand)
-        .on_hover_text(outcome.words())
+        .on_hover_text(proof_text(outcome))
         .asks(LayoutCommand::ShowSheet(Some(Sheet::Reasons)), commands);
 }
 
-/// Inputs on the left, or outputs on the right.
+/// Channels of one side: inputs on the left, or outputs on the right.
 #[derive(Clone, Copy)]
 struct Side<'a> {
-    of_inputs: bool,
-    side: Rect,
+    is_input_side: bool,
+    place: Rect,
     state: &'a State,
     shown: &'a ConditionAnalysis,
     palette: &'a Palette,
@@ -143,22 +148,22 @@ struct ChannelValue {
 impl Side<'_> {
     fn row(&self, number: usize) -> Rect {
         Rect::from_min_size(
-            self.side.min + vec2(0.0, ROW * number as f32),
-            vec2(self.side.width(), ROW),
+            self.place.min + vec2(0.0, ROW * number as f32),
+            vec2(self.place.width(), ROW),
         )
     }
 
     fn ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let dataset = self.state.dataset();
         let palette = self.palette;
-        let (title, channels) = if self.of_inputs {
+        let (title, channels) = if self.is_input_side {
             ("input", dataset.inputs())
         } else {
             ("output", dataset.outputs())
         };
         let head = self.row(0);
         painted_text(ui, head, 0.0, title, small(), palette.dim_text);
-        for (end, words, unit) in [(ENDS[0], "k", "±%"), (ENDS[1], "τ ms", "±")] {
+        for (end, words, unit) in [(GAIN_END, "k", "±%"), (DELAY_END, "τ ms", "±")] {
             let place = painted_upto(ui, head, end, words, small(), palette.dim_text);
             painted_text(
                 ui,
@@ -180,7 +185,7 @@ impl Side<'_> {
     }
 
     fn channel(&self, index: usize) -> Channel {
-        if self.of_inputs {
+        if self.is_input_side {
             Channel::Input(index)
         } else {
             Channel::Output(index)
@@ -189,21 +194,21 @@ impl Side<'_> {
 
     fn gain(&self, index: usize, name: &str) -> ChannelValue {
         let channel = self.channel(index);
-        let gains = if self.of_inputs {
+        let gains = if self.is_input_side {
             &self.shown.gains.inputs
         } else {
             &self.shown.gains.outputs
         };
         let scalar = Scalar::ChannelGain(channel);
         ChannelValue {
-            end: ENDS[0],
+            end: GAIN_END,
             text: decimals(gains[index], 3),
             font: medium(BODY_SIZE),
             color: self.palette.text,
             half: self
                 .state
-                .sureness()
-                .half(scalar)
+                .value_uncertainty()
+                .half_width(scalar)
                 .map(|half| format!("±{:.0}", 100.0 * half)),
             name: format!("Gain of {name}"),
             exact: gains[index].to_string(),
@@ -214,7 +219,7 @@ impl Side<'_> {
 
     fn delay(&self, index: usize, name: &str) -> ChannelValue {
         let channel = self.channel(index);
-        let delays = if self.of_inputs {
+        let delays = if self.is_input_side {
             &self.shown.delays.inputs
         } else {
             &self.shown.delays.outputs
@@ -223,7 +228,7 @@ impl Side<'_> {
         let is_delayed = delay_ms != 0.0;
         let scalar = Scalar::ChannelDelay(channel);
         let half = if is_delayed {
-            self.state.sureness().half(scalar)
+            self.state.value_uncertainty().half_width(scalar)
         } else {
             None
         };
@@ -235,7 +240,7 @@ impl Side<'_> {
             exact.push_str(&format!("\nlead: {}", servo_words(filter)));
         }
         ChannelValue {
-            end: ENDS[1],
+            end: DELAY_END,
             text: if is_delayed {
                 decimals(delay_ms, digits)
             } else {
@@ -287,8 +292,8 @@ impl Side<'_> {
             format!("{name}: {text} {}", half.unwrap_or_default()).trim_end(),
         );
         let mut hint = exact;
-        if let Some((bar, level)) = self.state.sureness().bar(scalar) {
-            hint.push_str(&format!("\n{}", bar_words(bar, scalar, level)));
+        if let Some((bar, level)) = self.state.value_uncertainty().error_bar(scalar) {
+            hint.push_str(&format!("\n{}", error_bar_words(bar, scalar, level)));
         }
         hint.push_str(&format!("\nclick: {QUESTION}"));
         let response = response
@@ -304,7 +309,7 @@ fn painted_upto(ui: &Ui, row: Rect, end: f32, words: &str, font: FontId, color: 
     painted_text(
         ui,
         row.with_max_x(row.left() + end * row.width()),
-        -0.01,
+        AT_RIGHT_END,
         words,
         font,
         color,

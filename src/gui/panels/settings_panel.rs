@@ -10,9 +10,11 @@ use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::window_state::State;
 use crate::gui::views::setting_controls::SettingControls;
-use crate::gui::widgets::controls::{Asks, chevron, named_switch, painted_text, row_ui};
-use crate::gui::widgets::focus::{Region, region_ui};
+use crate::gui::widgets::controls::{Asks, named_switch};
+use crate::gui::widgets::list_row::row_ui;
+use crate::gui::widgets::painted_text::{chevron, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
+use crate::gui::widgets::window_regions::{Region, region_ui};
 
 /// Draws every setting that is not part of a view: first the frequently changed settings, then the
 /// others in a foldable part.

@@ -2,32 +2,36 @@
 //! the open study, if any.
 
 use egui::{
-    Align, Align2, Button, Color32, Frame, Layout, Margin, Rect, RichText, Role, ScrollArea, Sense,
-    Shape, Stroke, StrokeKind, Ui, UiBuilder, pos2, vec2,
+    Align, Align2, Button, Color32, Layout, Rect, RichText, Role, ScrollArea, Sense, Shape, Stroke,
+    StrokeKind, Ui, UiBuilder, pos2, vec2,
 };
 
-use gdcm_model::dataset::BundleKind;
-
-use super::conditions_panel::cost_picture_ui;
-use super::phase_sketch::phase_sketch_ui;
+use super::open_study_card::open_study_card_ui;
+use super::start_icons::{folder_icon, sheet_icon, wave_icon};
 use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::file::FileCommand;
-use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::state::window_state::State;
-use crate::gui::views::frequency::bode_curves;
-use crate::gui::widgets::controls::{Asks, button_ui, elided, named, painted_text};
+use crate::gui::widgets::controls::{Asks, button_ui, named};
+use crate::gui::widgets::elision::elided;
+use crate::gui::widgets::painted_text::painted_text;
 use crate::gui::widgets::palette::{
     BODY_SIZE, DISPLAY_SIZE, Palette, SMALL_SIZE, TITLE_SIZE, body, medium, small,
 };
 
-/// Widths of the cards, of the open study, and of the gap between them \[pt\].
-const WIDTHS: [f32; 3] = [600.0, 460.0, 64.0];
+/// Width of the column with the ways to begin \[pt\].
+const WAYS_WIDTH: f32 = 600.0;
+/// Width of the card of the open study \[pt\].
+const STUDY_WIDTH: f32 = 460.0;
+/// Gap between the ways to begin and the open study \[pt\].
+const GAP: f32 = 64.0;
+/// Maximum height of the page \[pt\].
+const MOST_HEIGHT: f32 = 450.0;
 /// Line height in multi-line text \[pt\].
 const LINE: f32 = 20.0;
-/// Height of a card on the start page \[pt\].
-const WAY: f32 = 72.0;
+/// Height of the card of a way to begin \[pt\].
+const WAY_HEIGHT: f32 = 72.0;
 
 /// Way to begin, drawn as a card.
 struct Way {
@@ -38,6 +42,7 @@ struct Way {
     icon: fn(&Ui, Rect, Color32),
 }
 
+/// Returns the ways to begin, the most frequent first.
 fn ways() -> [Way; 3] {
     [
         Way {
@@ -94,16 +99,16 @@ pub fn example_line_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Comman
 /// on the right the open study, if there is room.
 pub fn start_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let area = ui.available_rect_before_wrap().shrink(24.0);
-    let [left, right, gap] = WIDTHS;
-    let has_both = area.width() >= left + right + gap;
+    let both = WAYS_WIDTH + STUDY_WIDTH + GAP;
+    let has_both = area.width() >= both;
     let width = if has_both {
-        left + right + gap
+        both
     } else {
-        left.min(area.width())
+        WAYS_WIDTH.min(area.width())
     };
-    let height = 450.0_f32.min(area.height());
+    let height = MOST_HEIGHT.min(area.height());
     let page = Rect::from_center_size(area.center(), vec2(width, height));
-    let column = page.with_max_x(page.left() + left.min(width));
+    let column = page.with_max_x(page.left() + WAYS_WIDTH.min(width));
     ui.scope_builder(UiBuilder::new().max_rect(column), |ui| {
         ScrollArea::vertical()
             .id_salt("start")
@@ -119,9 +124,9 @@ pub fn start_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mu
             });
     });
     if has_both {
-        let card = page.with_min_x(page.right() - right);
+        let card = page.with_min_x(page.right() - STUDY_WIDTH);
         ui.scope_builder(UiBuilder::new().max_rect(card), |ui| {
-            open_ui(ui, state, palette, commands)
+            open_study_card_ui(ui, state, palette, commands)
         });
     }
     ui.advance_cursor_after_rect(area);
@@ -161,7 +166,7 @@ fn ways_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
 }
 
 fn way_ui(ui: &mut Ui, way: Way, is_primary: bool, palette: &Palette, commands: &mut Vec<Command>) {
-    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), WAY), Sense::hover());
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), WAY_HEIGHT), Sense::hover());
     ui.painter().rect(
         rect,
         8.0,
@@ -279,155 +284,4 @@ fn recent_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
             commands.push(FileCommand::Open(file.path.clone()).into());
         }
     }
-}
-
-/// Draws a picture of the open study, and the button that returns to it.
-fn open_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
-    let frame = Frame::new()
-        .fill(palette.panel)
-        .stroke(Stroke::new(1.0, palette.line))
-        .corner_radius(8.0)
-        .inner_margin(Margin::same(24));
-    frame.show(ui, |ui| {
-        ui.set_width(ui.available_width());
-        let words = StudyWords::new(state);
-        ui.label(RichText::new(words.title).font(medium(TITLE_SIZE)));
-        ui.label(palette.dim(words.content).line_height(Some(LINE)));
-        ui.add_space(12.0);
-        picture_ui(ui, state, palette);
-        ui.add_space(8.0);
-        ui.label(palette.small(
-            "Left: remaining J of the held responses in each condition, magnitude and phase; pale \
-            means matched. Right: phases of the identified and the corrected model.",
-        ));
-        ui.add_space(12.0);
-        ui.horizontal(|ui| {
-            ui.add(Button::new(words.back).min_size(vec2(0.0, 28.0)))
-                .asks(LayoutCommand::ShowStart(false), commands);
-            if !state.is_example {
-                return;
-            }
-            let text = RichText::new("Guided tour, five notes").color(palette.accent);
-            if ui.add(Button::new(text).frame(false)).clicked() {
-                commands.push(LayoutCommand::ShowStart(false).into());
-                commands.push(LayoutCommand::StartTour.into());
-            }
-        });
-    });
-}
-
-/// Texts about the open study.
-struct StudyWords {
-    title: String,
-    content: String,
-    /// Text on the button that returns to the study.
-    back: &'static str,
-}
-
-impl StudyWords {
-    fn new(state: &State) -> Self {
-        let conditions = state.dataset().conditions();
-        let models: usize = conditions
-            .iter()
-            .map(|condition| condition.bundle(BundleKind::Physics).len())
-            .sum();
-        let count = conditions.len();
-        if state.is_example {
-            return Self {
-                title: "No data at hand?".to_owned(),
-                content: format!(
-                    "The example is simulated: {count} conditions of a UH-60A-class helicopter, \
-                     {models} physics models, flight records, and known deficits of the models."
-                ),
-                back: "Explore the example",
-            };
-        }
-        Self {
-            title: state.dataset().name().to_owned(),
-            content: format!(
-                "{}: {count} conditions, {models} physics models.",
-                state.study_name
-            ),
-            back: "Continue",
-        }
-    }
-}
-
-fn picture_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
-    let rows = state.dataset().conditions().len().min(12);
-    let (area, _) = ui.allocate_exact_size(
-        vec2(ui.available_width(), 18.0 + 17.0 * rows as f32),
-        Sense::hover(),
-    );
-    let map = area.with_max_x(area.left() + 0.44 * area.width());
-    cost_picture_ui(ui, map, state, palette);
-    let pair = state.display.selection.pair;
-    let curves = bode_curves(state, pair);
-    let plot = area.with_min_x(area.left() + 0.52 * area.width());
-    let title = format!(
-        "{}, phase, condition {}",
-        state.dataset().pair_name(pair),
-        state.condition().id()
-    );
-    let head = plot.with_max_y(plot.top() + 18.0);
-    painted_text(ui, head, 0.0, &title, small(), palette.dim_text);
-    let band = state.study.settings.band;
-    phase_sketch_ui(ui, plot.with_min_y(head.bottom()), &curves, band, palette);
-}
-
-fn sheet_icon(ui: &Ui, place: Rect, color: Color32) {
-    let left = place.left() + 4.0;
-    let right = place.right() - 4.0;
-    let top = place.top() + 1.0;
-    let bottom = place.bottom() - 1.0;
-    let fold = right - 6.0;
-    let outline = [
-        pos2(fold, top),
-        pos2(left, top),
-        pos2(left, bottom),
-        pos2(right, bottom),
-        pos2(right, top + 6.0),
-        pos2(fold, top),
-    ];
-    ui.painter().line(outline.to_vec(), Stroke::new(1.8, color));
-    ui.painter().line(
-        vec![
-            pos2(fold, top),
-            pos2(fold, top + 6.0),
-            pos2(right, top + 6.0),
-        ],
-        Stroke::new(1.8, color),
-    );
-}
-
-fn folder_icon(ui: &Ui, place: Rect, color: Color32) {
-    let left = place.left() + 1.0;
-    let right = place.right() - 1.0;
-    let top = place.top() + 3.0;
-    let bottom = place.bottom() - 3.0;
-    let outline = [
-        (left, top),
-        (left + 7.0, top),
-        (left + 10.0, top + 3.0),
-        (right, top + 3.0),
-        (right, bottom),
-        (left, bottom),
-        (left, top),
-    ];
-    ui.painter().line(
-        outline.map(|(x, y)| pos2(x, y)).to_vec(),
-        Stroke::new(1.8, color),
-    );
-}
-
-fn wave_icon(ui: &Ui, place: Rect, color: Color32) {
-    let path = (0..=24).map(|step| {
-        let part = step as f32 / 24.0;
-        let height = (part * 2.0 * std::f32::consts::TAU).sin() * 0.35 * place.height();
-        pos2(
-            place.left() + part * place.width(),
-            place.center().y - height,
-        )
-    });
-    ui.painter().line(path.collect(), Stroke::new(1.8, color));
 }

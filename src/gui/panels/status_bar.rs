@@ -3,15 +3,15 @@
 use egui::{Align, Button, Color32, Label, Layout, RichText, Ui};
 
 use gdcm_model::dataset::BundleKind;
+use gdcm_model::number_format::counted;
 use gdcm_words::assessment::not_assessed_text;
 
-use super::bars::counted;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::computing::ComputingCommand;
 use crate::gui::commands::form::FormCommand;
+use crate::gui::state::background::{Background, Steps, error_bar_progress};
 use crate::gui::state::notices::{Notice, NoticeKind};
 use crate::gui::state::records::RecordsState;
-use crate::gui::state::results::{Background, bar_words};
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::button_ui;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
@@ -22,7 +22,7 @@ pub fn status_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
     ui.horizontal_centered(|ui| {
         computation_ui(ui, state, palette, commands);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            if let Some(pointed) = &state.display.selection.told {
+            if let Some(pointed) = &state.display.selection.pointed_words {
                 let text = RichText::new(pointed).size(SMALL_SIZE);
                 ui.add(Label::new(text).truncate());
             } else if let Some(notice) = &state.notice {
@@ -110,9 +110,7 @@ impl Status {
             };
         }
         let text = match state.results.background.analysis {
-            Some((done, total)) if total > 0 => {
-                format!("computing, {} % …", 100 * done / total)
-            }
+            Some(steps) if steps.total > 0 => format!("computing, {} % …", steps.percent()),
             _ => "computing …".to_owned(),
         };
         Self::colored(text, palette.warning)
@@ -137,7 +135,7 @@ fn words_beside(state: &State, now: f64) -> Option<String> {
     if background.stopped {
         return Some("background work stopped".to_owned());
     }
-    if state.results.is_background_told(now) {
+    if state.results.shows_background(now) {
         return Some(background_words(background, &state.records));
     }
     None
@@ -157,31 +155,31 @@ fn count_models(state: &State) -> usize {
 /// Describes the background work other than the live analysis; of several jobs, the first in the
 /// order below.
 fn background_words(background: &Background, records: &RecordsState) -> String {
-    if let Some((done, total)) = background.report {
-        return format!("writing the report, {} % …", percent(done, total));
+    if let Some(steps) = background.report {
+        return format!("writing the report, {} % …", steps.percent());
     }
-    if let Some((done, total)) = background.identification {
-        return identification_words(records, percent(done, total));
+    if let Some(steps) = background.identification {
+        return identification_words(records, steps.percent());
     }
     if !background.proofs.is_empty() {
         let conditions = counted(background.proofs.len(), "condition");
         return format!("proving the gains of {conditions} …");
     }
     match background.curves {
-        Some((_, 0)) => return "curves …".to_owned(),
-        Some((done, total)) => return format!("curves, {} % …", percent(done, total)),
+        Some(Steps { total: 0, .. }) => return "curves …".to_owned(),
+        Some(steps) => return format!("curves, {} % …", steps.percent()),
         None => {}
     }
-    if let Some(progress) = background.bars {
-        return bar_words(progress);
+    if let Some(steps) = background.error_bars {
+        return error_bar_progress(steps);
     }
-    if let Some((done, total)) = background.time_histories {
-        return format!("responses to flight records, {} % …", percent(done, total));
+    if let Some(steps) = background.time_histories {
+        return format!("responses to flight records, {} % …", steps.percent());
     }
-    if let Some((done, total)) = background.couplings {
+    if let Some(steps) = background.couplings {
         return format!(
             "couplings with each condition left out, {} % …",
-            percent(done, total)
+            steps.percent()
         );
     }
     if background.views > 0 {
@@ -204,11 +202,6 @@ fn identification_words(records: &RecordsState, percent: usize) -> String {
     }
 }
 
-/// Returns the whole percentage, 0 without a total.
-fn percent(done: usize, total: usize) -> usize {
-    100 * done / total.max(1)
-}
-
 /// Returns why the assessment leaves out the displayed condition, or else the name of its flight
 /// state.
 fn data_remark(state: &State) -> String {
@@ -229,11 +222,14 @@ mod tests {
     #[test]
     fn the_progress_of_a_couplings_assessment_is_reported() {
         let background = Background {
-            couplings: Some((300, 1000)),
+            couplings: Some(Steps {
+                done: 300,
+                total: 1000,
+            }),
             ..Background::default()
         };
         assert!(background.is_busy());
         let words = background_words(&background, &RecordsState::default());
-        assert_eq!(words, "couplings without each condition, 30 % …");
+        assert_eq!(words, "couplings with each condition left out, 30 % …");
     }
 }

@@ -4,7 +4,7 @@ use egui::{Align, Layout, RichText, Role, Sense, Ui};
 
 use crate::gui::commands::command::Command;
 use crate::gui::commands::output::OutputCommand;
-use crate::gui::state::tables::TableKind;
+use crate::gui::state::panel_tables::TableKind;
 use crate::gui::widgets::controls::{entries_ui, named};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
 

@@ -1,26 +1,22 @@
 //! Verdict: whether the constrained responses of the corrected model are matched, and the next step
-//! if they are not.
+//! if they are not. `verdict_words.rs` and `verdict_caution.rs` form its texts, `advice.rs` chooses
+//! the steps, `verdict_view.rs` draws it.
 
-use gdcm_method::correction::LeadPrice;
-use gdcm_method::correction::conflict::ConflictKind;
 use gdcm_method::correction::solution::Solution;
-use gdcm_method::schedule::ScheduleCaution;
-use gdcm_model::dataset::{ConditionId, Pair};
-use gdcm_model::statistics::median;
-use gdcm_model::units::{number, s_to_ms, signed, six_digits, telling, told_apart};
+use gdcm_model::dataset::ConditionId;
+use gdcm_model::units::{s_to_ms, six_digits};
 use gdcm_study::results::analysis::ConditionFailure;
 use gdcm_study::{ConditionAnalysis, PhaseCorrection};
 use gdcm_words::caution::failure_text;
-use gdcm_words::couplings::coupling_cautions;
-use gdcm_words::remark::RemarkKind;
 
-use super::advice::{Advice, Step, joined};
+use super::advice::{Advice, Step};
 use super::reasons::remarks_shown;
+use super::verdict_caution::{caution, unstable_in_band};
+use super::verdict_words::{gain_words, lag_words};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
-use crate::gui::views::used_couplings;
 
 /// Verdict on gain and phase of the constrained responses, in the displayed condition and in all
 /// conditions, with the next steps.
@@ -233,7 +229,7 @@ fn phase_row(state: &State, shown: &ConditionAnalysis) -> VerdictRow {
     }
 }
 
-/// "0.5–12 rad/s".
+/// Formats the band: "0.5–12 rad/s".
 pub(crate) fn band_words(state: &State) -> String {
     let band = state.study.settings.band;
     format!(
@@ -243,167 +239,13 @@ pub(crate) fn band_words(state: &State) -> String {
     )
 }
 
-/// Formats the verdict on the gains: "matched", "LAT → P stops at a bound", "2 share PED", "3
-/// disagree".
-fn gain_words(state: &State, shown: &ConditionAnalysis) -> String {
-    let Some(miss) = shown.gains.unmatched.first() else {
-        return "matched".to_owned();
-    };
-    match miss.why.kind {
-        ConflictKind::AboveUpper { .. }
-        | ConflictKind::BelowLower { .. }
-        | ConflictKind::TooFarApart { .. } => {
-            format!(
-                "{} stops at a bound",
-                joined(&state.dataset().pair_name(miss.pair))
-            )
-        }
-        ConflictKind::Loop { .. } | ConflictKind::Unclear => {
-            let missed: Vec<Pair> = shown.gains.unmatched.iter().map(|miss| miss.pair).collect();
-            shared_words(state, &missed)
-                .unwrap_or_else(|| format!("{} disagree", miss.why.entries.len().max(2)))
-        }
-    }
-}
-
-/// Returns "2 share PED" for conflicting responses with a common input or output; otherwise `None`.
-fn shared_words(state: &State, pairs: &[Pair]) -> Option<String> {
-    let [first, rest @ ..] = pairs else {
-        return None;
-    };
-    if rest.is_empty() {
-        return None;
-    }
-    let channel = if rest.iter().all(|pair| pair.input == first.input) {
-        &state.dataset().inputs()[first.input]
-    } else if rest.iter().all(|pair| pair.output == first.output) {
-        &state.dataset().outputs()[first.output]
-    } else {
-        return None;
-    };
-    Some(format!("{} share {}", pairs.len(), channel.name))
-}
-
-/// Returns "lags by ≈ 66 ms" if the lags of all responses are about equal (by the criterion for a
-/// common lead), otherwise "lags 20–110 ms"; short enough for the narrowest window.
-fn lag_words(left_ms: &mut [f64]) -> String {
-    let least = left_ms.iter().copied().fold(f64::INFINITY, f64::min);
-    let most = left_ms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let middle = median(left_ms);
-    let verb = if middle >= 0.0 { "lags" } else { "leads" };
-    let ends = if middle >= 0.0 {
-        [least, most]
-    } else {
-        [-most, -least]
-    };
-    let [low, high] = ends.map(|end| telling(end, 0).replace('-', "\u{2212}"));
-    if low == high {
-        format!("{verb} by {low} ms")
-    } else if most - least <= 0.5 * middle.abs() {
-        format!("{verb} by ≈ {} ms", telling(middle.abs(), 0))
-    } else {
-        // "-5–60" would look like two minus signs.
-        let to = if least * most < 0.0 { " to " } else { "–" };
-        format!("{verb} {low}{to}{high} ms")
-    }
-}
-
-/// Returns the number of poles within the band that the couplings in use make unstable.
-fn unstable_in_band(state: &State) -> usize {
-    match used_couplings(state) {
-        Some(used) => used.unstable_in_band(),
-        None => 0,
-    }
-}
-
-struct CouplingCaution {
-    kind: RemarkKind,
-    words: String,
-}
-
-/// Returns the most important caution: couplings that are requested but missing or that make poles
-/// unstable; else the lead price; else any other caution about couplings; else the cost of the
-/// schedule in this condition.
-fn caution(state: &State, shown: &ConditionAnalysis) -> Option<String> {
-    let couplings = coupling_caution(state);
-    if let Some(caution) = &couplings
-        && caution.kind == RemarkKind::Trouble
-    {
-        return Some(caution.words.clone());
-    }
-    lead_caution(shown)
-        .or(couplings.map(|caution| caution.words))
-        .or_else(|| schedule_caution(state, shown))
-}
-
-/// Returns a caution if the schedule costs more than twice the J of the condition's own correction
-/// (M12).
-fn schedule_caution(state: &State, shown: &ConditionAnalysis) -> Option<String> {
-    let schedule = state.analysis()?.schedule.as_ref().ok()?;
-    for caution in &schedule.cautions {
-        if let ScheduleCaution::CostsMore(cost) = caution
-            && cost.condition == shown.condition.id()
-        {
-            let (scheduled, own) = told_apart(cost.scheduled, cost.own, 0);
-            return Some(format!("Scheduled: J {scheduled}, own {own}"));
-        }
-    }
-    None
-}
-
-/// Returns the most serious remark on the couplings in use, in a few words; the sheet of reasons
-/// contains every remark.
-fn coupling_caution(state: &State) -> Option<CouplingCaution> {
-    if state.analysis()?.asked_couplings().is_err() {
-        return Some(CouplingCaution {
-            kind: RemarkKind::Trouble,
-            words: "No couplings could be found".to_owned(),
-        });
-    }
-    let cautions = coupling_cautions(used_couplings(state)?, state.dataset()).len();
-    let unstable = unstable_in_band(state);
-    if unstable > 0 {
-        let poles = if unstable == 1 { "pole" } else { "poles" };
-        return Some(CouplingCaution {
-            kind: RemarkKind::Trouble,
-            words: format!("Couplings: {unstable} {poles} unstable in the band"),
-        });
-    }
-    if cautions == 0 {
-        return None;
-    }
-    let noun = if cautions == 1 { "caution" } else { "cautions" };
-    Some(CouplingCaution {
-        kind: RemarkKind::Caution,
-        words: format!("Couplings: {cautions} {noun}"),
-    })
-}
-
-/// Returns the lead price: the maximum magnitude that the filters of a constrained response add
-/// above the band (M15.6); `None` up to 0.05 dB.
-fn lead_caution(shown: &ConditionAnalysis) -> Option<String> {
-    let price = LeadPrice::of(&shown.compensated.as_ref()?.leads)?;
-    let most_db = shown
-        .held()
-        .marked()
-        .map(|pair| price.of_pair_db(pair))
-        .fold(0.0, f64::max);
-    if most_db <= 0.05 {
-        return None;
-    }
-    let top = number(price.limit_rad_s);
-    Some(format!(
-        "Price: {} dB above {top} rad/s",
-        signed(most_db, 0)
-    ))
-}
-
 #[cfg(test)]
 mod tests {
     use std::sync::Arc;
 
     use nalgebra::Complex;
 
+    use gdcm_model::dataset::Pair;
     use gdcm_model::progress::Unobserved;
     use gdcm_study::decisions::setting;
     use gdcm_study::decisions::setting_row::Value;
@@ -411,6 +253,7 @@ mod tests {
     use gdcm_study::{CouplingCorrection, Edit, Engine, Study};
 
     use super::super::advice::export;
+    use super::super::verdict_words::shared_words;
     use super::*;
     use crate::gui::commands::study::StudyCommand;
     use crate::gui::views::couplings_job;

@@ -5,15 +5,15 @@ use egui::{
     CursorIcon, Popup, PopupCloseBehavior, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo, vec2,
 };
 
+use super::bode_axis::BodeAxis;
 use super::bode_view::BodeView;
 use super::limits_form::{FormAnswer, LimitsForm};
-use super::navigation::ZoomGesture;
 use super::pane_scene::PaneScene;
-use super::plot_axis::PlotAxis;
+use super::zoom_gesture::ZoomGesture;
 
 /// Screen strip along an axis.
 struct AxisStrip<'a> {
-    axis: PlotAxis,
+    axis: BodeAxis,
     pane: PaneScene<'a>,
     place: Rect,
     icon: CursorIcon,
@@ -28,13 +28,13 @@ pub(super) fn axis_strips_ui(ui: &Ui, pane: PaneScene<'_>, view: &mut BodeView) 
     let beside = pane.rect.left()..=frame.left();
     let strips = [
         AxisStrip {
-            axis: PlotAxis::Frequency,
+            axis: BodeAxis::Frequency,
             pane,
             place: Rect::from_x_y_ranges(frame.x_range(), below),
             icon: CursorIcon::ResizeHorizontal,
         },
         AxisStrip {
-            axis: PlotAxis::Values(pane.pane),
+            axis: BodeAxis::Values(pane.pane),
             pane,
             place: Rect::from_x_y_ranges(beside, frame.y_range()),
             icon: CursorIcon::ResizeVertical,
@@ -67,8 +67,8 @@ impl AxisStrip<'_> {
         let drag = response.drag_delta();
         if drag != Vec2::ZERO {
             let along = match self.axis {
-                PlotAxis::Frequency => vec2(drag.x, 0.0),
-                PlotAxis::Values(_) => vec2(0.0, drag.y),
+                BodeAxis::Frequency => vec2(drag.x, 0.0),
+                BodeAxis::Values(_) => vec2(0.0, drag.y),
             };
             view.pan(self.pane.pane, along);
             response.ctx.request_repaint();
@@ -76,8 +76,8 @@ impl AxisStrip<'_> {
         if let Some(gesture) = ZoomGesture::find(&response.ctx, response) {
             let factor = gesture.along_one_axis();
             match self.axis {
-                PlotAxis::Frequency => view.zoom(self.pane.pane, gesture.pointer, factor, 1.0),
-                PlotAxis::Values(_) => view.zoom(self.pane.pane, gesture.pointer, 1.0, factor),
+                BodeAxis::Frequency => view.zoom(self.pane.pane, gesture.pointer, factor, 1.0),
+                BodeAxis::Values(_) => view.zoom(self.pane.pane, gesture.pointer, 1.0, factor),
             }
             response.ctx.request_repaint();
         }

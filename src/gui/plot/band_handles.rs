@@ -56,7 +56,7 @@ pub(super) fn band_handles_ui(ui: &Ui, pane: PaneScene<'_>, view: &BodeView) -> 
     } = pane;
     let transform = view.transform(pane)?;
     let frame = *transform.frame();
-    let place = scene.quantity.place(pane);
+    let plot = scene.quantity.name_in_sentence(pane);
     let mut change = None;
     for end in [End::Lower, End::Upper] {
         let omega = end.omega(scene.band);
@@ -66,12 +66,12 @@ pub(super) fn band_handles_ui(ui: &Ui, pane: PaneScene<'_>, view: &BodeView) -> 
         }
         let strip = Rect::from_x_y_ranges(x - GRAB_RADIUS..=x + GRAB_RADIUS, frame.y_range())
             .intersect(frame);
-        let id = ui.scope_id().with((place.as_str(), end.name()));
+        let id = ui.scope_id().with((plot.as_str(), end.name()));
         let response = ui
             .interact(strip, id, Sense::drag())
             .on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal);
         response.widget_info(|| {
-            let name = format!("{}, {place}", end.name());
+            let name = format!("{}, {plot}", end.name());
             WidgetInfo::slider(true, scene.unit.of_omega(omega), name)
         });
         let handle = Handle { x, omega, frame };

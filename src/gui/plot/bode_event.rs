@@ -10,7 +10,7 @@ pub enum BodeEvent {
     Hovered(Option<CurveId>),
     Clicked(CurveId),
     /// A curve was double-clicked: the effect of the first click is to be undone.
-    TakenBack(CurveId),
+    ClickUndone(CurveId),
     /// A curve was clicked with Alt pressed.
     Isolated(CurveId),
     /// The band is being dragged to these ends \[rad/s\].
@@ -25,7 +25,7 @@ pub enum BodeEvent {
     /// The model is to be rejected for the entered reason.
     RejectedBecause(CurveId, String),
     /// An entry of a curve's menu was chosen.
-    Wished(CurveId, CurveWish),
+    ActionChosen(CurveId, CurveAction),
     /// A box was drawn over these curves.
     Boxed(Vec<CurveId>),
     /// A chip was clicked; the argument is its index.
@@ -34,7 +34,7 @@ pub enum BodeEvent {
 
 /// Action on a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CurveWish {
+pub enum CurveAction {
     /// Reject its model, or restore it.
     RejectOrRestore,
     /// Make its model the bundle's representative.

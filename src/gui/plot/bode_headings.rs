@@ -11,10 +11,11 @@ use super::curve_style::Role;
 use super::drawn_curves::{PANES, Pane};
 use super::end_labels::{EndLabel, height_beside, paint_end_labels};
 use super::panel_axis::TICKS_HEIGHT;
-use super::panel_text::caption_font;
-use super::readout::readout_strip_ui;
+use super::panel_text::{AT_RIGHT, caption_font};
+use super::readout_strip::readout_strip_ui;
 use super::reference_lines::PaneLines;
-use crate::gui::widgets::controls::{elided, painted_text, row_text};
+use crate::gui::widgets::elision::elided;
+use crate::gui::widgets::painted_text::{painted_text, row_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 
 /// Gap between two texts in a heading \[pt\].
@@ -49,7 +50,7 @@ impl BodeHeadings<'_> {
                 self.paint_note(ui, room, note, price_in_heading(scene, pane));
             } else if scene.stale && pane == Pane::Magnitude {
                 let words = scene.message.unwrap_or("updating…");
-                row_text(ui, line, -0.01, words, SMALL_SIZE, self.palette.dim_text);
+                row_text(ui, line, AT_RIGHT, words, SMALL_SIZE, self.palette.dim_text);
             }
             if let Some(transform) = self.view.transform(pane)
                 && (scene.names_curves || !scene.rules.is_empty())
@@ -95,14 +96,14 @@ impl BodeHeadings<'_> {
         } else {
             palette.dim_text
         };
-        let verdict = row_text(ui, room, -0.01, &note.verdict, BODY_SIZE, color);
+        let verdict = row_text(ui, room, AT_RIGHT, &note.verdict, BODY_SIZE, color);
         let mut rest = room.with_max_x(verdict.left() - GAP);
         if let Some(price) = price {
-            let place = row_text(ui, rest, -0.01, &price, BODY_SIZE, palette.warning);
+            let place = row_text(ui, rest, AT_RIGHT, &price, BODY_SIZE, palette.warning);
             rest = rest.with_max_x(place.left() - GAP);
         }
         let cost = elided(ui, &note.cost, rest.right() - rest.left(), BODY_SIZE);
-        row_text(ui, rest, -0.01, &cost, BODY_SIZE, palette.dim_text);
+        row_text(ui, rest, AT_RIGHT, &cost, BODY_SIZE, palette.dim_text);
     }
 
     /// Returns the names of the heavy curves and of the reference lines, and the magnitude added by
@@ -126,7 +127,7 @@ impl BodeHeadings<'_> {
                 labels.push(EndLabel {
                     y: height_beside(frame, at.y),
                     text: role.name().to_owned(),
-                    color: palette.name_of(color),
+                    color: palette.label_color(color),
                 });
             }
         }

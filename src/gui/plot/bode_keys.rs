@@ -1,9 +1,13 @@
-//! Keys that pan and zoom a focused Bode pane.
+//! Keys of a focused Bode plot: they pan, zoom and fit a pane, and switch roles.
 
 use egui::{EventFilter, Key, Modifiers, Response, Ui, vec2};
 
+use super::bode_scene::BodeScene;
 use super::bode_view::BodeView;
+use super::chips::role_chips;
+use super::curve_command::CurveCommand;
 use super::drawn_curves::Pane;
+use crate::gui::widgets::palette::Palette;
 
 /// Pan step of an arrow key, as a share of the visible range.
 const STEP: f32 = 0.1;
@@ -51,4 +55,37 @@ pub(super) fn handle_keys(ui: &Ui, pane: Pane, response: &Response, view: &mut B
 /// Removes the presses of a key from the input and returns their number.
 fn presses(ui: &Ui, key: Key) -> f32 {
     ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key)) as f32
+}
+
+/// Returns the request for a pressed digit, which toggles the role chip with this number.
+pub(super) fn pressed_role(
+    ui: &Ui,
+    scene: &BodeScene<'_>,
+    palette: &Palette,
+) -> Option<CurveCommand> {
+    let digit = pressed_digit(ui)?;
+    let chips = role_chips(scene.curves, scene.hidden_roles, palette);
+    let chip = chips.get(digit - 1)?;
+    Some(CurveCommand::ToggleRole(chip.role))
+}
+
+/// Removes a pressed digit from 1 to 9 from the input and returns it.
+fn pressed_digit(ui: &Ui) -> Option<usize> {
+    const DIGITS: [Key; 9] = [
+        Key::Num1,
+        Key::Num2,
+        Key::Num3,
+        Key::Num4,
+        Key::Num5,
+        Key::Num6,
+        Key::Num7,
+        Key::Num8,
+        Key::Num9,
+    ];
+    for (index, key) in DIGITS.into_iter().enumerate() {
+        if ui.input_mut(|input| input.consume_key(Modifiers::NONE, key)) {
+            return Some(index + 1);
+        }
+    }
+    None
 }

@@ -4,11 +4,11 @@ use egui::{Rect, pos2, vec2};
 
 use super::bode_scene::BodeScene;
 use super::panel_axis::TICKS_HEIGHT;
-use super::readout::STRIP_HEIGHT;
+use super::readout_strip::STRIP_HEIGHT;
 
 /// Vertical axis width \[pt\], equal in both panes so that the frequencies align.
 pub(super) const VALUE_AXIS_WIDTH: f32 = 40.0;
-/// Share of the height of the magnitude pane.
+/// Magnitude pane's share of the total height of both panes.
 const MAGNITUDE_PART: f32 = 0.52;
 /// Height of the line above a pane \[pt\].
 const HEADING: f32 = 20.0;

@@ -9,23 +9,35 @@ use super::axis_strip::axis_strips_ui;
 use super::bode_keys::handle_keys;
 use super::bode_layout::VALUE_AXIS_WIDTH;
 use super::bode_view::{BodeView, SelectionBox};
-use super::cached_raster::StillImage;
-use super::curve_layer::{DrawnPane, STALE, add_curve_lines, lies_at_the_bottom};
+use super::cached_raster::RasterImage;
+use super::curve_layer::{STALE, add_curve_lines, lies_at_the_bottom};
+use super::drawn_box::drawn_box_ui;
 use super::drawn_curves::{BodeCurve, DrawnCurves, Pane, VisiblePart};
+use super::drawn_pane::DrawnPane;
 use super::invalid_region::{InvalidStrip, add_hatching};
 use super::layers::{DrawnItem, add_area, add_dotted_vertical, add_shade, add_vertical};
-use super::navigation::{ZoomGesture, drawn_box_ui};
-use super::painter::{Gestures, PanelPainter};
 use super::pane_scene::PaneScene;
 use super::panel_axis::{PanelAxis, TICKS_HEIGHT};
+use super::panel_painter::{Gestures, PanelPainter};
 use super::reference_lines::PaneLines;
 use super::ticks::Ticks;
+use super::zoom_gesture::ZoomGesture;
 use crate::gui::widgets::palette::Palette;
 
 /// Maximum deviation of a drawn line from its curve \[pt\].
 const TOLERANCE: f64 = 0.1;
 /// Height of the strip along the lower edge \[pt\].
 const STRIP_HEIGHT: f32 = 5.0;
+/// Opacity of the shade of the comparison band, in the dark and in the light theme.
+const SHADE_DARK: f32 = 0.055;
+const SHADE_LIGHT: f32 = 0.075;
+/// Opacity of the veil outside the comparison band.
+const VEIL: f32 = 0.4;
+/// Opacity of uncertainty bands.
+const BAND_FILL: f32 = 0.22;
+/// Opacity of the lines at marked frequencies and at the frequency under the pointer.
+const MARKED: f32 = 0.7;
+const POINTED: f32 = 0.55;
 
 /// Draws a pane, and pans and zooms it with the pointer.
 pub(super) fn pane_ui(ui: &mut Ui, pane: PaneScene<'_>, view: &mut BodeView) -> Response {
@@ -51,6 +63,7 @@ pub(super) fn pane_ui(ui: &mut Ui, pane: PaneScene<'_>, view: &mut BodeView) -> 
         is_transparent: true,
         palette: pane.palette,
     };
+    // The content borrows the cached lines, so they are taken out of the view while it is drawn.
     let bounds = view.bounds(pane.pane);
     let mut drawn = std::mem::take(&mut view.drawn[pane.pane as usize]);
     let kept = &mut drawn;
@@ -152,7 +165,11 @@ impl<'a> PaneScene<'a> {
     }
 
     fn shade_band(self, plot: &mut PlotUi<'_>) {
-        let strength = if self.palette.is_dark { 0.055 } else { 0.075 };
+        let strength = if self.palette.is_dark {
+            SHADE_DARK
+        } else {
+            SHADE_LIGHT
+        };
         let (min, max) = self.scene.band;
         let fill = self.palette.accent.gamma_multiply(strength);
         add_shade(plot, min.log10()..=max.log10(), fill);
@@ -160,7 +177,7 @@ impl<'a> PaneScene<'a> {
 
     /// Dims the frequencies outside the band, which do not count in the comparison.
     fn veil_outside(self, plot: &mut PlotUi<'_>) {
-        let veil = self.palette.background.gamma_multiply(0.4);
+        let veil = self.palette.background.gamma_multiply(VEIL);
         let (min, max) = self.scene.band;
         add_shade(plot, f64::NEG_INFINITY..=min.log10(), veil);
         add_shade(plot, max.log10()..=f64::INFINITY, veil);
@@ -177,7 +194,7 @@ impl<'a> PaneScene<'a> {
         for (omega, [lower, upper]) in band.omega.iter().zip(values) {
             points.push([omega.log10(), *lower, *upper]);
         }
-        let fill = self.palette.identified.gamma_multiply(0.22);
+        let fill = self.palette.identified.gamma_multiply(BAND_FILL);
         for run in points.chunk_by(|from, to| is_in_view(from, to, view)) {
             if run.len() > 1 {
                 add_area(plot, run, fill);
@@ -187,7 +204,7 @@ impl<'a> PaneScene<'a> {
 
     /// Draws the curves, the most important on top. If `image` holds the curves at the bottom, it
     /// is drawn instead of their lines; the emphasized curves among them are drawn on top as lines.
-    fn add_curves(self, plot: &mut PlotUi<'a>, drawn: &'a DrawnCurves, image: Option<StillImage>) {
+    fn add_curves(self, plot: &mut PlotUi<'a>, drawn: &'a DrawnCurves, image: Option<RasterImage>) {
         let looks = self.looks;
         let mut curves: Vec<(usize, &BodeCurve)> = self.scene.curves.iter().enumerate().collect();
         if let Some(image) = image {
@@ -209,13 +226,13 @@ impl<'a> PaneScene<'a> {
     /// Draws the marked frequencies and the frequency under the pointer.
     fn add_cursors(self, plot: &mut PlotUi<'_>) {
         let scene = self.scene;
-        let marked = Stroke::new(1.0, self.palette.text.gamma_multiply(0.7));
+        let marked = Stroke::new(1.0, self.palette.text.gamma_multiply(MARKED));
         let crossings = scene.crossings.iter().map(|(_, omega)| omega);
         for omega in scene.pinned.iter().chain(crossings) {
             add_vertical(plot, omega.log10(), marked);
         }
         if let Some(log_omega) = self.cursor {
-            let pointed = Stroke::new(0.8, self.palette.text.gamma_multiply(0.55));
+            let pointed = Stroke::new(0.8, self.palette.text.gamma_multiply(POINTED));
             add_dotted_vertical(plot, log_omega, pointed);
         }
     }

@@ -8,11 +8,11 @@ use gdcm_plot::figure::axis::FrequencyUnit;
 use gdcm_plot::figure::bode::CoherenceCurve;
 pub use gdcm_plot::figure::responses::{BodeBand, ReferenceLine};
 
+use super::chips::Chip;
 use super::curve_style::Role;
 use super::drawn_curves::{BodeCurve, CurveId};
-use super::legend::Chip;
 use super::quantity::BodeQuantity;
-use super::readout::Readout;
+use super::readout_strip::Readout;
 
 /// Content of a Bode plot.
 #[derive(Clone, Copy, Debug, Default)]

@@ -6,12 +6,12 @@ use egui_plot::{PlotBounds, PlotPoint, PlotTransform};
 use gdcm_plot::figure::Range;
 use gdcm_plot::figure::responses::fitted_values;
 
+use super::bode_axis::BodeAxis;
 use super::bode_scene::BodeScene;
-use super::curve_layer::DrawnPane;
 use super::drawn_curves::{BodeCurve, CurveId, PANES, Pane};
+use super::drawn_pane::DrawnPane;
 use super::limits_form::LimitsForm;
-use super::plot_axis::PlotAxis;
-use super::quantity::ValueUnit;
+use super::value_unit::ValueUnit;
 use super::viewed_range::{ViewedRange, bounds_of};
 
 /// Permitted widths of the visible frequency range \[decades\].
@@ -31,6 +31,11 @@ const FIT_MARGIN: f64 = 0.04;
 ///
 /// The view moves only at the engineer's request, not when curves are recomputed. For another
 /// response or condition, value ranges that have not been zoomed are fitted once.
+///
+/// Two kinds of state control the visible ranges: a `ViewedRange` records whether the engineer
+/// chose it, and `must_fit_frequencies`, `must_fit_values` request a fit in the next frame that has
+/// data. A fit leaves a chosen range unchanged, so a request that concerns chosen ranges releases
+/// them first.
 #[derive(Clone, Debug)]
 pub struct BodeView {
     log_omega: ViewedRange,
@@ -71,16 +76,6 @@ pub(super) struct SelectionBox {
     pub(super) pane: Pane,
     /// Place on the screen.
     pub(super) area: Rect,
-}
-
-/// Returns the range of `log10 omega` from the first to the last frequency.
-fn log_omega_of(curves: &[BodeCurve]) -> Option<Range> {
-    Range::of(
-        curves
-            .iter()
-            .flat_map(|curve| curve.omega.iter())
-            .map(|omega| omega.log10()),
-    )
 }
 
 impl Default for BodeView {
@@ -232,7 +227,7 @@ impl BodeView {
         self.values[pane as usize].choose(values);
     }
 
-    /// Magnifies a pane by `factor`, with the point under `pointer` fixed.
+    /// Magnifies a pane by a factor along each axis, with the point under `pointer` fixed.
     pub(super) fn zoom(
         &mut self,
         pane: Pane,
@@ -249,19 +244,19 @@ impl BodeView {
     }
 
     /// Returns the visible range of an axis with its limits.
-    pub(super) fn axis_mut(&mut self, axis: PlotAxis) -> &mut ViewedRange {
+    pub(super) fn axis_mut(&mut self, axis: BodeAxis) -> &mut ViewedRange {
         match axis {
-            PlotAxis::Frequency => &mut self.log_omega,
-            PlotAxis::Values(pane) => &mut self.values[pane as usize],
+            BodeAxis::Frequency => &mut self.log_omega,
+            BodeAxis::Values(pane) => &mut self.values[pane as usize],
         }
     }
 
     /// Requests that an axis be fitted to all curves in the next frame.
-    pub(super) fn fit_axis(&mut self, axis: PlotAxis) {
+    pub(super) fn fit_axis(&mut self, axis: BodeAxis) {
         self.axis_mut(axis).release();
         match axis {
-            PlotAxis::Frequency => self.must_fit_frequencies = true,
-            PlotAxis::Values(_) => self.must_fit_values = true,
+            BodeAxis::Frequency => self.must_fit_frequencies = true,
+            BodeAxis::Values(_) => self.must_fit_values = true,
         }
     }
 
@@ -276,8 +271,8 @@ impl BodeView {
         self.values[pane as usize].choose(Range::new(a.y, b.y));
     }
 
-    /// Fits all curves, including rejected curves, if requested. Without data, the request stays
-    /// pending.
+    /// Fits the requested axes to all curves, including rejected ones. Without data, the request
+    /// stays pending.
     pub(super) fn fit_if_requested(&mut self, scene: &BodeScene<'_>) {
         let computed = scene
             .omega_range
@@ -306,11 +301,25 @@ impl BodeView {
             Some(invalid) => invalid.up_to,
             None => scene.band.1,
         };
+        let band = Range {
+            min: scene.band.0,
+            max: upper,
+        };
         for pane in PANES {
-            if let Some(values) = fitted_values(scene.curves, pane, (scene.band.0, upper)) {
+            if let Some(values) = fitted_values(scene.curves, pane, band) {
                 let least = scene.quantity.least_height(pane);
                 self.values[pane as usize].fit(values.with_margin(FIT_MARGIN, least));
             }
         }
     }
+}
+
+/// Returns the range of `log10 omega` from the first to the last frequency.
+fn log_omega_of(curves: &[BodeCurve]) -> Option<Range> {
+    Range::spanning(
+        curves
+            .iter()
+            .flat_map(|curve| curve.omega.iter())
+            .map(|omega| omega.log10()),
+    )
 }

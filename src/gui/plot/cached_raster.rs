@@ -15,9 +15,9 @@ pub(super) const MANY: usize = 200;
 /// Maximum deviation of a drawn circle from a true circle \[pt\].
 const TOLERANCE: f64 = 0.05;
 
-/// Content of an image; the image is valid as long as its content is unchanged.
+/// Content of an image; the image is valid while its content is unchanged.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct StillScene {
+pub(super) struct RasterScene {
     /// Place on the screen \[pt\].
     pub(super) frame: Rect,
     pub(super) pixels_per_point: f32,
@@ -35,8 +35,8 @@ pub(super) struct StillScene {
 /// ```
 #[derive(Clone, Default)]
 pub(super) struct CachedRaster {
-    scene: Option<StillScene>,
-    image: Option<StillImage>,
+    scene: Option<RasterScene>,
+    image: Option<RasterImage>,
 }
 
 impl std::fmt::Debug for CachedRaster {
@@ -54,9 +54,9 @@ impl CachedRaster {
     pub(super) fn image_of(
         &mut self,
         ctx: &Context,
-        scene: StillScene,
+        scene: RasterScene,
         shapes: impl FnOnce() -> Vec<Shape>,
-    ) -> Option<StillImage> {
+    ) -> Option<RasterImage> {
         if self.scene.as_ref() != Some(&scene) {
             *self = Self {
                 scene: Some(scene),
@@ -74,7 +74,7 @@ impl CachedRaster {
                 return None;
             }
             let image = filled(&shapes(), &area);
-            self.image = Some(StillImage {
+            self.image = Some(RasterImage {
                 texture: ctx.load_texture("curves at rest", image, TextureOptions::NEAREST),
                 area: area.rect,
             });
@@ -114,7 +114,7 @@ fn pixel_count(length: f32) -> Option<u16> {
     }
 }
 
-/// Fills the shapes on a transparent ground.
+/// Returns an image of the shapes on a transparent ground.
 fn filled(shapes: &[Shape], area: &PixelArea) -> ColorImage {
     let [width, height] = area.pixels;
     let mut context = RenderContext::new_with(
@@ -156,7 +156,7 @@ fn fill(context: &mut RenderContext, shape: &Shape) {
             }
         }
         Shape::Circle(circle) => {
-            take_color(context, circle.fill);
+            set_paint_color(context, circle.fill);
             let disc = Circle::new(
                 (f64::from(circle.center.x), f64::from(circle.center.y)),
                 f64::from(circle.radius),
@@ -177,25 +177,25 @@ fn stroke_along(context: &mut RenderContext, points: &[Pos2], stroke: Stroke) {
             path.line_to(at);
         }
     }
-    take_color(context, stroke.color);
+    set_paint_color(context, stroke.color);
     context.set_stroke(PathStroke::new(f64::from(stroke.width)).with_join(Join::Bevel));
     context.stroke_path(&path);
 }
 
-fn take_color(context: &mut RenderContext, color: Color32) {
+fn set_paint_color(context: &mut RenderContext, color: Color32) {
     let [red, green, blue, alpha] = color.to_srgba_unmultiplied();
     context.set_paint(AlphaColor::from_rgba8(red, green, blue, alpha));
 }
 
-/// Image on whole pixels. (A `PlotImage` would lie below all other items, including bands, and
-/// would be scaled in plot coordinates.)
+/// Image on whole pixels, ready to be drawn. (A `PlotImage` would lie below all other items,
+/// including bands, and would be scaled in plot coordinates.)
 #[derive(Clone)]
-pub(super) struct StillImage {
+pub(super) struct RasterImage {
     texture: TextureHandle,
     area: Rect,
 }
 
-impl StillImage {
+impl RasterImage {
     /// Returns the image with reduced opacity.
     pub(super) fn shape(&self, strength: f32) -> Shape {
         let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
@@ -216,7 +216,7 @@ mod tests {
 
     use super::*;
 
-    fn scene(curves: &[u64], left: f32) -> StillScene {
+    fn scene(curves: &[u64], left: f32) -> RasterScene {
         let look = CurveStyle {
             color: Color32::RED,
             width: 2.0,
@@ -224,7 +224,7 @@ mod tests {
             length: 0.0,
         };
         let frame = Rect::from_min_size(pos2(left, 20.3), vec2(50.0, 30.0));
-        StillScene {
+        RasterScene {
             frame,
             pixels_per_point: 1.5,
             curves: curves.iter().map(|serial| (*serial, look)).collect(),
@@ -232,7 +232,7 @@ mod tests {
     }
 
     /// Returns the rectangle into which the image is drawn.
-    fn image(still: &mut CachedRaster, ctx: &Context, scene: StillScene) -> Option<Rect> {
+    fn image(still: &mut CachedRaster, ctx: &Context, scene: RasterScene) -> Option<Rect> {
         still.image_of(ctx, scene, Vec::new).map(|item| item.area)
     }
 

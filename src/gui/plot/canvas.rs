@@ -1,15 +1,10 @@
 //! Canvas that draws the shapes of printed figures on the screen, enlarged and in the colours of
-//! the theme; and the legend line above the plots of a figure.
+//! the theme.
 
 use egui::epaint::TextShape;
-use egui::{
-    Color32, FontId, Mesh, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, pos2, vec2,
-};
+use egui::{Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
 
-use gdcm_plot::figure::Figure;
 use gdcm_plot::figure::drawing::{Area, Shape as Drawn, Stroke as Line, Text};
-use gdcm_plot::figure::legend::Sample;
-use gdcm_plot::figure::paint::dot_shapes;
 
 use crate::gui::widgets::palette::Palette;
 
@@ -64,6 +59,8 @@ impl Canvas<'_> {
             } => {
                 let points: Vec<Pos2> = points.iter().map(|point| self.at(*point)).collect();
                 match (fill, stroke) {
+                    // A filled path of more than four points is the area between two lines, which
+                    // need not be convex; shorter paths are bars, marks, or one step of an area.
                     (Some(color), _) if points.len() > 4 => {
                         self.fill_between(&points, self.palette.color(*color));
                     }
@@ -143,6 +140,7 @@ impl Canvas<'_> {
     fn fill_between(&self, outline: &[Pos2], color: Color32) {
         let mut mesh = Mesh::default();
         for place in 0..outline.len() / 2 {
+            // The points of both lines at the same x, and two triangles to the points before.
             mesh.colored_vertex(outline[place], color);
             mesh.colored_vertex(outline[outline.len() - 1 - place], color);
             if place > 0 {
@@ -171,50 +169,6 @@ impl Canvas<'_> {
                 .add(text.with_angle(-std::f32::consts::FRAC_PI_2));
         } else {
             self.painter.galley(at - vec2(before, base), galley, color);
-        }
-    }
-}
-
-/// Size of a sample in the legend \[pt\].
-const SAMPLE_SIZE: Vec2 = vec2(18.0, 14.0);
-
-/// Draws a sample and a name for each key of the figure's marks, as in the printed legend.
-pub fn figure_legend_ui(ui: &mut Ui, figure: &Figure, palette: &Palette) {
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing = vec2(4.0, 0.0);
-        for entry in figure.legend() {
-            let (place, _) = ui.allocate_exact_size(SAMPLE_SIZE, Sense::hover());
-            paint_sample(ui, place, entry.sample, palette);
-            ui.label(palette.small(entry.text));
-            ui.add_space(10.0);
-        }
-    });
-}
-
-fn paint_sample(ui: &Ui, place: Rect, sample: Sample, palette: &Palette) {
-    match sample {
-        Sample::Dot {
-            shape,
-            color,
-            filled,
-        } => {
-            let canvas = Canvas {
-                painter: ui.painter(),
-                origin: place.center(),
-                palette,
-            };
-            canvas.paint(&dot_shapes([0.0, 0.0], (shape, 1.0), color, filled));
-        }
-        Sample::Line(stroke) => {
-            let path = vec![place.left_center(), place.right_center()];
-            let style = palette.curve_style(stroke).in_miniature();
-            let mut shapes = Vec::new();
-            style.add_shapes(path, &mut shapes);
-            ui.painter().extend(shapes);
-        }
-        Sample::Ground(color) => {
-            let fill = palette.color(color);
-            ui.painter().rect_filled(place.shrink(2.0), 2.0, fill);
         }
     }
 }

@@ -94,7 +94,7 @@ pub struct Chart<'a> {
     /// Image below everything else.
     pub image: Option<ChartImage>,
     /// Whether dragging selects a horizontal range instead of panning;
-    /// [`chosen_stretch`](super::stretch::chosen_stretch) returns it for the group.
+    /// [`take_dragged_range`](super::dragged_range::take_dragged_range) returns it for the group.
     pub chooses: bool,
 }
 

@@ -7,13 +7,13 @@ use gdcm_plot::figure::Range;
 
 use super::chart::{Chart, ChartAxis};
 use super::chart_layers::{add_layers, visible_ends};
-use super::navigation::ZoomGesture;
-use super::painter::{Follow, Gestures, PanelPainter};
+use super::dragged_range::store_dragged_range;
 use super::panel_axis::{LABELLED_HEIGHT, PanelAxis, TICKS_HEIGHT};
+use super::panel_painter::{Follow, Gestures, PanelPainter};
 use super::panel_text::caption_font;
-use super::stretch::choose_by_dragging;
 use super::ticks::{Ticks, VERTICAL_TICK_GAP};
 use super::viewed_range::{ZoomLimit, ranges_of, zoomed_within};
+use super::zoom_gesture::ZoomGesture;
 use crate::gui::widgets::palette::Palette;
 
 const TITLE_HEIGHT: f32 = 18.0;
@@ -58,7 +58,7 @@ pub fn chart_ui(ui: &mut Ui, rect: Rect, chart: &Chart<'_>, palette: &Palette) -
         if let Some(group) = chart.group
             && chart.chooses
         {
-            choose_by_dragging(plot, group);
+            store_dragged_range(plot, group);
         }
         visible_ends(plot)
     });
@@ -182,7 +182,7 @@ fn zoom_limits(chart: &Chart<'_>) -> [Range; 2] {
         ChartAxis::Linear => widths,
     };
     [
-        Range::of(places).map_or(Range::ALL, |data| limit_across.range(data)),
-        Range::of(values).map_or(Range::ALL, |data| widths.range(data)),
+        Range::spanning(places).map_or(Range::ALL, |data| limit_across.range(data)),
+        Range::spanning(values).map_or(Range::ALL, |data| widths.range(data)),
     ]
 }

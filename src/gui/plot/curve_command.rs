@@ -27,8 +27,14 @@ pub enum CurveCommand {
     HideModel(ModelId),
     /// Shows every model, and the roles visible by default.
     ShowHidden,
-    /// Shifts the phase of a curve: condition, response, curve, number of whole turns upwards.
-    Turn(ConditionId, Pair, CurveId, i32),
+    /// Shifts the phase of a curve.
+    Turn {
+        condition: ConditionId,
+        pair: Pair,
+        curve: CurveId,
+        /// Number of whole turns upwards.
+        turns: i32,
+    },
     /// Shows the cursor at a frequency \[rad/s\] in every plot; sent again in each frame.
     PointAt(f64),
     /// Marks a frequency \[rad/s\]; a third mark replaces the first.

@@ -1,24 +1,14 @@
-//! Curve layer: drawing order, styles and lines, and the image that replaces many static curves.
+//! Curve layer: drawing order, styles and lines of the curves of a pane.
 
-use egui::{Context, Pos2, Shape};
+use egui::{Pos2, Shape};
 use egui_plot::{PlotPoint, PlotTransform};
 
-use super::cached_raster::{CachedRaster, MANY, StillImage, StillScene};
 use super::curve_style::{CurveStyle, Role};
-use super::drawn_curves::{BodeCurve, CurveId, DrawnCurves};
+use super::drawn_curves::{BodeCurve, CurveId};
 use crate::gui::widgets::palette::Palette;
 
 /// Opacity while curves are being recomputed.
 pub(super) const STALE: f32 = 0.5;
-
-/// Pane as last drawn: transform, lines, and the image of its static lines.
-#[derive(Clone, Debug, Default)]
-pub(super) struct DrawnPane {
-    /// Transform as last drawn, where x is `log10 omega`; `None` if there was nothing to draw.
-    pub(super) transform: Option<PlotTransform>,
-    pub(super) curves: DrawnCurves,
-    pub(super) image: CachedRaster,
-}
 
 /// Emphasis and line size of the curves of a pane.
 #[derive(Clone, Copy, Debug, Default)]
@@ -87,45 +77,4 @@ pub(super) fn add_curve_lines(
 /// Returns whether a curve only shows the scatter of its bundle and may be part of an image.
 pub(super) fn lies_at_the_bottom(curve: &BodeCurve) -> bool {
     curve.role.layer(curve.rejected) <= Role::Perturbed.layer(false)
-}
-
-impl DrawnPane {
-    /// Returns the image of the curves at the bottom if these are static and at least
-    /// [`MANY`] in number.
-    pub(super) fn image_of_many(
-        &mut self,
-        ctx: &Context,
-        curves: &[BodeCurve],
-        transform: &PlotTransform,
-        palette: &Palette,
-    ) -> Option<StillImage> {
-        let mut lowest: Vec<(usize, &BodeCurve)> = curves
-            .iter()
-            .enumerate()
-            .filter(|(_, curve)| lies_at_the_bottom(curve))
-            .collect();
-        if lowest.len() < MANY {
-            return None;
-        }
-        lowest.sort_by_key(|(_, curve)| curve.role.layer(curve.rejected));
-        let drawn = &self.curves;
-        let mut lines = Vec::with_capacity(lowest.len());
-        let mut still = StillScene {
-            frame: *transform.frame(),
-            pixels_per_point: ctx.pixels_per_point(),
-            curves: Vec::with_capacity(lowest.len()),
-        };
-        for (index, curve) in lowest {
-            let style = palette.role_style(curve.role, curve.rejected);
-            still.curves.push((drawn.serial(index), style));
-            lines.push((drawn.runs(index), style));
-        }
-        self.image.image_of(ctx, still, || {
-            let mut shapes = Vec::new();
-            for (runs, style) in lines {
-                add_curve_lines(runs, style, transform, &mut shapes);
-            }
-            shapes
-        })
-    }
 }

@@ -5,7 +5,7 @@ use egui::{
     WidgetInfo,
 };
 
-use super::bode_event::{BodeEvent, CurveWish};
+use super::bode_event::{BodeEvent, CurveAction};
 use super::bode_scene::BodeScene;
 use super::bode_view::BodeView;
 use super::curve_command::CurveCommand;
@@ -54,8 +54,8 @@ fn curve_menu_ui(
     if reason_ui(ui, curve, reason) {
         chosen = Some(BodeEvent::RejectedBecause(curve.id.clone(), reason.clone()));
     }
-    if let Some(wish) = curve_wishes_ui(ui, curve, quantity) {
-        chosen = Some(BodeEvent::Wished(curve.id.clone(), wish));
+    if let Some(action) = curve_actions_ui(ui, curve, quantity) {
+        chosen = Some(BodeEvent::ActionChosen(curve.id.clone(), action));
     }
     chosen
 }
@@ -104,18 +104,18 @@ fn reason_ui(ui: &mut Ui, curve: &BodeCurve, reason: &mut String) -> bool {
 }
 
 /// Draws the actions on a curve; returns the chosen action.
-fn curve_wishes_ui(
+fn curve_actions_ui(
     ui: &mut Ui,
     curve: &BodeCurve,
     quantity: BodeQuantity<'_>,
-) -> Option<CurveWish> {
-    let mut wished = model_wishes_ui(ui, curve);
+) -> Option<CurveAction> {
+    let mut chosen = model_actions_ui(ui, curve);
     if entry_ui(
         ui,
         "Copy values",
         "Frequencies and values as text, with their units",
     ) {
-        wished = Some(CurveWish::CopyValues);
+        chosen = Some(CurveAction::CopyValues);
     }
     if let BodeQuantity::Response {
         phase: PhaseUnit::Unwrapped,
@@ -128,33 +128,33 @@ fn curve_wishes_ui(
             "Phase +360°",
             "Shifts the drawn curve by a whole turn; no result changes",
         ) {
-            wished = Some(CurveWish::Turn(1));
+            chosen = Some(CurveAction::Turn(1));
         }
         if entry_ui(
             ui,
             "Phase −360°",
             "Shifts the drawn curve by a whole turn; no result changes",
         ) {
-            wished = Some(CurveWish::Turn(-1));
+            chosen = Some(CurveAction::Turn(-1));
         }
     }
-    wished
+    chosen
 }
 
 /// Draws the actions on a curve's model, in any plot; nothing if the curve has no model. Returns
 /// the chosen action.
-pub(super) fn model_wishes_ui(ui: &mut Ui, curve: &BodeCurve) -> Option<CurveWish> {
+pub(super) fn model_actions_ui(ui: &mut Ui, curve: &BodeCurve) -> Option<CurveAction> {
     if !matches!(curve.id, CurveId::Model(_)) {
         return None;
     }
-    let mut wished = None;
+    let mut chosen = None;
     let is_chosen = if curve.rejected {
         entry_ui(ui, "Restore model", "Returns the model to its bundle")
     } else {
         entry_ui(ui, "Reject model", "Removes the model from its bundle")
     };
     if is_chosen {
-        wished = Some(CurveWish::RejectOrRestore);
+        chosen = Some(CurveAction::RejectOrRestore);
     }
     let represents = matches!(
         curve.role,
@@ -168,19 +168,19 @@ pub(super) fn model_wishes_ui(ui: &mut Ui, curve: &BodeCurve) -> Option<CurveWis
             "Replaces the medoid as representative of the bundle",
         )
     {
-        wished = Some(CurveWish::Pin);
+        chosen = Some(CurveAction::Pin);
     }
     if entry_ui(
         ui,
         "Isolate model",
         "Draws only this model and the representatives; again: all models",
     ) {
-        wished = Some(CurveWish::Isolate);
+        chosen = Some(CurveAction::Isolate);
     }
     if entry_ui(ui, "Hide curve", "The model still counts in every result") {
-        wished = Some(CurveWish::Hide);
+        chosen = Some(CurveAction::Hide);
     }
-    wished
+    chosen
 }
 
 /// Draws the menu on empty ground at `omega` \[rad/s\]; returns the chosen action.

@@ -10,8 +10,15 @@ use crate::gui::widgets::palette::Palette;
 
 /// Length of the gaps between dashes, relative to the dashes.
 const GAP_OF_DASH: f32 = 0.618;
+/// Length of the gaps on either side of a dot, relative to the gaps between dashes.
+const GAP_AT_DOT: f32 = 0.6;
 /// Length of the dots between dashes \[pt\].
 const DOT_LENGTH: f32 = 1.8;
+/// Additional width of an emphasized line \[pt\].
+const EMPHASIZED_WIDER: f32 = 1.6;
+/// Additional width of emphasized dots \[pt\], and the factor of their spacing.
+const EMPHASIZED_DOTS_WIDER: f32 = 0.7;
+const EMPHASIZED_DOTS_APART: f32 = 1.5;
 
 /// Colour, width and pattern of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,19 +35,18 @@ pub struct CurveStyle {
 impl CurveStyle {
     /// Returns the style of this line when emphasized: opaque and wider.
     pub fn emphasized(self) -> Self {
-        let color = self.color.to_opaque();
-        // Dots need a wider spacing to remain dots.
-        let (wider, longer) = if self.dash == Dash::Dotted {
-            (0.7, 1.5)
-        } else {
-            (1.6, 1.0)
-        };
-        Self {
-            color,
-            width: self.width + wider,
-            length: longer * self.length,
+        let mut style = Self {
+            color: self.color.to_opaque(),
             ..self
+        };
+        if self.dash == Dash::Dotted {
+            // Dots need a wider spacing to remain dots.
+            style.width += EMPHASIZED_DOTS_WIDER;
+            style.length *= EMPHASIZED_DOTS_APART;
+        } else {
+            style.width += EMPHASIZED_WIDER;
         }
+        style
     }
 
     /// Returns the style of this line in a small plot: narrower, with a shorter pattern.
@@ -75,7 +81,7 @@ impl CurveStyle {
                 Shape::dashed_line_many(&path, stroke, length, GAP_OF_DASH * length, shapes);
             }
             Dash::DashDot | Dash::ShortDashDot => {
-                let gap = GAP_OF_DASH * 0.6 * length;
+                let gap = GAP_OF_DASH * GAP_AT_DOT * length;
                 Shape::dashed_line_many_with_offset(
                     &path,
                     stroke,
@@ -190,7 +196,7 @@ mod tests {
             Hue::Warning,
             Hue::Good,
         ]) {
-            let [red, green, blue, _] = light.color(Color::of(hue)).to_array();
+            let [red, green, blue, _] = light.color(Color::new(hue)).to_array();
             assert_eq!([red, green, blue], hue.on_paper(), "{hue:?}");
         }
     }

@@ -6,7 +6,7 @@ use egui_plot::{PlotPoint, PlotTransform};
 use gdcm_plot::figure::axis::Scale;
 use gdcm_plot::figure::drawing::{Area, Shape};
 use gdcm_plot::figure::figure::{Dot, Dots};
-use gdcm_plot::figure::paint::dot_shapes;
+use gdcm_plot::figure::paint::DotStyle;
 use gdcm_plot::figure::{Mark, MarkId, Panel, Range};
 
 use super::canvas::{Canvas, LETTERS_PT, area};
@@ -18,6 +18,11 @@ pub(super) const RING: f32 = 8.0;
 const RING_WIDTH: f32 = 1.4;
 /// Magnification of a highlighted dot.
 const EMPHASIZED: f64 = 1.3;
+/// Minimum size of a dot before it is magnified, relative to the usual size.
+const LEAST_EMPHASIZED: f64 = 0.8;
+/// Opacity of the shade of a column in focus, and of the column under the pointer.
+const SELECTED_COLUMN: f32 = 0.6;
+const POINTED_COLUMN: f32 = 0.35;
 
 /// Shapes as last drawn, cached because placing labels takes longer than drawing them.
 #[derive(Clone, Debug, Default)]
@@ -46,12 +51,12 @@ impl DrawnMarks {
             drawn.area == area && drawn.ranges == ranges && drawn.panel == *panel
         });
         if !is_same {
-            let (shapes, _) = panel.shapes(area, ranges, LETTERS_PT);
+            let painted = panel.shapes(area, ranges, LETTERS_PT);
             self.drawn = Some(DrawnPanel {
                 panel: panel.clone(),
                 area,
                 ranges,
-                shapes,
+                shapes: painted.shapes,
             });
         }
         match &self.drawn {
@@ -109,9 +114,9 @@ impl MarkScene<'_> {
         for (column, id) in self.columns.iter().enumerate() {
             let place = column as f64;
             let strength = if self.selected == Some(id) {
-                0.6
+                SELECTED_COLUMN
             } else if self.pointed_at.is_some_and(|at| at[0] == place) {
-                0.35
+                POINTED_COLUMN
             } else {
                 continue;
             };
@@ -128,8 +133,11 @@ impl MarkScene<'_> {
         for dot in dots.dots.iter().filter(|dot| dot.id.is_some()) {
             if dot.id.as_ref() == self.emphasized {
                 let at = canvas.paper_place(self.position(dot));
-                let look = (dots.shape, EMPHASIZED * dots.size.max(0.8));
-                canvas.paint(&dot_shapes(at, look, dots.color, dots.filled));
+                let style = DotStyle {
+                    size: EMPHASIZED * dots.size.max(LEAST_EMPHASIZED),
+                    ..DotStyle::of_group(dots)
+                };
+                canvas.paint(&style.shapes(at));
             }
             if dot.id.as_ref() == self.selected {
                 let at = PlotPoint::new(dot.x, dot.y);

@@ -1,4 +1,4 @@
-//! Panel of a figure: axes, the mark under the pointer, zooming and panning.
+//! Panel of a figure: title, axes, marks, and the mark under the pointer.
 
 use egui::{Align2, Id, Rect, Response, Sense, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2};
 use egui_plot::{PlotPoint, PlotTransform};
@@ -9,13 +9,13 @@ use gdcm_plot::figure::{MarkId, Panel, Range};
 
 use super::figure_marks::{DrawnMarks, MarkScene, RING};
 use super::figure_scene::FigureScene;
-use super::navigation::ZoomGesture;
-use super::painter::{Gestures, PanelPainter};
+use super::figure_zoom::{navigated_ranges, whole_ranges};
+use super::nearest_dot::{PointedMark, nearest_dot};
 use super::panel_axis::{LABELLED_HEIGHT, PanelAxis, TICKS_HEIGHT, TickSpacing, tick_font};
+use super::panel_painter::{Gestures, PanelPainter};
 use super::panel_text::caption_font;
-use super::picking::{PointedMark, nearest_dot};
 use super::ticks::Ticks;
-use super::viewed_range::{ZoomLimit, bounds_of, ranges_of, zoomed_within};
+use super::viewed_range::bounds_of;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE, medium};
 
 /// Height of the title above the first panel \[pt\].
@@ -29,10 +29,6 @@ const PANEL_GAP: f32 = 4.0;
 const TICK_GAP: f64 = 26.0;
 /// Minimum distance between ticks in a compact figure, which has as many tick labels as fit \[pt\].
 const COMPACT_TICK_GAP: f64 = 17.0;
-/// Maximum visible range, relative to the full range of the panel.
-const FARTHEST: f64 = 10.0;
-/// Minimum visible range, in axis coordinates.
-const LEAST_WIDTH: f64 = 1e-4;
 
 /// State of a panel between frames.
 #[derive(Clone, Debug, Default)]
@@ -60,7 +56,8 @@ impl PanelView {
     }
 }
 
-/// Panel of a figure at its position.
+/// Panel of a figure at its position on the screen, given by the indices of its plot and of the
+/// panel in the plot.
 pub(super) struct PlacedPanel<'a> {
     pub(super) scene: &'a FigureScene<'a>,
     /// Index of the plot in the figure.
@@ -86,7 +83,7 @@ impl PlacedPanel<'_> {
         let panel = self.panel();
         let has_values = self.has_values(ui);
         let rect = self.frame_with_axes(has_values);
-        let bounds = bounds_of(view.ranges.unwrap_or_else(|| whole(panel)));
+        let bounds = bounds_of(view.ranges.unwrap_or_else(|| whole_ranges(panel)));
         let across = self.horizontal_axis(ui);
         let room = rect.height() - across.thickness;
         let values = self.vertical_axis(ui, room, has_values);
@@ -124,7 +121,9 @@ impl PlacedPanel<'_> {
         marks.paint(ui, &mut view.marks);
         self.describe_dots(ui, &transform);
         if self.scene.zooms {
-            navigate(panel, &response, &transform, view);
+            if let Some(ranges) = navigated_ranges(panel, &response, &transform) {
+                view.ranges = Some(ranges);
+            }
             if response.double_clicked() && pointed.is_none() {
                 view.ranges = None;
                 response.ctx.request_repaint();
@@ -139,7 +138,10 @@ impl PlacedPanel<'_> {
 
     /// Returns the accessible name.
     fn description(&self) -> String {
-        let plot = self.scene.words.plot(self.scene.first_plot + self.plot);
+        let plot = self
+            .scene
+            .words
+            .plot_name(self.scene.first_plot + self.plot);
         if self.number == 0 {
             plot
         } else {
@@ -230,7 +232,7 @@ impl PlacedPanel<'_> {
         let plot = self.scene.first_plot + self.plot;
         for dot in self.panel().dots() {
             let Some(id) = &dot.id else { continue };
-            let Some(words) = self.scene.words.dot(plot, id, [dot.x, dot.y]) else {
+            let Some(words) = self.scene.words.dot_name(plot, id, [dot.x, dot.y]) else {
                 continue;
             };
             let at = transform.position_from_point(&PlotPoint::new(dot.x, dot.y));
@@ -310,52 +312,4 @@ fn tick_width(ui: &Ui, text: &str, palette: &Palette) -> f32 {
         .painter()
         .layout_no_wrap(text.to_owned(), tick_font(), palette.text);
     galley.size().x
-}
-
-/// Updates the visible ranges after a gesture: the wheel zooms about the pointer, dragging pans.
-fn navigate(panel: &Panel, response: &Response, transform: &PlotTransform, view: &mut PanelView) {
-    let whole = whole(panel);
-    let limits = zoom_limits(panel);
-    let mut shown = ranges_of(transform.bounds());
-    if let Some(gesture) = ZoomGesture::find(&response.ctx, response) {
-        let factor = gesture.along_one_axis();
-        let fixed = transform.value_from_position(gesture.pointer);
-        for (axis, fixed) in [fixed.x, fixed.y].into_iter().enumerate() {
-            let limit = limits[axis].range(whole[axis]);
-            // The axis was dragged beyond the limit if there is no range: it is not zoomed then.
-            if let Some(zoomed) = zoomed_within(shown[axis], factor, fixed, limit) {
-                shown[axis] = zoomed;
-            }
-        }
-        response.ctx.request_repaint();
-    }
-    let widths = whole.map(|whole| Range::new(LEAST_WIDTH, FARTHEST * whole.width()));
-    let x = shown[0].limited(widths[0]);
-    let y = shown[1].limited(widths[1]);
-    if let (Some(x), Some(y)) = (x, y) {
-        view.ranges = Some([x, y]);
-    }
-}
-
-/// Returns the limits of zooming out: the data range along a time axis, a decade beyond the data
-/// range along a logarithmic axis, ten times the data range otherwise.
-fn zoom_limits(panel: &Panel) -> [ZoomLimit; 2] {
-    let widths = ZoomLimit::TenWidths { least: LEAST_WIDTH };
-    let across = match panel.x.scale {
-        Scale::Logarithmic => ZoomLimit::Decade,
-        Scale::Linear | Scale::Degrees if panel.x.label.ends_with("[s]") => ZoomLimit::Data,
-        Scale::Linear | Scale::Degrees => widths,
-    };
-    [across, widths]
-}
-
-/// Returns the full ranges of a panel in axis coordinates, which are logarithms on a logarithmic
-/// horizontal axis.
-fn whole(panel: &Panel) -> [Range; 2] {
-    let x = panel.shown(Along::X);
-    let y = panel.shown(Along::Y);
-    match panel.x.scale {
-        Scale::Logarithmic => [Range::new(x.min.log10(), x.max.log10()), y],
-        Scale::Linear | Scale::Degrees => [x, y],
-    }
 }

@@ -5,32 +5,32 @@ use egui::{Modifiers, Vec2};
 use gdcm_plot::figure::{Figure, MarkId};
 use gdcm_words::derivation::ExplainTarget;
 
-use super::questions::NamedFigure;
+use super::derivation_menu::Question;
 
-/// Descriptions of a figure's plots and marks.
+/// Descriptions of a figure's plots and marks. A plot is given by its index, a mark by its id and
+/// its axis coordinates.
 pub trait FigureWords {
-    /// Describes a plot for screen readers.
-    fn plot(&self, plot: usize) -> String;
+    /// Returns the accessible name of a plot, read by screen readers.
+    fn plot_name(&self, plot: usize) -> String;
 
-    /// Describes a dot at these axis coordinates for screen readers; `None` if dots are not
-    /// described individually.
-    fn dot(&self, _plot: usize, _id: &MarkId, _at: [f64; 2]) -> Option<String> {
+    /// Returns the accessible name of a dot; `None` if dots have no names of their own.
+    fn dot_name(&self, _plot: usize, _id: &MarkId, _at: [f64; 2]) -> Option<String> {
         None
     }
 
-    /// Returns the status text of the mark under the pointer; `None` for no text.
-    fn pointed(&self, _plot: usize, _id: &MarkId, _at: [f64; 2]) -> Option<String> {
+    /// Returns the status text for the mark under the pointer; `None` for no text.
+    fn status_text(&self, _plot: usize, _id: &MarkId, _at: [f64; 2]) -> Option<String> {
         None
     }
 
     /// Returns the values at a mark for which a derivation can be displayed.
-    fn questions(&self, _plot: usize, _id: &MarkId) -> Vec<NamedFigure> {
+    fn questions(&self, _plot: usize, _id: &MarkId) -> Vec<Question> {
         Vec::new()
     }
 }
 
 impl FigureWords for Figure {
-    fn plot(&self, plot: usize) -> String {
+    fn plot_name(&self, plot: usize) -> String {
         self.plots[plot].title.clone()
     }
 }
@@ -50,7 +50,7 @@ pub struct FigureScene<'a> {
     /// Whether the plots can be zoomed and panned.
     pub zooms: bool,
     /// Minimum plot size \[pt\].
-    pub least: Vec2,
+    pub least_plot_size: Vec2,
     /// Message shown if there is nothing to draw.
     pub message: &'a str,
     /// Whether the axis texts are reduced: the vertical label only at the left of each row, and
@@ -68,7 +68,7 @@ impl<'a> FigureScene<'a> {
     pub fn new(
         name: &'static str,
         figure: &'a Figure,
-        least: Vec2,
+        least_plot_size: Vec2,
         message: &'a str,
         words: &'a dyn FigureWords,
     ) -> Self {
@@ -79,7 +79,7 @@ impl<'a> FigureScene<'a> {
             highlighted: None,
             columns: &[],
             zooms: false,
-            least,
+            least_plot_size,
             message,
             is_compact: false,
             accented: None,
@@ -94,10 +94,10 @@ impl<'a> FigureScene<'a> {
 pub enum FigureEvent {
     /// This mark is under the pointer.
     Pointed(MarkId),
-    /// Description of the mark under the pointer.
-    Told(String),
+    /// Status text for the mark under the pointer.
+    StatusText(String),
     /// A mark in the plot with this index was clicked, with these modifier keys.
     Clicked(usize, MarkId, Modifiers),
     /// The derivation of a value was requested.
-    Asked(ExplainTarget),
+    ExplanationRequested(ExplainTarget),
 }

@@ -5,12 +5,12 @@ use egui_plot::{PlotPoint, PlotTransform};
 
 use gdcm_plot::figure::{Figure, MarkId, Range};
 
+use super::derivation_menu::QuestionMenu;
 use super::figure_panel::{PanelView, PlacedPanel, PlacedResponse, TITLE_HEIGHT, VALUE_AXIS_WIDTH};
 use super::figure_scene::{FigureEvent, FigureScene};
-use super::painter::use_frame_colors;
+use super::nearest_dot::PointedMark;
+use super::panel_painter::use_frame_colors;
 use super::panel_text::message_ui;
-use super::picking::PointedMark;
-use super::questions::Questions;
 use super::tiles::{TiledArea, Tiles, tiles_ui};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
@@ -28,7 +28,7 @@ pub struct FigureView {
     /// Subject of the figure; a change of subject fits all plots.
     subject: String,
     plots: Vec<PlotView>,
-    questions: Questions,
+    question_menu: QuestionMenu,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -96,14 +96,14 @@ impl FigureView {
             Some(mark) => scene.words.questions(plot, &mark.id),
             None => Vec::new(),
         };
-        let asked = self.questions.ui(&response, &questions);
-        events.extend(asked.map(FigureEvent::Asked));
+        let chosen = self.question_menu.ui(&response, &questions);
+        events.extend(chosen.map(FigureEvent::ExplanationRequested));
         let Some(mark) = pointed else { return };
         self.hovered = Some(mark.id.clone());
         self.pointed_at = Some(mark.at);
         events.push(FigureEvent::Pointed(mark.id.clone()));
-        let words = scene.words.pointed(plot, &mark.id, mark.at);
-        events.extend(words.map(FigureEvent::Told));
+        let text = scene.words.status_text(plot, &mark.id, mark.at);
+        events.extend(text.map(FigureEvent::StatusText));
         events.extend(click_event(&response, plot, mark));
         response.on_hover_cursor(CursorIcon::PointingHand);
     }
@@ -175,7 +175,7 @@ pub fn figure_within_ui(
             name: "panels",
             rect: inner,
             count,
-            least: scene.least,
+            least: scene.least_plot_size,
         };
         tiles_ui(ui, &area, |ui, plot, rect| {
             let shown = painter.plot_ui(ui, rect, plot, &mut view.plots[plot]);

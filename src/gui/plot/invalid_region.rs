@@ -6,13 +6,24 @@ use egui_plot::{PlotPoint, PlotTransform, PlotUi};
 
 use super::bode_scene::InvalidRegion;
 use super::layers::DrawnItem;
-use crate::gui::widgets::controls::elided;
+use crate::gui::widgets::elision::elided;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 /// Distance between hatching lines \[pt\].
 const HATCH_STEP: f32 = 7.0;
 /// Minimum width with room for the text \[pt\].
 const LEAST_STRIP: f32 = 40.0;
+/// Lower edge of the strip, below the upper edge of the frame \[pt\].
+const STRIP_END: f32 = 17.0;
+/// Total padding at both ends of the text \[pt\].
+const TEXT_PADDING: f32 = 8.0;
+/// Distance of the bracket to the left of the ends of the curves \[pt\].
+const BRACKET_GAP: f32 = 9.0;
+/// Half the length of the bracket's ends \[pt\].
+const HALF_BRACKET: f32 = 3.0;
+/// Distance to the left of the ends of the curves that must be visible \[pt\]. The ends may lie on
+/// the edge of the frame.
+const VISIBLE_BESIDE: f32 = 6.0;
 
 /// Hatches the frequencies above `omega` \[rad/s\].
 pub(super) fn add_hatching(plot: &mut PlotUi<'_>, omega: f64, palette: &Palette) {
@@ -27,6 +38,10 @@ pub(super) fn add_hatching(plot: &mut PlotUi<'_>, omega: f64, palette: &Palette)
 }
 
 /// Adds lines that descend to the left at 45 degrees, clipped to the region.
+///
+/// On a line, `x + y = along`, with x and y measured from the upper left corner of the region; the
+/// line enters at the top or right edge, at `x = top`, and leaves at the bottom or left edge, at
+/// `x = foot`.
 fn hatch(region: Rect, stroke: Stroke, shapes: &mut Vec<Shape>) {
     let width = region.right() - region.left();
     let height = region.height();
@@ -65,13 +80,13 @@ impl InvalidStrip<'_> {
             .max(frame.left());
         let strip = Rect::from_min_max(
             pos2(left, frame.top() + 1.0),
-            pos2(frame.right() - 1.0, frame.top() + 17.0),
+            pos2(frame.right() - 1.0, frame.top() + STRIP_END),
         );
         if strip.width() < LEAST_STRIP {
             return;
         }
         ui.painter().rect_filled(strip, 0.0, palette.warning_ground);
-        let words = elided(ui, &invalid.words, strip.width() - 8.0, SMALL_SIZE);
+        let words = elided(ui, &invalid.words, strip.width() - TEXT_PADDING, SMALL_SIZE);
         let font = FontId::proportional(SMALL_SIZE);
         ui.painter().text(
             strip.center(),
@@ -92,15 +107,16 @@ fn paint_increase(ui: &Ui, invalid: &InvalidRegion, transform: &PlotTransform, p
     };
     let [upper, lower] =
         ends_db.map(|db| transform.position_from_point(&PlotPoint::new(invalid.up_to.log10(), db)));
-    let beside = vec2(6.0, 0.0);
+    let beside = vec2(VISIBLE_BESIDE, 0.0);
     let frame = *transform.frame();
     if !frame.contains(upper - beside) || !frame.contains(lower - beside) {
         return;
     }
-    let x = upper.x - 9.0;
+    let x = upper.x - BRACKET_GAP;
     let stroke = Stroke::new(1.5, palette.warning);
     ui.painter().vline(x, upper.y..=lower.y, stroke);
     for y in [upper.y, lower.y] {
-        ui.painter().hline(x - 3.0..=x + 3.0, y, stroke);
+        ui.painter()
+            .hline(x - HALF_BRACKET..=x + HALF_BRACKET, y, stroke);
     }
 }

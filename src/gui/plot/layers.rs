@@ -12,8 +12,8 @@ use egui_plot::{
 const DOT_SPACING: f32 = 4.0;
 
 /// Shades a horizontal range.
-pub(super) fn add_shade(plot: &mut PlotUi<'_>, stretch: RangeInclusive<f64>, fill: Color32) {
-    plot.span(Span::new("", stretch).fill(fill).border_width(0.0));
+pub(super) fn add_shade(plot: &mut PlotUi<'_>, range: RangeInclusive<f64>, fill: Color32) {
+    plot.span(Span::new("", range).fill(fill).border_width(0.0));
 }
 
 /// Fills the area between two lines through `points`: `[x, lower value, upper value]`, all finite.

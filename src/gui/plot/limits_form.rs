@@ -2,33 +2,40 @@
 
 use egui::{RichText, Role, TextEdit, Ui, WidgetInfo};
 
+use super::bode_axis::BodeAxis;
 use super::bode_scene::BodeScene;
 use super::drawn_curves::Pane;
-use super::plot_axis::PlotAxis;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
+/// Form with a field for each limit of an axis, and buttons that apply them or fit the axis.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct LimitsForm {
-    axis: PlotAxis,
+    axis: BodeAxis,
     /// Pane beside which the form is open.
     pane: Pane,
+    /// Lower and upper limit, as typed so far.
     texts: [String; 2],
     /// Reason why the limits are refused.
     trouble: Option<String>,
+    /// Whether the form has not been drawn yet; its first field then takes the focus.
     is_new: bool,
 }
 
+/// Effect of the form in a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) enum FormAnswer {
+    /// No button was clicked.
     #[default]
     Waiting,
+    /// The typed limits are to be shown.
     Show,
+    /// The axis is to be fitted to its curves.
     Fit,
 }
 
 impl LimitsForm {
     /// Opens the form beside a pane, with the current limits as text.
-    pub(super) fn new(axis: PlotAxis, pane: Pane, texts: [String; 2]) -> Self {
+    pub(super) fn new(axis: BodeAxis, pane: Pane, texts: [String; 2]) -> Self {
         Self {
             axis,
             pane,
@@ -39,7 +46,7 @@ impl LimitsForm {
     }
 
     /// Returns whether the form is open for an axis beside a pane.
-    pub(super) fn is_for(&self, axis: PlotAxis, pane: Pane) -> bool {
+    pub(super) fn is_for(&self, axis: BodeAxis, pane: Pane) -> bool {
         self.axis == axis && self.pane == pane
     }
 

@@ -74,7 +74,7 @@ impl PanelAxis {
         move |input| match &spacing {
             TickSpacing::Usual => ticks.marks(input.bounds, input.base_step_size),
             TickSpacing::WidestNumber { digit_pt } => {
-                ticks.marks_beside(input.bounds, input.base_step_size, *digit_pt)
+                ticks.horizontal_marks(input.bounds, input.base_step_size, *digit_pt)
             }
             TickSpacing::Names { names, widest_pt } => named_marks(&input, names.len(), *widest_pt),
         }

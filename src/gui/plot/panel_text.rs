@@ -1,4 +1,5 @@
-//! Texts in and around panels: the caption font, and the message in an empty plot.
+//! Texts in and around panels: the caption font, the position at the right, and the message in an
+//! empty plot.
 
 use egui::{Align2, FontId, Rect, Sense, Ui, WidgetInfo};
 
@@ -8,6 +9,10 @@ use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 pub(super) fn caption_font() -> FontId {
     FontId::proportional(SMALL_SIZE)
 }
+
+/// Horizontal position of a text that ends at the right end of its row; `row_text` and
+/// `painted_text` count negative positions from the right.
+pub(super) const AT_RIGHT: f32 = -0.01;
 
 /// Shows `message` in the middle of `rect`, which is allocated from `ui`.
 pub(super) fn message_ui(ui: &mut Ui, rect: Rect, message: &str, palette: &Palette) {

@@ -1,12 +1,9 @@
 //! Quantities and units of the two stacked panes.
 
-use gdcm_model::number_format::{compact, decimals};
-use gdcm_model::units::db_to_ratio;
-use gdcm_plot::figure::Range;
 pub use gdcm_plot::figure::axis::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 
 use super::drawn_curves::Pane;
-use super::ticks::{Ticks, VERTICAL_TICK_GAP};
+use super::value_unit::ValueUnit;
 
 /// Quantity shown by the two stacked panes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,16 +14,17 @@ pub enum BodeQuantity<'a> {
         phase: PhaseUnit,
         /// "(deg/s)/in".
         ratio_unit: &'a str,
-        place: ResponsePlace,
+        subject: ResponseSubject,
     },
-    /// Ratio and phase difference that enter J: `20 log10 |H_ref| / |H_sim|` above, `Delta
-    /// phi(H_sim, H_ref)` below (M6).
+    /// Ratio and phase difference that enter J: `20 log10(|H_ref| / |H_sim|)` above, phase
+    /// difference between `H_ref` and `H_sim` below (M6). `H_ref` is the identified response,
+    /// `H_sim` the response of a physics model.
     Error { phase: PhaseErrorUnit },
 }
 
 /// Subject of a response plot, which distinguishes its controls from those in other plots.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ResponsePlace {
+pub enum ResponseSubject {
     /// The displayed condition.
     #[default]
     Condition,
@@ -41,36 +39,36 @@ struct PlotNames {
     /// Id salt of the plot's widgets.
     salt: &'static str,
     /// Suffix of a control's label.
-    label: &'static str,
+    label_suffix: &'static str,
     /// Suffix of a pane's name.
-    pane: &'static str,
+    pane_suffix: &'static str,
     /// Suffix of a pane's name within a sentence.
-    place: &'static str,
+    sentence_suffix: &'static str,
 }
 
 const CONDITION_NAMES: PlotNames = PlotNames {
     salt: "bode",
-    label: "",
-    pane: "",
-    place: " plot",
+    label_suffix: "",
+    pane_suffix: "",
+    sentence_suffix: " plot",
 };
 const EVERY_CONDITION_NAMES: PlotNames = PlotNames {
     salt: "airspeeds",
-    label: ", plot of airspeeds",
-    pane: " in every condition",
-    place: " plot of every condition",
+    label_suffix: ", plot of airspeeds",
+    pane_suffix: " in every condition",
+    sentence_suffix: " plot of every condition",
 };
 const FOUND_MODEL_NAMES: PlotNames = PlotNames {
     salt: "found model",
-    label: ", plot of a found model",
-    pane: " of a found model",
-    place: " plot of a found model",
+    label_suffix: ", plot of a found model",
+    pane_suffix: " of a found model",
+    sentence_suffix: " plot of a found model",
 };
 const ERROR_NAMES: PlotNames = PlotNames {
     salt: "error",
-    label: ", error plot",
-    pane: " error",
-    place: " error plot",
+    label_suffix: ", error plot",
+    pane_suffix: " error",
+    sentence_suffix: " error plot",
 };
 
 impl Default for BodeQuantity<'_> {
@@ -81,33 +79,33 @@ impl Default for BodeQuantity<'_> {
 
 impl BodeQuantity<'_> {
     /// Responses in the displayed condition, in decibels and degrees.
-    pub const RESPONSE: BodeQuantity<'static> = Self::in_place(ResponsePlace::Condition);
+    pub const RESPONSE: BodeQuantity<'static> = Self::with_subject(ResponseSubject::Condition);
     /// Responses in every condition, in decibels and degrees.
     pub const RESPONSE_OF_EVERY_CONDITION: BodeQuantity<'static> =
-        Self::in_place(ResponsePlace::EveryCondition);
+        Self::with_subject(ResponseSubject::EveryCondition);
     /// Responses of a model found in a file, in decibels and degrees.
     pub const RESPONSE_OF_FOUND_MODEL: BodeQuantity<'static> =
-        Self::in_place(ResponsePlace::FoundModel);
+        Self::with_subject(ResponseSubject::FoundModel);
 
-    const fn in_place(place: ResponsePlace) -> BodeQuantity<'static> {
+    const fn with_subject(subject: ResponseSubject) -> BodeQuantity<'static> {
         BodeQuantity::Response {
             magnitude: MagnitudeUnit::Decibel,
             phase: PhaseUnit::Unwrapped,
             ratio_unit: "",
-            place,
+            subject,
         }
     }
 
     /// Returns the texts that distinguish this plot from others.
     fn names(self) -> PlotNames {
-        let place = match self {
-            Self::Response { place, .. } => place,
+        let subject = match self {
+            Self::Response { subject, .. } => subject,
             Self::Error { .. } => return ERROR_NAMES,
         };
-        match place {
-            ResponsePlace::Condition => CONDITION_NAMES,
-            ResponsePlace::EveryCondition => EVERY_CONDITION_NAMES,
-            ResponsePlace::FoundModel => FOUND_MODEL_NAMES,
+        match subject {
+            ResponseSubject::Condition => CONDITION_NAMES,
+            ResponseSubject::EveryCondition => EVERY_CONDITION_NAMES,
+            ResponseSubject::FoundModel => FOUND_MODEL_NAMES,
         }
     }
 
@@ -119,7 +117,7 @@ impl BodeQuantity<'_> {
     /// Returns the suffix that distinguishes the labels of this plot from the labels of the Bode
     /// plot.
     pub(super) fn label_suffix(self) -> &'static str {
-        self.names().label
+        self.names().label_suffix
     }
 
     /// Returns whether the plot shows the displayed condition, rather than a comparison across
@@ -129,7 +127,7 @@ impl BodeQuantity<'_> {
             self,
             Self::Error { .. }
                 | Self::Response {
-                    place: ResponsePlace::Condition,
+                    subject: ResponseSubject::Condition,
                     ..
                 }
         )
@@ -137,13 +135,13 @@ impl BodeQuantity<'_> {
 
     /// Returns a pane's name: "Magnitude".
     pub(super) fn name(self, pane: Pane) -> String {
-        format!("{pane:?}{}", self.names().pane)
+        format!("{pane:?}{}", self.names().pane_suffix)
     }
 
     /// Returns the name of a pane within a sentence: "magnitude plot".
-    pub(super) fn place(self, pane: Pane) -> String {
+    pub(super) fn name_in_sentence(self, pane: Pane) -> String {
         let pane = format!("{pane:?}").to_lowercase();
-        format!("{pane}{}", self.names().place)
+        format!("{pane}{}", self.names().sentence_suffix)
     }
 
     /// Returns a pane's display unit.
@@ -213,114 +211,6 @@ impl BodeQuantity<'_> {
             (Self::Response { .. }, Pane::Phase) => 20.0,
             (Self::Error { .. }, Pane::Magnitude) => 1.0,
             (Self::Error { .. }, Pane::Phase) => 5.0,
-        }
-    }
-}
-
-/// Display unit of a pane. Decibels and ratios are both drawn from values in decibels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ValueUnit {
-    Decibel,
-    /// Ratio corresponding to the decibels, on a logarithmic axis.
-    Ratio,
-    Degree,
-    Millisecond,
-}
-
-impl ValueUnit {
-    /// Returns the suffix after a value: " dB", "°".
-    pub fn suffix(self) -> &'static str {
-        match self {
-            Self::Decibel => " dB",
-            Self::Ratio => "",
-            Self::Degree => "°",
-            Self::Millisecond => " ms",
-        }
-    }
-
-    /// Formats a drawn value for display: "2.9 dB", "−99°".
-    pub fn readout(self, value: f64) -> String {
-        match self {
-            Self::Decibel | Self::Millisecond => format!("{}{}", decimals(value, 1), self.suffix()),
-            Self::Degree => format!("{}{}", decimals(value, 0), self.suffix()),
-            Self::Ratio => format!("× {}", compact(three_significant(db_to_ratio(value)))),
-        }
-    }
-
-    /// Returns the permitted widths of the visible range.
-    pub(super) fn widths(self) -> Range {
-        match self {
-            Self::Decibel | Self::Ratio => Range {
-                min: 1e-3,
-                max: 5e3,
-            },
-            Self::Degree | Self::Millisecond => Range {
-                min: 1e-2,
-                max: 1e5,
-            },
-        }
-    }
-
-    /// Returns the kind of tick labels.
-    pub(super) fn ticks(self) -> Ticks {
-        match self {
-            Self::Decibel | Self::Millisecond => Ticks::Decimal(VERTICAL_TICK_GAP),
-            Self::Degree => Ticks::Degrees,
-            Self::Ratio => Ticks::Ratio,
-        }
-    }
-}
-
-/// Rounds `value` to three significant digits.
-fn three_significant(value: f64) -> f64 {
-    if value == 0.0 || !value.is_finite() {
-        return value;
-    }
-    let step = 10f64.powf(value.abs().log10().floor() - 2.0);
-    (value / step).round() * step
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_ratio_is_read_from_its_decibels_and_back() {
-        let ticks = ValueUnit::Ratio.ticks();
-        let drawn = ticks.place(2.0);
-        // 20 log10 2; the tolerances allow for rounding errors of both functions.
-        assert!((drawn - 6.020_599_913_279_624).abs() < 1e-12);
-        assert!((ticks.number(drawn) - 2.0).abs() < 1e-12);
-        assert!(!ticks.place(0.0).is_finite() && !ticks.place(-1.0).is_finite());
-        assert_eq!(ValueUnit::Ratio.readout(drawn), "× 2");
-    }
-
-    #[test]
-    fn values_read_in_their_unit() {
-        assert_eq!(ValueUnit::Decibel.readout(2.94), "2.9 dB");
-        assert_eq!(ValueUnit::Degree.readout(-99.2), "\u{2212}99°");
-        assert_eq!(ValueUnit::Millisecond.readout(-56.04), "\u{2212}56.0 ms");
-        assert_eq!(ValueUnit::Ratio.readout(-1.7), "× 0.822");
-    }
-
-    #[test]
-    fn ticks_of_ratios_are_round_ratios() {
-        let input = egui_plot::GridInput {
-            bounds: (-20.0, 20.0),
-            base_step_size: 40.0 / 300.0,
-        };
-        let marks = ValueUnit::Ratio
-            .ticks()
-            .marks(input.bounds, input.base_step_size);
-        let labels: Vec<String> = marks
-            .into_iter()
-            .map(|mark| ValueUnit::Ratio.ticks().text(mark))
-            .collect();
-        for wanted in ["0.1", "0.2", "0.5", "1", "2", "5", "10"] {
-            assert!(
-                labels.iter().any(|label| label == wanted),
-                "{wanted}: {labels:?}"
-            );
         }
     }
 }

@@ -1,4 +1,5 @@
-//! Reference lines across a Bode pane: painting, picking, labels.
+//! Reference lines across a Bode pane (targets, bounds, quantiles and envelopes): painting,
+//! picking, labels.
 
 use egui::{Pos2, Ui};
 use egui_plot::{PlotPoint, PlotTransform};
@@ -7,8 +8,12 @@ use gdcm_plot::figure::responses::{Level, ReferenceLine};
 
 use super::drawn_curves::Pane;
 use super::end_labels::EndLabel;
-use super::picking::closest_point;
+use super::nearest_curve::closest_point;
 use crate::gui::widgets::palette::Palette;
+
+/// Offset of a note from its label \[pt\]. End labels are sorted by height and spread, so that the
+/// note comes directly below its label.
+const BELOW: f32 = 0.1;
 
 /// Reference lines of a pane.
 #[derive(Clone, Copy)]
@@ -30,13 +35,13 @@ impl<'a> PaneLines<'a> {
         for line in self.iter() {
             palette
                 .curve_style(line.kind.line())
-                .add_shapes(path(&line.level, self.transform), &mut shapes);
+                .add_shapes(screen_path(&line.level, self.transform), &mut shapes);
         }
         ui.painter().with_clip_rect(frame).extend(shapes);
     }
 
     /// Returns the distance between `pointer` and the nearest line \[pt\]; `None` if no line is
-    /// within [`PICK_RADIUS`](super::picking::PICK_RADIUS) horizontally.
+    /// within [`PICK_RADIUS`](super::nearest_curve::PICK_RADIUS) horizontally.
     pub(super) fn distance(self, pointer: Pos2) -> Option<f32> {
         let mut least: Option<f32> = None;
         for line in self.iter() {
@@ -57,7 +62,7 @@ impl<'a> PaneLines<'a> {
         let frame = *self.transform.frame();
         let mut labels = Vec::new();
         for line in self.iter() {
-            let path = path(&line.level, self.transform);
+            let path = screen_path(&line.level, self.transform);
             let Some(end) = path.iter().rev().find(|at| frame.contains(**at)) else {
                 continue;
             };
@@ -65,12 +70,13 @@ impl<'a> PaneLines<'a> {
             labels.push(EndLabel {
                 y: end.y,
                 text: line.label.clone(),
-                color: palette.name_of(color),
+                color: palette.label_color(color),
             });
+            // The note continues the label on paper; here it is a label of its own.
             let note = line.note.trim_start_matches([',', ':', ' ']);
             if !note.is_empty() {
                 labels.push(EndLabel {
-                    y: end.y + 0.1,
+                    y: end.y + BELOW,
                     text: note.to_owned(),
                     color: palette.dim_text,
                 });
@@ -80,7 +86,7 @@ impl<'a> PaneLines<'a> {
     }
 }
 
-/// Returns the points of a line over the visible frequencies.
+/// Returns the points `[log10 omega, value]` of a line over the visible frequencies.
 fn visible_points(level: &Level, transform: &PlotTransform) -> Vec<[f64; 2]> {
     let bounds = transform.bounds();
     level.points(bounds.min()[0], bounds.max()[0])
@@ -88,7 +94,7 @@ fn visible_points(level: &Level, transform: &PlotTransform) -> Vec<[f64; 2]> {
 
 /// Returns the path of a line on the screen. Parts far outside the frame are skipped, because
 /// drawing their many dashes would take time.
-fn path(level: &Level, transform: &PlotTransform) -> Vec<Pos2> {
+fn screen_path(level: &Level, transform: &PlotTransform) -> Vec<Pos2> {
     let frame = transform.frame();
     let mut path = Vec::new();
     for point in visible_points(level, transform) {

@@ -6,8 +6,9 @@ use egui_plot::PlotTransform;
 use gdcm_model::number_format::decimals;
 use gdcm_plot::figure::Range;
 
-use super::curve_layer::{CurveLooks, DrawnPane, add_curve_lines};
+use super::curve_layer::{CurveLooks, add_curve_lines};
 use super::drawn_curves::{BodeCurve, Pane, VisiblePart};
+use super::drawn_pane::DrawnPane;
 use super::viewed_range::{bounds_of, ranges_of};
 use crate::gui::widgets::palette::Palette;
 
@@ -56,7 +57,7 @@ impl Sketch<'_> {
     /// Returns the transform that shows all values; `None` without values.
     fn transform(&self) -> Option<PlotTransform> {
         let values = self.curves.iter().flat_map(|curve| curve.values(self.pane));
-        let values = Range::of(values.copied())?.with_margin(MARGIN, LEAST_HEIGHT);
+        let values = Range::spanning(values.copied())?.with_margin(MARGIN, LEAST_HEIGHT);
         let bounds = bounds_of([self.log_omega, values]);
         Some(PlotTransform::new(self.rect, bounds, false))
     }

@@ -1,4 +1,9 @@
-//! Ticks and grid lines: their positions and labels.
+//! Ticks and grid lines of egui_plot axes: adapts the ticks chosen by [`ticks_of`], which also
+//! serves printed figures, to egui_plot.
+//!
+//! A mark of egui_plot has a value and a step size, and egui_plot draws marks of a larger step size
+//! more strongly. A mark is therefore labelled by giving it the step size of [`LABELLED`] points,
+//! and left without a label by giving it that of [`MINOR`] points, whatever the true distance.
 
 use egui::Rangef;
 use egui_plot::{GridInput, GridMark};
@@ -11,19 +16,19 @@ use gdcm_plot::figure::axis::{FrequencyUnit, Scale, Tick, TickGaps, ticks_of};
 /// Minimum distance between ticks of a vertical axis \[pt\].
 pub(super) const VERTICAL_TICK_GAP: f64 = 27.0;
 
-/// Nominal distance between labelled marks \[pt\].
+/// Step size given to every mark with a label \[pt\].
 const LABELLED: f64 = 100.0;
-/// Nominal distance between minor marks \[pt\].
+/// Step size given to every mark without a label \[pt\].
 const MINOR: f64 = 25.0;
 
-/// Value of `grid_spacing` for which egui_plot draws marks at the distance [`LABELLED`] in full
-/// strength and marks at the distance [`MINOR`] in half strength.
+/// Value of `grid_spacing` for which egui_plot draws marks of the step size [`LABELLED`] in full
+/// strength and marks of the step size [`MINOR`] in half strength.
 pub(super) const GRID_SPACING: Rangef = Rangef {
     min: 1.0,
     max: 100.0,
 };
-/// Value of `label_spacing` for which egui_plot labels marks at the distance [`LABELLED`] in full
-/// strength, and marks at the distance [`MINOR`] not at all.
+/// Value of `label_spacing` for which egui_plot labels marks of the step size [`LABELLED`] in full
+/// strength, and marks of the step size [`MINOR`] not at all.
 pub(super) const LABEL_SPACING: Rangef = Rangef {
     min: 50.0,
     max: 51.0,
@@ -34,7 +39,11 @@ const DECADE_LABEL_GAP: f64 = 34.0;
 /// Minimum distance between two grid lines within a decade \[pt\].
 const DECADE_LINE_GAP: f64 = 5.0;
 /// Minimum distance between labelled ticks in a low plot \[pt\]; letters are 11 pt high.
-const CLOSEST: f64 = 13.0;
+const LEAST_LABEL_GAP: f64 = 13.0;
+/// Factor by which the labels of a low plot move together until it has two.
+const CLOSER: f64 = 0.8;
+/// Space between two labels along a horizontal axis \[digit widths\].
+const LABEL_SPACE: f64 = 0.6;
 /// Minimum gap between two names along an axis \[pt\].
 const NAME_GAP: f64 = 6.0;
 
@@ -70,7 +79,8 @@ impl Ticks {
         }
     }
 
-    /// Returns the ticks and grid lines between two axis coordinates.
+    /// Returns the ticks and grid lines between two axis coordinates; the step size of a mark
+    /// determines whether egui_plot labels it.
     pub(super) fn marks(self, bounds: (f64, f64), units_per_point: f64) -> Vec<GridMark> {
         let is_finite = [bounds.0, bounds.1, units_per_point]
             .into_iter()
@@ -82,20 +92,20 @@ impl Ticks {
         let mut found = self.ticks_between(bounds, units_per_point, gap);
         // A single label does not show the scale, so the labels of a low plot may be closer
         // together.
-        while count_labels(&found) < 2 && gap > CLOSEST {
-            gap = (0.8 * gap).max(CLOSEST);
+        while count_labels(&found) < 2 && gap > LEAST_LABEL_GAP {
+            gap = (CLOSER * gap).max(LEAST_LABEL_GAP);
             found = self.ticks_between(bounds, units_per_point, gap);
         }
         let mut marks = Vec::with_capacity(found.len());
         for tick in found {
-            let distance = if tick.label.is_some() {
+            let step_pt = if tick.label.is_some() {
                 LABELLED
             } else {
                 MINOR
             };
             marks.push(GridMark {
                 value: self.place(tick.value),
-                step_size: distance * units_per_point,
+                step_size: step_pt * units_per_point,
             });
         }
         marks
@@ -128,8 +138,9 @@ impl Ticks {
     }
 
     /// Returns [`Self::marks`] of a horizontal axis, far enough apart for the widest label if a
-    /// digit is `digit` points wide.
-    pub(super) fn marks_beside(
+    /// digit is `digit` points wide. Only decimal values can be set further apart; the other kinds
+    /// have a fixed gap.
+    pub(super) fn horizontal_marks(
         self,
         bounds: (f64, f64),
         units_per_point: f64,
@@ -141,7 +152,7 @@ impl Ticks {
             .map(|mark| self.text(*mark).chars().count())
             .max()
             .unwrap_or(0);
-        let needed = (letters as f64 + 0.6) * digit;
+        let needed = (letters as f64 + LABEL_SPACE) * digit;
         match self {
             Self::Decimal(gap) if gap < needed => {
                 Self::Decimal(needed).marks(bounds, units_per_point)
@@ -223,7 +234,7 @@ mod tests {
     fn numbers_beside_one_another_have_the_room_of_the_widest() {
         let values = |bounds: (f64, f64), points: f64| -> Vec<f64> {
             let marks =
-                Ticks::Decimal(26.0).marks_beside(bounds, (bounds.1 - bounds.0) / points, 6.5);
+                Ticks::Decimal(26.0).horizontal_marks(bounds, (bounds.1 - bounds.0) / points, 6.5);
             marks.into_iter().map(|mark| mark.value).collect()
         };
         // "−120" and "−110" need 29 pt each; 27 pt are available.

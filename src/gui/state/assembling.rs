@@ -1,4 +1,5 @@
-//! Import state: the models found, their rules, and the displayed parts.
+//! State of the import of models: the models found, the rules that turn them into a dataset, and
+//! the display of both.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -15,11 +16,11 @@ const MOST_STEPS: usize = 200;
 
 /// Progress of reading files.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Reading {
+pub struct ReadingProgress {
     /// Current file, counted from 1.
     pub number: usize,
     /// Total number of files.
-    pub of: usize,
+    pub total: usize,
     /// Name of the current file.
     pub name: String,
     /// Bytes of values read so far from the current file.
@@ -29,8 +30,11 @@ pub struct Reading {
 /// Models being imported.
 #[derive(Debug, Default)]
 pub struct AssemblyState {
+    /// The models with the rules applied.
     assembly: Assembly,
+    /// Rules before each undoable change, oldest first.
     earlier: Vec<Rules>,
+    /// Rules before each undo, oldest first.
     later: Vec<Rules>,
     /// Whether the engineer changed the rules; otherwise they are proposed.
     are_changed: bool,
@@ -47,7 +51,7 @@ pub struct AssemblyState {
     /// Units still needed to read these tables as frequency responses, by table.
     pub unsaid: BTreeMap<String, Vec<UnsaidUnit>>,
     /// Progress of a running read.
-    pub reading: Option<Reading>,
+    pub reading: Option<ReadingProgress>,
     /// Index of the displayed model.
     pub selected: usize,
     pub sorting: Sorting,
@@ -105,14 +109,14 @@ impl AssemblyState {
             self.earlier.remove(0);
         }
         self.later.clear();
-        self.put(rules);
+        self.apply(rules);
     }
 
     /// Undoes the last change of the rules.
     pub fn undo(&mut self) {
         if let Some(rules) = self.earlier.pop() {
             self.later.push(self.assembly.rules().clone());
-            self.put(rules);
+            self.apply(rules);
         }
     }
 
@@ -120,16 +124,20 @@ impl AssemblyState {
     pub fn redo(&mut self) {
         if let Some(rules) = self.later.pop() {
             self.earlier.push(self.assembly.rules().clone());
-            self.put(rules);
+            self.apply(rules);
         }
     }
 
-    /// Returns whether undo and redo are possible.
-    pub fn steps(&self) -> (bool, bool) {
-        (!self.earlier.is_empty(), !self.later.is_empty())
+    pub fn can_undo(&self) -> bool {
+        !self.earlier.is_empty()
     }
 
-    fn put(&mut self, rules: Rules) {
+    pub fn can_redo(&self) -> bool {
+        !self.later.is_empty()
+    }
+
+    /// Applies rules that the engineer has changed, without recording a step.
+    fn apply(&mut self, rules: Rules) {
         self.are_changed = true;
         self.assembly = self.assembly.with_rules(rules);
     }
@@ -155,11 +163,23 @@ impl AssemblyState {
     }
 }
 
-/// Displayed response, cached while the model and the selection stay the same.
+/// Preview of a response of the selected model.
 #[derive(Debug, Default)]
 pub struct Preview {
     /// Response index `output * inputs + input`, in file order.
     pub response: usize,
+    /// Axis ranges.
     pub view: BodeView,
-    pub drawn: Option<(String, usize, Vec<BodeCurve>)>,
+    /// Curves drawn last, kept while model and response stay the same.
+    pub drawn: Option<DrawnPreview>,
+}
+
+/// Curves of a preview, and the response to which they belong.
+#[derive(Debug)]
+pub struct DrawnPreview {
+    /// Key of the model.
+    pub model: String,
+    /// Response index, as in [`Preview`].
+    pub response: usize,
+    pub curves: Vec<BodeCurve>,
 }

@@ -1,20 +1,24 @@
-//! Flight records of a condition, and the models identified from them.
+//! Flight records of a condition: which records there are, the parts cut from them, and which of
+//! them are used.
+//!
+//! Each record and each part is a row; the parts follow their record and have the same source. A
+//! part replaces its whole record, so that no sample counts twice: adding the first part ends the
+//! use of the whole record, removing the last part restores it. A record that the engineer left
+//! out stays out.
+//!
+//! `condition_identification.rs` extends [`ConditionRecords`] by the identification.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use gdcm_model::dataset::channel::ChannelSide;
-use gdcm_model::dataset::{ConditionId, Dataset};
-use gdcm_model::names::ChannelRule;
-use gdcm_model::simulation::Signal;
+use gdcm_model::dataset::Dataset;
 use gdcm_model::units::{number, telling};
-use gdcm_study::decisions::adopted_models::{AdoptedModels, OfferedModels};
-use gdcm_study::jobs::identification_jobs::{IdentificationRequest, IdentifyJob};
+use gdcm_study::jobs::identification_jobs::IdentifyJob;
 use gdcm_sysid::identification::{
-    CautionNote, ChannelPreparation, Identification, IdentificationError, Preparation, SearchSpace,
+    ChannelPreparation, Identification, IdentificationError, SearchSpace,
 };
-use gdcm_sysid::records::{ColumnUse, LaidOutRecord, RecordChannels, RecordSource};
+use gdcm_sysid::records::{LaidOutRecord, RecordChannels, RecordSource};
 
 /// Result of adding a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,10 +33,13 @@ pub enum AddedRecord {
 /// Flight records of a condition, and the models identified from them.
 #[derive(Clone, Debug, Default)]
 pub struct ConditionRecords {
+    /// The records, each followed by its parts.
     pub rows: Vec<LaidOutRecord>,
-    /// Index of the displayed record.
+    /// Index of the displayed row.
     pub chosen: usize,
+    /// Delay and hold of each input.
     pub inputs: Vec<ChannelPreparation>,
+    /// Delay and hold of each output.
     pub outputs: Vec<ChannelPreparation>,
     /// Identification band \[rad/s\]; `None` selects the band of the study.
     pub band: Option<[f64; 2]>,
@@ -94,6 +101,7 @@ impl ConditionRecords {
         let Some(whole) = self.rows.get_mut(index) else {
             return Err("there is no such record".to_owned());
         };
+        // A pointer gives more digits than anyone can read: hundredths of a second are enough.
         let part_s = part_s.map(|time_s| (100.0 * time_s).round() / 100.0);
         let table = Arc::new(whole.table.part_of_time(part_s));
         let part = LaidOutRecord::new(table, whole.layout.clone(), whole.guess.clone(), channels);
@@ -106,6 +114,8 @@ impl ConditionRecords {
         let was_used = whole.used;
         if whole.table.part_s.is_none() {
             whole.used = false;
+            // Without parts, an unused record was left out, for example as a copy of another record;
+            // removing its parts must not use it.
             if !was_used && !self.has_parts(&source) && !self.left_out.contains(&source) {
                 self.left_out.push(source);
             }
@@ -200,45 +210,12 @@ impl ConditionRecords {
         true
     }
 
-    /// Returns the latest identification if it succeeded.
-    pub fn identification(&self) -> Option<&Arc<Identification>> {
-        self.found.as_ref()?.1.as_ref().ok()
-    }
-
     /// Returns the used rows with their indices.
     pub fn used_rows(&self) -> impl Iterator<Item = (usize, &LaidOutRecord)> {
         self.rows
             .iter()
             .enumerate()
             .filter(|(_, row)| row.used_flight().is_some())
-    }
-
-    /// Returns the cautions about the identification, each with the rows that it concerns, if any;
-    /// none once the settings have changed.
-    pub fn cautions(&self) -> impl Iterator<Item = (Vec<usize>, CautionNote)> {
-        let cautions = match self.identification() {
-            Some(found) if !self.changed => found.cautions.as_slice(),
-            _ => &[],
-        };
-        cautions.iter().map(|caution| {
-            let note = caution.note();
-            (self.rows_named(&note.records), note)
-        })
-    }
-
-    /// Returns the rows with these names.
-    fn rows_named(&self, names: &[String]) -> Vec<usize> {
-        names
-            .iter()
-            .filter_map(|name| self.rows.iter().position(|row| row.table.name == *name))
-            .collect()
-    }
-
-    /// Returns short marks, with a caution sign, for the cautions with this code.
-    pub fn marks(&self, code: &'static str) -> impl Iterator<Item = String> {
-        self.cautions()
-            .filter(move |(_, note)| note.code == code)
-            .map(|(_, note)| format!("⚠ {}", note.mark()))
     }
 
     /// Resamples topics to the common clock required by the identification band.
@@ -255,118 +232,6 @@ impl ConditionRecords {
     /// Displays a row, or the last row if the index is too large.
     pub fn choose(&mut self, index: usize) {
         self.chosen = index.min(self.rows.len().saturating_sub(1));
-    }
-
-    /// Returns the index of the row that the identification used as record `record`, counted from
-    /// 0.
-    pub fn row_of_record(&self, record: usize) -> Option<usize> {
-        self.used_rows().nth(record).map(|(index, _)| index)
-    }
-
-    /// Returns the preparation of a channel, for editing.
-    pub fn channel_mut(&mut self, signal: &Signal) -> Option<&mut ChannelPreparation> {
-        match signal.role {
-            ChannelSide::Input => self.inputs.get_mut(signal.index),
-            ChannelSide::Output => self.outputs.get_mut(signal.index),
-        }
-    }
-
-    /// Returns the preparation of all channels.
-    pub fn preparation(&self) -> Preparation {
-        Preparation {
-            inputs: self.inputs.clone(),
-            outputs: self.outputs.clone(),
-            ..Preparation::of(&[], &[])
-        }
-    }
-
-    /// Creates the identification job for the current settings and a band \[rad/s\]; `channels` are
-    /// the channels of the records.
-    ///
-    /// # Errors
-    /// A message, if no record is used, if all are held out, or if a record lacks a reference.
-    pub fn job(
-        &self,
-        condition: ConditionId,
-        band: [f64; 2],
-        channels: &RecordChannels,
-    ) -> Result<IdentifyJob, String> {
-        let mut preparation = self.preparation();
-        for reference in &self.references {
-            preparation
-                .inputs
-                .push(ChannelPreparation::named(reference));
-        }
-        let mut rows = Vec::new();
-        for (_, row) in self.used_rows() {
-            rows.push(self.with_references(row, channels)?);
-        }
-        let mut request = IdentificationRequest::of(rows.iter(), preparation, band)
-            .map_err(|error| error.to_string())?;
-        request.options.references = self.references.len();
-        self.search.set(&mut request.options);
-        Ok(IdentifyJob::new(condition, request))
-    }
-
-    /// Returns a record whose references are added after its inputs.
-    fn with_references(
-        &self,
-        row: &LaidOutRecord,
-        channels: &RecordChannels,
-    ) -> Result<LaidOutRecord, String> {
-        if self.references.is_empty() {
-            return Ok(row.clone());
-        }
-        let mut layout = row.layout.clone();
-        let mut channels = channels.clone();
-        for reference in &self.references {
-            let Some(column) = row.table.find(reference) else {
-                let name = &row.table.name;
-                return Err(format!("{name}: there is no column \"{reference}\""));
-            };
-            layout.inputs.push(Some(ColumnUse::as_it_is(column)));
-            channels.inputs.push(ChannelRule::named(reference));
-        }
-        let row = LaidOutRecord::new(Arc::clone(&row.table), layout, row.guess.clone(), &channels);
-        match row.problems.first() {
-            Some(problem) => Err(format!("{}: {problem}", row.table.name)),
-            None => Ok(row),
-        }
-    }
-
-    /// Returns the identified models to put into the condition; `None` without a successful
-    /// identification.
-    pub fn adopted(
-        &self,
-        offered: OfferedModels,
-        channels: &RecordChannels,
-    ) -> Option<Arc<AdoptedModels>> {
-        let found = self.identification()?;
-        let mut entries = Vec::new();
-        for ((_, row), record_use) in self.used_rows().zip(&found.record_uses) {
-            entries.push(row.entry(record_use, channels));
-        }
-        Some(Arc::new(AdoptedModels::of(found, offered, entries)))
-    }
-
-    /// Returns the latest identification job.
-    fn latest_job(&self) -> Option<&IdentifyJob> {
-        let (job, _) = self.found.as_ref()?;
-        Some(job)
-    }
-
-    /// Returns these records from the history, to replace the records `now`. Models identified in
-    /// the meantime are kept, but marked as results of other settings.
-    pub(super) fn restored(mut self, now: Option<Self>) -> Self {
-        let Some(now) = now else {
-            return self;
-        };
-        if self.latest_job() != now.latest_job() {
-            self.changed = now.found.is_some();
-            self.found = now.found;
-        }
-        self.choose(now.chosen);
-        self
     }
 }
 

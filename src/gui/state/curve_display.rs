@@ -14,7 +14,9 @@ use crate::gui::widgets::palette::PlotStyle;
 /// Display options for plots over frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurveDisplay {
+    /// Unit of the frequency axes.
     pub unit: FrequencyUnit,
+    /// Curve colours and widths.
     pub looks: PlotStyle,
     pub magnitude: MagnitudeUnit,
     pub phase: PhaseUnit,
@@ -36,6 +38,7 @@ pub struct CurveDisplay {
     pub shows_muad: bool,
     /// Models selected by drawing a box.
     pub selected: BTreeSet<ModelId>,
+    /// Whether the confidence bands of identified responses are drawn.
     pub shows_bands: bool,
     /// Role drawn above all other roles.
     pub raised: Option<Role>,
@@ -49,7 +52,6 @@ impl Default for CurveDisplay {
             magnitude: MagnitudeUnit::default(),
             phase: PhaseUnit::default(),
             phase_error: PhaseErrorUnit::default(),
-            // Curves with couplings alone are hidden at first.
             hidden_roles: Self::hidden_at_first(),
             hidden_models: BTreeSet::new(),
             turns: BTreeMap::new(),
@@ -68,6 +70,8 @@ impl Default for CurveDisplay {
 impl CurveDisplay {
     /// Maximum number of marked frequencies; the difference between two is shown.
     const MOST_PINNED: usize = 2;
+    /// Maximum number of turns by which a phase can be shifted, in either direction.
+    const MOST_TURNS: i32 = 99;
 
     /// Returns the roles hidden by default: couplings alone are an intermediate step, not a result.
     pub fn hidden_at_first() -> BTreeSet<Role> {
@@ -109,9 +113,14 @@ impl CurveDisplay {
                 self.hidden_models.clear();
                 self.hidden_roles = Self::hidden_at_first();
             }
-            CurveCommand::Turn(condition, pair, curve, by) => {
+            CurveCommand::Turn {
+                condition,
+                pair,
+                curve,
+                turns: by,
+            } => {
                 let turns = self.turns.entry((condition, pair, curve)).or_default();
-                *turns = (*turns + by).clamp(-99, 99);
+                *turns = (*turns + by).clamp(-Self::MOST_TURNS, Self::MOST_TURNS);
             }
             CurveCommand::PointAt(omega) => self.cursor = Some(omega),
             CurveCommand::PinCursor(omega) => {

@@ -2,14 +2,18 @@
 
 use std::sync::Arc;
 
-use gdcm_method::schedule::form_comparison::{FormComparison, LeadDegreeFit};
+use gdcm_method::schedule::form_comparison::FormComparison;
+use gdcm_method::schedule::lead_degree_comparison::LeadDegreeFit;
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::Analysis;
 
 /// Evidence for every schedule form, kept until the analysis changes.
 #[derive(Debug, Default)]
 pub struct CachedEvidence {
+    /// Analysis to which the evidence belongs.
     pub analysis: Option<Arc<Analysis>>,
+    /// Scheduled conditions, and the comparison of the forms over them; `None` if it failed.
     pub found: Option<(Vec<ConditionId>, FormComparison)>,
+    /// Comparison of the degrees for scheduled leads.
     pub leads: Vec<LeadDegreeFit>,
 }

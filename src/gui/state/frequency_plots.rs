@@ -7,7 +7,7 @@ use gdcm_plot::figure::error::ErrorCache;
 use gdcm_plot::figure::responses::{AirspeedCache, ResponseCache};
 use gdcm_study::AcrossRole;
 
-use crate::gui::plot::overview::OverviewView;
+use crate::gui::plot::overview_scene::OverviewView;
 use crate::gui::plot::{BodeCurve, BodeView};
 
 /// Axis ranges, transforms and cached curves of the frequency plots.

@@ -13,11 +13,13 @@ use crate::gui::widgets::tables::Sorting;
 /// Display options of the channel plots, the net-gain plots and the evidence.
 #[derive(Debug, Default)]
 pub struct GainDisplay {
+    /// Responses shown in the net-gain plots.
     pub net_gain_pairs: PairSet,
     /// Responses that were constrained at any time since the dataset was opened.
     pub once_held: BTreeSet<Pair>,
     /// Responses picked by the engineer for the net-gain plots.
     pub picked_pairs: BTreeSet<Pair>,
+    /// Quantity of the channel plots, and whether it is drawn over airspeed or over conditions.
     pub channel_values: (Measure, Across),
     /// Ranges and transforms of the channel plots.
     pub channels: ChannelsView,

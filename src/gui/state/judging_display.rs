@@ -1,7 +1,7 @@
 //! Display options of the views that assess the correction: assessment, requirements, variants,
 //! costs.
 
-use super::assessed_figures::AssessedFigures;
+use super::assessment_display::AssessmentDisplay;
 use super::mapped_cost::MappedCost;
 use super::requirements_page::RequirementsPage;
 use crate::gui::widgets::tables::Sorting;
@@ -10,7 +10,7 @@ use crate::gui::widgets::tables::Sorting;
 #[derive(Debug, Default)]
 pub struct JudgingDisplay {
     pub mapped_cost: MappedCost,
-    pub assessed: AssessedFigures,
+    pub assessed: AssessmentDisplay,
     pub assessment_sorting: Sorting,
     /// Whether responses to a test input are shown even if flight records are available.
     pub shows_test: bool,

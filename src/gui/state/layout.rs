@@ -1,8 +1,8 @@
 //! Layout of views, panels and sheets.
 
-use super::arrangement::Arrangement;
 use super::opens_with::OpensWith;
 use super::sheet::Sheet;
+use super::view_arrangement::Arrangement;
 
 /// Visible views, panels and sheets.
 #[derive(Debug, Default)]

@@ -1,10 +1,15 @@
-//! Window state: document, display, results.
+//! Window state: the study, what is displayed of it, and its results.
+//!
+//! Begin with [`window_state`]; its `State` contains everything else. [`shown_results`] says which
+//! results are shown, [`display`] holds the display options of all views.
 
-pub mod arrangement;
 pub mod assembling;
 pub mod assembly_columns;
-pub mod assessed_figures;
+pub mod assessment_display;
+pub mod background;
 pub mod channels_view;
+pub mod computed_results;
+mod condition_identification;
 pub mod condition_records;
 pub mod curve_display;
 pub mod display;
@@ -19,15 +24,17 @@ pub mod modes_cache;
 pub mod notices;
 pub mod opens_with;
 pub mod pair_set;
+pub mod panel_tables;
 pub mod poles_display;
 pub mod preferences;
 pub mod records;
 pub mod records_page;
 pub mod requirements_page;
-pub mod results;
 pub mod selection;
 pub mod sheet;
-pub mod tables;
+pub mod shown_results;
+pub mod value_uncertainty;
 pub mod view;
+pub mod view_arrangement;
 pub mod wanted_dataset;
 pub mod window_state;

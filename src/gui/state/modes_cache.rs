@@ -14,10 +14,13 @@ use gdcm_words::Table;
 /// couplings; cached until their inputs change.
 #[derive(Debug, Default)]
 pub struct CachedModes {
-    pub made_of: Option<MadeOf>,
+    /// Inputs from which the other fields were computed; `None` before the first computation.
+    pub inputs: Option<ModesInputs>,
+    /// Modes by row, models by column.
     pub table: Table,
     /// For each row, the first model whose pole is an outlier of the mode.
-    pub jumping: Vec<Option<ModelId>>,
+    pub outliers: Vec<Option<ModelId>>,
+    /// Zeros of the focused response, by model.
     pub zeros: Vec<(ModelId, Vec<Complex<f64>>)>,
     /// Pole shifts of the physics representative due to couplings.
     pub shifts: Vec<PoleShift>,
@@ -25,10 +28,11 @@ pub struct CachedModes {
 
 /// Inputs of the modes, the zeros and the shifts.
 #[derive(Debug)]
-pub struct MadeOf {
+pub struct ModesInputs {
     pub modes: Arc<ConditionModes>,
     /// Index of the physics model to whose modes the modes of all other models are matched.
     pub reference: usize,
+    /// Couplings that shift the poles.
     pub couplings: Option<Arc<FittedCouplings>>,
     /// Response and models whose zeros are shown.
     pub zeros_of: Option<(Pair, Vec<ModelId>)>,

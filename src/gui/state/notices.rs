@@ -1,9 +1,8 @@
-//! Messages to the engineer: notices that disappear by themselves, and bars that remain until
-//! closed.
+//! Messages to the engineer: short notices in the status bar, and bars that remain until closed.
 
 /// Message about the program or its files, shown until it is closed.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Bar {
+pub enum MessageBar {
     /// A computation panicked.
     Fault {
         /// Names the interrupted work, states that the decisions are kept, and gives the details to
@@ -33,7 +32,7 @@ pub enum NoticeKind {
     Trouble,
 }
 
-/// Short message that disappears by itself.
+/// Short message in the status bar; the next decision or notice replaces it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Notice {
     pub kind: NoticeKind,

@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 
 use gdcm_plot::figure::axis::FrequencyUnit;
 
-use super::arrangement::Arrangement;
 use super::curve_display::CurveDisplay;
 use super::display::Display;
 use super::opens_with::OpensWith;
+use super::view_arrangement::Arrangement;
 use crate::gui::plot::Role;
 use crate::gui::plot::quantity::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 use crate::gui::widgets::palette::PlotStyle;
@@ -64,7 +64,7 @@ impl Preferences {
         display.layout.arrangement = self
             .arrangement
             .clone()
-            .and_then(Arrangement::if_whole)
+            .and_then(Arrangement::if_valid)
             .unwrap_or_default();
         display.layout.opens_with = self.opens_with;
         display.layout.left_open = self.left_open;

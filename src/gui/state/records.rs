@@ -54,10 +54,10 @@ pub struct RecordsState {
     pub reading: Option<String>,
     /// Messages about unreadable content.
     pub faults: Vec<String>,
-    /// Running and waiting identification jobs.
+    /// Running and waiting identification jobs, in the order of the requests.
     pub running: Vec<IdentifyJob>,
     /// Number of conditions requested since the queue was last empty.
-    pub asked: usize,
+    pub requested_count: usize,
 }
 
 impl RecordsState {
@@ -135,7 +135,7 @@ impl RecordsState {
     pub fn history_records(&self) -> Vec<HistoryRecords> {
         let mut histories = Vec::new();
         for (id, records) in &self.conditions {
-            let history = HistoryRecords::of(*id, &records.rows, records.preparation());
+            let history = HistoryRecords::from_used(*id, &records.rows, records.preparation());
             if !history.records.is_empty() {
                 histories.push(history);
             }
@@ -149,13 +149,13 @@ impl RecordsState {
         self.running
             .retain(|other| other.condition != job.condition);
         if self.running.len() == before {
-            self.asked += 1;
+            self.requested_count += 1;
         }
         self.running.push(job);
     }
 
     /// Returns the running or waiting job for a condition.
-    pub fn running(&self, condition: ConditionId) -> Option<&IdentifyJob> {
+    pub fn job_of(&self, condition: ConditionId) -> Option<&IdentifyJob> {
         self.running.iter().find(|job| job.condition == condition)
     }
 
@@ -172,7 +172,7 @@ impl RecordsState {
     }
 }
 
-/// Missing units in all records.
+/// Channels whose unit is missing in a record, summed over all records.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct OpenUnits {
     /// Names of the channels, with their units in the dataset.

@@ -2,6 +2,7 @@
 
 use egui::Color32;
 
+use crate::gui::widgets::choices::PageWords;
 use crate::gui::widgets::palette::Palette;
 
 /// A page of the Records view.
@@ -39,52 +40,52 @@ impl RecordsPage {
         Self::Conditions,
     ];
 
-    /// Returns the name, a shorter name for narrow windows, and a sentence about the content.
-    pub fn words(self) -> (&'static str, &'static str, &'static str) {
+    /// Returns the texts of the page's tab.
+    pub fn words(self) -> PageWords {
         match self {
-            Self::Histories => (
-                "Time",
-                "Time",
-                "Every channel of the selected record over time; bridged gaps and cut parts are \
+            Self::Histories => PageWords {
+                name: "Time",
+                short_name: "Time",
+                purpose: "Every channel of the selected record over time; bridged gaps and cut parts are \
                 marked",
-            ),
-            Self::Inputs => (
-                "Inputs",
-                "Inputs",
-                "Spectrum of each input in each record: which inputs are excited, and up to which \
+            },
+            Self::Inputs => PageWords {
+                name: "Inputs",
+                short_name: "Inputs",
+                purpose: "Spectrum of each input in each record: which inputs are excited, and up to which \
                 frequency",
-            ),
-            Self::Response => (
-                "Response",
-                "Response",
-                "Measured response with error bars, and the models with their confidence bands",
-            ),
-            Self::Stabilisation => (
-                "Stabilisation",
-                "Orders",
-                "Poles over the model order: poles of the aircraft remain as the order increases",
-            ),
-            Self::Poles => (
-                "Identified poles",
-                "Poles",
-                "Poles of the recommended model with their standard deviations; grey: not \
+            },
+            Self::Response => PageWords {
+                name: "Response",
+                short_name: "Response",
+                purpose: "Measured response with error bars, and the models with their confidence bands",
+            },
+            Self::Stabilisation => PageWords {
+                name: "Stabilisation",
+                short_name: "Orders",
+                purpose: "Poles over the model order: poles of the aircraft remain as the order increases",
+            },
+            Self::Poles => PageWords {
+                name: "Identified poles",
+                short_name: "Poles",
+                purpose: "Poles of the recommended model with their standard deviations; grey: not \
                 determined by the records",
-            ),
-            Self::Fit => (
-                "Fit",
-                "Fit",
-                "Fit of the model to each record and output, in the frequency and time domains",
-            ),
-            Self::Columns => (
-                "Columns",
-                "Columns",
-                "Assignment of the record's columns to time and channels",
-            ),
-            Self::Conditions => (
-                "Conditions",
-                "Conditions",
-                "Identification results of every condition; click a row to show its condition",
-            ),
+            },
+            Self::Fit => PageWords {
+                name: "Fit",
+                short_name: "Fit",
+                purpose: "Fit of the model to each record and output, in the frequency and time domains",
+            },
+            Self::Columns => PageWords {
+                name: "Columns",
+                short_name: "Columns",
+                purpose: "Assignment of the record's columns to time and channels",
+            },
+            Self::Conditions => PageWords {
+                name: "Conditions",
+                short_name: "Conditions",
+                purpose: "Identification results of every condition; click a row to show its condition",
+            },
         }
     }
 }

@@ -15,9 +15,9 @@ pub struct Selection {
     pub hovered_condition: Option<ConditionId>,
     /// Description of the plot element under the pointer. It is shown in the status bar, because a
     /// tooltip would cover curves.
-    pub told: Option<String>,
+    pub pointed_words: Option<String>,
     /// The only model shown beside the representatives.
     pub isolated: Option<ModelId>,
     /// Value whose derivation is shown.
-    pub asked: Option<ExplainTarget>,
+    pub explained: Option<ExplainTarget>,
 }

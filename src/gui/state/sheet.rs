@@ -1,6 +1,6 @@
 //! Sheets that cover part of the views.
 
-use crate::gui::widgets::controls::QUESTION;
+use crate::gui::plot::derivation_menu::QUESTION;
 
 /// Content shown by a sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,12 +26,21 @@ impl Sheet {
         }
     }
 
-    /// Returns whether the sheet is on the right side, and its width \[pt\].
-    pub fn place(self) -> (bool, f32) {
+    /// Returns whether the sheet covers the right side of the views, beside the values that it
+    /// explains; otherwise it covers the left side.
+    pub fn is_on_right(self) -> bool {
         match self {
-            Self::Reasons => (true, 380.0),
-            Self::Derivation => (true, 440.0),
-            Self::Models | Self::Identified => (false, 272.0),
+            Self::Reasons | Self::Derivation => true,
+            Self::Models | Self::Identified => false,
+        }
+    }
+
+    /// Returns the width \[pt\].
+    pub fn width(self) -> f32 {
+        match self {
+            Self::Reasons => 380.0,
+            Self::Derivation => 440.0,
+            Self::Models | Self::Identified => 272.0,
         }
     }
 }

@@ -1,4 +1,5 @@
-//! Views between the side panels: names, groups and properties.
+//! Views between the side panels: their groups, and for each view a row with name, purpose and
+//! properties.
 
 use serde::{Deserialize, Serialize};
 
@@ -112,120 +113,11 @@ impl View {
     pub fn figure(self) -> Option<FigureKind> {
         self.facts().figure
     }
+}
 
-    /// Returns the properties of the view, from which tabs, menus and the palette are built.
-    pub fn facts(self) -> ViewFacts {
-        match self {
-            Self::Bode => ViewFacts {
-                name: "Bode",
-                purpose: "Magnitude and phase of the response in focus",
-                figure: Some(FigureKind::Bode),
-                ..ViewFacts::PLAIN
-            },
-            Self::Error => ViewFacts {
-                name: "Error",
-                purpose: "Magnitude ratio and phase difference between identified and physics \
-                    models in the response in focus, with G, D and bounds",
-                figure: Some(FigureKind::Error),
-                ..ViewFacts::PLAIN
-            },
-            Self::Overview => ViewFacts {
-                name: "Overview",
-                purpose: "Small plots of all responses of the condition",
-                figure: Some(FigureKind::Overview),
-                ..ViewFacts::PLAIN
-            },
-            Self::Across => ViewFacts {
-                name: "Airspeeds",
-                purpose: "The response in focus in every condition, coloured by airspeed",
-                figure: Some(FigureKind::Airspeeds),
-                ..ViewFacts::PLAIN
-            },
-            Self::Poles => ViewFacts {
-                name: "Poles",
-                purpose: "Poles of every model of the condition in the s-plane, and the modes in a table",
-                group: ViewGroup::Models,
-                figure: Some(FigureKind::Poles),
-                ..ViewFacts::PLAIN
-            },
-            Self::Couplings => ViewFacts {
-                name: "Couplings",
-                purpose: "Input mixing and output feedback, their benefit, and their effect on the loop",
-                group: ViewGroup::Models,
-                takes_dock: true,
-                is_of_all_conditions: true,
-                figure: Some(FigureKind::Couplings),
-                ..ViewFacts::PLAIN
-            },
-            Self::Records => ViewFacts {
-                name: "Records",
-                purpose: "Flight records of the condition, and models identified from them",
-                group: ViewGroup::Models,
-                takes_dock: true,
-                ..ViewFacts::PLAIN
-            },
-            Self::Channels => ViewFacts {
-                name: "Channels",
-                purpose: "Gain or delay of every channel over airspeed",
-                group: ViewGroup::Schedule,
-                is_of_all_conditions: true,
-                figure: Some(FigureKind::Channels),
-                ..ViewFacts::PLAIN
-            },
-            Self::Assessment => ViewFacts {
-                name: "Assessment",
-                purpose: "Benefit of the correction, condition by condition",
-                group: ViewGroup::Judge,
-                is_of_all_conditions: true,
-                figure: Some(FigureKind::Assessment),
-                ..ViewFacts::PLAIN
-            },
-            Self::Evidence => ViewFacts {
-                name: "Evidence",
-                purpose: "Sources of the scatter of the net gains, significant differences, and variables of the schedule",
-                group: ViewGroup::Schedule,
-                takes_dock: true,
-                is_of_all_conditions: true,
-                figure: Some(FigureKind::Evidence),
-                ..ViewFacts::PLAIN
-            },
-            Self::Compare => ViewFacts {
-                name: "Compare",
-                purpose: "Variants (named sets of decisions) compared with the current decisions",
-                group: ViewGroup::Judge,
-                ..ViewFacts::PLAIN
-            },
-            Self::Requirements => ViewFacts {
-                name: "Requirements",
-                purpose: "Requirements as in a qualification: bandwidth, phase delay and modes, \
-                    with a summary of J",
-                group: ViewGroup::Judge,
-                takes_dock: true,
-                is_of_all_conditions: true,
-                figure: Some(FigureKind::Requirements),
-                ..ViewFacts::PLAIN
-            },
-            Self::Leads => ViewFacts {
-                name: "Leads",
-                purpose: "Effect of the leads in each channel, and the gain that they add above \
-                    the band",
-                group: ViewGroup::Schedule,
-                is_docked: true,
-                figure: Some(FigureKind::Leads),
-                ..ViewFacts::PLAIN
-            },
-            Self::NetGain => ViewFacts {
-                name: "Net gain",
-                purpose: "Net gain of the selected responses over airspeed, with the schedule",
-                group: ViewGroup::Schedule,
-                is_docked: true,
-                long_name: Some("Net gain over airspeed"),
-                is_of_all_conditions: true,
-                figure: Some(FigureKind::NetGain),
-                ..ViewFacts::PLAIN
-            },
-        }
-    }
+/// Returns the views that have a figure.
+pub fn views_with_figure() -> impl Iterator<Item = View> {
+    View::ALL.into_iter().filter(|view| view.figure().is_some())
 }
 
 /// View properties that do not depend on the study.
@@ -263,7 +155,146 @@ impl ViewFacts {
     };
 }
 
-/// Returns the views that have a figure.
-pub fn views_with_figure() -> impl Iterator<Item = View> {
-    View::ALL.into_iter().filter(|view| view.figure().is_some())
+impl View {
+    /// Returns the properties of the view, from which tabs, menus and the palette are built.
+    pub fn facts(self) -> ViewFacts {
+        match self {
+            Self::Bode => BODE,
+            Self::Error => ERROR,
+            Self::Overview => OVERVIEW,
+            Self::Across => ACROSS,
+            Self::Poles => POLES,
+            Self::Couplings => COUPLINGS,
+            Self::Records => RECORDS,
+            Self::NetGain => NET_GAIN,
+            Self::Channels => CHANNELS,
+            Self::Leads => LEADS,
+            Self::Evidence => EVIDENCE,
+            Self::Assessment => ASSESSMENT,
+            Self::Compare => COMPARE,
+            Self::Requirements => REQUIREMENTS,
+        }
+    }
 }
+
+const BODE: ViewFacts = ViewFacts {
+    name: "Bode",
+    purpose: "Magnitude and phase of the response in focus",
+    figure: Some(FigureKind::Bode),
+    ..ViewFacts::PLAIN
+};
+
+const ERROR: ViewFacts = ViewFacts {
+    name: "Error",
+    purpose: "Magnitude ratio and phase difference between identified and physics \
+                    models in the response in focus, with G, D and bounds",
+    figure: Some(FigureKind::Error),
+    ..ViewFacts::PLAIN
+};
+
+const OVERVIEW: ViewFacts = ViewFacts {
+    name: "Overview",
+    purpose: "Small plots of all responses of the condition",
+    figure: Some(FigureKind::Overview),
+    ..ViewFacts::PLAIN
+};
+
+const ACROSS: ViewFacts = ViewFacts {
+    name: "Airspeeds",
+    purpose: "The response in focus in every condition, coloured by airspeed",
+    figure: Some(FigureKind::Airspeeds),
+    ..ViewFacts::PLAIN
+};
+
+const POLES: ViewFacts = ViewFacts {
+    name: "Poles",
+    purpose: "Poles of every model of the condition in the s-plane, and the modes in a table",
+    group: ViewGroup::Models,
+    figure: Some(FigureKind::Poles),
+    ..ViewFacts::PLAIN
+};
+
+const COUPLINGS: ViewFacts = ViewFacts {
+    name: "Couplings",
+    purpose: "Input mixing and output feedback, their benefit, and their effect on the loop",
+    group: ViewGroup::Models,
+    takes_dock: true,
+    is_of_all_conditions: true,
+    figure: Some(FigureKind::Couplings),
+    ..ViewFacts::PLAIN
+};
+
+const RECORDS: ViewFacts = ViewFacts {
+    name: "Records",
+    purpose: "Flight records of the condition, and models identified from them",
+    group: ViewGroup::Models,
+    takes_dock: true,
+    ..ViewFacts::PLAIN
+};
+
+const NET_GAIN: ViewFacts = ViewFacts {
+    name: "Net gain",
+    purpose: "Net gain of the selected responses over airspeed, with the schedule",
+    group: ViewGroup::Schedule,
+    is_docked: true,
+    long_name: Some("Net gain over airspeed"),
+    is_of_all_conditions: true,
+    figure: Some(FigureKind::NetGain),
+    ..ViewFacts::PLAIN
+};
+
+const CHANNELS: ViewFacts = ViewFacts {
+    name: "Channels",
+    purpose: "Gain or delay of every channel over airspeed",
+    group: ViewGroup::Schedule,
+    is_of_all_conditions: true,
+    figure: Some(FigureKind::Channels),
+    ..ViewFacts::PLAIN
+};
+
+const LEADS: ViewFacts = ViewFacts {
+    name: "Leads",
+    purpose: "Effect of the leads in each channel, and the gain that they add above \
+                    the band",
+    group: ViewGroup::Schedule,
+    is_docked: true,
+    figure: Some(FigureKind::Leads),
+    ..ViewFacts::PLAIN
+};
+
+const EVIDENCE: ViewFacts = ViewFacts {
+    name: "Evidence",
+    purpose: "Net gains: sources of their scatter, significant differences between airspeeds, and variables that the schedule needs",
+    group: ViewGroup::Schedule,
+    takes_dock: true,
+    is_of_all_conditions: true,
+    figure: Some(FigureKind::Evidence),
+    ..ViewFacts::PLAIN
+};
+
+const ASSESSMENT: ViewFacts = ViewFacts {
+    name: "Assessment",
+    purpose: "Benefit of the correction, condition by condition",
+    group: ViewGroup::Judge,
+    is_of_all_conditions: true,
+    figure: Some(FigureKind::Assessment),
+    ..ViewFacts::PLAIN
+};
+
+const COMPARE: ViewFacts = ViewFacts {
+    name: "Compare",
+    purpose: "Variants (named sets of decisions) compared with the current decisions",
+    group: ViewGroup::Judge,
+    ..ViewFacts::PLAIN
+};
+
+const REQUIREMENTS: ViewFacts = ViewFacts {
+    name: "Requirements",
+    purpose: "Requirements as in a qualification: bandwidth, phase delay and modes, \
+                    with a summary of J",
+    group: ViewGroup::Judge,
+    takes_dock: true,
+    is_of_all_conditions: true,
+    figure: Some(FigureKind::Requirements),
+    ..ViewFacts::PLAIN
+};

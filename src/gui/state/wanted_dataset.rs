@@ -11,7 +11,7 @@ use gdcm_sysid::records::record_channels::ResamplingWish;
 use gdcm_sysid::records::{RecordChannels, RecordColumn, RecordTable};
 
 use super::condition_records::ConditionRecords;
-use crate::gui::widgets::controls::typed_number;
+use crate::gui::widgets::number_entry::typed_number;
 
 /// Column meanings that are pilot controls. The reference "TARG" is neither an input nor an output.
 const CONTROLS: [&str; 4] = ["LON", "LAT", "PED", "COL"];

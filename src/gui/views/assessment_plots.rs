@@ -1,18 +1,14 @@
-//! Stacked bars for the change of J in each condition.
+//! Stacked bars for the change of J in each condition; `assessment_bar_words` describes them.
 
 use gdcm_method::schedule::CostChange;
-use gdcm_model::dataset::{ConditionId, Dataset, Pair};
+use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::number_format::decimals;
 use gdcm_plot::figure::axis::Axis;
 use gdcm_plot::figure::drawing::{Hue, Stroke};
 use gdcm_plot::figure::figure::{Bars, Curve, Note, Place, Rule, Spans};
-use gdcm_plot::figure::{Color, MarkId, Panel, Range};
+use gdcm_plot::figure::{Color, Panel, Range};
 use gdcm_study::AssessmentTable;
-use gdcm_words::assessment::{missing_cost_text, not_assessed_text};
-use gdcm_words::derivation::ExplainTarget;
 
-use crate::gui::plot::FigureWords;
-use crate::gui::plot::questions::NamedFigure;
 use crate::gui::state::window_state::State;
 
 /// Bar width, relative to the distance between conditions.
@@ -99,7 +95,7 @@ impl PlacedChange {
 
 impl AssessmentPlots<'_> {
     /// Returns the change in a condition; `None` if the assessment omits this condition.
-    fn change(&self, condition: ConditionId, pair: Pair) -> Option<CostChange> {
+    pub(super) fn change(&self, condition: ConditionId, pair: Pair) -> Option<CostChange> {
         self.table.change(condition, pair)
     }
 
@@ -154,7 +150,7 @@ impl AssessmentPlots<'_> {
 }
 
 fn visible_range(found: &[PlacedChange]) -> Range {
-    Range::of(found.iter().flat_map(PlacedChange::ends))
+    Range::spanning(found.iter().flat_map(PlacedChange::ends))
         .unwrap_or(Range::new(-1.0, 1.0))
         .with_margin(MARGIN, 1.0)
 }
@@ -187,7 +183,7 @@ fn bars_of_hue(found: &[PlacedChange], part: BarPart, hue: Hue) -> Bars {
     };
     Bars {
         name: String::new(),
-        color: Color::of(hue).tint(strength),
+        color: Color::new(hue).tint(strength),
         width: BAR,
         bars,
         feet,
@@ -211,7 +207,7 @@ fn total_lines(found: &[PlacedChange]) -> Curve {
 fn left_out_ground(left_out: &[f64], range: Range) -> Spans {
     Spans {
         name: String::new(),
-        color: Color::of(Hue::Rejected).tint(13),
+        color: Color::new(Hue::Rejected).tint(13),
         width: 0.7,
         spans: left_out
             .iter()
@@ -228,83 +224,5 @@ fn left_out_note(at: f64, range: Range) -> Note {
             upright: true,
         },
         text: "left out".to_owned(),
-    }
-}
-
-/// Returns why the change of J is missing.
-fn absence_reason(
-    table: &AssessmentTable,
-    dataset: &Dataset,
-    condition: ConditionId,
-    pair: Pair,
-) -> String {
-    for left_out in &table.left_out {
-        if left_out.condition == condition {
-            return not_assessed_text(&left_out.why, dataset);
-        }
-    }
-    for assessed in &table.conditions {
-        if assessed.condition != condition {
-            continue;
-        }
-        for (missing, why) in &assessed.missing {
-            if *missing == pair {
-                return missing_cost_text(*why);
-            }
-        }
-    }
-    "not computed".to_owned()
-}
-
-impl FigureWords for AssessmentPlots<'_> {
-    fn plot(&self, plot: usize) -> String {
-        let pair = self.pairs[plot];
-        let mut words = Vec::new();
-        for condition in self.state.dataset().conditions() {
-            let id = condition.id();
-            words.push(match self.change(id, pair) {
-                Some(change) => format!("{id} {}", decimals(change.total(), 1)),
-                None => format!("{id} left out"),
-            });
-        }
-        format!(
-            "Change of J, {}: {}",
-            self.state.dataset().pair_name(pair),
-            words.join(", ")
-        )
-    }
-
-    fn pointed(&self, plot: usize, id: &MarkId, _: [f64; 2]) -> Option<String> {
-        let MarkId::Condition(id) = id else {
-            return None;
-        };
-        let pair = self.pairs[plot];
-        let subject = format!("{}, condition {id}", self.state.dataset().pair_name(pair));
-        let Some(change) = self.change(*id, pair) else {
-            return Some(format!(
-                "{subject} · left out: {}",
-                absence_reason(self.table, self.state.dataset(), *id, pair)
-            ));
-        };
-        Some(format!(
-            "{subject} · ΔJ {}: magnitude {}, phase {} · J {} → {}",
-            decimals(change.total(), 1),
-            decimals(change.magnitude(), 1),
-            decimals(change.phase(), 1),
-            decimals(change.uncorrected.total(), 1),
-            decimals(change.corrected.total(), 1)
-        ))
-    }
-
-    fn questions(&self, plot: usize, id: &MarkId) -> Vec<NamedFigure> {
-        let MarkId::Condition(id) = *id else {
-            return Vec::new();
-        };
-        let pair = self.pairs[plot];
-        if self.change(id, pair).is_none() {
-            return Vec::new();
-        }
-        let target = ExplainTarget::CostChange(id, pair, self.table.choice);
-        vec![("Change of J".to_owned(), target)]
     }
 }

@@ -1,11 +1,13 @@
-//! Channel gains over airspeed.
+//! Channels view: gain or delay of every channel over airspeed or over the conditions, inputs above
+//! outputs.
 
 use egui::{Align2, FontId, Rect, Ui, pos2, vec2};
 
-use gdcm_plot::figure::gains::{Across, GainQuantity, Measure, channels_figure, quieten};
+use gdcm_plot::figure::gains::{Across, GainAxes, GainQuantity, Measure, channels_figure, quieten};
 use gdcm_plot::figure::{Figure, MarkId, all_channels};
 
-use super::gain_plots::{GainPlots, LEAST_PLOT, bars_switch_ui, gain_command, shown_uncertainty};
+use super::error_bars::{error_bars_switch_ui, shown_uncertainty};
+use super::gain_plots::{GainPlots, LEAST_PLOT, gain_command};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::plot::figure_view::{figure_within_ui, rows};
@@ -13,6 +15,11 @@ use crate::gui::plot::{FigureScene, FigureView, figure_ui};
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
+
+/// Height of the headings "Input channels" and "Output channels" \[pt\].
+const HEADING_HEIGHT: f32 = 20.0;
+/// Gap below each half of the view \[pt\].
+const GAP: f32 = 8.0;
 
 /// Draws the selectors between gains and delays, and between airspeed and conditions, from right to
 /// left.
@@ -37,14 +44,11 @@ pub fn channels_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command
         ),
     ];
     choice_ui(ui, "Figure of the channels", &mut measure, &figures);
-    bars_switch_ui(ui, state, "bars of the channels", commands);
+    error_bars_switch_ui(ui, state, "bars of the channels", commands);
     if (measure, across) != shown {
         commands.push(DisplayCommand::ShowChannels(measure, across).into());
     }
 }
-
-const HEADING_HEIGHT: f32 = 20.0;
-const GAP: f32 = 8.0;
 
 /// Draws gain or delay of every channel over airspeed (Figures 3 and 4): inputs above, outputs
 /// below, on the same axes.
@@ -67,7 +71,7 @@ pub fn channels_view_ui(
         }
     }
     if plots.figure.plots.is_empty() {
-        let scene = plots.scene("channels", &plots.figure, state.results.absence());
+        let scene = plots.scene("channels", &plots.figure, 0, state.results.absence());
         figure_ui(ui, &scene, &mut view.inputs, palette);
     }
     let rect = ui.available_rect_before_wrap();
@@ -133,9 +137,7 @@ impl ChannelPlots<'_> {
         let message = plots.state.results.absence();
         let scene = FigureScene {
             is_compact: plots.across == Across::Airspeed,
-            words: plots,
-            first_plot: self.first_plot,
-            ..plots.scene(self.name, &self.figure, message)
+            ..plots.scene(self.name, &self.figure, self.first_plot, message)
         };
         let mut commands = Vec::new();
         for event in figure_within_ui(ui, inner, &scene, self.view, palette) {
@@ -154,7 +156,8 @@ pub fn channel_plots(state: &State) -> GainPlots<'_> {
     if let Some(analysis) = state.analysis() {
         let channels = all_channels(state.dataset());
         let uncertainty = shown_uncertainty(state);
-        figure = channels_figure(analysis, uncertainty, &channels, (measure, across));
+        let axes = GainAxes { measure, across };
+        figure = channels_figure(analysis, uncertainty, &channels, axes);
         for channel in channels {
             quantities.push(GainQuantity::of_channel(channel, measure));
         }

@@ -1,23 +1,22 @@
-//! Variants (named decision sets) compared with the current decisions.
+//! Compare view: variants (named decision sets), with buttons that keep, take, overlay and remove
+//! them, and their differences from the current decisions.
 
 use egui::{Align, Button, Layout, RichText, Role, Ui};
 
-use gdcm_model::dataset::Pair;
-use gdcm_model::units::signed;
+use gdcm_study::Edit;
 use gdcm_study::decisions::study::Variant;
-use gdcm_study::jobs::analysis_jobs::VariantJob;
-use gdcm_study::{Analysis, Edit};
 use gdcm_words::Table;
-use gdcm_words::decisions::decision_differences;
+use gdcm_words::decision_differences::decision_differences;
 
-use super::gain_plots::net_gain_pairs;
+use super::variant_effects::effect_table;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::choices::toggle_ui;
-use crate::gui::widgets::controls::{is_entered, named, text_field_ui};
+use crate::gui::widgets::choices::Toggle;
+use crate::gui::widgets::controls::named;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 use crate::gui::widgets::tables::{TableLook, table_ui};
+use crate::gui::widgets::text_fields::{is_entered, text_field_ui};
 
 /// Draws all variants, their differences from the current decisions, and the effects.
 pub fn compare_view_ui(
@@ -94,7 +93,12 @@ fn variant_ui(ui: &mut Ui, variant: &Variant, is_overlaid: bool, commands: &mut 
             let label = format!("Overlay variant {name}");
             let hint = "Draws the variant's corrected model in the Bode view (dotted) and its net \
                 gains (hollow squares)";
-            if toggle_ui(ui, ("Overlay", &label), is_overlaid, hint) {
+            let toggle = Toggle {
+                text: "Overlay",
+                name: &label,
+                hint,
+            };
+            if toggle.ui(ui, is_overlaid) {
                 let overlaid = if is_overlaid { None } else { Some(name) };
                 commands.push(DisplayCommand::Overlay(overlaid).into());
             }
@@ -108,43 +112,6 @@ fn variant_button_ui(ui: &mut Ui, verb: &str, name: &str, hint: &str) -> bool {
     named(button, Role::Button, format!("{verb} variant {name}"))
         .on_hover_text(hint)
         .clicked()
-}
-
-/// Returns the jobs that analyse the variants.
-pub fn variant_jobs(state: &State) -> Vec<VariantJob> {
-    let mut jobs = Vec::new();
-    for variant in &state.study.variants {
-        jobs.extend(variant_job(state, &variant.name));
-    }
-    jobs
-}
-
-fn variant_job(state: &State, name: &str) -> Option<VariantJob> {
-    let study = state.study.of_variant(name)?;
-    Some(VariantJob { study })
-}
-
-/// Returns a variant's analysis, if available.
-pub fn variant_analysis<'a>(state: &'a State, variant: &Variant) -> Option<&'a Analysis> {
-    let job = variant_job(state, &variant.name)?;
-    for (known, analysis) in &state.results.variants {
-        if *known == job {
-            return Some(analysis.as_ref());
-        }
-    }
-    None
-}
-
-/// Returns the overlaid variant and its analysis, if available.
-pub fn overlaid_analysis(state: &State) -> Option<(&str, &Analysis)> {
-    let name = state.display.judging.overlaid.as_deref()?;
-    let variant = state.study.variant(name)?;
-    Some((&variant.name, variant_analysis(state, variant)?))
-}
-
-/// Returns the job for the overlaid analysis.
-pub fn overlay_job(state: &State) -> Option<VariantJob> {
-    variant_job(state, state.display.judging.overlaid.as_deref()?)
 }
 
 /// Builds the table of all decisions in which a variant differs from the current decisions.
@@ -169,110 +136,4 @@ fn difference_table(state: &State) -> Table {
         }
     }
     table
-}
-
-/// Builds the table of the effects of the current decisions and of each variant.
-fn effect_table(state: &State) -> Table {
-    let condition = state.condition().id();
-    let title =
-        format!("Effects in condition {condition}, and of the schedule over all conditions");
-    let mut columns = vec!["value".to_owned(), "now".to_owned()];
-    let mut analyses = vec![state.analysis()];
-    for variant in &state.study.variants {
-        columns.push(variant.name.clone());
-        analyses.push(variant_analysis(state, variant));
-    }
-    let mut table = Table::new(title, columns);
-    for effect in effects(state) {
-        let mut cells = vec![effect.name(state)];
-        for analysis in &analyses {
-            cells.push(match analysis {
-                Some(analysis) => effect
-                    .text(state, analysis)
-                    .unwrap_or_else(|| "–".to_owned()),
-                None => "…".to_owned(),
-            });
-        }
-        table.row(cells);
-    }
-    table
-}
-
-/// Effect that is compared between variants.
-#[derive(Clone, Copy)]
-enum Effect {
-    /// Net gain in the displayed condition.
-    NetGain(Pair),
-    /// J in the displayed condition, before and after the correction.
-    Cost(Pair),
-    /// Gain objective in the displayed condition.
-    Objective,
-    /// Mean change of J with the schedule, over all on-axis responses and conditions.
-    MeanChange,
-}
-
-fn effects(state: &State) -> Vec<Effect> {
-    let mut effects = Vec::new();
-    for pair in net_gain_pairs(state) {
-        effects.push(Effect::NetGain(pair));
-        effects.push(Effect::Cost(pair));
-    }
-    effects.push(Effect::Objective);
-    effects.push(Effect::MeanChange);
-    effects
-}
-
-impl Effect {
-    fn name(self, state: &State) -> String {
-        match self {
-            Self::NetGain(pair) => format!("net gain {}", state.dataset().pair_name(pair)),
-            Self::Cost(pair) => format!("J {}", state.dataset().pair_name(pair)),
-            Self::Objective => "objective of the gains".to_owned(),
-            Self::MeanChange => "mean ΔJ on-axis, scheduled".to_owned(),
-        }
-    }
-
-    /// Formats the effect in an analysis; `None` where it is undefined.
-    fn text(self, state: &State, analysis: &Analysis) -> Option<String> {
-        let condition = state.condition().id();
-        match self {
-            Self::NetGain(pair) => {
-                let correction = &analysis.condition(condition)?.correction;
-                Some(format!("{:.4}", correction.net_gain(pair)))
-            }
-            Self::Cost(pair) => {
-                let cost = analysis.condition(condition)?.cost[pair]?;
-                Some(format!(
-                    "{:.1} → {:.1}",
-                    cost.uncorrected.total(),
-                    cost.corrected.total()
-                ))
-            }
-            Self::Objective => {
-                let gains = &analysis.condition(condition)?.gains;
-                Some(format!("{:.4}", gains.objective))
-            }
-            Self::MeanChange => mean_change(state, analysis),
-        }
-    }
-}
-
-/// Computes the mean change of J of the nominal models with the schedule, over the on-axis
-/// responses in all assessed conditions; `None` without an assessed response.
-fn mean_change(state: &State, analysis: &Analysis) -> Option<String> {
-    let measuring = state.dataset().measuring_pairs();
-    let mut changes = Vec::new();
-    for assessed in analysis.assessment.values().flatten() {
-        for pair in measuring.marked() {
-            if let Some(change) = assessed[pair] {
-                changes.push(change.total());
-            }
-        }
-    }
-    let mean = changes.iter().sum::<f64>() / changes.len() as f64;
-    if mean.is_finite() {
-        Some(signed(mean, 2))
-    } else {
-        None
-    }
 }

@@ -1,32 +1,29 @@
 //! Couplings: input mixing and output feedback, their benefit, and their effect on the loop.
 
-use std::sync::Arc;
-
 use egui::{Label, Panel, RichText, ScrollArea, Ui, Vec2, vec2};
 
-use gdcm_method::couplings::LEAST_CONDITIONS;
 use gdcm_model::units::telling;
 use gdcm_plot::figure::Figure;
+use gdcm_study::CouplingCorrection;
 use gdcm_study::decisions::setting;
-use gdcm_study::jobs::analysis_jobs::CouplingsJob;
-use gdcm_study::results::couplings_assessment::{CouplingCost, CouplingsAssessment};
-use gdcm_study::{CouplingCorrection, PhaseCorrection};
+use gdcm_study::results::coupling_remark_search::coupling_remarks;
+use gdcm_study::results::couplings_assessment::CouplingsAssessment;
+use gdcm_study::results::remark_kind::RemarkKind;
 use gdcm_words::Table;
-use gdcm_words::couplings::{
-    coupling_cost_table, coupling_matrix_tables, coupling_remarks, pole_table,
-};
-use gdcm_words::remark::RemarkKind;
+use gdcm_words::coupling_remark::{coupling_remark_text, no_poles_text};
+use gdcm_words::couplings::{coupling_cost_table, coupling_matrix_tables, pole_table};
 
-use super::figures::request;
-use super::frequency::condition_source;
+use super::couplings_use::are_couplings_used;
+use super::figures::figure_request;
+use super::frequency_curves::condition_source;
 use crate::gui::commands::command::Command;
-use crate::gui::plot::canvas::figure_legend_ui;
+use crate::gui::plot::figure_legend::figure_legend_ui;
 use crate::gui::plot::{FigureScene, figure_ui};
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::choice_ui;
-use crate::gui::widgets::controls::restore_panel_size;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
+use crate::gui::widgets::panel_layout::restore_panel_size;
 use crate::gui::widgets::tables::{Sorting, TableLook, table_grid_ui};
 
 /// Minimum plot size \[pt\].
@@ -61,70 +58,6 @@ pub fn couplings_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Comman
     }
 }
 
-/// Returns the job that assesses the couplings.
-pub fn couplings_job(state: &State) -> CouplingsJob {
-    CouplingsJob {
-        study: state.study.clone(),
-        couplings: state.assessed_couplings(),
-    }
-}
-
-/// Returns whether the couplings are assessed even while their view is hidden. Couplings in use are
-/// assessed for their cost; unused couplings if they may be worthwhile: with matched delays or
-/// requested leads, and with enough conditions.
-pub fn are_couplings_judged(state: &State) -> bool {
-    let settings = &state.study.settings;
-    let Some(analysis) = state.analysis() else {
-        return false;
-    };
-    if state.results.is_behind() {
-        return false;
-    }
-    if settings.couplings != CouplingCorrection::None {
-        return true;
-    }
-    let mut results = 0;
-    let mut are_delays_matched = true;
-    for result in analysis.conditions.values().flatten() {
-        results += 1;
-        are_delays_matched &= result.delays.matched;
-    }
-    let is_phase_corrected = match settings.phase {
-        PhaseCorrection::None => false,
-        PhaseCorrection::Delay => are_delays_matched,
-        PhaseCorrection::Lead => true,
-    };
-    is_phase_corrected && results >= LEAST_CONDITIONS
-}
-
-/// Returns the assessment of unused couplings and their off-axis cost, if J in left-out conditions
-/// shows them to be worthwhile.
-pub fn offered_couplings(state: &State) -> Option<(&Arc<CouplingsAssessment>, CouplingCost)> {
-    if are_couplings_used(state) || !are_couplings_judged(state) {
-        return None;
-    }
-    let assessment = state.couplings()?.as_ref().ok()?;
-    let cost = assessment.costs.left_out?;
-    if cost.is_worth_it() {
-        Some((assessment, cost))
-    } else {
-        None
-    }
-}
-
-/// Returns the assessment of the couplings in use, once available.
-pub fn used_couplings(state: &State) -> Option<&Arc<CouplingsAssessment>> {
-    if are_couplings_used(state) {
-        state.couplings()?.as_ref().ok()
-    } else {
-        None
-    }
-}
-
-fn are_couplings_used(state: &State) -> bool {
-    state.study.settings.couplings != CouplingCorrection::None
-}
-
 /// Draws texts and tables on the left, the loop and the poles on the right.
 pub fn couplings_view_ui(
     ui: &mut Ui,
@@ -144,11 +77,6 @@ pub fn couplings_view_ui(
             return;
         }
     };
-    let words = CouplingsWords {
-        state,
-        assessment: &assessment,
-        palette,
-    };
     restore_panel_size(ui, "couplings");
     let width = WORDS_PART * ui.available_width();
     let panel = Panel::left("couplings")
@@ -156,23 +84,25 @@ pub fn couplings_view_ui(
         .default_size(width)
         .min_size(260.0);
     panel.show(ui, |ui| {
-        ScrollArea::vertical()
-            .id_salt("couplings in words")
-            .auto_shrink(false)
-            .show(ui, |ui| {
-                words.use_ui(ui, commands);
-                // The costs, on which the decision depends, come first.
-                words.costs_ui(ui, commands);
-                words.remarks_ui(ui);
-                words.tables_ui(ui, commands);
-            });
+        let words = CouplingsWords {
+            state,
+            assessment: &assessment,
+            palette,
+        };
+        words.ui(ui, commands);
     });
+    couplings_figure_ui(ui, state, palette);
+}
+
+/// Draws the figure below its legend; empty until its curves are available.
+fn couplings_figure_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
     let mut figure = Figure::default();
-    if let Some(request) = request(state, View::Couplings)
+    if let Some(request) = figure_request(state, View::Couplings)
         && let Some(drawn) = request.figure(None, condition_source(state).as_ref())
     {
         figure = drawn;
     }
+    // The scene borrows the state, so the view is taken out of it while the figure is drawn.
     let mut view = state
         .display
         .figures
@@ -201,6 +131,19 @@ struct CouplingsWords<'a> {
 }
 
 impl CouplingsWords<'_> {
+    fn ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        ScrollArea::vertical()
+            .id_salt("couplings in words")
+            .auto_shrink(false)
+            .show(ui, |ui| {
+                self.use_ui(ui, commands);
+                // The costs, on which the decision depends, come first.
+                self.costs_ui(ui, commands);
+                self.remarks_ui(ui);
+                self.tables_ui(ui, commands);
+            });
+    }
+
     /// Draws the button that uses the couplings, or the button that removes them if they are in use
     /// but not worthwhile.
     fn use_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
@@ -247,11 +190,12 @@ impl CouplingsWords<'_> {
     fn remarks_ui(&self, ui: &mut Ui) {
         ui.add_space(6.0);
         for remark in coupling_remarks(self.assessment, self.state.dataset()) {
-            let words = match remark.kind {
-                RemarkKind::Good => RichText::new(&remark.text).color(self.palette.text),
-                _ => RichText::new(format!("⚠ {}", remark.text)).color(self.palette.warning),
+            let text = coupling_remark_text(&remark, self.state.dataset());
+            let words = match remark.kind() {
+                RemarkKind::Good => RichText::new(text).color(self.palette.text),
+                _ => RichText::new(format!("⚠ {text}")).color(self.palette.warning),
             };
-            let words = match remark.kind {
+            let words = match remark.kind() {
                 RemarkKind::Trouble => words.font(medium(BODY_SIZE)),
                 _ => words,
             };
@@ -261,7 +205,7 @@ impl CouplingsWords<'_> {
         if let Some(condition) = self.assessment.conditions.get(&self.state.condition().id())
             && let Err(why) = &condition.poles
         {
-            let words = format!("No poles for this condition: {why}");
+            let words = format!("No poles for this condition: {}", no_poles_text(why));
             ui.add(Label::new(self.palette.dim(words)).wrap());
         }
     }

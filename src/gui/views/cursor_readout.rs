@@ -6,8 +6,9 @@ use gdcm_model::response::wrap;
 use gdcm_plot::figure::axis::FrequencyUnit;
 
 use crate::gui::plot::drawn_curves::PANES;
-use crate::gui::plot::quantity::{BodeQuantity, ValueUnit};
-use crate::gui::plot::readout::{Readout, ReadoutCell};
+use crate::gui::plot::quantity::BodeQuantity;
+use crate::gui::plot::readout_strip::{Readout, ReadoutCell};
+use crate::gui::plot::value_unit::ValueUnit;
 use crate::gui::plot::{BodeCurve, Pane, Role};
 
 /// Roles whose values are listed.

@@ -9,8 +9,8 @@ use gdcm_study::Edit;
 
 use crate::gui::commands::command::Command;
 use crate::gui::commands::selection::SelectionCommand;
+use crate::gui::plot::chips::Chip;
 use crate::gui::plot::curve_command::CurveCommand;
-use crate::gui::plot::legend::Chip;
 use crate::gui::state::window_state::State;
 
 /// Chips, each with the command carried out by a click.

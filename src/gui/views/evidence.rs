@@ -1,37 +1,26 @@
-//! Evidence about the net gains: sources of their scatter, significant differences, and the form of
-//! schedule that they require.
+//! Evidence view: significant differences between net gains at equal airspeed, sources of their
+//! scatter, and the variables and the form of schedule that they require.
 
-use egui::{
-    Align2, Color32, FontId, Grid, Painter, Rect, Response, RichText, ScrollArea, Sense, Ui,
-    WidgetInfo, pos2, vec2,
-};
+use egui::{Grid, RichText, ScrollArea, Ui, vec2};
 
-use gdcm_method::uncertainty::VarianceDecomposition;
 use gdcm_study::results::uncertainty::{AirspeedDifference, Uncertainty};
 use gdcm_words::uncertainty::{
     difference_table, difference_verdict, differences_summary, second_variable_table,
 };
 
-use super::schedule_evidence::FormsTable;
+use super::scatter_bars::ScatterBars;
+use super::schedule_tables::FormsTable;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
 
-/// Bar height \[pt\].
-const BAR_HEIGHT: f32 = 15.0;
 /// Maximum table height \[pt\]; longer tables scroll.
 const MOST_TABLE: f32 = 330.0;
-/// Width of the labels before the bars \[pt\].
-const LABEL_WIDTH: f32 = 170.0;
-/// Width of the texts after the bars \[pt\].
-const TEXT_WIDTH: f32 = 400.0;
-/// Minimum bar width \[pt\].
-const LEAST_BAR: f32 = 60.0;
 
-/// Shows whether the scatter at equal airspeed is due to trim, due to identification, or
-/// unexplained by both.
+/// Shows the findings first (significant differences, a superfluous second variable, sources of the
+/// scatter), then the tables of differences, second variables and forms of the schedule.
 pub fn evidence_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -39,7 +28,7 @@ pub fn evidence_view_ui(
     commands: &mut Vec<Command>,
 ) {
     let Some(uncertainty) = state.uncertainty().cloned() else {
-        ui.label(RichText::new(state.results.absence_of_bars()).color(palette.dim_text));
+        ui.label(RichText::new(state.results.absence_of_error_bars()).color(palette.dim_text));
         return;
     };
     let page = EvidencePage {
@@ -51,7 +40,11 @@ pub fn evidence_view_ui(
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         page.differences_ui(ui, state);
         page.second_variable_ui(ui, state);
-        page.scatter_ui(ui, state);
+        let bars = ScatterBars {
+            uncertainty: &uncertainty,
+            palette,
+        };
+        bars.ui(ui, state);
         let [differences, second_variables, forms] = &mut sortings;
         page.difference_table_ui(ui, state, differences, commands);
         page.second_variable_table_ui(ui, state, second_variables, commands);
@@ -60,6 +53,7 @@ pub fn evidence_view_ui(
     state.display.gains.evidence_tables = sortings;
 }
 
+/// Context for drawing the evidence.
 struct EvidencePage<'a> {
     uncertainty: &'a Uncertainty,
     palette: &'a Palette,
@@ -81,7 +75,8 @@ impl EvidencePage<'_> {
         if let Some(first) = significant.first() {
             let verdict = difference_verdict(first, self.uncertainty.level);
             ui.label(self.palette.small(format!(
-                "{verdict}; expected: from trim and identification uncertainty"
+                "{verdict}; \"expected\" is the difference expected from the uncertainty of trim and \
+                identification"
             )));
         }
         Grid::new("significant differences")
@@ -114,77 +109,6 @@ impl EvidencePage<'_> {
             }
         }
         ui.add_space(4.0);
-    }
-
-    /// Draws two stacked bars for each response: the scatter at equal airspeed and about the
-    /// schedule.
-    fn scatter_ui(&self, ui: &mut Ui, state: &State) {
-        ui.horizontal(|ui| {
-            heading_ui(ui, "Sources of the scatter");
-            let names = ["trim", "identification", "unexplained"];
-            for (name, color) in names.into_iter().zip(source_colors(self.palette)) {
-                let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
-                ui.painter().rect_filled(rect, 2.0, color);
-                ui.label(self.palette.small(name));
-            }
-        });
-        for scatter in &self.uncertainty.scatter {
-            let name = state.dataset().pair_name(scatter.pair);
-            let same_airspeed = scatter.same_airspeed.as_ref();
-            self.split_ui(ui, &format!("{name} at equal airspeed"), same_airspeed);
-            let about_schedule = scatter.about_schedule.as_ref();
-            self.split_ui(ui, &format!("{name} about the schedule"), about_schedule);
-            ui.add_space(3.0);
-        }
-        ui.add_space(6.0);
-    }
-
-    /// Draws a row for one kind of scatter: its name, a bar divided among its sources, and its
-    /// values.
-    fn split_ui(&self, ui: &mut Ui, name: &str, split: Option<&VarianceDecomposition>) {
-        let size = vec2(ui.available_width(), BAR_HEIGHT + 3.0);
-        let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
-        let words = match split {
-            Some(split) => split_words(split, self.uncertainty.level),
-            None => "no degrees of freedom".to_owned(),
-        };
-        name_label(&response, format!("{name}: {words}"));
-        let painter = ui.painter();
-        let font = FontId::proportional(SMALL_SIZE);
-        painter.text(
-            rect.left_center(),
-            Align2::LEFT_CENTER,
-            name,
-            font.clone(),
-            self.palette.dim_text,
-        );
-        let left = rect.left() + LABEL_WIDTH;
-        let right = (rect.right() - TEXT_WIDTH).max(left + LEAST_BAR);
-        painter.text(
-            pos2(right + 8.0, rect.center().y),
-            Align2::LEFT_CENTER,
-            &words,
-            font,
-            self.palette.text,
-        );
-        let top = rect.top() + 1.0;
-        let bar = Rect::from_x_y_ranges(left..=right, top..=top + BAR_HEIGHT);
-        self.paint_shares(painter, bar, split);
-        response.on_hover_text(format!("{name}: {words}"));
-    }
-
-    /// Paints the shares of trim, identification and unexplained variance, from left to right.
-    fn paint_shares(&self, painter: &Painter, bar: Rect, split: Option<&VarianceDecomposition>) {
-        let Some(shares) = split.and_then(VarianceDecomposition::shares) else {
-            return;
-        };
-        let mut from = bar.left();
-        for (share, color) in shares.into_iter().zip(source_colors(self.palette)) {
-            let to = from + bar.width() * share as f32;
-            let part = Rect::from_x_y_ranges(from..=to, bar.y_range());
-            painter.rect_filled(part, 0.0, color);
-            from = to;
-        }
     }
 
     /// Draws all differences at equal airspeed; a click selects a condition and the response.
@@ -256,7 +180,7 @@ impl EvidencePage<'_> {
                 forms: evidence.forms,
                 palette: self.palette,
             };
-            with_height_of_rows(ui, evidence.forms.kinds.len(), |ui| {
+            with_height_of_rows(ui, evidence.forms.fits.len(), |ui| {
                 table.ui(ui, sorting, commands);
             });
         }
@@ -284,37 +208,6 @@ fn difference_cells(state: &State, found: &AirspeedDifference) -> [String; 4] {
 
 fn heading_ui(ui: &mut Ui, text: &str) {
     ui.label(RichText::new(text).size(SMALL_SIZE).strong());
-}
-
-/// Gives a painted text an accessible name for screen readers.
-fn name_label(response: &Response, name: String) {
-    response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, &name));
-}
-
-/// Returns the colours of trim, identification and unexplained variance.
-fn source_colors(palette: &Palette) -> [Color32; 3] {
-    [palette.perturbed, palette.identified, palette.nominal]
-}
-
-/// Formats "scatter 6.2 % (sd); 2.7 × expected; unexplained 5.8 % (90 %: 3.6 to 11.6)".
-fn split_words(split: &VarianceDecomposition, level: f64) -> String {
-    let mut words = format!("scatter {:.1} % (sd)", 100.0 * split.scatter.sqrt());
-    if let Some(ratio) = split.ratio() {
-        words.push_str(&format!("; {ratio:.1} × expected"));
-    }
-    words.push_str(&format!(
-        "; unexplained {:.1} %",
-        100.0 * split.unexplained().sqrt()
-    ));
-    if let Some([low, high]) = split.unexplained_interval(level) {
-        words.push_str(&format!(
-            " ({:.0} %: {:.1} to {:.1})",
-            100.0 * level,
-            100.0 * low,
-            100.0 * high
-        ));
-    }
-    words
 }
 
 /// Draws a table no higher than its rows, because other tables follow in the same scroll area.

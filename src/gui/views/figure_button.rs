@@ -1,4 +1,4 @@
-//! Button that copies or saves a view's content.
+//! Save menu of a view: copies or saves its figure, or the tables that it shows instead.
 
 use egui::containers::menu::MenuButton;
 use egui::{Button, Role, Ui};

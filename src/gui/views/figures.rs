@@ -1,4 +1,5 @@
-//! Exported figures of the views.
+//! Figures of the views, for the screen and for export: the request for a figure, the figure, and
+//! the file name.
 
 use std::sync::Arc;
 
@@ -7,8 +8,8 @@ use gdcm_plot::figure::{Figure, FigureKind, FigureRequest, all_channels};
 use gdcm_study::results::couplings_assessment::CouplingsAssessment;
 use gdcm_study::results::requirements::Requirements;
 
-use super::frequency::{bode_options, condition_source};
-use super::over_time::shown_over_time;
+use super::frequency_curves::{bode_options, condition_source};
+use super::requirement_history_jobs::shown_over_time;
 use super::view_content;
 use crate::gui::plot::BodeView;
 use crate::gui::plot::drawn_curves::PANES;
@@ -22,7 +23,7 @@ pub fn figure_of(state: &State, view: View) -> Option<Figure> {
         None => false,
     };
     let analysis = if needs_bars || !state.display.gains.hide_bars {
-        state.analysis_with_bars()
+        state.analysis_with_error_bars()
     } else {
         state.analysis().cloned()
     };
@@ -30,7 +31,7 @@ pub fn figure_of(state: &State, view: View) -> Option<Figure> {
     // not depend on them.
     let analysis = analysis.map(|analysis| analysis.asked_with(&state.study.requirements));
     let source = condition_source(state);
-    request(state, view)?.figure(analysis.as_ref(), source.as_ref())
+    figure_request(state, view)?.figure(analysis.as_ref(), source.as_ref())
 }
 
 /// Returns a file name for a view's figure: `bode-10-LON-Q`.
@@ -56,7 +57,7 @@ pub fn figure_name(state: &State, view: View) -> String {
 }
 
 /// Returns the request for a view's figure, equal to the request of the command `gdcm figure`.
-pub fn request(state: &State, view: View) -> Option<FigureRequest> {
+pub fn figure_request(state: &State, view: View) -> Option<FigureRequest> {
     let kind = view.figure()?;
     let pairs = view_content(view).figure_pairs;
     let display = &state.display;

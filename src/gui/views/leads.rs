@@ -7,14 +7,15 @@ use gdcm_model::units::{number, s_to_ms, signed, telling};
 use gdcm_plot::figure::{Figure, FigureKind, FigureRequest, all_channels};
 use gdcm_study::PhaseCorrection;
 use gdcm_words::Table;
+use gdcm_words::lead_price::limit_text;
 
-use super::frequency::condition_source;
+use super::frequency_curves::condition_source;
 use crate::gui::commands::command::Command;
 use crate::gui::plot::{FigureScene, figure_ui};
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::restore_panel_size;
 use crate::gui::widgets::palette::Palette;
+use crate::gui::widgets::panel_layout::restore_panel_size;
 use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
 
 /// Initial table width, as a share of the view's width.
@@ -35,7 +36,7 @@ pub fn leads_view_ui(
             .default_size(TABLE_PART * width)
             .min_size(160.0);
         panel.show(ui, |ui| {
-            let pair = Channel::of(state.display.selection.pair);
+            let pair = Channel::of_pair(state.display.selection.pair);
             let channels = all_channels(state.dataset());
             let look = TableLook {
                 selected: &|row| match channels.get(row) {
@@ -58,6 +59,7 @@ pub fn leads_view_ui(
             Settings, phase, \"delay or lead\""
         }
     };
+    // The scene borrows the state, so the view is taken out of it while the figure is drawn.
     let mut view = state
         .display
         .figures
@@ -87,21 +89,21 @@ fn figure(state: &State) -> Figure {
 /// model is valid. `None` without leads.
 pub fn leads_table(state: &State) -> Option<Table> {
     let leads = state.shown()?.correction.leads.as_ref()?;
-    let price = LeadPrice::of(leads);
+    let price = LeadPrice::new(leads);
     let (inputs, outputs) = state.dataset().names_of_channels();
-    let top = leads.design.band_top_rad_s();
+    let band_top = leads.design.band_top_rad_s();
     let title = match &price {
-        Some(price) => price.limit_words(),
+        Some(price) => limit_text(price),
         None => "No channel has a lead filter".to_owned(),
     };
     let above = match &price {
         Some(price) => price.above_rad_s(),
-        None => top,
+        None => band_top,
     };
     let columns = [
         "channel".to_owned(),
         "lead [ms]".to_owned(),
-        format!("phase at {} [deg]", number(top)),
+        format!("phase at {} [deg]", number(band_top)),
         "replaced servo [rad/s]".to_owned(),
         format!("gain at {} [dB]", number(above)),
     ];
@@ -109,10 +111,11 @@ pub fn leads_table(state: &State) -> Option<Table> {
     for channel in all_channels(state.dataset()) {
         let tau_s = leads.taus_s[channel];
         let filter = leads.filters()[channel];
-        // Without a filter, the phase shift is due to a pure delay alone.
+        // Without a filter, the phase is that of a pure delay; a negative tau_s means a lead, which
+        // needs a filter.
         let phase = match filter {
-            Some(filter) => filter.phase(top),
-            None => -top * tau_s.max(0.0),
+            Some(filter) => filter.phase(band_top),
+            None => -band_top * tau_s.max(0.0),
         };
         let servo = match filter {
             Some(filter) => format!(

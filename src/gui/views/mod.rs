@@ -1,6 +1,54 @@
 //! Views between the side panels. [`view_content`] lists, for each view, its drawing function,
 //! header, background jobs and figure.
 
+pub mod across;
+pub mod assembling;
+pub mod assessment;
+mod assessment_bar_words;
+pub mod assessment_content;
+mod assessment_header;
+mod assessment_plots;
+mod automatic_settings;
+mod bandwidth;
+mod bandwidth_settings;
+pub mod bode;
+pub mod channels;
+pub mod compare;
+mod correction_effect;
+pub mod couplings;
+pub mod couplings_use;
+mod cursor_readout;
+mod curve_chips;
+pub mod error_bars;
+pub mod evidence;
+pub mod figure_button;
+pub mod figures;
+pub(in crate::gui) mod frequency_curves;
+mod frequency_plot;
+pub mod gain_plots;
+pub mod leads;
+mod limit_field;
+mod mode_table;
+mod mode_text;
+pub mod model_error;
+pub mod need;
+pub mod net_gain;
+mod net_gain_header;
+pub mod net_gain_pairs;
+pub mod overview;
+pub mod poles;
+pub mod records;
+pub mod requirement_histories;
+pub mod requirement_history_jobs;
+pub mod requirement_limits;
+mod requirement_tables;
+pub mod requirements;
+mod scatter_bars;
+mod schedule_tables;
+pub mod setting_controls;
+pub mod variant_analyses;
+mod variant_effects;
+
 use std::sync::Arc;
 
 use egui::Ui;
@@ -9,60 +57,35 @@ use gdcm_model::dataset::Pair;
 use gdcm_study::jobs::analysis_jobs::AssessmentJob;
 use gdcm_study::jobs::curve_jobs::ModesJob;
 
-use super::commands::command::Command;
-use super::state::window_state::State;
-use super::widgets::palette::Palette;
-pub mod assembling;
-pub mod assessment;
-mod assessment_plots;
-pub mod bode;
-pub mod channels;
-pub mod compare;
-pub mod couplings;
-mod cursor_readout;
-mod curve_chips;
-pub mod evidence;
-pub mod figure_button;
-pub mod figures;
-pub(in crate::gui) mod frequency;
-pub mod gain_plots;
-pub mod histories;
-pub mod leads;
-mod mode_table;
-pub mod need;
-pub mod net_gain;
-pub mod over_time;
-pub mod poles;
-pub mod records;
-pub mod requirement_limits;
-mod requirement_tables;
-pub mod requirements;
-mod schedule_evidence;
-pub mod setting_controls;
-
+use crate::gui::commands::command::Command;
 use crate::gui::state::view::View;
-use assessment::{assessed_pairs, assessment_header_ui, assessment_view_ui};
-use bode::{
-    across_header_ui, across_job, across_view_ui, bode_view_ui, error_header_ui, error_view_ui,
-    overview_view_ui,
-};
+use crate::gui::state::window_state::State;
+use crate::gui::widgets::palette::Palette;
+use across::{across_header_ui, across_job, across_view_ui};
+use assessment::assessment_view_ui;
+use assessment_content::assessed_pairs;
+use assessment_header::assessment_header_ui;
+use bode::bode_view_ui;
 use channels::{channels_header_ui, channels_view_ui};
-use compare::{compare_view_ui, variant_jobs};
+use compare::compare_view_ui;
 use couplings::{couplings_header_ui, couplings_view_ui};
 use evidence::evidence_view_ui;
-use gain_plots::net_gain_pairs;
 use leads::leads_view_ui;
-use need::Need;
-use net_gain::{NET_GAIN_CONTROLS, net_gain_header_ui, net_gain_view_ui, net_gain_words};
-use over_time::current;
+use model_error::{error_header_ui, error_view_ui};
+use need::{Need, current_analysis};
+use net_gain::net_gain_view_ui;
+use net_gain_header::{NET_GAIN_CONTROLS, net_gain_header_ui, net_gain_words};
+use net_gain_pairs::net_gain_pairs;
+use overview::overview_view_ui;
 use poles::{poles_header_ui, poles_view_ui};
 use records::{records_header_ui, records_view_ui, simulation_jobs};
 use requirements::{
-    NO_QUALIFICATION, requirements_header_ui, requirements_needs, requirements_view_ui,
+    NOT_A_QUALIFICATION, requirements_header_ui, requirements_needs, requirements_view_ui,
 };
+use variant_analyses::variant_jobs;
 
-pub use compare::overlay_job;
-pub use couplings::{are_couplings_judged, couplings_job, offered_couplings, used_couplings};
+pub use couplings_use::{are_couplings_judged, couplings_job, offered_couplings, used_couplings};
+pub use variant_analyses::overlay_job;
 
 /// Returns a view's content: drawing function, header, background jobs and figure.
 pub fn view_content(view: View) -> ViewContent {
@@ -118,22 +141,22 @@ pub enum ViewTitle {
     None,
     Condition,
     /// The response in focus, and the condition.
-    Response,
+    ResponseAndCondition,
     /// The response in focus without the condition, for views of all conditions.
-    Focus,
+    ResponseOnly,
     Words(fn(&State) -> String),
 }
 
 const BODE: ViewContent = ViewContent {
     draw: bode_view_ui,
-    title: ViewTitle::Response,
+    title: ViewTitle::ResponseAndCondition,
     figure_pairs: focused_pair,
     ..ViewContent::PLAIN
 };
 
 const ERROR: ViewContent = ViewContent {
     draw: error_view_ui,
-    title: ViewTitle::Response,
+    title: ViewTitle::ResponseAndCondition,
     tools: |ui, state, _, commands| error_header_ui(ui, state, commands),
     tools_width: 160.0,
     figure_pairs: focused_pair,
@@ -148,7 +171,7 @@ const OVERVIEW: ViewContent = ViewContent {
 
 const ACROSS: ViewContent = ViewContent {
     draw: across_view_ui,
-    title: ViewTitle::Focus,
+    title: ViewTitle::ResponseOnly,
     tools: across_header_ui,
     tools_width: 330.0,
     needs: |state| vec![Need::Across(across_job(state))],
@@ -217,7 +240,7 @@ const COMPARE: ViewContent = ViewContent {
 
 const REQUIREMENTS: ViewContent = ViewContent {
     draw: requirements_view_ui,
-    title: ViewTitle::Words(|_| NO_QUALIFICATION.to_owned()),
+    title: ViewTitle::Words(|_| NOT_A_QUALIFICATION.to_owned()),
     tools: |ui, state, _, commands| requirements_header_ui(ui, state, commands),
     tools_width: 270.0,
     needs: requirements_needs,
@@ -226,7 +249,7 @@ const REQUIREMENTS: ViewContent = ViewContent {
 
 const LEADS: ViewContent = ViewContent {
     draw: leads_view_ui,
-    title: ViewTitle::Response,
+    title: ViewTitle::ResponseAndCondition,
     figure_pairs: focused_pair,
     ..ViewContent::PLAIN
 };
@@ -254,7 +277,7 @@ fn modes_needs(state: &State) -> Vec<Need> {
 }
 
 fn assessment_needs(state: &State) -> Vec<Need> {
-    match current(state) {
+    match current_analysis(state) {
         Some(analysis) => vec![Need::Assessment(AssessmentJob {
             analysis: analysis.into(),
             choice: state.assessment_choice(),

@@ -1,20 +1,20 @@
-//! Modes in the displayed condition, as text and as a table, with their cache.
+//! Table of the modes in the displayed condition, and the cache of this table, of the zeros and of
+//! the pole shifts.
 
 use std::sync::Arc;
 
-use gdcm_method::requirements::{ModeName, NamedBy};
-use gdcm_model::dataset::{BundleKind, Dynamics, Model, ModelId};
-use gdcm_model::response::Mode;
+use gdcm_model::dataset::{BundleKind, ModelId};
 use gdcm_model::response::zeros::finite_zeros;
-use gdcm_model::units::number;
 use gdcm_study::ConditionAnalysis;
 use gdcm_study::jobs::curve_jobs::ConditionModes;
 use gdcm_words::Table;
 
-use crate::gui::state::modes_cache::{CachedModes, MadeOf};
+use super::mode_text::{mode_name, participation_words, shown_damping_ratio};
+use crate::gui::state::modes_cache::{CachedModes, ModesInputs};
 use crate::gui::state::window_state::State;
 
-impl MadeOf {
+impl ModesInputs {
+    /// Collects the values on which the cached table, zeros and shifts depend.
     fn new(state: &State, modes: &Arc<ConditionModes>) -> Self {
         let mut couplings = None;
         if let Some(shown) = state.shown()
@@ -37,6 +37,7 @@ impl MadeOf {
         }
     }
 
+    /// Returns whether the cache remains valid; shared data are compared by address.
     fn is_same(&self, other: &Self) -> bool {
         let are_couplings_same = match (&self.couplings, &other.couplings) {
             (Some(own), Some(others)) => Arc::ptr_eq(own, others),
@@ -57,19 +58,19 @@ impl CachedModes {
             *self = Self::default();
             return;
         };
-        let made_of = MadeOf::new(state, modes);
-        if let Some(known) = &self.made_of
-            && known.is_same(&made_of)
+        let inputs = ModesInputs::new(state, modes);
+        if let Some(known) = &self.inputs
+            && known.is_same(&inputs)
         {
             return;
         }
-        (self.table, self.jumping) = modes_table(state, modes, made_of.reference);
+        (self.table, self.outliers) = modes_table(state, modes, inputs.reference);
         self.shifts = match state.shown() {
             Some(shown) => ConditionAnalysis::pole_shifts(shown),
             None => Vec::new(),
         };
         self.zeros.clear();
-        if let Some((pair, models)) = &made_of.zeros_of {
+        if let Some((pair, models)) = &inputs.zeros_of {
             for id in models {
                 let zeros = match modes.condition.model(id.bundle, &id.name) {
                     Some(model) => finite_zeros(&model.dynamics, *pair),
@@ -78,7 +79,7 @@ impl CachedModes {
                 self.zeros.push((id.clone(), zeros));
             }
         }
-        self.made_of = Some(made_of);
+        self.inputs = Some(inputs);
     }
 }
 
@@ -113,75 +114,6 @@ fn reference_index(state: &State, modes: &ConditionModes) -> usize {
     modes.condition.nominal()
 }
 
-/// Describes a mode: its values, its name, its largest participations and, for a discrete-time
-/// model, the conversion of its pole to `s`.
-pub(super) fn mode_description(mode: &Mode, model: &Model) -> Vec<String> {
-    let mut words = vec![mode_values(mode)];
-    words.extend(mode_name(mode, model));
-    words.extend(participation_words(mode, model, 3));
-    words.extend(discrete_time_words(model));
-    words
-}
-
-/// Formats "|λ| 1.520 rad/s, ζ 0.310, T 2.10 s".
-fn mode_values(mode: &Mode) -> String {
-    let mut words = vec![format!("|λ| {:.3} rad/s", mode.frequency_rad_s)];
-    if let Some(ratio) = shown_damping_ratio(mode) {
-        words.push(format!("ζ {ratio:.3}"));
-    }
-    if let Some(constant_s) = mode.time_constant_s {
-        words.push(format!("T {constant_s:.2} s"));
-    }
-    words.join(", ")
-}
-
-/// Returns the damping ratio; `None` unless the mode oscillates.
-fn shown_damping_ratio(mode: &Mode) -> Option<f64> {
-    if mode.oscillates() {
-        mode.damping_ratio
-    } else {
-        None
-    }
-}
-
-/// Returns the name of a mode; `None` unless the model names its states (M17.3).
-fn mode_name(mode: &Mode, model: &Model) -> Option<String> {
-    match ModeName::of(mode, &model.states) {
-        (Some(name), NamedBy::States) => Some(name.to_string()),
-        _ => None,
-    }
-}
-
-/// Describes the conversion of discrete-time poles to `s`.
-fn discrete_time_words(model: &Model) -> Option<String> {
-    let Dynamics::StateSpace(system) = &model.dynamics else {
-        return None;
-    };
-    let sample_time_s = system.timing().sample_time_s?;
-    Some(format!(
-        "s = ln z / T, T = {} s; poles at z = 0 have no s and are not drawn",
-        number(sample_time_s)
-    ))
-}
-
-/// Lists up to `most` states with the largest participation: "w 62 %, q 21 %".
-fn participation_words(mode: &Mode, model: &Model, most: usize) -> Option<String> {
-    let shares = match &mode.participation {
-        Ok(shares) => shares,
-        Err(why) => return Some(why.to_string()),
-    };
-    let mut words = Vec::new();
-    for (state, share) in shares.iter().take(most) {
-        let name = match model.states.get(*state) {
-            Some(name) => name.clone(),
-            None => format!("state {}", state + 1),
-        };
-        words.push(format!("{name} {:.0} %", 100.0 * share));
-    }
-    let words = words.join(", ");
-    if words.is_empty() { None } else { Some(words) }
-}
-
 /// Builds the mode table of the physics bundle: a row for each mode of the reference model,
 /// followed from model to model. Also returns, for each row, the first model whose pole is an
 /// outlier of the mode.
@@ -206,7 +138,7 @@ fn modes_table(
         "outlier in",
     ];
     let mut table = Table::new(title, columns);
-    let mut jumping = Vec::new();
+    let mut outliers = Vec::new();
     let reference_modes = modes.bundle(kind)[reference].as_deref().unwrap_or_default();
     for track in modes.tracks(kind, reference) {
         let Some(mode) = reference_modes.get(track.reference) else {
@@ -231,9 +163,9 @@ fn modes_table(
             jumps.join(", "),
         ]);
         let first = track.jumps.first();
-        jumping.push(first.map(|&model| state.model_id(kind, &models[model].name)));
+        outliers.push(first.map(|&model| state.model_id(kind, &models[model].name)));
     }
-    (table, jumping)
+    (table, outliers)
 }
 
 fn three_decimals(value: f64) -> String {

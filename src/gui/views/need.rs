@@ -1,11 +1,16 @@
 //! Background results that a view needs in addition to the analysis of the current settings.
 
+use std::sync::Arc;
+
+use gdcm_study::Analysis;
 use gdcm_study::jobs::analysis_jobs::{AssessmentJob, CouplingsJob, VariantJob};
 use gdcm_study::jobs::curve_jobs::{AcrossJob, ModesJob};
 use gdcm_study::jobs::identification_jobs::SimulationJob;
 use gdcm_study::jobs::requirement_jobs::{
     RecordHistoryJob, RequirementsJob, TestAnswersJob, TimeHistoriesJob,
 };
+
+use crate::gui::state::window_state::State;
 
 /// Computation that a view needs in addition to the analysis of the current settings.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,4 +31,10 @@ pub enum Need {
     RecordHistory(RecordHistoryJob),
     /// Models' responses to all flight records.
     TimeHistories(TimeHistoriesJob),
+}
+
+/// Returns the analysis with the current settings; `None` while it is being computed.
+pub fn current_analysis(state: &State) -> Option<Arc<Analysis>> {
+    state.analysis()?;
+    state.results.analysis.clone()
 }

@@ -4,22 +4,22 @@ use egui::{Panel, Ui, Vec2, vec2};
 
 use gdcm_model::dataset::ModelId;
 use gdcm_plot::figure::figure::Along;
-use gdcm_plot::figure::poles::{damping_grid, poles_figure};
+use gdcm_plot::figure::poles::{PoleContents, damping_grid, poles_figure};
 use gdcm_plot::figure::{Figure, Mark, MarkId, Range, Role};
 use gdcm_study::Edit;
 
-use super::frequency::{bode_options, condition_source};
-use super::mode_table::mode_description;
+use super::frequency_curves::{bode_options, condition_source};
+use super::mode_text::mode_description;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::commands::selection::SelectionCommand;
-use crate::gui::plot::canvas::figure_legend_ui;
+use crate::gui::plot::figure_legend::figure_legend_ui;
 use crate::gui::plot::{FigureEvent, FigureScene, FigureView, FigureWords, figure_ui};
 use crate::gui::state::modes_cache::CachedModes;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::restore_panel_size;
 use crate::gui::widgets::palette::Palette;
+use crate::gui::widgets::panel_layout::restore_panel_size;
 use crate::gui::widgets::tables::{TableLook, table_ui};
 
 /// Ranges of real and imaginary part in the plot of slow modes \[rad/s\], which contains the
@@ -75,13 +75,14 @@ pub fn poles_view_ui(
         Some(_) => "The models of this condition have no poles: they are measured responses",
         None => state.results.absence(),
     };
+    // The scene borrows the state, so the view is taken out of it while the figure is drawn.
     let mut view = state
         .display
         .figures
         .remove(&View::Poles)
         .unwrap_or_default();
     let figure = match poles(state) {
-        Some(figure) => dressed(figure, &view),
+        Some(figure) => with_screen_marks(figure, &view),
         None => Figure::default(),
     };
     figure_legend_ui(ui, &figure, palette);
@@ -96,24 +97,27 @@ pub fn poles_view_ui(
         ..FigureScene::new("poles", &figure, LEAST_PLOT, message, &words)
     };
     for event in figure_ui(ui, &scene, &mut view, palette) {
-        match event {
-            FigureEvent::Pointed(MarkId::Model(id)) => {
-                commands.push(SelectionCommand::Hover(id).into());
-            }
-            FigureEvent::Told(words) => commands.push(SelectionCommand::Tell(words).into()),
-            FigureEvent::Clicked(_, MarkId::Model(id), keys) => {
-                commands.push(if keys.alt {
-                    SelectionCommand::Isolate(id).into()
-                } else if state.study.is_rejected(&id) {
-                    Edit::Restore(id).into()
-                } else {
-                    Edit::Reject(id).into()
-                });
-            }
-            FigureEvent::Clicked(..) | FigureEvent::Pointed(_) | FigureEvent::Asked(_) => {}
-        }
+        commands.extend(pole_command(state, event));
     }
     state.display.figures.insert(View::Poles, view);
+}
+
+/// Returns the command for an event in the pole plots; `None` if the event has no effect.
+fn pole_command(state: &State, event: FigureEvent) -> Option<Command> {
+    match event {
+        FigureEvent::Pointed(MarkId::Model(id)) => Some(SelectionCommand::Hover(id).into()),
+        FigureEvent::StatusText(words) => Some(SelectionCommand::Tell(words).into()),
+        FigureEvent::Clicked(_, MarkId::Model(id), keys) => Some(if keys.alt {
+            SelectionCommand::Isolate(id).into()
+        } else if state.study.is_rejected(&id) {
+            Edit::Restore(id).into()
+        } else {
+            Edit::Reject(id).into()
+        }),
+        FigureEvent::Clicked(..)
+        | FigureEvent::Pointed(_)
+        | FigureEvent::ExplanationRequested(_) => None,
+    }
 }
 
 /// Builds the pole figure of all models in the displayed condition, optionally with the zeros of
@@ -124,19 +128,20 @@ pub fn poles(state: &State) -> Option<Figure> {
         Some((_, zeros)) => zeros.clone(),
         None => Vec::new(),
     };
-    let figure = poles_figure(
-        &condition_source(state)?,
-        state.modes()?,
-        &bode_options(state),
-        (&zeros_of_model, shifts),
-    );
+    let source = condition_source(state)?;
+    let contents = PoleContents {
+        modes: state.modes()?,
+        zeros_of: &zeros_of_model,
+        shifts,
+    };
+    let figure = poles_figure(&source, contents, &bode_options(state));
     figure.plots[0].panels[0].dots().next()?;
     Some(figure)
 }
 
 /// Returns the figure as shown in the window: arcs of equal frequency follow the visible range, and
 /// the nominal model and the representatives have larger marks.
-fn dressed(mut figure: Figure, view: &FigureView) -> Figure {
+fn with_screen_marks(mut figure: Figure, view: &FigureView) -> Figure {
     if let [_, slow] = &mut figure.plots[..] {
         slow.title = "s-plane, slow modes".to_owned();
         let [real, imaginary] = SLOW;
@@ -186,12 +191,12 @@ struct PoleWords<'a> {
 }
 
 impl FigureWords for PoleWords<'_> {
-    fn plot(&self, plot: usize) -> String {
+    fn plot_name(&self, plot: usize) -> String {
         let name = ["s-plane", "s-plane, slow modes"][plot.min(1)];
         format!("{name}: {} poles and zeros", self.dots)
     }
 
-    fn pointed(&self, _: usize, id: &MarkId, [re, im]: [f64; 2]) -> Option<String> {
+    fn status_text(&self, _: usize, id: &MarkId, [re, im]: [f64; 2]) -> Option<String> {
         let modes = self.state.modes()?;
         let MarkId::Model(id) = id else {
             return None;
@@ -224,13 +229,15 @@ impl FigureWords for PoleWords<'_> {
 
 /// Draws the mode table; a click isolates the first model whose pole is an outlier of the mode.
 fn modes_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
-    let CachedModes { table, jumping, .. } = &state.display.poles.modes;
+    let CachedModes {
+        table, outliers, ..
+    } = &state.display.poles.modes;
     let look = TableLook {
-        color: &|row, _| match jumping.get(row) {
+        color: &|row, _| match outliers.get(row) {
             Some(Some(_)) => Some(palette.warning),
             _ => None,
         },
-        selected: &|row| match jumping.get(row) {
+        selected: &|row| match outliers.get(row) {
             Some(Some(id)) => Some(id) == state.display.selection.hovered.as_ref(),
             _ => false,
         },
@@ -238,7 +245,7 @@ fn modes_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Ve
     let mut sorting = state.display.poles.modes_sorting;
     let click = table_ui(ui, table, &mut sorting, &look, palette, commands);
     if let Some(click) = click
-        && let Some(Some(id)) = jumping.get(click.row)
+        && let Some(Some(id)) = outliers.get(click.row)
     {
         commands.push(SelectionCommand::Isolate(id.clone()).into());
     }

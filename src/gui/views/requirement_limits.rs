@@ -1,25 +1,22 @@
-//! Fields of the requirements: tolerances of time histories and of modes, limits of the overview
-//! (M17).
+//! Tables of editable limits: tolerances of time histories, tolerances of modes, limits of the
+//! overview (M17); and the command for each change.
 
 use std::sync::Arc;
 
 use egui::{Button, Grid, Ui};
 
 use gdcm_method::requirements::{ModeToleranceTable, ToleranceTable};
-use gdcm_model::units::number;
 use gdcm_study::Edit;
 use gdcm_study::decisions::requirement_settings::{OverviewLimits, RequirementSettings};
 
+use super::limit_field::LimitField;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::file::FileCommand;
 use crate::gui::commands::form::FormCommand;
 use crate::gui::state::forms::RequirementTable;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{button_ui, number_entry_ui};
+use crate::gui::widgets::controls::button_ui;
 use crate::gui::widgets::palette::Palette;
-
-/// Field width \[pt\].
-const FIELD: f32 = 56.0;
 
 /// Draws the tolerances of time histories, row by row.
 pub fn tolerances_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
@@ -73,7 +70,7 @@ pub fn tolerances_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
 
 /// Returns the command that changes the tolerances of time histories.
 fn set_tolerances(state: &State, tolerances: ToleranceTable) -> Command {
-    decided(state, "tolerances", |settings| {
+    requirement_edit(state, "tolerances", |settings| {
         settings.tolerances = tolerances;
     })
 }
@@ -130,7 +127,7 @@ pub fn mode_tolerances_ui(
 
 /// Returns the command that changes the tolerances of modes.
 fn set_mode_tolerances(state: &State, tolerances: ModeToleranceTable) -> Command {
-    decided(state, "tolerances of modes", |settings| {
+    requirement_edit(state, "tolerances of modes", |settings| {
         settings.mode_tolerances = tolerances;
     })
 }
@@ -170,78 +167,14 @@ pub fn overview_limits_ui(
 
 /// Returns the command that changes the limits of the overview.
 fn set_overview_limits(state: &State, limits: OverviewLimits) -> Command {
-    decided(state, "limits of the overview", |settings| {
+    requirement_edit(state, "limits of the overview", |settings| {
         settings.overview = limits;
     })
 }
 
-/// Text field for a limit, with its unit conversion.
-struct LimitField {
-    /// Accessible name.
-    name: String,
-    /// Factor from the stored to the displayed value.
-    to_shown: f64,
-    /// Factor from the typed to the stored value.
-    to_stored: f64,
-}
-
-impl LimitField {
-    /// Creates a field that displays the stored value without conversion.
-    fn new(name: impl Into<String>) -> Self {
-        Self {
-            name: name.into(),
-            to_shown: 1.0,
-            to_stored: 1.0,
-        }
-    }
-
-    fn in_percent(name: impl Into<String>) -> Self {
-        Self {
-            to_shown: 100.0,
-            to_stored: 0.01,
-            ..Self::new(name)
-        }
-    }
-
-    /// Creates a field in milliseconds for a value stored in seconds.
-    fn in_ms(name: impl Into<String>) -> Self {
-        Self {
-            to_shown: 1e3,
-            to_stored: 1e-3,
-            ..Self::new(name)
-        }
-    }
-
-    /// Draws the field, and changes `value` if a number was entered.
-    fn ui(&self, ui: &mut Ui, value: &mut f64, commands: &mut Vec<Command>) {
-        let text = self.text(*value);
-        let entry = number_entry_ui(ui, &self.name, &text, "", FIELD, commands);
-        if let Some(Some(typed)) = entry {
-            *value = self.to_stored * typed;
-        }
-    }
-
-    /// Like [`ui`](Self::ui), but an empty field gives `None`.
-    fn optional_ui(&self, ui: &mut Ui, value: &mut Option<f64>, commands: &mut Vec<Command>) {
-        let text = match value {
-            Some(value) => self.text(*value),
-            None => String::new(),
-        };
-        let entry = number_entry_ui(ui, &self.name, &text, "none", FIELD, commands);
-        if let Some(typed) = entry {
-            *value = typed.map(|typed| self.to_stored * typed);
-        }
-    }
-
-    /// Formats a stored value, without the rounding error of the unit conversion.
-    fn text(&self, value: f64) -> String {
-        number((1e9 * (self.to_shown * value)).round() / 1e9)
-    }
-}
-
 /// Returns the command that changes the settings of the requirements; `name` is used in the
 /// decision history.
-pub fn decided(
+pub fn requirement_edit(
     state: &State,
     name: &'static str,
     change: impl FnOnce(&mut RequirementSettings),

@@ -6,11 +6,11 @@ use gdcm_plot::figure::drawing::Hue;
 use gdcm_study::results::requirements::Requirements;
 use gdcm_words::Table;
 use gdcm_words::requirements::{
-    RequirementsOverview, bandwidth_table, mode_table, mode_verdict_words, summary_of_row,
-    summary_table,
+    bandwidth_table, mode_table, mode_verdict_words, summary_of_row, summary_table,
 };
+use gdcm_words::requirements_overview::RequirementsOverview;
 
-use super::over_time::time_histories_job;
+use super::requirement_history_jobs::time_histories_job;
 use crate::gui::state::requirements_page::RequirementsPage;
 use crate::gui::state::window_state::State;
 

@@ -1,50 +1,39 @@
 //! Requirements in addition to J, as in a qualification, evaluated for the physics, corrected,
 //! scheduled and identified models side by side (M17).
 
-use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use egui::{Button, CollapsingHeader, Label, Panel, ScrollArea, Ui, Vec2, vec2};
+use egui::{CollapsingHeader, Label, Panel, ScrollArea, Ui};
 
-use gdcm_method::requirements::{AttitudeOutput, LevelBoundaries};
-use gdcm_model::dataset::{ConditionId, Pair};
-use gdcm_model::units::telling;
-use gdcm_plot::figure::requirements::{bandwidth_pairs, bandwidth_place};
-use gdcm_plot::figure::{Color, Figure, MarkId};
+use gdcm_model::dataset::{ConditionId, Dataset};
+use gdcm_plot::figure::Color;
 use gdcm_study::jobs::requirement_jobs::RequirementsJob;
-use gdcm_study::results::required_bandwidth::BandwidthFinding;
-use gdcm_study::results::requirement_role::RequirementRole;
 use gdcm_study::results::requirements::Requirements;
 use gdcm_words::Table;
+use gdcm_words::missing_results::{missing_reason_text, reversed_phase_text};
 
-use super::figures::figure_of;
-use super::histories::histories_ui;
-use super::need::Need;
-use super::over_time::{current, over_time_need, time_histories_job};
-use super::requirement_limits::{decided, mode_tolerances_ui, overview_limits_ui};
+use super::bandwidth::{bandwidth_plots_ui, bandwidth_row_commands};
+use super::bandwidth_settings::bandwidth_inputs_ui;
+use super::need::{Need, current_analysis};
+use super::requirement_histories::histories_ui;
+use super::requirement_history_jobs::{over_time_need, time_histories_job};
+use super::requirement_limits::{mode_tolerances_ui, overview_limits_ui};
 use super::requirement_tables::page_tables;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
-use crate::gui::commands::file::FileCommand;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::commands::selection::SelectionCommand;
-use crate::gui::plot::canvas::figure_legend_ui;
-use crate::gui::plot::curve_command::CurveCommand;
-use crate::gui::plot::{FigureEvent, FigureScene, FigureWords, figure_ui};
-use crate::gui::state::forms::RequirementTable;
 use crate::gui::state::requirements_page::RequirementsPage;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::choices::{check_ui, page_tab_ui};
-use crate::gui::widgets::controls::{button_ui, restore_panel_size};
+use crate::gui::widgets::choices::{PageWords, page_tab_ui};
 use crate::gui::widgets::palette::Palette;
+use crate::gui::widgets::panel_layout::restore_panel_size;
 use crate::gui::widgets::tables::{TableClick, TableLook, table_grid_ui};
 
 /// Text above every page.
-pub(super) const NO_QUALIFICATION: &str =
+pub(super) const NOT_A_QUALIFICATION: &str =
     "These values describe models and do not replace a qualification (docs/requirements.md)";
-/// Minimum plot size \[pt\].
-const LEAST_PLOT: Vec2 = vec2(220.0, 150.0);
 /// Initial table height, as a share of the view's height.
 const TABLE_PART: f32 = 0.34;
 
@@ -75,7 +64,12 @@ pub fn requirements_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Com
         ),
     ];
     for (page, name, purpose) in pages {
-        let (_, is_clicked) = page_tab_ui(ui, page == shown, name, (name, purpose));
+        let words = PageWords {
+            name,
+            short_name: name,
+            purpose,
+        };
+        let (_, is_clicked) = page_tab_ui(ui, page == shown, words);
         if is_clicked {
             commands.push(DisplayCommand::ShowRequirements(page).into());
         }
@@ -84,7 +78,7 @@ pub fn requirements_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Com
 
 /// Returns the job for the displayed requirements; `None` until there is an analysis.
 pub fn requirements_job(state: &State) -> Option<RequirementsJob> {
-    let analysis = current(state)?;
+    let analysis = current_analysis(state)?;
     Some(RequirementsJob {
         analysis: analysis.into(),
         uncertainty: state.uncertainty().cloned().map(Into::into),
@@ -125,7 +119,7 @@ pub fn requirements_view_ui(
         requirements: &requirements,
         palette,
     };
-    view.reservations_ui(ui);
+    view.reservations_ui(ui, state.dataset());
     match state.display.judging.requirements_page {
         RequirementsPage::Bandwidth => {
             bandwidth_inputs_ui(ui, state, palette, commands);
@@ -136,7 +130,7 @@ pub fn requirements_view_ui(
                 .default_size(size)
                 .min_size(60.0);
             panel.show(ui, |ui| view.tables_ui(ui, state, commands));
-            view.plots_ui(ui, state, commands);
+            bandwidth_plots_ui(ui, state, &requirements, palette, commands);
         }
         RequirementsPage::Modes => {
             let title =
@@ -153,62 +147,6 @@ pub fn requirements_view_ui(
     }
 }
 
-/// Draws the settings of the bandwidth requirements: which attitudes are commanded by a stick, and
-/// the engineer's levels.
-fn bandwidth_inputs_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    ui.horizontal_wrapped(|ui| {
-        ui.label(palette.small("attitude command:"));
-        attitude_commands_ui(ui, state, commands);
-        ui.separator();
-        levels_ui(ui, state, palette, commands);
-    });
-}
-
-/// Draws a check box for each attitude that may be commanded by a stick.
-fn attitude_commands_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
-    let mut outputs = BTreeSet::new();
-    for pair in state.dataset().measuring_pairs().marked() {
-        outputs.insert(pair.output);
-    }
-    for output in outputs {
-        let channel = &state.dataset().outputs()[output];
-        if AttitudeOutput::of(channel).is_err() {
-            continue;
-        }
-        let name = &channel.name;
-        let is_on = state.study.requirements.attitude_command.contains(name);
-        let hint = "The stick commands the attitude instead of its rate; the phase margin alone then determines the bandwidth";
-        if let Some(is_on) = check_ui(ui, is_on, format!("attitude of {name}"), hint) {
-            commands.push(decided(state, "attitude command", |settings| {
-                if is_on {
-                    settings.attitude_command.insert(name.clone());
-                } else {
-                    settings.attitude_command.remove(name);
-                }
-            }));
-        }
-    }
-}
-
-/// Draws the number of level boundaries, and the buttons that remove them or read them from a file.
-fn levels_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    let levels = state.study.requirements.levels.all().len();
-    let text = if levels == 0 {
-        "levels: none".to_owned()
-    } else {
-        format!("levels: {levels}")
-    };
-    ui.label(palette.small(text));
-    if levels > 0 && ui.small_button("Remove levels").clicked() {
-        commands.push(decided(state, "levels", |settings| {
-            settings.levels = LevelBoundaries::default();
-        }));
-    }
-    let hint = "Reads levels from a file. None are built in, because they depend on the task and the category (docs/requirements.md)";
-    let ask = FileCommand::AskRequirementTable(RequirementTable::Levels);
-    button_ui(ui, Button::new("Levels…").small(), hint, ask, commands);
-}
-
 /// Context for drawing the computed requirements.
 struct RequirementsView<'a> {
     requirements: &'a Requirements,
@@ -218,70 +156,27 @@ struct RequirementsView<'a> {
 impl RequirementsView<'_> {
     /// Draws a line for each kind of missing result, and the reservations about the available
     /// results.
-    fn reservations_ui(&self, ui: &mut Ui) {
+    fn reservations_ui(&self, ui: &mut Ui, dataset: &Dataset) {
         let mut lines = Vec::new();
         for missing in &self.requirements.missing {
             let condition = match missing.condition {
                 Some(id) => format!("Condition {id}: "),
                 None => String::new(),
             };
-            lines.push(format!("{condition}no {}: {}", missing.what, missing.why));
+            let why = missing_reason_text(&missing.why);
+            lines.push(format!("{condition}no {}: {why}", missing.what));
         }
         for caution in &self.requirements.cautions {
             lines.push(format!(
                 "⚠ Condition {}: {}",
-                caution.condition, caution.text
+                caution.condition,
+                reversed_phase_text(caution, dataset)
             ));
         }
         for line in lines {
             ui.add(Label::new(self.palette.small_warning(&line)).truncate())
                 .on_hover_text(line);
         }
-    }
-
-    /// Draws phase delay over bandwidth; a click on a mark shows the response in the Bode view.
-    fn plots_ui(&self, ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
-        let figure: Figure = figure_of(state, View::Requirements).unwrap_or_default();
-        let pairs = bandwidth_pairs(self.requirements);
-        figure_legend_ui(ui, &figure, self.palette);
-        let mut view = state
-            .display
-            .figures
-            .remove(&View::Requirements)
-            .unwrap_or_default();
-        let message = "No on-axis response is an angle or an angular rate, or none crosses −135° \
-            and −180°. The table lists the reasons";
-        let words = BandwidthWords {
-            state,
-            requirements: self.requirements,
-            pairs: &pairs,
-        };
-        let scene = FigureScene {
-            selected: Some(MarkId::Condition(state.condition().id())),
-            zooms: true,
-            accented: pairs
-                .iter()
-                .position(|pair| *pair == state.display.selection.pair),
-            ..FigureScene::new("requirements", &figure, LEAST_PLOT, message, &words)
-        };
-        for event in figure_ui(ui, &scene, &mut view, self.palette) {
-            if let FigureEvent::Clicked(plot, MarkId::Condition(condition), _) = event
-                && let Some(pair) = pairs.get(plot)
-            {
-                let mut model = BandwidthModel {
-                    condition,
-                    pair: *pair,
-                    role: RequirementRole::Corrected,
-                };
-                if let Some(place) = view.pointed_at()
-                    && let Some(role) = role_at(self.requirements, model, place)
-                {
-                    model.role = role;
-                }
-                commands.extend(bode_commands(self.requirements, model));
-            }
-        }
-        state.display.figures.insert(View::Requirements, view);
     }
 
     /// Draws the tables of the page; a click on a row shows its response or condition.
@@ -303,7 +198,7 @@ impl RequirementsView<'_> {
                     let look = TableLook {
                         color: &|row, column| {
                             let hue = page.hue(row, column)?;
-                            Some(self.palette.color(Color::of(hue)))
+                            Some(self.palette.color(Color::new(hue)))
                         },
                         selected: &|row| {
                             table.columns[0] == "condition"
@@ -321,22 +216,19 @@ impl RequirementsView<'_> {
     }
 
     /// Returns why a table has no rows.
-    fn absence_of_rows(&self, state: &State) -> &str {
+    fn absence_of_rows(&self, state: &State) -> String {
         if state.display.judging.requirements_page == RequirementsPage::Modes
             && let Some(why) = self.requirements.no_modes(state.condition().id())
         {
-            return why;
+            return missing_reason_text(why);
         }
-        "No condition has a result"
+        "No condition has a result".to_owned()
     }
 
     /// Returns the commands for a click on a row.
     fn click_commands(&self, state: &State, table: &Table, click: TableClick) -> Vec<Command> {
         match state.display.judging.requirements_page {
-            RequirementsPage::Bandwidth => match self.requirements.bandwidth.get(click.row) {
-                Some(finding) => bode_commands(self.requirements, BandwidthModel::new(finding)),
-                None => Vec::new(),
-            },
+            RequirementsPage::Bandwidth => bandwidth_row_commands(self.requirements, click.row),
             RequirementsPage::Histories | RequirementsPage::Summary => {
                 match clicked_condition(table, click) {
                     Some(id) => vec![SelectionCommand::SelectCondition(id).into()],
@@ -356,105 +248,4 @@ fn clicked_condition(table: &Table, click: TableClick) -> Option<ConditionId> {
         return Some(ConditionId(id));
     }
     table.columns[click.column].parse().ok().map(ConditionId)
-}
-
-/// Model with a bandwidth, given by condition, response and role.
-#[derive(Clone, Copy)]
-struct BandwidthModel {
-    condition: ConditionId,
-    pair: Pair,
-    role: RequirementRole,
-}
-
-impl BandwidthModel {
-    fn new(finding: &BandwidthFinding) -> Self {
-        Self {
-            condition: finding.condition,
-            pair: finding.pair,
-            role: finding.role,
-        }
-    }
-
-    fn finding(self, requirements: &Requirements) -> Option<&BandwidthFinding> {
-        requirements.bandwidth_of(self.condition, self.pair, self.role)
-    }
-}
-
-/// Returns the role of the mark at a position \[rad/s, ms\] in the plot of a response; of several
-/// marks there, the topmost.
-fn role_at(
-    requirements: &Requirements,
-    model: BandwidthModel,
-    place: [f64; 2],
-) -> Option<RequirementRole> {
-    for role in RequirementRole::ALL.into_iter().rev() {
-        let finding = BandwidthModel { role, ..model }.finding(requirements);
-        if finding.and_then(bandwidth_place) == Some(place) {
-            return Some(role);
-        }
-    }
-    None
-}
-
-/// Returns the commands that show the response in the Bode view, with marks at the frequencies that
-/// define its bandwidth and phase delay.
-fn bode_commands(requirements: &Requirements, model: BandwidthModel) -> Vec<Command> {
-    let mut commands: Vec<Command> = vec![
-        SelectionCommand::SelectCondition(model.condition).into(),
-        SelectionCommand::FocusPair(model.pair).into(),
-        CurveCommand::UnpinCursors.into(),
-    ];
-    if let Some(finding) = model.finding(requirements) {
-        let mut crossings = Vec::new();
-        for (name, omega) in [
-            ("ω_phase", finding.omega_phase_rad_s),
-            ("ω_gain", finding.omega_gain_rad_s),
-            ("ω180", finding.omega_180_rad_s),
-        ] {
-            if let Some(omega) = omega {
-                crossings.push((name, omega));
-            }
-        }
-        commands.push(CurveCommand::MarkCrossings(crossings).into());
-    }
-    commands.push(LayoutCommand::ShowView(View::Bode).into());
-    commands
-}
-
-/// Accessible names of the bandwidth plots, and descriptions of their marks.
-struct BandwidthWords<'a> {
-    state: &'a State,
-    requirements: &'a Requirements,
-    pairs: &'a [Pair],
-}
-
-impl FigureWords for BandwidthWords<'_> {
-    fn plot(&self, plot: usize) -> String {
-        let name = match self.pairs.get(plot) {
-            Some(pair) => self.state.dataset().pair_name(*pair),
-            None => String::new(),
-        };
-        format!("Phase delay over bandwidth of {name}")
-    }
-
-    fn pointed(&self, plot: usize, id: &MarkId, _: [f64; 2]) -> Option<String> {
-        let pair = self.pairs.get(plot)?;
-        let MarkId::Condition(id) = id else {
-            return None;
-        };
-        let mut words = vec![format!("condition {id}")];
-        for role in RequirementRole::ALL {
-            let finding = self.requirements.bandwidth_of(*id, *pair, role);
-            if let Some([bandwidth_rad_s, delay_ms]) = finding.and_then(bandwidth_place) {
-                words.push(format!(
-                    "{} {} rad/s, {} ms",
-                    role.name(),
-                    telling(bandwidth_rad_s, 2),
-                    telling(delay_ms, 0)
-                ));
-            }
-        }
-        words.push("click: show in Bode".to_owned());
-        Some(words.join(" · "))
-    }
 }

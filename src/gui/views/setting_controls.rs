@@ -1,4 +1,8 @@
-//! Controls for the rows of the settings table.
+//! Controls for the rows of the settings table, by kind of setting: flag, choice, number, slider,
+//! threshold. Settings that the program may determine are in `automatic_settings`.
+//!
+//! A drag pushes a change in each frame; `StudyCommand::EndEdit` ends the undo step that they
+//! share.
 
 use egui::{Role, Slider, Ui, WidgetInfo};
 
@@ -6,13 +10,15 @@ use gdcm_method::correction::delta::GainSource;
 use gdcm_study::PhaseCorrection;
 use gdcm_study::decisions::setting;
 use gdcm_study::decisions::setting_row::{Kind, Setting, Value};
+use gdcm_words::setting_words::setting_words;
 
 use crate::gui::commands::command::Command;
 use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::study::StudyCommand;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::choice_ui;
-use crate::gui::widgets::controls::{Entered, NumberField, named_switch};
+use crate::gui::widgets::controls::named_switch;
+use crate::gui::widgets::number_field::{Entered, NumberField};
 use crate::gui::widgets::palette::Palette;
 
 /// Maximum value on a slider; larger values can be typed.
@@ -32,19 +38,8 @@ const LEADS_IN_SHORT: &str = "Delay or lead:\n\
     4  The gains are then computed as without leads, for the remaining error.\n\
     5  The price is gain above the band [dB].";
 
-/// Returns the value that the program determines for an automatic setting; `None` without a result.
-fn found_value(state: &State, setting: &Setting) -> Option<Value> {
-    let shown = state.shown()?;
-    if *setting == setting::GAIN_BOUNDS {
-        Some(Value::from(Some(shown.gain_bounds())))
-    } else if *setting == setting::DELAY_UPPER {
-        Some(shown.delay_upper_s().into())
-    } else {
-        None
-    }
-}
-
-/// Context for drawing the controls of settings; collects the commands for changed settings.
+/// Context for drawing the controls of settings; collects the commands for changed settings. The
+/// entry points are [`Self::controls_ui`], [`Self::control_ui`] and [`Self::slider_ui`].
 pub struct SettingControls<'a, 'c> {
     pub ui: &'a mut Ui,
     pub state: &'a State,
@@ -53,12 +48,13 @@ pub struct SettingControls<'a, 'c> {
 }
 
 impl SettingControls<'_, '_> {
-    fn set(&mut self, setting: &'static Setting, value: impl Into<Value>) {
+    /// Pushes the command that changes a setting.
+    pub(super) fn set(&mut self, setting: &'static Setting, value: impl Into<Value>) {
         self.commands.push(setting.to(value).into());
     }
 
     /// Reports a refused entry, and ends the undo step when editing ends.
-    fn end(&mut self, entered: Entered) {
+    pub(super) fn end(&mut self, entered: Entered) {
         if let Some(refusal) = entered.refusal {
             self.commands.push(FormCommand::Refuse(refusal).into());
         }
@@ -69,21 +65,23 @@ impl SettingControls<'_, '_> {
 
     /// Draws the caption; for the phase correction, with a summary as tooltip.
     pub fn caption_ui(&mut self, setting: &Setting) {
-        let label = self.ui.label(self.palette.dim(setting.control.caption));
+        let label = self
+            .ui
+            .label(self.palette.dim(setting_words(setting).caption));
         if *setting == setting::PHASE {
             label.on_hover_text(LEADS_IN_SHORT);
         }
     }
 
-    fn small_ui(&mut self, text: &str) {
+    pub(super) fn small_ui(&mut self, text: &str) {
         self.ui.label(self.palette.small(text));
     }
 
     /// Draws several settings in a line, each except the first with its caption in front.
     pub fn controls_ui(&mut self, line: &[&'static Setting]) {
         for (place, setting) in line.iter().enumerate() {
-            if place > 0 && !setting.control.caption.is_empty() {
-                self.small_ui(setting.control.caption);
+            if place > 0 && !setting_words(setting).caption.is_empty() {
+                self.small_ui(setting_words(setting).caption);
             }
             self.control_ui(setting);
         }
@@ -120,10 +118,11 @@ impl SettingControls<'_, '_> {
             (Kind::Choice { words, .. }, Value::Choice(index)) => {
                 let mut chosen = index;
                 let mut choices = Vec::new();
-                for (index, [_, text, hint]) in words.iter().enumerate() {
+                let meanings = setting_words(setting).meanings;
+                for (index, ([_, text], hint)) in words.iter().zip(meanings).enumerate() {
                     choices.push((index, *text, *hint));
                 }
-                choice_ui(self.ui, setting.control.label, &mut chosen, &choices);
+                choice_ui(self.ui, setting_words(setting).label, &mut chosen, &choices);
                 if chosen != index {
                     self.set(setting, Value::Choice(chosen));
                 }
@@ -133,20 +132,23 @@ impl SettingControls<'_, '_> {
     }
 
     fn flag_ui(&mut self, setting: &'static Setting, mut flag: bool) {
-        let response = self.ui.checkbox(&mut flag, setting.control.label);
-        if response.on_hover_text(setting.help).changed() {
+        let response = self.ui.checkbox(&mut flag, setting_words(setting).label);
+        if response
+            .on_hover_text(setting_words(setting).help)
+            .changed()
+        {
             self.set(setting, flag);
         }
     }
 
     fn number_ui(&mut self, setting: &'static Setting, value: f64, range: [f64; 2]) {
-        let field = number_field(setting, setting.control.label, range);
+        let field = number_field(setting, setting_words(setting).label, range);
         let entered = field.ui(self.ui, setting.unit.scale * value);
         self.apply(setting, entered);
     }
 
     /// Applies a typed or dragged number, in display units.
-    fn apply(&mut self, setting: &'static Setting, entered: Entered) {
+    pub(super) fn apply(&mut self, setting: &'static Setting, entered: Entered) {
         if let Some(value) = entered.value {
             self.set(setting, value / setting.unit.scale);
         }
@@ -162,7 +164,7 @@ impl SettingControls<'_, '_> {
             return;
         };
         let mut value = now;
-        let label = setting.control.label;
+        let label = setting_words(setting).label;
         let field = NumberField {
             step: 0.01 * now.max(0.01),
             width: TYPED_WIDTH,
@@ -171,7 +173,7 @@ impl SettingControls<'_, '_> {
         let (slider, typed) = self
             .ui
             .horizontal(|ui| {
-                let caption = ui.label(self.palette.dim(setting.control.caption));
+                let caption = ui.label(self.palette.dim(setting_words(setting).caption));
                 ui.add_space((LABEL_WIDTH - caption.rect.width()).max(0.0));
                 let gap = ui.spacing().item_spacing.x;
                 ui.spacing_mut().slider_width =
@@ -193,7 +195,7 @@ impl SettingControls<'_, '_> {
         if slider.drag_stopped() || slider.lost_focus() {
             self.commands.push(StudyCommand::EndEdit.into());
         }
-        slider.on_hover_text(setting.help);
+        slider.on_hover_text(setting_words(setting).help);
         self.apply(setting, typed);
     }
 
@@ -212,14 +214,16 @@ impl SettingControls<'_, '_> {
             response,
             Role::CheckBox,
             counts,
-            format!("{} counts", setting.control.caption),
+            format!("{} counts", setting_words(setting).caption),
         );
-        let clicked = response.on_hover_text(setting.help).changed();
+        let clicked = response
+            .on_hover_text(setting_words(setting).help)
+            .changed();
         let shown = match value {
             Value::Number(value) => value,
             _ => initial,
         };
-        let field = number_field(setting, setting.control.label, range);
+        let field = number_field(setting, setting_words(setting).label, range);
         let entered = self
             .ui
             .add_enabled_ui(counts, |ui| field.ui(ui, shown))
@@ -232,123 +236,10 @@ impl SettingControls<'_, '_> {
         }
         self.apply(setting, entered);
     }
-
-    /// Draws a number that the program determines unless it is set by hand.
-    fn automatic_number_ui(&mut self, setting: &'static Setting, value: Value, range: [f64; 2]) {
-        let Some(Value::Number(number)) = self.shown_value(setting, value) else {
-            return self.small_ui("…");
-        };
-        let field = number_field(setting, setting.control.label, range);
-        let typed = field.ui(self.ui, setting.unit.scale * number);
-        let switched = self.automatic_ui(setting, value);
-        if typed.value.is_none() {
-            match switched {
-                Some(Automatic::On) => self.set(setting, None::<f64>),
-                Some(Automatic::Off) => self.set(setting, Some(number)),
-                None => {}
-            }
-        }
-        self.apply(setting, typed);
-    }
-
-    /// Returns a value set by hand, or else the value determined by the program.
-    fn shown_value(&self, setting: &Setting, value: Value) -> Option<Value> {
-        if value == Value::Nothing {
-            found_value(self.state, setting)
-        } else {
-            Some(value)
-        }
-    }
-
-    /// Draws both ends of a range. If the range is optional, the program determines it unless it is
-    /// set by hand.
-    fn range_ui(&mut self, setting: &'static Setting, value: Value) {
-        let Kind::Range {
-            range: [least, most],
-            ends: [low_name, high_name],
-            nothing,
-            ..
-        } = setting.kind
-        else {
-            return;
-        };
-        let Some(Value::Range([lower, upper])) = self.shown_value(setting, value) else {
-            return self.small_ui("…");
-        };
-        let low = self.end_ui(setting, low_name, [least, upper], lower);
-        self.small_ui("–");
-        let high = self.end_ui(setting, high_name, [lower, most], upper);
-        if !setting.unit.shown.is_empty() {
-            self.small_ui(setting.unit.shown);
-        }
-        let mut switched = None;
-        if nothing.is_some() {
-            switched = self.automatic_ui(setting, value);
-        }
-        if low.value.is_some() || high.value.is_some() {
-            let ends = Value::Range([low.value.unwrap_or(lower), high.value.unwrap_or(upper)]);
-            match setting.check(ends) {
-                Ok(()) => self.set(setting, ends),
-                // A dragged end stops before the other end, without a message.
-                Err(_) if low.is_dragged || high.is_dragged => {}
-                Err(error) => self
-                    .commands
-                    .push(FormCommand::Refuse(error.to_string()).into()),
-            }
-        } else {
-            match switched {
-                Some(Automatic::On) => self.set(setting, Value::Nothing),
-                Some(Automatic::Off) => self.set(setting, Value::Range([lower, upper])),
-                None => {}
-            }
-        }
-        self.end(low);
-        self.end(high);
-    }
-
-    fn end_ui(
-        &mut self,
-        setting: &'static Setting,
-        name: &'static str,
-        limits: [f64; 2],
-        value: f64,
-    ) -> Entered {
-        let field = NumberField {
-            shows_unit: false,
-            ..number_field(setting, name, limits)
-        };
-        field.ui(self.ui, value)
-    }
-
-    /// Draws the check box that lets the program determine a value; returns its new state after a
-    /// click.
-    fn automatic_ui(&mut self, setting: &Setting, value: Value) -> Option<Automatic> {
-        let mut is_automatic = value == Value::Nothing;
-        let response = self.ui.checkbox(&mut is_automatic, "auto");
-        let name = format!("{} automatic", setting.control.caption);
-        let hint = "On: from the quantiles of each condition. Off: set by hand, the same for every condition";
-        let response =
-            named_switch(response, Role::CheckBox, is_automatic, name).on_hover_text(hint);
-        if !response.changed() {
-            return None;
-        }
-        Some(if is_automatic {
-            Automatic::On
-        } else {
-            Automatic::Off
-        })
-    }
-}
-
-/// Whether the program determines a value.
-#[derive(Clone, Copy)]
-enum Automatic {
-    On,
-    Off,
 }
 
 /// Creates the number field of a setting in display units; the limits are in stored units.
-fn number_field(
+pub(super) fn number_field(
     setting: &'static Setting,
     name: &'static str,
     [least, most]: [f64; 2],
@@ -362,7 +253,7 @@ fn number_field(
         digits: setting.control.digits,
         ..NumberField::new(
             name,
-            setting.help,
+            setting_words(setting).help,
             setting.unit.scale * least..=setting.unit.scale * most,
         )
     }

@@ -1,4 +1,7 @@
 //! Controls for choices: check boxes, switches, tabs and drop-down lists.
+//!
+//! [`choice_ui`] changes a value in place; [`DropDown`] returns the chosen entry, which may be a
+//! command.
 
 use egui::{Button, ComboBox, Response, Role, Ui, WidgetInfo};
 
@@ -48,48 +51,79 @@ pub fn check_ui(
     if changed { Some(value) } else { None }
 }
 
-/// Draws a drop-down list with an accessible name and `text` as its value; returns the choice.
-pub fn list_ui<T: Copy>(
-    ui: &mut Ui,
-    name: &str,
-    (width, text): (f32, &str),
-    choices: impl IntoIterator<Item = (T, bool, String)>,
-) -> Option<T> {
-    let shown = ComboBox::from_id_salt(name)
-        .width(width)
-        .selected_text(text)
-        .show_ui(ui, |ui| {
-            let mut clicked = None;
-            for (choice, is_chosen, text) in choices {
-                if ui.selectable_label(is_chosen, text).clicked() {
-                    clicked = Some(choice);
-                }
-            }
-            clicked
-        });
-    named(shown.response, Role::ComboBox, name);
-    shown.inner.flatten()
+/// Drop-down list whose entries are commands or values of any kind.
+pub struct DropDown<'a> {
+    /// Accessible name.
+    pub name: &'a str,
+    /// Width \[pt\].
+    pub width: f32,
+    /// Text in the closed list.
+    pub text: &'a str,
 }
 
-/// Draws an on/off button with a text and an accessible name; returns whether it was clicked.
-pub fn toggle_ui(ui: &mut Ui, (text, name): (&str, &str), is_on: bool, hint: &str) -> bool {
-    let button = Button::new(text).selected(is_on).corner_radius(6.0);
-    named_switch(ui.add(button), Role::CheckBox, is_on, name)
-        .on_hover_text(hint)
-        .clicked()
+impl DropDown<'_> {
+    /// Draws the list with its choices (value, whether it is the current one, text); returns the
+    /// value of a clicked choice.
+    pub fn ui<T: Copy>(
+        &self,
+        ui: &mut Ui,
+        choices: impl IntoIterator<Item = (T, bool, String)>,
+    ) -> Option<T> {
+        let shown = ComboBox::from_id_salt(self.name)
+            .width(self.width)
+            .selected_text(self.text)
+            .show_ui(ui, |ui| {
+                let mut clicked = None;
+                for (choice, is_chosen, text) in choices {
+                    if ui.selectable_label(is_chosen, text).clicked() {
+                        clicked = Some(choice);
+                    }
+                }
+                clicked
+            });
+        named(shown.response, Role::ComboBox, self.name);
+        shown.inner.flatten()
+    }
+}
+
+/// On/off button.
+pub struct Toggle<'a> {
+    /// Button text.
+    pub text: &'a str,
+    /// Accessible name.
+    pub name: &'a str,
+    /// Tooltip.
+    pub hint: &'a str,
+}
+
+impl Toggle<'_> {
+    /// Draws the button; returns whether it was clicked.
+    pub fn ui(&self, ui: &mut Ui, is_on: bool) -> bool {
+        let button = Button::new(self.text).selected(is_on).corner_radius(6.0);
+        named_switch(ui.add(button), Role::CheckBox, is_on, self.name)
+            .on_hover_text(self.hint)
+            .clicked()
+    }
+}
+
+/// Texts of the tab of a page of a view.
+#[derive(Clone, Copy, Debug)]
+pub struct PageWords {
+    /// Name in tooltips and in the accessible name.
+    pub name: &'static str,
+    /// Text of the tab, short enough for narrow windows.
+    pub short_name: &'static str,
+    /// Sentence about the content.
+    pub purpose: &'static str,
 }
 
 /// Draws the tab of a page of a view; returns whether it was clicked. Its accessible name is "Page
 /// NAME".
-pub fn page_tab_ui(
-    ui: &mut Ui,
-    is_shown: bool,
-    short_name: &str,
-    (name, purpose): (&str, &str),
-) -> (Response, bool) {
-    let tab = ui.selectable_label(is_shown, short_name);
+pub fn page_tab_ui(ui: &mut Ui, is_shown: bool, words: PageWords) -> (Response, bool) {
+    let name = words.name;
+    let tab = ui.selectable_label(is_shown, words.short_name);
     let tab = named_switch(tab, Role::Button, is_shown, format!("Page {name}"))
-        .on_hover_text(format!("{name}: {purpose}"));
+        .on_hover_text(format!("{name}: {}", words.purpose));
     let is_clicked = tab.clicked();
     (tab, is_clicked)
 }

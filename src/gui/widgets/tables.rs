@@ -1,4 +1,4 @@
-//! Tables in the window: a click on a heading sorts, a right-click copies or saves.
+//! Tables in the window: a click on a heading sorts (`sorting.rs`), a right-click copies or saves.
 
 use std::sync::Arc;
 
@@ -10,72 +10,8 @@ use gdcm_words::Table;
 
 use super::controls::{entries_ui, named};
 use super::palette::{Palette, SMALL_SIZE};
-
-/// Sort column, and whether the order is descending; `None` for the original order.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Sorting(Option<(usize, bool)>);
-
-impl Sorting {
-    /// Returns the order after a click on a column's heading: ascending, descending, original.
-    pub fn clicked(self, column: usize) -> Self {
-        Self(match self.0 {
-            Some((sorted, false)) if sorted == column => Some((column, true)),
-            Some((sorted, true)) if sorted == column => None,
-            _ => Some((column, false)),
-        })
-    }
-
-    /// Returns the sorted row indices: numbers by value, text alphabetically, empty cells last.
-    /// Equal rows keep their order.
-    pub fn order(self, table: &Table) -> Vec<usize> {
-        self.order_of(table.rows.len(), |row, column| {
-            table.rows[row].get(column).cloned().unwrap_or_default()
-        })
-    }
-
-    /// Like [`Self::order`], for `rows` rows and a function that returns the cell at a row and a
-    /// column.
-    pub fn order_of(self, rows: usize, cell: impl Fn(usize, usize) -> String) -> Vec<usize> {
-        let mut order: Vec<usize> = (0..rows).collect();
-        let Some((column, falling)) = self.0 else {
-            return order;
-        };
-        let cells: Vec<String> = order.iter().map(|&row| cell(row, column)).collect();
-        order.sort_by(|a, b| {
-            let a = &cells[*a];
-            let b = &cells[*b];
-            let compared = match (number_in(a), number_in(b)) {
-                (Some(a), Some(b)) => a.total_cmp(&b),
-                _ => a.cmp(b),
-            };
-            let compared = if falling {
-                compared.reverse()
-            } else {
-                compared
-            };
-            a.is_empty().cmp(&b.is_empty()).then(compared)
-        });
-        order
-    }
-
-    /// Returns the sort mark in the heading of a column.
-    pub fn mark(self, column: usize) -> &'static str {
-        match self.0 {
-            Some((sorted, false)) if sorted == column => " ▲",
-            Some((sorted, true)) if sorted == column => " ▼",
-            _ => "",
-        }
-    }
-}
-
-/// Parses the number at the beginning of a cell, with either minus sign.
-fn number_in(cell: &str) -> Option<f64> {
-    cell.split_whitespace()
-        .next()?
-        .replacen('\u{2212}', "-", 1)
-        .parse()
-        .ok()
-}
+pub use super::sorting::Sorting;
+use super::sorting::number_in;
 
 /// Clicked cell of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -224,37 +160,4 @@ fn copy_ui<C: From<TableRequest>>(ui: &mut Ui, table: &Table, commands: &mut Vec
         entries.map(|(text, request)| (text, request.into())),
         commands,
     );
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn table() -> Table {
-        let mut table = Table::new("t", ["name", "value"]);
-        for (name, value) in [("b", "10"), ("a", "\u{2212}2.5"), ("c", ""), ("d", "9")] {
-            table.row([name, value]);
-        }
-        table
-    }
-
-    #[test]
-    fn numbers_are_sorted_by_value_and_words_by_letters() {
-        let by_name = Sorting::default().clicked(0);
-        let by_value = Sorting::default().clicked(1);
-        assert_eq!(by_value.order(&table()), [1, 3, 0, 2], "empty cells last");
-        let falling = by_value.clicked(1);
-        assert_eq!(falling.order(&table()), [0, 3, 1, 2], "downwards too");
-        assert_eq!(by_name.order(&table()), [1, 0, 2, 3]);
-    }
-
-    #[test]
-    fn the_third_click_on_a_heading_leaves_the_table_as_it_was_made() {
-        let sorting = Sorting::default().clicked(1).clicked(1).clicked(1);
-        assert_eq!(sorting.order(&table()), [0, 1, 2, 3]);
-        assert_eq!(
-            Sorting::default().clicked(0).clicked(1),
-            Sorting::default().clicked(1)
-        );
-    }
 }

@@ -3,7 +3,7 @@
 use gdcm::gui::commands::assembling::AssemblingCommand;
 use gdcm::gui::commands::command_table::{command_table, every_command};
 use gdcm::gui::state::forms::FormKind;
-use gdcm::gui::state::tables::{TableKind, table_of};
+use gdcm::gui::state::panel_tables::{TableKind, table_of};
 use gdcm_method::correction::Channel;
 use gdcm_method::uncertainty::Scalar;
 use gdcm_words::Table;

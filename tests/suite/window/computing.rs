@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, Once};
 
-use gdcm::gui::app::threads;
+use gdcm::gui::app::faults;
 use gdcm::gui::commands::output::OutputCommand;
 use gdcm::gui::state::view::View;
 use gdcm_method::correction::{Outcome, ProofBudget};
@@ -81,7 +81,7 @@ fn note_panics() {
     ONCE.call_once(|| {
         let before = std::panic::take_hook();
         std::panic::set_hook(Box::new(move |panic| {
-            threads::note(panic);
+            faults::record_panic(panic);
             before(panic);
         }));
     });
@@ -166,7 +166,8 @@ fn a_panic_over_the_first_results_leaves_a_window_that_can_open_another_file() {
     let trap = Trap::default();
     trap.panics.store(true, Ordering::Relaxed);
     let build = |creation: &mut eframe::CreationContext<'static>| {
-        GdcmApp::with(&creation.egui_ctx, example(), trap.setup()).expect("a thread can be started")
+        GdcmApp::with_setup(&creation.egui_ctx, example(), trap.setup())
+            .expect("a thread can be started")
     };
     let mut window = Harness::builder()
         .with_size(vec2(1600.0, 1000.0))
@@ -290,7 +291,8 @@ fn a_long_computation_can_be_stopped_and_taken_up_again() {
 #[test]
 fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
     fn counts(window: &Window) -> Option<(usize, usize)> {
-        state(window).results.background.bars
+        let steps = state(window).results.background.error_bars?;
+        Some((steps.done, steps.total))
     }
 
     fn bundles(of: &Condition) -> usize {
@@ -360,7 +362,8 @@ fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
 #[test]
 fn couplings_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
     fn steps(window: &Window) -> Option<(usize, usize)> {
-        state(window).results.background.couplings
+        let steps = state(window).results.background.couplings?;
+        Some((steps.done, steps.total))
     }
 
     let trap = Trap::default();

@@ -1,6 +1,6 @@
 //! Interaction with curves: error plot, menus, boxes, cursors, units.
 
-use gdcm::gui::plot::picking::PICK_RADIUS;
+use gdcm::gui::plot::nearest_curve::PICK_RADIUS;
 use gdcm::gui::state::view::View;
 use gdcm_plot::figure::ConditionSource;
 use gdcm_plot::figure::bode::BodeOptions;

@@ -194,9 +194,10 @@ fn held_gains_out_of_reach_are_explained_and_the_explanation_is_exported() {
     unfold_settings(&mut window, false);
     window.get_by_label_contains("stops at a bound");
     let shown = state(&window).shown().unwrap();
+    let dataset = state(&window).dataset();
     let texts: Vec<String> = remarks_shown(state(&window), shown)
-        .into_iter()
-        .map(|remark| remark.text)
+        .iter()
+        .map(|remark| gdcm_words::remark::remark_text(remark, dataset))
         .collect();
     assert!(
         texts
@@ -296,7 +297,7 @@ fn how_a_figure_of_a_cell_was_computed_is_told_with_its_numbers() {
     let asked = state(&window)
         .display
         .selection
-        .asked
+        .explained
         .clone()
         .expect("the figure is explained");
     let told = derivation(state(&window).analysis().unwrap(), &asked).unwrap();

@@ -36,7 +36,7 @@ fn ask(window: &mut Window, entry: &str, expected: f64) {
     let asked = state(window)
         .display
         .selection
-        .asked
+        .explained
         .clone()
         .expect("a figure is explained");
     let found = derivation(state(window).analysis().unwrap(), &asked).expect("it has a derivation");
@@ -50,7 +50,7 @@ fn ask(window: &mut Window, entry: &str, expected: f64) {
     window.key_press(Key::Escape);
     window.run_steps(3);
     assert_eq!(
-        state(window).display.selection.asked,
+        state(window).display.selection.explained,
         None,
         "Escape closes the sheet"
     );
@@ -64,7 +64,7 @@ fn a_dot_of_net_gain_says_how_it_was_computed() {
         .screen_position(0, &MarkId::Condition(fifth))
         .unwrap();
     secondary_click(&mut window, at);
-    let pair = gdcm::gui::views::gain_plots::net_gain_pairs(state(&window))[0];
+    let pair = gdcm::gui::views::net_gain_pairs::net_gain_pairs(state(&window))[0];
     let result = state(&window).analysis().unwrap().condition(fifth).unwrap();
     let expected = result.correction.net_gain(pair);
     ask(&mut window, "Net gain, condition 5", expected);
@@ -130,7 +130,7 @@ fn a_bar_of_the_assessment_says_how_it_was_computed() {
         .total();
     window.get_by_label("Change of J").click();
     window.run_steps(3);
-    let asked = state(&window).display.selection.asked.clone();
+    let asked = state(&window).display.selection.explained.clone();
     assert!(
         matches!(&asked, Some(ExplainTarget::CostChange(id, at, _)) if (*id, *at) == (second, pair)),
         "{asked:?}"

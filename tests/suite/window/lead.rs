@@ -32,7 +32,7 @@ fn what_leads_cost_is_drawn_up_to_ten_times_the_band_and_the_flight_ends_where_i
     }
 
     let mut window = window();
-    // Curves extend slightly beyond the band of 0.5 to 12 rad/s.
+    // Curves are drawn up to 1.7 times the upper end of the band, 12 rad/s.
     assert!((last(&window, CurveRole::Corrected) - 20.4).abs() < 1e-6);
     let before = state(&window).display.frequency.bode.omega_range().1;
     give(&mut window, setting::PHASE.to(PhaseCorrection::Lead));

@@ -42,7 +42,8 @@ use egui_kittest::kittest::{NodeT, Queryable};
 
 use gdcm::executor::Pool;
 use gdcm::gui::app::{GdcmApp, Setup};
-use gdcm::gui::panels::explanation::{gain_conflict_marks, toggle_costs};
+use gdcm::gui::panels::derivation_sheet::toggle_costs;
+use gdcm::gui::panels::matrix_panel::gain_conflict_marks;
 use gdcm::gui::panels::reasons::remarks_shown;
 use gdcm::gui::plot::{BodeCurve, Pane, Role as CurveRole};
 use gdcm::gui::state::notices::{Notice, NoticeKind};
@@ -101,17 +102,18 @@ pub(crate) fn few_window() -> Window {
 
 /// Opens the example without any results.
 fn cold_example(creation: &mut eframe::CreationContext<'static>) -> GdcmApp {
-    GdcmApp::with(&creation.egui_ctx, example(), Setup::default()).expect("a thread can be started")
+    GdcmApp::with_setup(&creation.egui_ctx, example(), Setup::default())
+        .expect("a thread can be started")
 }
 
 /// Opens the example with an engine that has analysed it.
 fn warm_example(creation: &mut eframe::CreationContext<'static>) -> GdcmApp {
-    GdcmApp::with(&creation.egui_ctx, example(), warm()).expect("a thread can be started")
+    GdcmApp::with_setup(&creation.egui_ctx, example(), warm()).expect("a thread can be started")
 }
 
 fn window_with(opened: Opened, setup: Setup) -> Window {
     let build = |creation: &mut eframe::CreationContext<'static>| {
-        GdcmApp::with(&creation.egui_ctx, opened, setup).expect("a thread can be started")
+        GdcmApp::with_setup(&creation.egui_ctx, opened, setup).expect("a thread can be started")
     };
     let mut window = Harness::builder()
         .with_size(vec2(1600.0, 1000.0))

@@ -130,7 +130,7 @@ fn picture(window: &Window, textures: &Textures, format: Format) -> Vec<u8> {
     let mut frame = renderer
         .begin_frame(width, height)
         .expect("the size is allowed");
-    let ground = Palette::of(&window.ctx.global_style().visuals).background;
+    let ground = Palette::from_visuals(&window.ctx.global_style().visuals).background;
     frame.clear(colour(ground));
     for of in shapes {
         let Primitive::Mesh(mesh) = of.primitive else {

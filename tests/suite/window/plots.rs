@@ -3,7 +3,7 @@
 use gdcm::gui::commands::display::DisplayCommand;
 use gdcm::gui::state::view::View;
 use gdcm_plot::figure::Range;
-use gdcm_plot::figure::responses::{AirspeedCache, airspeed_curves, fitted_values};
+use gdcm_plot::figure::responses::{AirspeedCache, AirspeedResponse, fitted_values};
 use gdcm_study::AcrossRole;
 
 use super::lists::texts_in;
@@ -390,19 +390,17 @@ fn pointing_at_plots_starts_no_analysis() {
 /// the band: magnitude and phase.
 fn across_values(window: &Window) -> [Range; 2] {
     let state = state(window);
-    let made_of = (state.dataset(), state.analysis());
-    let display = &state.display;
-    let curves = state.across().expect("the responses are there");
-    let drawn = airspeed_curves(
-        made_of,
-        display.frequency.across_role,
-        display.selection.pair,
-        curves,
-        &mut AirspeedCache::default(),
-    );
+    let response = AirspeedResponse {
+        dataset: state.dataset(),
+        analysis: state.analysis(),
+        role: state.display.frequency.across_role,
+        pair: state.display.selection.pair,
+        responses: state.across().expect("the responses are there"),
+    };
+    let drawn = response.curves(&mut AirspeedCache::default());
     let band = state.study.settings.band;
-    [Pane::Magnitude, Pane::Phase]
-        .map(|pane| fitted_values(&drawn, pane, (band.min(), band.max())).expect("curves"))
+    let band = Range::new(band.min(), band.max());
+    [Pane::Magnitude, Pane::Phase].map(|pane| fitted_values(&drawn, pane, band).expect("curves"))
 }
 
 /// Returns whether the Airspeeds view shows these ranges with at most a small margin.

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use egui::Order;
 
-use gdcm::gui::plot::overview::OverviewView;
+use gdcm::gui::plot::overview_scene::OverviewView;
 
 use super::views::{give, show};
 use super::*;
@@ -35,7 +35,7 @@ fn tooltips(window: &Window) -> Vec<egui::Rect> {
 /// mark.
 fn assert_told(window: &mut Window, what: &str, at: Pos2) {
     rest_at(window, at);
-    let told = state(window).display.selection.told.clone();
+    let told = state(window).display.selection.pointed_words.clone();
     let told = told.unwrap_or_else(|| panic!("{what}: nothing is said at {at}"));
     assert_eq!(tooltips(window), [], "{what}: {told}");
     let line = window.get_by_label(&told).rect();
@@ -58,7 +58,12 @@ fn pointing_at_a_curve_or_a_dot_opens_nothing_and_is_told_in_the_status_line() {
     choose_condition_10(&mut window);
     let nominal = super::plots::place_on_nominal(&window);
     assert_told(&mut window, "Bode", nominal);
-    let told = state(&window).display.selection.told.clone().unwrap();
+    let told = state(&window)
+        .display
+        .selection
+        .pointed_words
+        .clone()
+        .unwrap();
     assert!(
         told.contains("nominal · ") && told.ends_with("click to reject"),
         "{told}"
@@ -70,7 +75,7 @@ fn pointing_at_a_curve_or_a_dot_opens_nothing_and_is_told_in_the_status_line() {
         state(&window)
             .display
             .selection
-            .told
+            .pointed_words
             .as_ref()
             .unwrap()
             .starts_with("condition 3, 45 kt · ")
@@ -199,7 +204,7 @@ fn what_a_tooltip_does_not_say_is_behind_the_question() {
         "{:?}",
         found.rests_on
     );
-    let text = gdcm::gui::panels::explanation::derivation_text(&found);
+    let text = gdcm::gui::panels::derivation_sheet::derivation_text(&found);
     for (symbol, meaning) in found.terms() {
         assert!(
             text.contains(&format!("{symbol}\t{meaning}")),

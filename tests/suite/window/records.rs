@@ -72,7 +72,7 @@ fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_la
     let before = identified_models(&window);
     window.get_by_label("Identify").click();
     wait_until(&mut window, "the first model or the models", |window| {
-        let running = state(window).records.running(CONDITION_10_ID);
+        let running = state(window).records.job_of(CONDITION_10_ID);
         running.is_none_or(|job| job.news().first_model.is_some())
     });
     wait_until(&mut window, "the models", |window| {
@@ -96,7 +96,7 @@ fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_la
         found.cost
     );
     for page in RecordsPage::ALL {
-        click(&mut window, &format!("Page {}", page.words().0));
+        click(&mut window, &format!("Page {}", page.words().name));
         assert_eq!(state(&window).records.page, page);
     }
     let table = condition_table(state(&window));
@@ -316,7 +316,7 @@ fn records_are_chosen_held_out_and_left_out_and_an_identification_is_stopped() {
     );
     window.get_by_label("Identify").click();
     window.run_steps(2);
-    assert!(state(&window).records.running(CONDITION_10_ID).is_some());
+    assert!(state(&window).records.job_of(CONDITION_10_ID).is_some());
     window.get_by_label("Stop identifying").click();
     window.run_steps(3);
     assert!(state(&window).records.running.is_empty());
@@ -350,7 +350,7 @@ fn of_several_conditions_the_one_shown_is_identified_first_and_the_others_say_wh
     );
     window.get_by_label(condition_3).click();
     window.run_steps(3);
-    window.get_by_label("Waits for condition 10");
+    window.get_by_label("Waiting for condition 10");
     window.get_by_label("Stop identifying").click();
     window.run_steps(2);
     assert!(state(&window).records.running.is_empty());
@@ -585,7 +585,7 @@ fn a_part_counts_from_the_start_of_the_record_too_and_one_without_samples_is_ref
     type_into(&mut window, "Part of the record", "5 34");
     let told = state(&window).notice.clone().expect("it is refused");
     assert!(
-        told.kind == NoticeKind::Trouble && told.text.contains("it runs from 42.30 s to 81.30 s"),
+        told.kind == NoticeKind::Trouble && told.text.contains("runs from 42.30 s to 81.30 s"),
         "{}",
         told.text
     );
@@ -1085,7 +1085,7 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
         .clone();
     // Reference values from independent numpy code (M14.13): 35.9, 30.8 and 22.6 dB at 5, 8 and 20
     // rad/s.
-    let model = PreparedModel::of(&found.refined.dynamics);
+    let model = PreparedModel::new(&found.refined.dynamics);
     for ends in [[(5.0, 35.9), (20.0, 22.6)], [(8.0, 30.8), (20.0, 22.6)]] {
         let grid = FrequencyGrid::logarithmic(Band::new(ends[0].0, ends[1].0).unwrap(), 2);
         let response = model.response(&grid);
@@ -1155,7 +1155,7 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
         .clone();
     let grid = FrequencyGrid::logarithmic(Band::new(8.0, 20.0).unwrap(), 2);
     let at_8_db = 20.0
-        * PreparedModel::of(&found.refined.dynamics)
+        * PreparedModel::new(&found.refined.dynamics)
             .response(&grid)
             .curve(Pair::new(0, 0))[0]
             .norm()

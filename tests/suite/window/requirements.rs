@@ -13,10 +13,11 @@ use gdcm_method::requirements::{ModeVerdict, RecordCheck, ToleranceTable};
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::Edit;
 use gdcm_study::decisions::requirement_settings::RequirementSettings;
-use gdcm_study::results::condition_answers::RecordHistory;
+use gdcm_study::results::record_history::RecordHistory;
 use gdcm_study::results::required_bandwidth::BandwidthFinding;
 use gdcm_study::results::requirement_role::RequirementRole;
-use gdcm_words::requirements::{RequirementsOverview, bandwidth_table, summary_table};
+use gdcm_words::requirements::{bandwidth_table, summary_table};
+use gdcm_words::requirements_overview::RequirementsOverview;
 
 use super::assembling::type_into;
 use super::lists::texts_in;
@@ -228,7 +229,7 @@ fn what_bandwidths_are_asked_with_is_decided_undone_and_drawn() {
         &mut window,
         FileCommand::ReadRequirementTable(RequirementTable::Levels, path.clone()),
     );
-    assert_eq!(state(&window).study.requirements.levels.all().len(), 1);
+    assert_eq!(state(&window).study.requirements.levels.as_slice().len(), 1);
     assert!(texts(&window).contains("levels: 1"));
     std::fs::write(&path, "[]]").unwrap();
     give(
@@ -236,17 +237,24 @@ fn what_bandwidths_are_asked_with_is_decided_undone_and_drawn() {
         FileCommand::ReadRequirementTable(RequirementTable::Levels, path),
     );
     assert_eq!(
-        state(&window).study.requirements.levels.all().len(),
+        state(&window).study.requirements.levels.as_slice().len(),
         1,
         "what cannot be read changes nothing"
     );
     click(&mut window, "Remove levels");
-    assert!(state(&window).study.requirements.levels.all().is_empty());
+    assert!(
+        state(&window)
+            .study
+            .requirements
+            .levels
+            .as_slice()
+            .is_empty()
+    );
 }
 
 #[test]
 fn models_answer_to_a_step_or_a_doublet_of_the_input_in_focus() {
-    fn answers(window: &mut Window) -> Arc<gdcm_study::results::condition_answers::TestAnswers> {
+    fn answers(window: &mut Window) -> Arc<gdcm_study::results::test_input_responses::TestAnswers> {
         wait_until(window, "the answers", |window| {
             let decided = state(window).study.requirements.test;
             matches!(state(window).test_answers(), Some(Ok(found)) if found.test == decided)
@@ -282,7 +290,7 @@ fn models_answer_to_a_step_or_a_doublet_of_the_input_in_focus() {
 
 #[test]
 fn a_record_stands_within_tolerances_that_are_edited_and_kept_in_a_file() {
-    fn shown(window: &mut Window) -> Arc<gdcm_study::results::condition_answers::RecordHistory> {
+    fn shown(window: &mut Window) -> Arc<gdcm_study::results::record_history::RecordHistory> {
         wait_until(window, "the record", |window| {
             let decided = &state(window).study.requirements.tolerances;
             let found = state(window).results.record_history.as_ref();

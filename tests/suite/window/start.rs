@@ -11,7 +11,7 @@ const WAYS: [&str; 3] = ["Open dataset…", "Import models…", "Import records�
 /// Opens the example without waiting for results, because no curves are drawn on the start page.
 fn begun_with(setup: Setup) -> Window {
     let build = |creation: &mut eframe::CreationContext<'static>| {
-        GdcmApp::with(&creation.egui_ctx, example(), setup).expect("a thread can be started")
+        GdcmApp::with_setup(&creation.egui_ctx, example(), setup).expect("a thread can be started")
     };
     let mut window = Harness::builder()
         .with_size(vec2(1280.0, 720.0))

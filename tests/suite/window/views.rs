@@ -5,13 +5,13 @@ use gdcm::gui::commands::display::DisplayCommand;
 use gdcm::gui::commands::layout::LayoutCommand;
 use gdcm::gui::commands::selection::SelectionCommand;
 use gdcm::gui::commands::study::StudyCommand;
-use gdcm::gui::state::arrangement::Arrangement;
-use gdcm::gui::state::assessed_figures::AssessedPairs;
+use gdcm::gui::state::assessment_display::AssessedPairs;
 use gdcm::gui::state::pair_set::PairSet;
 use gdcm::gui::state::preferences::Preferences;
 use gdcm::gui::state::view::{View, ViewGroup};
-use gdcm::gui::views::assessment::{assessment_sentences, assessment_text_table};
-use gdcm::gui::views::gain_plots::net_gain_pairs;
+use gdcm::gui::state::view_arrangement::Arrangement;
+use gdcm::gui::views::assessment_content::{assessment_sentences, assessment_text_table};
+use gdcm::gui::views::net_gain_pairs::net_gain_pairs;
 use gdcm::gui::views::poles::poles;
 use gdcm_method::correction::Channel;
 use gdcm_plot::figure::figure::DotShape;
@@ -269,7 +269,7 @@ fn the_evidence_answers_which_differences_are_in_earnest() {
     // Independent numpy code gives a ratio of 5.39. It also rejects the suggested models of
     // condition 10, which does not affect conditions 3 and 5.
     window.get_by_label(
-        "significant: a physical effect, or a model-form error; expected: from trim and identification uncertainty",
+        "significant: a physical effect, or a model-form error; \"expected\" is the difference expected from the uncertainty of trim and identification",
     );
     let line = window.get_by_label("5.4 × expected").rect();
     for words in ["COL → NZ", "conditions 3 and 5 (45 kt)", "13 %"] {

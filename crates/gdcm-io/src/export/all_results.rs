@@ -1,19 +1,17 @@
-//! All analysis results: as `corrections.json`, as `corrections.csv`, and as a MATLAB struct with
+//! Exports of all analysis results: `corrections.json`, `corrections.csv`, and a MATLAB struct with
 //! the content of `corrections.json`.
 
 use std::collections::BTreeSet;
 
-use serde_json::{Value as Tree, json};
-
-use gdcm_model::dataset::{ConditionId, Dataset};
+use gdcm_model::dataset::ConditionId;
 use gdcm_study::Analysis;
 
-use super::matlab_struct::{Layout, cell_of_texts};
+use super::corrections_struct::corrections_struct;
 use super::{ExportFormat, Exported};
-use crate::files::corrections_file::{channel_table, corrections, write_corrections};
+use crate::files::corrections_file::{corrections, write_corrections, write_corrections_csv};
 use crate::files::export_contents::ExportContents;
 use crate::formats::mat;
-use crate::formats::variables::{Value, Variable};
+use crate::formats::variables::Variable;
 
 /// Export as `corrections.json`.
 pub(super) const JSON: ExportFormat = ExportFormat {
@@ -43,8 +41,9 @@ pub(super) const CSV: ExportFormat = ExportFormat {
     contents: |analysis, _| ExportContents::of_results(analysis),
     export: |export| {
         let analysis = export.analysis;
-        let exported =
-            Exported::new(move |file| channel_table(analysis, &all_conditions(analysis), file));
+        let exported = Exported::new(move |file| {
+            write_corrections_csv(analysis, &all_conditions(analysis), file)
+        });
         Ok(exported.with(export.price_remarks()))
     },
 };
@@ -70,275 +69,4 @@ pub(super) const MAT: ExportFormat = ExportFormat {
 
 fn all_conditions(analysis: &Analysis) -> BTreeSet<ConditionId> {
     analysis.conditions.keys().copied().collect()
-}
-
-/// Channel values become arrays, in the order of the dataset's `inputs` and `outputs`.
-const LAYOUT: Layout = Layout {
-    by_channel: &["inputs", "outputs"],
-    by_name: &["discontinuity"],
-    columns: &["table"],
-};
-
-/// Members of `corrections.json` that the MATLAB struct repeats under the names of earlier
-/// versions.
-const EARLIER_NAMES: [EarlierName; 6] = [
-    EarlierName::new("gain_objective", "gain_solution", "objective"),
-    EarlierName::new("gain_lower_bound", "gain_solution", "lower_bound"),
-    EarlierName::new("gain_proven", "gain_solution", "proven"),
-    EarlierName::new("gain_matched", "gain_solution", "matched"),
-    EarlierName::new("delay_objective_s2", "delay_solution", "objective"),
-    EarlierName::new("delay_matched", "delay_solution", "matched"),
-];
-
-/// Name in earlier versions of a member of a solution.
-struct EarlierName {
-    name: &'static str,
-    solution: &'static str,
-    member: &'static str,
-}
-
-impl EarlierName {
-    const fn new(name: &'static str, solution: &'static str, member: &'static str) -> Self {
-        Self {
-            name,
-            solution,
-            member,
-        }
-    }
-}
-
-/// Returns the members of `corrections.json` as a struct. Lists of responses become logical
-/// matrices with a row per output and a column per input. `net_gains` becomes several matrices; its
-/// original form is kept as `net_gain_table`. Names from earlier versions are kept.
-fn corrections_struct(mut corrections: Tree, dataset: &Dataset) -> Value {
-    let settings = &mut corrections["settings"];
-    for name in ["constrained", "ignored"] {
-        settings[name] = marked_responses(&settings[name], dataset);
-    }
-    // This setting is absent if coherence is not used.
-    if settings.get("coherence_threshold").is_none() {
-        settings["coherence_threshold"] = Tree::Null;
-    }
-    if let Some(conditions) = corrections["conditions"].as_array_mut() {
-        for condition in conditions {
-            restructure_condition(condition, dataset);
-        }
-    }
-    // Names and units of the channels are added as separate columns below.
-    if let Some(members) = corrections.as_object_mut() {
-        members.shift_remove("inputs");
-        members.shift_remove("outputs");
-    }
-    if corrections["schedule"].is_null() {
-        corrections["schedule"] = json!([]);
-    }
-    if let Some(rows) = corrections["schedule"]
-        .get_mut("table")
-        .and_then(Tree::as_array_mut)
-    {
-        for row in rows {
-            add_delay_lists(row);
-        }
-    }
-    let mut value = LAYOUT.value("", &corrections);
-    if let Value::Struct(records) = &mut value {
-        for (side, channels) in [("input", dataset.inputs()), ("output", dataset.outputs())] {
-            let names = cell_of_texts(channels.iter().map(|channel| channel.name.clone()));
-            let units = cell_of_texts(channels.iter().map(|channel| channel.unit.clone()));
-            records.fields.push((format!("{side}s"), vec![names]));
-            records.fields.push((format!("{side}_units"), vec![units]));
-        }
-    }
-    value
-}
-
-/// Changes the members of a condition as described at [`corrections_struct`].
-fn restructure_condition(condition: &mut Tree, dataset: &Dataset) {
-    condition["held"] = marked_responses(&condition["held"], dataset);
-    condition["held_out"] = condition.get("held_out").cloned().unwrap_or(false.into());
-    let net_gains = condition["net_gains"].take();
-    let net_gains = net_gains.as_array().map(Vec::as_slice).unwrap_or_default();
-    condition["net_gain_table"] = net_gains
-        .chunks(dataset.inputs().len())
-        .map(|row| json!(row))
-        .collect();
-    for (name, key, place) in [
-        ("net_gains", "gain", None),
-        ("net_gains_low", "interval", Some(0)),
-        ("net_gains_high", "interval", Some(1)),
-        ("u_physics", "u_physics", None),
-        ("u_identification", "u_identification", None),
-    ] {
-        condition[name] = response_table(dataset, |output, input| {
-            net_gain_value(net_gains, output, input, key, place)
-        });
-    }
-    for earlier in EARLIER_NAMES {
-        condition[earlier.name] = condition[earlier.solution][earlier.member].clone();
-    }
-}
-
-/// Returns the values of all responses as a list of rows, one per output; each row has a value for
-/// each input.
-fn response_table(dataset: &Dataset, value: impl Fn(&str, &str) -> Tree) -> Tree {
-    let mut rows = Vec::new();
-    for output in dataset.outputs() {
-        let mut row = Vec::new();
-        for input in dataset.inputs() {
-            row.push(value(&output.name, &input.name));
-        }
-        rows.push(Tree::Array(row));
-    }
-    Tree::Array(rows)
-}
-
-/// Returns a logical matrix (outputs x inputs) that marks the responses in a list of pairs (output,
-/// input).
-fn marked_responses(pairs: &Tree, dataset: &Dataset) -> Tree {
-    let pairs = pairs.as_array().map(Vec::as_slice).unwrap_or_default();
-    response_table(dataset, |output, input| {
-        pairs
-            .iter()
-            .any(|pair| pair[0] == output && pair[1] == input)
-            .into()
-    })
-}
-
-/// Returns the member `key` of the net gain of a response or, if `place` is given, the entry of
-/// that member at this index; null if missing.
-fn net_gain_value(
-    net_gains: &[Tree],
-    output: &str,
-    input: &str,
-    key: &str,
-    place: Option<usize>,
-) -> Tree {
-    let net_gain = net_gains
-        .iter()
-        .find(|net_gain| net_gain["output"] == output && net_gain["input"] == input);
-    let Some(value) = net_gain.and_then(|net_gain| net_gain.get(key)) else {
-        return Tree::Null;
-    };
-    match place {
-        Some(place) => value.get(place).cloned().unwrap_or(Tree::Null),
-        None => value.clone(),
-    }
-}
-
-/// Adds the delays of a schedule row as lists in channel order.
-fn add_delay_lists(row: &mut Tree) {
-    for (name, side) in [("input_delays_s", "inputs"), ("output_delays_s", "outputs")] {
-        if let Some(delays) = row
-            .get("delays_s")
-            .and_then(|delays| delays[side].as_object())
-        {
-            row[name] = delays.values().cloned().collect();
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::sync::Arc;
-
-    use gdcm_method::schedule::SecondVariable;
-    use gdcm_model::dataset::{BundleKind, ModelId};
-    use gdcm_model::progress::Unobserved;
-    use gdcm_study::decisions::setting;
-    use gdcm_study::{Edit, Engine, PhaseCorrection, Study};
-
-    use super::*;
-    use crate::files::dataset_file::embedded_example;
-
-    /// Collects the paths of all JSON members, leaving out list indices and names of channels and
-    /// models.
-    fn json_paths(json: &serde_json::Value, path: &str, found: &mut BTreeSet<String>) {
-        match json {
-            serde_json::Value::Array(list) => {
-                list.iter().for_each(|entry| json_paths(entry, path, found))
-            }
-            serde_json::Value::Object(members) => {
-                for (name, value) in members {
-                    let is_name = ["inputs", "outputs", "discontinuity"]
-                        .iter()
-                        .any(|by| path.ends_with(by));
-                    json_paths(
-                        value,
-                        &if is_name {
-                            path.to_owned()
-                        } else {
-                            format!("{path}.{name}")
-                        },
-                        found,
-                    );
-                }
-            }
-            _ => {
-                found.insert(path.to_owned());
-            }
-        }
-    }
-
-    fn struct_paths(value: &Value, path: &str, found: &mut BTreeSet<String>) {
-        found.insert(path.to_owned());
-        match value {
-            Value::Struct(records) => {
-                for (name, values) in &records.fields {
-                    values
-                        .iter()
-                        .for_each(|value| struct_paths(value, &format!("{path}.{name}"), found));
-                }
-            }
-            Value::Cell(cell) => cell
-                .values
-                .iter()
-                .for_each(|value| struct_paths(value, path, found)),
-            _ => {}
-        }
-    }
-
-    #[test]
-    fn the_struct_of_matlab_has_every_field_of_the_json() {
-        let model = ModelId::new(ConditionId(10), BundleKind::Physics, "nominal");
-        let mut altitude = Study::new(embedded_example().unwrap().dataset);
-        altitude.settings.schedule.second = Some(SecondVariable::Altitude);
-        altitude
-            .apply(&Edit::RejectBecause {
-                model,
-                reason: "trimmed badly".to_owned(),
-            })
-            .unwrap();
-        let mut leads = Study::new(embedded_example().unwrap().dataset);
-        leads
-            .apply(&setting::PHASE.to(PhaseCorrection::Lead))
-            .unwrap();
-        let mut engine = Engine::default();
-        let mut of_json = BTreeSet::new();
-        let mut of_matlab = BTreeSet::new();
-        for study in [altitude, leads] {
-            let mut analysis = engine.analyze(&study, &Unobserved).unwrap();
-            analysis.uncertainty = Some(Arc::new(
-                engine.uncertainty(&analysis, &Unobserved).unwrap(),
-            ));
-            let corrections = corrections(&analysis, "ba78", &all_conditions(&analysis));
-            json_paths(&corrections, "", &mut of_json);
-            struct_paths(
-                &corrections_struct(corrections, &study.dataset),
-                "",
-                &mut of_matlab,
-            );
-        }
-        let of_json = of_json
-            .iter()
-            .map(|path| path.replace(".net_gains.", ".net_gain_table."));
-        let missing: Vec<String> = of_json.filter(|path| !of_matlab.contains(path)).collect();
-        assert_eq!(missing, [""; 0]);
-        for path in [
-            ".schedule.second_variable.inputs",
-            ".conditions.reasons.why",
-            ".conditions.bars.G.interval",
-        ] {
-            assert!(of_matlab.contains(path), "{path} of {of_matlab:?}");
-        }
-    }
 }

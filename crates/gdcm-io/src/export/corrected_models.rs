@@ -1,26 +1,29 @@
 //! Corrected models as files: for MATLAB, for NumPy, and in the format `gdcm-models`.
 
-use std::path::Path;
+mod matlab;
+mod metrics;
+mod numpy;
 
-use nalgebra::DMatrix;
+use std::path::Path;
 
 use gdcm_model::assembly::FoundModel;
 use gdcm_model::assembly::found_model::Facts;
+use gdcm_model::dataset::Dataset;
+use gdcm_model::dataset::dataset_draft::ModelDraft;
 use gdcm_model::dataset::model::Origin;
-use gdcm_model::dataset::unchecked_dataset::ModelDraft;
-use gdcm_model::dataset::{Channel, Dataset};
 
-use super::exported_model::{ExportedModel, contents_of_models, exported_models};
-use super::matlab_struct::{Fields, cell_of_texts, contained_parts, matrix, records};
+use self::matlab::models_variable;
+use self::metrics::matrices;
+use self::numpy::model_arrays;
+use super::exported_model::ExportedModel;
+use super::requested_models::{contents_of_models, exported_models};
 use super::{ExportFormat, Exported};
 use crate::export_fault::ExportFault;
-use crate::files::export_contents::{ExportContents, PartSource};
 use crate::files::model_collection::{
-    ContainingModel, bare_draft, labels, write_containing_models,
+    ModelWithContents, bare_draft, labels, write_models_with_contents,
 };
 use crate::formats::mat;
 use crate::formats::npy::write_npz;
-use crate::formats::variables::{TextArray, Value, Variable};
 
 /// Export of corrected models; the file extension selects the format.
 pub(super) const STATE_SPACE: ExportFormat = ExportFormat {
@@ -41,8 +44,8 @@ pub(super) const STATE_SPACE: ExportFormat = ExportFormat {
             }
             ModelsFormat::Npz => Exported::bytes(write_npz(&model_arrays(&models, dataset))?),
             ModelsFormat::Json => {
-                let models = containing_models(&models, dataset);
-                Exported::new(move |file| write_containing_models(&models, file))
+                let models = models_with_contents(&models, dataset);
+                Exported::new(move |file| write_models_with_contents(&models, file))
             }
         };
         Ok(exported.with(remarks))
@@ -76,10 +79,10 @@ impl ModelsFormat {
 /// Returns the models in the form of `gdcm-models`, each with a block `contains` that states the
 /// parts of its correction. Names are of the form "condition 10, nominal"; the notes describe the
 /// correction and its accuracy.
-fn containing_models(models: &[ExportedModel], dataset: &Dataset) -> Vec<ContainingModel> {
+fn models_with_contents(models: &[ExportedModel], dataset: &Dataset) -> Vec<ModelWithContents> {
     let mut containing = Vec::with_capacity(models.len());
     for model in models {
-        containing.push(ContainingModel {
+        containing.push(ModelWithContents {
             model: found_model(model, dataset),
             contains: model.contents.json(dataset),
         });
@@ -87,6 +90,7 @@ fn containing_models(models: &[ExportedModel], dataset: &Dataset) -> Vec<Contain
     containing
 }
 
+/// Returns a corrected model in the form of the models that are found in files.
 fn found_model(model: &ExportedModel, dataset: &Dataset) -> FoundModel {
     let name = format!("condition {}, {}", model.condition, model.name);
     FoundModel {
@@ -107,152 +111,6 @@ fn found_model(model: &ExportedModel, dataset: &Dataset) -> FoundModel {
     }
 }
 
-/// Returns the variable `models`: a struct for each model with the property names of MATLAB's `ss`,
-/// so that `ss(m.A, m.B, m.C, m.D, m.Ts)` is the model.
-fn models_variable(models: &[ExportedModel], dataset: &Dataset) -> Variable {
-    Variable {
-        name: "models".to_owned(),
-        value: records(
-            models
-                .iter()
-                .map(|model| model_fields(model, dataset))
-                .collect(),
-        ),
-    }
-}
-
-fn model_fields(model: &ExportedModel, dataset: &Dataset) -> Fields {
-    let mut fields = Fields::default();
-    for (name, values) in matrices(model) {
-        fields.add(name, array(values));
-    }
-    fields.add("InputName", names_of(dataset.inputs()));
-    fields.add("OutputName", names_of(dataset.outputs()));
-    fields.add("InputUnit", units_of(dataset.inputs()));
-    fields.add("OutputUnit", units_of(dataset.outputs()));
-    fields.add("StateName", cell_of_texts(model.states.iter().cloned()));
-    for (name, metric) in METRICS {
-        fields.add(name, Value::number(metric(model)));
-    }
-    fields.add("model", Value::text(&model.name));
-    fields.add("correction", Value::text(model.correction));
-    fields.add("contains", contained_parts(&model.contents, dataset));
-    fields
-}
-
-fn names_of(channels: &[Channel]) -> Value {
-    cell_of_texts(channels.iter().map(|channel| channel.name.clone()))
-}
-
-fn units_of(channels: &[Channel]) -> Value {
-    cell_of_texts(channels.iter().map(|channel| channel.unit.clone()))
-}
-
-/// Name of a model metric in files, with the function that computes it.
-type Metric = (&'static str, fn(&ExportedModel) -> f64);
-
-const METRICS: [Metric; 8] = [
-    ("Ts", sample_time_s),
-    ("condition", |model| model.condition.0 as f64),
-    ("airspeed_kt", |model| model.airspeed_kt),
-    ("pade_order", |model| model.pade_order as f64),
-    ("phase_error_deg", ExportedModel::phase_error_deg),
-    ("band_top_rad_s", |model| model.band_top_rad_s),
-    (
-        "not_valid_above_rad_s",
-        ExportedModel::not_valid_above_rad_s,
-    ),
-    ("gain_above_band_db", ExportedModel::gain_above_band_db),
-];
-
-/// Name of a part of a correction, with the function that returns its source.
-type ContainedPart = (&'static str, fn(&ExportContents) -> PartSource);
-
-const CONTAINED: [ContainedPart; 4] = [
-    ("gains", |contents| contents.gains),
-    ("delays", |contents| contents.delays),
-    ("leads", |contents| contents.leads),
-    ("couplings", |contents| contents.couplings),
-];
-
-/// Returns the models as arrays, because NumPy files hold nothing else: `A_0`, `B_0`, `C_0`, `D_0`
-/// and `StateName_0` for model 0, and so on; each of the other arrays has an entry for each model
-/// or channel.
-fn model_arrays(models: &[ExportedModel], dataset: &Dataset) -> Vec<Variable> {
-    let mut arrays = NamedArrays::default();
-    for (place, model) in models.iter().enumerate() {
-        for (name, values) in matrices(model) {
-            arrays.add(format!("{name}_{place}"), array(values));
-        }
-        arrays.add(format!("StateName_{place}"), row_of_texts(&model.states));
-    }
-    for (side, channels) in [("Input", dataset.inputs()), ("Output", dataset.outputs())] {
-        let names = row_of_texts(channels.iter().map(|channel| &channel.name));
-        let units = row_of_texts(channels.iter().map(|channel| &channel.unit));
-        arrays.add(format!("{side}Name"), names);
-        arrays.add(format!("{side}Unit"), units);
-    }
-    for (name, metric) in METRICS {
-        let values = models.iter().map(metric).collect();
-        arrays.add(name.to_owned(), matrix(1, models.len(), values));
-    }
-    let names = row_of_texts(models.iter().map(|model| &model.name));
-    arrays.add("model".to_owned(), names);
-    let corrections = row_of_texts(models.iter().map(|model| model.correction));
-    arrays.add("correction".to_owned(), corrections);
-    for (name, source) in CONTAINED {
-        let sources = row_of_texts(models.iter().map(|model| source(&model.contents).word()));
-        arrays.add(format!("contains_{name}"), sources);
-    }
-    let left_out = row_of_texts(
-        models
-            .iter()
-            .map(|model| model.contents.left_out_words(dataset).join("; ")),
-    );
-    arrays.add("contains_left_out".to_owned(), left_out);
-    arrays.variables
-}
-
-/// Named arrays, in file order.
-#[derive(Default)]
-struct NamedArrays {
-    variables: Vec<Variable>,
-}
-
-impl NamedArrays {
-    fn add(&mut self, name: String, value: Value) {
-        self.variables.push(Variable { name, value });
-    }
-}
-
-/// Returns MATLAB's `Ts` \[s\]: 0 in continuous time.
-fn sample_time_s(model: &ExportedModel) -> f64 {
-    model.model.timing().sample_time_s.unwrap_or(0.0)
-}
-
-fn matrices(model: &ExportedModel) -> [(&'static str, &DMatrix<f64>); 4] {
-    let model = &model.model;
-    [
-        ("A", model.a()),
-        ("B", model.b()),
-        ("C", model.c()),
-        ("D", model.d()),
-    ]
-}
-
-fn array(values: &DMatrix<f64>) -> Value {
-    // Both libraries store matrices by columns.
-    matrix(values.nrows(), values.ncols(), values.as_slice().to_vec())
-}
-
-fn row_of_texts<T: ToString>(texts: impl IntoIterator<Item = T>) -> Value {
-    let texts: Vec<String> = texts.into_iter().map(|text| text.to_string()).collect();
-    Value::Text(TextArray {
-        shape: vec![1, texts.len()],
-        texts,
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use gdcm_method::correction;
@@ -262,10 +120,14 @@ mod tests {
     use gdcm_study::decisions::setting;
     use gdcm_study::{AssessedCorrection, CouplingCorrection, Engine, PhaseCorrection, Study};
 
+    use super::metrics::array;
+    use super::numpy::row_of_texts;
     use super::*;
     use crate::export::ExportRequest;
+    use crate::export::matlab_values::matrix;
     use crate::files::dataset_file::embedded_example;
-    use crate::files::export_contents::LeftOutPart;
+    use crate::files::export_contents::{LeftOutPart, PartSource};
+    use crate::formats::variables::{Value, Variable};
     use crate::formats::zip_files::read_npz;
     use crate::reading_budget::ReadingBudget;
 
@@ -391,10 +253,13 @@ mod tests {
             );
             let result = analysis.condition(model.condition).unwrap();
             let bundle = result.condition.bundle(BundleKind::Physics);
-            let physics =
-                FrequencyResponse::of(&bundle[result.condition.nominal()].dynamics, &grid);
+            let physics = FrequencyResponse::from_dynamics(
+                &bundle[result.condition.nominal()].dynamics,
+                &grid,
+            );
             let coupled = result.coupled_response(&physics);
-            let found = FrequencyResponse::of(&Dynamics::StateSpace(model.model.clone()), &grid);
+            let found =
+                FrequencyResponse::from_dynamics(&Dynamics::StateSpace(model.model.clone()), &grid);
             for (pair, curve) in coupled.curves().iter() {
                 let gain = result.correction.net_gain(pair);
                 let largest = curve.iter().map(|value| value.norm()).fold(0.0, f64::max) * gain;

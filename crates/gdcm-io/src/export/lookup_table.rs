@@ -1,21 +1,19 @@
 //! Lookup tables of scheduled gains and delays at given airspeeds, for linear interpolation: as
 //! text, and for MATLAB.
 
-use std::fmt::Write;
+mod csv;
+mod matlab;
 
 use gdcm_method::correction::Channel;
 use gdcm_method::couplings::CouplingMatrices;
 use gdcm_plot::figure::all_channels;
 
-use super::matlab_struct::{Fields, cell_of_texts, column, contained_parts, matrix, row};
-use super::program_text::{comment, number};
-use super::scheduled::Scheduled;
-use super::table_error::TableError;
+use super::exported_schedule::ExportedSchedule;
+use super::table_deviation::TableDeviation;
 use super::{Export, ExportFormat, Exported};
 use crate::export_fault::ExportFault;
 use crate::files::export_contents::ExportContents;
 use crate::formats::mat;
-use crate::formats::variables::{Value, Variable};
 
 /// Export of the lookup table as text.
 pub(super) const CSV: ExportFormat = ExportFormat {
@@ -78,11 +76,12 @@ const LEAD: Quantity = Quantity {
 };
 
 impl Quantity {
-    /// Returns the error of `value`: relative \[%\] for a gain, absolute \[ms\] for a time.
-    fn error(&self, value: f64, truth: f64) -> f64 {
+    /// Returns the deviation of `value` from `truth`: relative \[%\] for a gain, absolute \[ms\]
+    /// for a time.
+    fn deviation(&self, value: f64, truth: f64) -> f64 {
         let difference = value - truth;
         if difference == 0.0 {
-            // Equal values have no error, even if both are zero and a percentage is undefined.
+            // Equal values do not deviate, even if both are zero and a percentage is undefined.
             0.0
         } else if self.is_time {
             1e3 * difference.abs()
@@ -108,12 +107,12 @@ struct Column {
     /// One value for each row of the table.
     values: Vec<f64>,
     /// Maximum deviation of the table from the schedule: \[%\] for a gain, \[ms\] for a time.
-    error: TableError,
+    deviation: TableDeviation,
 }
 
 /// A schedule sampled at given airspeeds.
 struct BreakpointTable<'e> {
-    scheduled: Scheduled<'e>,
+    scheduled: ExportedSchedule<'e>,
     /// Airspeeds \[kt\], increasing.
     airspeeds_kt: Vec<f64>,
     /// All airspeeds, repeated for each value of the second variable.
@@ -136,7 +135,10 @@ impl<'e> BreakpointTable<'e> {
     /// # Errors
     /// [`ExportFault::Breakpoints`] if the airspeeds are not finite and increasing, or if there are
     /// none; [`ExportFault::Curve`] if the schedule contains a value that is not finite.
-    fn new(scheduled: Scheduled<'e>, breakpoints_kt: Option<&[f64]>) -> Result<Self, ExportFault> {
+    fn new(
+        scheduled: ExportedSchedule<'e>,
+        breakpoints_kt: Option<&[f64]>,
+    ) -> Result<Self, ExportFault> {
         scheduled.check()?;
         let airspeeds_kt = match breakpoints_kt {
             Some(airspeeds_kt) => airspeeds_kt.to_vec(),
@@ -208,7 +210,7 @@ impl<'e> BreakpointTable<'e> {
     }
 
     /// Returns the column of a channel; `value_at` gives the value at a breakpoint. The maximum
-    /// error is searched over airspeed at each of `second_values`.
+    /// deviation is searched over airspeed at each of `second_values`.
     fn column(
         &self,
         channel: Channel,
@@ -219,9 +221,9 @@ impl<'e> BreakpointTable<'e> {
         let (inputs, outputs) = self.scheduled.dataset.names_of_channels();
         let airspeeds = &self.scheduled.schedule.airspeeds;
         let range_kt = [airspeeds.min_kt, airspeeds.max_kt];
-        let mut greatest: Option<TableError> = None;
+        let mut greatest: Option<TableDeviation> = None;
         for &second in second_values {
-            let found = TableError::greatest(
+            let found = TableDeviation::greatest(
                 &self.airspeeds_kt,
                 range_kt,
                 |airspeed_kt| {
@@ -230,7 +232,7 @@ impl<'e> BreakpointTable<'e> {
                         second,
                     })
                 },
-                |value, truth| quantity.error(value, truth),
+                |value, truth| quantity.deviation(value, truth),
             );
             greatest = Some(match greatest {
                 Some(greatest) => greatest.or_greater(found),
@@ -242,8 +244,8 @@ impl<'e> BreakpointTable<'e> {
             channel,
             name: channel.name(&inputs, &outputs),
             values: self.rows.iter().map(|&row| value_at(row)).collect(),
-            error: greatest.unwrap_or(TableError {
-                error: 0.0,
+            deviation: greatest.unwrap_or(TableDeviation {
+                value: 0.0,
                 airspeed_kt: range_kt[0],
             }),
         }
@@ -253,209 +255,20 @@ impl<'e> BreakpointTable<'e> {
     fn remarks(&self) -> Vec<String> {
         let mut remarks = self.scheduled.notes();
         for column in &self.columns {
-            if column.error.error > 0.0 {
+            if column.deviation.value > 0.0 {
                 remarks.push(format!(
                     "table of the {}: maximum error {}",
                     column.words(),
-                    column.error_words()
+                    column.deviation_words()
                 ));
             }
         }
         remarks
     }
-
-    /// Returns the table as CSV, preceded by comment lines (#) that describe it and state the
-    /// maximum deviation of each column from its curve.
-    fn csv(&self) -> String {
-        let mut text = String::new();
-        self.write_description(&mut text);
-        self.write_column_heads(&mut text);
-        for (index, row) in self.rows.iter().enumerate() {
-            let mut cells = vec![number(row.airspeed_kt)];
-            cells.extend(row.second.map(number));
-            for column in &self.columns {
-                cells.push(number(column.values[index]));
-            }
-            text.push_str(&cells.join(","));
-            text.push('\n');
-        }
-        text
-    }
-
-    fn write_description(&self, text: &mut String) {
-        for line in self.scheduled.heading(&self.scheduled.notes()) {
-            let _ = writeln!(text, "# {line}");
-        }
-        text.push_str(
-            "# Maximum error of linear interpolation in this table (with the end values outside \
-            its range), compared with the curves:\n",
-        );
-        for column in &self.columns {
-            let _ = writeln!(
-                text,
-                "# {}: {}",
-                comment(&column.words()),
-                column.error_words()
-            );
-        }
-        if let Some(couplings) = self.scheduled.couplings {
-            for line in self.feedback_lines(couplings) {
-                let _ = writeln!(text, "# {line}");
-            }
-        }
-    }
-
-    fn write_column_heads(&self, text: &mut String) {
-        text.push_str("airspeed [kt]");
-        if let Some(term) = &self.scheduled.schedule.second {
-            let _ = write!(text, ",{} [{}]", term.variable.name(), term.variable.unit());
-        }
-        for column in &self.columns {
-            let unit = if column.quantity.is_time { "s" } else { "-" };
-            let words = comment(&column.words()).replace('"', "\"\"");
-            let _ = write!(text, ",\"{words} [{unit}]\"");
-        }
-        text.push('\n');
-    }
-
-    /// Returns a line for each input with the feedback gains from all outputs.
-    fn feedback_lines(&self, couplings: &CouplingMatrices) -> Vec<String> {
-        let (inputs, outputs) = self.scheduled.dataset.names_of_channels();
-        let mut lines = Vec::with_capacity(inputs.len());
-        for (to, input) in inputs.iter().enumerate() {
-            let mut entries = Vec::with_capacity(outputs.len());
-            for (from, output) in outputs.iter().enumerate() {
-                let gain = couplings.feedback()[(to, from)];
-                entries.push(format!("{} {}", comment(output), number(gain)));
-            }
-            lines.push(format!(
-                "feedback to input {}: {}",
-                comment(input),
-                entries.join(", ")
-            ));
-        }
-        lines
-    }
-
-    /// Returns the variable `gdcm_table`: the airspeeds, and for inputs and outputs the matrices of
-    /// gains, delays \[s\] and lead numerators \[s\] with a row for each airspeed and a column for
-    /// each channel, with their maximum errors.
-    fn variable(&self) -> Variable {
-        let scheduled = &self.scheduled;
-        let mut fields = Fields::default();
-        fields.add(
-            "about",
-            cell_of_texts(scheduled.heading(&scheduled.notes())),
-        );
-        fields.add(
-            "airspeed_kt",
-            column(self.rows.iter().map(|row| row.airspeed_kt)),
-        );
-        if let Some(term) = &scheduled.schedule.second {
-            let name = format!("{}_{}", term.variable.name(), term.variable.unit());
-            fields.add(&name, column(self.rows.iter().filter_map(|row| row.second)));
-        }
-        let (inputs, outputs) = scheduled.dataset.names_of_channels();
-        self.add_side_fields(&mut fields, "input", inputs);
-        self.add_side_fields(&mut fields, "output", outputs);
-        if let Some(couplings) = scheduled.couplings {
-            self.add_coupling_fields(&mut fields, couplings);
-        }
-        self.add_lead_fields(&mut fields);
-        fields.add(
-            "contains",
-            contained_parts(&scheduled.contents, scheduled.dataset),
-        );
-        fields.add(
-            "interpolation",
-            Value::text("linear between the airspeeds, the end values outside"),
-        );
-        Variable {
-            name: "gdcm_table".to_owned(),
-            value: fields.record(),
-        }
-    }
-
-    /// Adds the channel names and the columns of all inputs or all outputs; `side` is "input" or
-    /// "output".
-    fn add_side_fields(&self, fields: &mut Fields, side: &str, names: Vec<String>) {
-        fields.add(&format!("{side}s"), cell_of_texts(names));
-        let mut quantities = vec![&GAIN, &DELAY];
-        if self.scheduled.schedule.leads.is_some() {
-            quantities.push(&LEAD);
-        }
-        for quantity in quantities {
-            let columns: Vec<&Column> = self
-                .columns
-                .iter()
-                .filter(|column| column.side() == side && column.quantity == quantity)
-                .collect();
-            fields.add(
-                &format!("{side}_{}", quantity.field),
-                self.columns_matrix(&columns),
-            );
-            let unit = if quantity.is_time { "ms" } else { "percent" };
-            let name = format!("{side}_{}_error_{unit}", quantity.name.replace(' ', "_"));
-            fields.add(&name, row(columns.iter().map(|column| column.error.error)));
-        }
-    }
-
-    fn add_coupling_fields(&self, fields: &mut Fields, couplings: &CouplingMatrices) {
-        let columns: Vec<&Column> = self
-            .columns
-            .iter()
-            .filter(|column| column.quantity == &MIXING)
-            .collect();
-        fields.add("mixing", self.columns_matrix(&columns));
-        fields.add(
-            "mixing_of",
-            cell_of_texts(columns.iter().map(|column| column.name.clone())),
-        );
-        let feedback = couplings.feedback();
-        fields.add(
-            "feedback",
-            matrix(
-                feedback.nrows(),
-                feedback.ncols(),
-                feedback.as_slice().to_vec(),
-            ),
-        );
-    }
-
-    fn add_lead_fields(&self, fields: &mut Fields) {
-        let schedule = self.scheduled.schedule;
-        if let Some(leads) = &schedule.leads {
-            fields.add(
-                "lead_order",
-                Value::number(leads.design.settings().order.number() as f64),
-            );
-            fields.add("lead_lag_s", Value::number(leads.design.lag_s()));
-        }
-        if let Some(price) = schedule.lead_price() {
-            fields.add("not_valid_above_rad_s", Value::number(price.limit_rad_s));
-            fields.add(
-                "input_gain_above_band_db",
-                row(price.gains_db.inputs.iter().copied()),
-            );
-            fields.add(
-                "output_gain_above_band_db",
-                row(price.gains_db.outputs.iter().copied()),
-            );
-        }
-    }
-
-    /// Returns a matrix with a row for each breakpoint and a column for each of `columns`.
-    fn columns_matrix(&self, columns: &[&Column]) -> Value {
-        let mut values = Vec::new();
-        for column in columns {
-            values.extend(&column.values);
-        }
-        matrix(self.rows.len(), columns.len(), values)
-    }
 }
 
 /// Returns the distinct airspeeds \[kt\] of the scheduled conditions, increasing.
-fn distinct_airspeeds_kt(scheduled: &Scheduled<'_>) -> Vec<f64> {
+fn distinct_airspeeds_kt(scheduled: &ExportedSchedule<'_>) -> Vec<f64> {
     let mut airspeeds_kt = scheduled.schedule.airspeeds.values_kt.clone();
     airspeeds_kt.sort_by(f64::total_cmp);
     airspeeds_kt.dedup();
@@ -464,7 +277,7 @@ fn distinct_airspeeds_kt(scheduled: &Scheduled<'_>) -> Vec<f64> {
 
 /// Returns the ends and the middle of the second variable's range, which suffice because its effect
 /// is nearly linear; a single `None` without a second variable.
-fn second_values(scheduled: &Scheduled<'_>) -> Vec<Option<f64>> {
+fn second_values(scheduled: &ExportedSchedule<'_>) -> Vec<Option<f64>> {
     match &scheduled.schedule.second {
         Some(term) => vec![
             Some(term.range[0]),
@@ -488,14 +301,14 @@ impl Column {
         format!("{} of {} {}", self.quantity.name, self.side(), self.name)
     }
 
-    /// Describes the maximum error: "1.200e0 % at 62.000 kt".
-    fn error_words(&self) -> String {
+    /// Describes the maximum deviation: "1.200e0 % at 62.000 kt".
+    fn deviation_words(&self) -> String {
         let unit = if self.quantity.is_time { "ms" } else { "%" };
-        let TableError { error, airspeed_kt } = self.error;
-        if error > 0.0 {
-            format!("{error:.3e} {unit} at {airspeed_kt:.3} kt")
+        let TableDeviation { value, airspeed_kt } = self.deviation;
+        if value > 0.0 {
+            format!("{value:.3e} {unit} at {airspeed_kt:.3} kt")
         } else {
-            format!("{error:.3e} {unit}")
+            format!("{value:.3e} {unit}")
         }
     }
 }
@@ -527,7 +340,7 @@ mod tests {
         let schedule = analysis.schedule.as_ref().unwrap();
         let dataset = &analysis.study.dataset;
         let contents = ExportContents::of_scheduled(analysis);
-        let scheduled = Scheduled {
+        let scheduled = ExportedSchedule {
             schedule,
             dataset,
             source,
@@ -581,18 +394,18 @@ mod tests {
     }
 
     #[test]
-    fn the_greatest_error_is_above_the_table_and_airspeeds_must_increase() {
+    fn the_greatest_deviation_is_above_the_table_and_airspeeds_must_increase() {
         let analysis = analysis(None);
         let source = source();
         let table = table(&analysis, &source);
-        let worst = table.columns[0].error;
+        let worst = table.columns[0].deviation;
         assert!(
-            worst.error > 0.0 && !POINTS.contains(&worst.airspeed_kt),
+            worst.value > 0.0 && !POINTS.contains(&worst.airspeed_kt),
             "{worst:?}"
         );
         let line = format!(
             "\n# gain of input LON: {:.3e} % at {:.3} kt\n",
-            worst.error, worst.airspeed_kt
+            worst.value, worst.airspeed_kt
         );
         assert!(table.csv().contains(&line), "{}", table.csv());
         for points in [&[][..], &[1.0, 1.0], &[1.0, f64::NAN]] {

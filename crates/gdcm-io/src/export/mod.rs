@@ -4,14 +4,21 @@
 
 mod all_results;
 mod corrected_models;
+mod corrections_struct;
 mod exported_model;
+mod exported_schedule;
 pub mod figure_file;
+mod json_to_matlab;
 mod lookup_table;
-mod matlab_struct;
+mod matlab_names;
+mod matlab_values;
+mod model_description;
 mod program_text;
 mod programs;
-mod scheduled;
-mod table_error;
+mod requested_models;
+mod schedule_heading;
+mod state_names;
+mod table_deviation;
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -19,8 +26,9 @@ use std::path::Path;
 use gdcm_method::correction::Pade;
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::{Analysis, AssessedCorrection};
+use gdcm_words::lead_price::price_text;
 
-use self::scheduled::Scheduled;
+use self::exported_schedule::ExportedSchedule;
 use crate::export_fault::ExportFault;
 use crate::file_error::FileError;
 use crate::files::export_contents::ExportContents;
@@ -136,7 +144,7 @@ impl<'e> Export<'e> {
         match schedule.lead_price() {
             Some(price) => {
                 let (inputs, outputs) = self.analysis.study.dataset.names_of_channels();
-                vec![price.words(&inputs, &outputs)]
+                vec![price_text(&price, &inputs, &outputs)]
             }
             None => Vec::new(),
         }
@@ -146,7 +154,7 @@ impl<'e> Export<'e> {
     ///
     /// # Errors
     /// Fails if the study has no schedule, or lacks the couplings that it requests.
-    fn scheduled(&self) -> Result<Scheduled<'e>, ExportFault> {
+    fn scheduled(&self) -> Result<ExportedSchedule<'e>, ExportFault> {
         let analysis = self.analysis;
         let schedule = match &analysis.schedule {
             Ok(schedule) => schedule,
@@ -154,8 +162,10 @@ impl<'e> Export<'e> {
         };
         let couplings = analysis
             .asked_couplings()
-            .map_err(|why| ExportFault::NoCouplings { why })?;
-        Ok(Scheduled {
+            .map_err(|error| ExportFault::NoCouplings {
+                why: error.words(&analysis.study.dataset.names_of_channels().0),
+            })?;
+        Ok(ExportedSchedule {
             schedule,
             dataset: &analysis.study.dataset,
             source: self.source,

@@ -11,9 +11,9 @@ use gdcm_method::correction::Channel;
 use gdcm_method::couplings::CouplingMatrices;
 use gdcm_method::schedule::{Airspeeds, Regression};
 
-use super::matlab_struct::LONGEST_NAME;
+use super::exported_schedule::{Curve, ExportedSchedule};
+use super::matlab_names::check_function_name;
 use super::program_text::{c_text, comment, number, number_list, python_text};
-use super::scheduled::{Curve, Scheduled};
 use super::{Export, ExportFormat, Exported};
 use crate::export_fault::ExportFault;
 use crate::files::export_contents::ExportContents;
@@ -115,7 +115,7 @@ impl Language {
     }
 
     /// Returns the text of the file; `name` is the file name without its extension.
-    fn text(&self, scheduled: &Scheduled<'_>, name: &str) -> io::Result<String> {
+    fn text(&self, scheduled: &ExportedSchedule<'_>, name: &str) -> io::Result<String> {
         let airspeeds = &scheduled.schedule.airspeeds;
         let inputs: Vec<Channel> = (0..scheduled.dataset.inputs().len())
             .map(Channel::Input)
@@ -156,7 +156,7 @@ impl Language {
 
     /// Returns the template values for the parts of the correction: name and source of each part,
     /// and the omitted parts, as string literals of the language.
-    fn contained_parts(&self, scheduled: &Scheduled<'_>) -> Value {
+    fn contained_parts(&self, scheduled: &ExportedSchedule<'_>) -> Value {
         let mut parts = Vec::new();
         for (name, source) in scheduled.contents.parts() {
             parts.push(context! { name, capitals => name.to_uppercase(), text => (self.text)(source.word()) });
@@ -205,7 +205,12 @@ impl Language {
     }
 
     /// Returns the template values of the inputs or the outputs; `capital` is "Input" or "Output".
-    fn side_values(&self, scheduled: &Scheduled<'_>, capital: &str, channels: &[Channel]) -> Value {
+    fn side_values(
+        &self,
+        scheduled: &ExportedSchedule<'_>,
+        capital: &str,
+        channels: &[Channel],
+    ) -> Value {
         let (inputs, outputs) = scheduled.dataset.names_of_channels();
         let mut entries = Vec::with_capacity(channels.len());
         for (index, &channel) in channels.iter().enumerate() {
@@ -290,7 +295,7 @@ impl Language {
 }
 
 /// Returns the template values of the second variable; `None` if the schedule has none.
-fn second_variable_values(scheduled: &Scheduled<'_>) -> Option<Value> {
+fn second_variable_values(scheduled: &ExportedSchedule<'_>) -> Option<Value> {
     let term = scheduled.schedule.second.as_ref()?;
     let name = format!("{}_{}", term.variable.name(), term.variable.unit());
     Some(context! {
@@ -304,7 +309,7 @@ fn second_variable_values(scheduled: &Scheduled<'_>) -> Option<Value> {
 }
 
 /// Returns the template values of the lead filters; `None` if the schedule has none.
-fn lead_values(scheduled: &Scheduled<'_>) -> Option<Value> {
+fn lead_values(scheduled: &ExportedSchedule<'_>) -> Option<Value> {
     let leads = scheduled.schedule.leads.as_ref()?;
     Some(context! {
         order => leads.design.settings().order.number(),
@@ -331,26 +336,4 @@ fn stem(path: &Path) -> String {
         Some(stem) => stem.to_string_lossy().into_owned(),
         None => String::new(),
     }
-}
-
-/// Reserved words of MATLAB (`iskeyword`) and GNU Octave, and the names of functions in the
-/// exported file.
-const KEYWORDS: &str = "break case catch classdef continue do else elseif end end_try_catch end_unwind_protect endfor \
-    endfunction endif endparfor endswitch endwhile for function global if otherwise parfor persistent return spmd switch try \
-    until unwind_protect unwind_protect_cleanup while gdcm_polynomial gdcm_table";
-
-/// Rejects a file name that is not a valid name of a MATLAB function.
-fn check_function_name(name: &str) -> Result<(), ExportFault> {
-    let is_name = name.starts_with(|first: char| first.is_ascii_alphabetic())
-        && name.len() <= LONGEST_NAME
-        && name
-            .chars()
-            .all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
-    let is_keyword = KEYWORDS.split(' ').any(|word| word == name);
-    if !is_name || is_keyword {
-        return Err(ExportFault::FunctionName {
-            found: name.to_owned(),
-        });
-    }
-    Ok(())
 }

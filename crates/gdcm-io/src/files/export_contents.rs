@@ -174,7 +174,11 @@ impl ExportContents {
     fn of_none(analysis: &Analysis) -> Self {
         let (couplings, left_out) = match analysis.asked_couplings() {
             Ok(fitted) => (PartSource::scheduled_if(fitted.is_some()), Vec::new()),
-            Err(why) => (PartSource::None, vec![LeftOutPart::Couplings(why)]),
+            Err(error) => {
+                let (inputs, _) = analysis.study.dataset.names_of_channels();
+                let why = error.words(&inputs);
+                (PartSource::None, vec![LeftOutPart::Couplings(why)])
+            }
         };
         Self {
             gains: PartSource::None,

@@ -1,4 +1,5 @@
-//! Models identified from flight records, `gdcm-identified` 1, written by `gdcm identify`.
+//! Files with models identified from flight records, `gdcm-identified` 1, written by `gdcm
+//! identify`. `model_collection` reads their models.
 
 use std::path::Path;
 
@@ -9,7 +10,7 @@ use gdcm_model::assembly::found_model::Facts;
 use gdcm_model::assembly::{ChannelLabel, FoundModel};
 use gdcm_model::dataset::Model;
 use gdcm_model::dataset::condition::ConditionRecord;
-use gdcm_model::dataset::unchecked_dataset::ModelDraft;
+use gdcm_model::dataset::dataset_draft::ModelDraft;
 use gdcm_model::names::channel_rule::ChannelRule;
 use gdcm_model::response::pole_estimate::PoleEstimate;
 use gdcm_model::units::neper_to_db;
@@ -17,11 +18,12 @@ use gdcm_sysid::identification::{CautionNote, Identification, ResponseEstimate};
 use gdcm_sysid::records::RecordChannels;
 use gdcm_sysid::spectra::response_estimate::EstimatePoint;
 
-use super::corrections_file::without_empty;
 use super::dataset_file::ModelText;
 use super::model_collection::{IDENTIFIED, model_text};
 use crate::file_error::FileError;
-use crate::json_text::{Nested, write_compact};
+use crate::json_empty_members::without_empty;
+use crate::json_reading::Nested;
+use crate::json_writing::write_compact;
 use crate::output_set::OutputSet;
 
 /// Identification results and the records on which they are based, as written to a file.
@@ -82,17 +84,17 @@ pub fn add_identified(
     }
     let mut records = Vec::with_capacity(results.records.len());
     for (index, record) in results.records.iter().enumerate() {
-        records.push(record_text(found, index, record));
+        records.push(record_json(found, index, record));
     }
     let text = IdentifiedText {
         format: IDENTIFIED.name,
         version: IDENTIFIED.version,
         models,
         measured: measured_text(&found.measured),
-        poles: found.poles.iter().map(pole_text).collect(),
-        validation: validation_text(found),
+        poles: found.poles.iter().map(pole_json).collect(),
+        validation: validation_json(found),
         records,
-        cautions: results.cautions.iter().map(caution_text).collect(),
+        cautions: results.cautions.iter().map(caution_json).collect(),
         reading: results.reading,
     };
     outputs.add(path, |file| write_compact(&text, file))
@@ -118,7 +120,7 @@ fn label(rule: &ChannelRule) -> ChannelLabel {
 /// Returns the validation results: the cost per degree of freedom of the fitted records and of the
 /// held-out records, for the held-out records also normalised with the uncertainty of the model; in
 /// the time domain, the fit of each output \[%\] and Theil's coefficient for the held-out records.
-fn validation_text(found: &Identification) -> Value {
+fn validation_json(found: &Identification) -> Value {
     let (fit_percent, theil) = match &found.validation {
         Some(in_time) => (json!(in_time.fit_percent), json!(in_time.theil)),
         None => (json!([]), json!([])),
@@ -179,7 +181,7 @@ fn response_array(
 }
 
 /// Converts a caution to JSON, with the name of its record if it concerns a single record.
-fn caution_text(note: &CautionNote) -> Value {
+fn caution_json(note: &CautionNote) -> Value {
     let single_record = match note.records.as_slice() {
         [record] => Some(record),
         _ => None,
@@ -196,7 +198,7 @@ fn caution_text(note: &CautionNote) -> Value {
 }
 
 /// Returns a pole, with the standard deviation of its position in the complex plane.
-fn pole_text(estimate: &PoleEstimate) -> Value {
+fn pole_json(estimate: &PoleEstimate) -> Value {
     json!({
         "re": estimate.pole.re,
         "im": estimate.pole.im,
@@ -207,7 +209,7 @@ fn pole_text(estimate: &PoleEstimate) -> Value {
 
 /// Describes the record at `index`: first and last time \[s\] of the used part and of each used
 /// segment, and the reasons why other segments were not used.
-fn record_text(found: &Identification, index: usize, record: &ConditionRecord) -> Value {
+fn record_json(found: &Identification, index: usize, record: &ConditionRecord) -> Value {
     let mut reasons = Vec::new();
     if let Some(used) = found.record_uses.get(index) {
         for gap in &used.gaps {

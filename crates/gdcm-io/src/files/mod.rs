@@ -1,12 +1,16 @@
 //! File formats of this program.
 
-pub mod beginning;
+pub mod beginning_check;
 pub mod corrections_file;
 pub mod dataset_file;
 pub mod export_contents;
+pub mod first_start;
 pub mod identified_models;
+pub mod levels_and_tolerances;
 pub mod model_collection;
+pub mod opened_file;
+pub mod recent_files;
+pub mod recovery_file;
 pub mod requirements_file;
 pub mod rules_file;
 pub mod study_file;
-pub mod user_state;

@@ -1,4 +1,5 @@
-//! Model files, `gdcm-models` 1, written by `gdcm convert`.
+//! Model files, `gdcm-models` 1, written by `gdcm convert` and, for corrected models, by `gdcm
+//! export`. Models in `gdcm-identified` files have the same form and are read here too.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -9,15 +10,16 @@ use serde_json::Value;
 use gdcm_model::assembly::found_model::Facts;
 use gdcm_model::assembly::{ChannelLabel, FoundModel};
 use gdcm_model::dataset::Channel;
+use gdcm_model::dataset::dataset_draft::ModelDraft;
 use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_MODELS_IN_ALL};
 use gdcm_model::dataset::model::{Origin, Provenance};
 use gdcm_model::dataset::state_space::Timing;
-use gdcm_model::dataset::unchecked_dataset::ModelDraft;
 use gdcm_model::whole_number::whole;
 
 use super::dataset_file::{LabelText, ModelText};
 use crate::file_error::FileError;
-use crate::json_text::{Format, Limited, list, write_compact};
+use crate::json_reading::{Format, Limited, list};
+use crate::json_writing::write_compact;
 use crate::output_set::OutputSet;
 use crate::reading_budget::ReadingBudget;
 
@@ -60,39 +62,39 @@ fn write_models(models: &[FoundModel], file: &mut dyn Write) -> io::Result<()> {
 }
 
 /// A corrected model with a description of the applied parts of the correction.
-pub(crate) struct ContainingModel {
+pub(crate) struct ModelWithContents {
     pub(crate) model: FoundModel,
     /// JSON object written under the key `contains`.
     pub(crate) contains: Value,
 }
 
 #[derive(Serialize)]
-struct ContainingModelText {
+struct ModelWithContentsText {
     #[serde(flatten)]
     model: ModelText,
     contains: Value,
 }
 
 #[derive(Serialize)]
-struct ContainingModelsText {
+struct ModelsWithContentsText {
     format: &'static str,
     version: u64,
-    models: Vec<ContainingModelText>,
+    models: Vec<ModelWithContentsText>,
 }
 
 /// Writes corrected models to a file.
-pub(crate) fn write_containing_models(
-    models: &[ContainingModel],
+pub(crate) fn write_models_with_contents(
+    models: &[ModelWithContents],
     file: &mut dyn Write,
 ) -> io::Result<()> {
     let mut texts = Vec::new();
     for containing in models {
-        texts.push(ContainingModelText {
+        texts.push(ModelWithContentsText {
             model: model_text(&containing.model),
             contains: containing.contains.clone(),
         });
     }
-    let text = ContainingModelsText {
+    let text = ModelsWithContentsText {
         format: MODELS.name,
         version: MODELS.version,
         models: texts,

@@ -11,14 +11,16 @@ use gdcm_model::assembly::{RowRule, Rules, UnitRule};
 use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_PAIRS};
 use gdcm_model::dataset::location::Location;
 use gdcm_model::names::channel_rule::ChannelRule;
-use gdcm_model::names::name_pattern::{NamePattern, standard_patterns};
+use gdcm_model::names::{NamePattern, standard_patterns};
 use gdcm_model::whole_number::whole;
 
-use crate::file_error::{ContentError, ContentFault, FileError};
-use crate::json_text::{Format, list, write_pretty};
+use crate::content_fault::{ContentError, ContentFault};
+use crate::file_error::FileError;
+use crate::file_reading::Source;
+use crate::json_reading::{Format, list};
+use crate::json_writing::write_pretty;
 use crate::output_set::OutputSet;
 use crate::reading_budget::ReadingBudget;
-use crate::source::Source;
 
 const RULES_EXTENSION: &str = "gdcm-rules.json";
 
@@ -53,13 +55,64 @@ pub fn add_rules(rules: &Rules, path: &Path, outputs: &mut OutputSet) -> Result<
     outputs.add(path, |file| write_pretty(&text, file))
 }
 
-/// Returns the error for an entry that contains an unexpected word.
-fn word_error(entry: String, expected: &str, found: String) -> ContentError {
-    let fault = ContentFault::Word {
-        expected: expected.to_owned(),
-        found,
-    };
-    ContentError::new(Location::entry(entry), fault)
+/// Format and version of a rules file.
+pub(crate) const FORMAT: Format = Format {
+    name: "gdcm-rules",
+    version: 1,
+};
+
+/// Maximum number of patterns, and maximum number of conversions, in a rules file.
+const MOST_PATTERNS: usize = 200;
+
+/// Maximum number of declarations in a rules file.
+const MOST_DECLARATIONS: usize = 1000;
+
+#[derive(Deserialize, Serialize)]
+pub(crate) struct RulesText {
+    pub(crate) format: String,
+    #[serde(deserialize_with = "whole")]
+    pub(crate) version: u64,
+    pub(crate) name: String,
+    #[serde(default)]
+    pub(crate) description: String,
+    #[serde(deserialize_with = "list::<MOST_CHANNELS, _, _>")]
+    pub(crate) inputs: Vec<ChannelRule>,
+    #[serde(deserialize_with = "list::<MOST_CHANNELS, _, _>")]
+    pub(crate) outputs: Vec<ChannelRule>,
+    #[serde(default, deserialize_with = "list::<MOST_PAIRS, _, _>")]
+    pub(crate) on_axis: Vec<(String, String)>,
+    pub(crate) band_rad_s: [f64; 2],
+    #[serde(default, deserialize_with = "list::<MOST_PATTERNS, _, _>")]
+    pub(crate) conversions: Vec<UnitRule>,
+    #[serde(default = "standard", deserialize_with = "list::<MOST_PATTERNS, _, _>")]
+    pub(crate) patterns: Vec<String>,
+    /// Channel signs that apply to all files.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub(crate) signs: Signs,
+    /// Channel signs that apply to the models of a role, "identified" or "physics".
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub(crate) role_signs: BTreeMap<String, Signs>,
+    /// Channel units, factors and signs that apply to a role, a folder or a file.
+    #[serde(
+        default,
+        skip_serializing_if = "Vec::is_empty",
+        deserialize_with = "list::<MOST_DECLARATIONS, _, _>"
+    )]
+    pub(crate) declarations: Vec<ScopedDeclarations>,
+    /// Sample time \[s\] for models without a sample time; 0 for continuous time.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) sample_time_s: Option<f64>,
+    /// Column headings of tables, by file name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub(crate) headings: BTreeMap<String, Vec<String>>,
+    /// Rules for single models, by file and variable.
+    #[serde(default)]
+    pub(crate) models: BTreeMap<String, RowRule>,
+}
+
+/// Returns the patterns used for a file that contains none.
+fn standard() -> Vec<String> {
+    pattern_texts(standard_patterns())
 }
 
 impl RulesText {
@@ -98,8 +151,8 @@ impl RulesText {
             headings: self.headings,
             rows: self.models,
         };
-        for ScopedDeclarations { of, channels } in self.declarations {
-            rules.declare(of, &channels);
+        for ScopedDeclarations { scope, channels } in self.declarations {
+            rules.declare(scope, &channels);
         }
         Ok(rules)
     }
@@ -122,7 +175,7 @@ impl RulesText {
     /// Rejects invalid declarations for roles, folders, files and single models.
     fn check_declarations(&self) -> Result<(), ContentError> {
         for scoped in &self.declarations {
-            check_declarations(&format!("declarations, {}", scoped.of), &scoped.channels)?;
+            check_declarations(&format!("declarations, {}", scoped.scope), &scoped.channels)?;
         }
         for (key, row) in &self.models {
             check_declarations(&format!("models, {key}"), &row.declarations())?;
@@ -205,64 +258,13 @@ fn pattern_texts(patterns: &[NamePattern]) -> Vec<String> {
         .collect()
 }
 
-/// Format and version of a rules file.
-pub(crate) const FORMAT: Format = Format {
-    name: "gdcm-rules",
-    version: 1,
-};
-
-/// Maximum number of patterns, and maximum number of conversions, in a rules file.
-const MOST_PATTERNS: usize = 200;
-
-/// Maximum number of declarations in a rules file.
-const MOST_DECLARATIONS: usize = 1000;
-
-#[derive(Deserialize, Serialize)]
-pub(crate) struct RulesText {
-    pub(crate) format: String,
-    #[serde(deserialize_with = "whole")]
-    pub(crate) version: u64,
-    pub(crate) name: String,
-    #[serde(default)]
-    pub(crate) description: String,
-    #[serde(deserialize_with = "list::<MOST_CHANNELS, _, _>")]
-    pub(crate) inputs: Vec<ChannelRule>,
-    #[serde(deserialize_with = "list::<MOST_CHANNELS, _, _>")]
-    pub(crate) outputs: Vec<ChannelRule>,
-    #[serde(default, deserialize_with = "list::<MOST_PAIRS, _, _>")]
-    pub(crate) on_axis: Vec<(String, String)>,
-    pub(crate) band_rad_s: [f64; 2],
-    #[serde(default, deserialize_with = "list::<MOST_PATTERNS, _, _>")]
-    pub(crate) conversions: Vec<UnitRule>,
-    #[serde(default = "standard", deserialize_with = "list::<MOST_PATTERNS, _, _>")]
-    pub(crate) patterns: Vec<String>,
-    /// Channel signs that apply to all files.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub(crate) signs: Signs,
-    /// Channel signs that apply to the models of a role, "identified" or "physics".
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub(crate) role_signs: BTreeMap<String, Signs>,
-    /// Channel units, factors and signs that apply to a role, a folder or a file.
-    #[serde(
-        default,
-        skip_serializing_if = "Vec::is_empty",
-        deserialize_with = "list::<MOST_DECLARATIONS, _, _>"
-    )]
-    pub(crate) declarations: Vec<ScopedDeclarations>,
-    /// Sample time \[s\] for models without a sample time; 0 for continuous time.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) sample_time_s: Option<f64>,
-    /// Column headings of tables, by file name.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub(crate) headings: BTreeMap<String, Vec<String>>,
-    /// Rules for single models, by file and variable.
-    #[serde(default)]
-    pub(crate) models: BTreeMap<String, RowRule>,
-}
-
-/// Returns the patterns used for a file that contains none.
-fn standard() -> Vec<String> {
-    pattern_texts(standard_patterns())
+/// Returns the error for an entry that contains an unexpected word.
+fn word_error(entry: String, expected: &str, found: String) -> ContentError {
+    let fault = ContentFault::Word {
+        expected: expected.to_owned(),
+        found,
+    };
+    ContentError::new(Location::entry(entry), fault)
 }
 
 #[cfg(test)]

@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use gdcm_model::message_text::sanitized;
 
 use crate::file_error::FileError;
+use crate::file_reading::kind_of;
 use crate::formats::text::TEXT;
 use crate::formats::{ending_of, importer_of, is_known};
-use crate::source::kind_of;
 
 /// Maximum number of listed files.
 pub(crate) const MOST_FILES: usize = 20_000;
@@ -80,7 +80,8 @@ struct Listing<'p> {
 }
 
 impl Listing<'_> {
-    /// Adds the files in a folder and in its subfolders, down to `deeper` levels of subfolders.
+    /// Adds the files in a folder and in its subfolders, down to `deeper` levels of subfolders; each
+    /// recursion lowers `deeper` by 1.
     ///
     /// # Errors
     /// [`FileError`] if a folder cannot be read or is nested too deeply, or if there are too many
@@ -161,6 +162,7 @@ fn natural_key(name: &str) -> Vec<TextAndNumber> {
     let mut parts = Vec::new();
     let mut text = String::new();
     let mut digits = String::new();
+    // A part ends where another character follows its digits.
     for letter in name.chars() {
         if letter.is_ascii_digit() && digits.len() < LONGEST {
             digits.push(letter);

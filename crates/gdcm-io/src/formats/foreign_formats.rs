@@ -21,9 +21,9 @@ const FROM_PARQUET: &str = "save it as CSV: pandas.read_parquet(\"{file}\").to_c
 const FROM_PICKLE: &str = "save its arrays: numpy.savez(\"{stem}.npz\", A=A, B=B, C=C, D=D)";
 const FROM_NETCDF: &str =
     "save it as CSV or as netCDF-4, which is HDF5: nccopy -k nc4 \"{file}\" \"{stem}.h5\"";
-
 const AS_CSV: &str = "save it as a CSV or MATLAB file";
 
+/// All recognised formats that are not supported.
 const FOREIGN: [Foreign; 13] = [
     Foreign {
         signatures: &[b"PAR1"],
@@ -108,6 +108,7 @@ fn unsupported(bytes: &[u8]) -> VariableFault {
     }
 }
 
+/// Returns the format with which the bytes begin.
 fn find_foreign(bytes: &[u8]) -> Option<&'static Foreign> {
     FOREIGN.iter().find(|format| {
         format

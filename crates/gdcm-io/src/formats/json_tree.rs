@@ -121,6 +121,8 @@ impl<'de> Visitor<'de> for TreeReader<'_> {
             self.take(size_of::<(String, Tree)>() + ALLOCATION + name.len())?;
             members.push((name, entries.next_value_seed(self)?));
         }
+        // A stable sort of the members in reverse order puts the last of equal names first, which
+        // `dedup_by` keeps.
         members.reverse();
         members.sort_by(|(name, _), (other_name, _)| name.cmp(other_name));
         members.dedup_by(|(later, _), (earlier, _)| later == earlier);

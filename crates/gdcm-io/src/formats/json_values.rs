@@ -1,87 +1,24 @@
-//! JSON files, gzip-compressed or not: datasets and models in this program's formats, and any other
-//! JSON as variables. Other gzip-compressed contents are passed to the reader of their format.
+//! Conversion of JSON of any structure to variables.
 
-use std::path::Path;
-
-use crate::file_error::FileError;
-use crate::files::dataset_file::{DatasetOrigin, dataset_from};
-use crate::files::model_collection::found_models;
+use crate::formats::element_order::Places;
 use crate::formats::json_tree::Tree;
-use crate::formats::strides::Places;
 use crate::formats::variables::{
     Array, CellArray, ElementKind, StructArray, TextArray, Value, Variable,
 };
-use crate::formats::{Contents, Importer, importer_of};
-use crate::location::Outline;
 use crate::reading_budget::{ReadingBudget, VariableFault};
-use crate::source::{GZIP_MAGIC, Source, text_of, without_mark};
 
-/// Estimated memory of the three allocations for shape, name and number \[bytes\].
-const OVERHEAD: u64 = 3 * 64;
-/// Estimated memory of a single value \[bytes\].
-const VALUE: u64 = size_of::<Value>() as u64 + OVERHEAD;
+/// Estimated memory of a single value \[bytes\]: the value, and the three allocations for shape,
+/// name and number.
+const VALUE_MEMORY: u64 = size_of::<Value>() as u64 + 3 * 64;
 /// Maximum number of array dimensions.
 const MOST_DIMENSIONS: usize = 3;
 
-/// Importer of JSON, and of any gzip-compressed file.
-pub(crate) const JSON: Importer = Importer {
-    name: "JSON",
-    endings: &["json", "gz"],
-    recognises: |bytes, ending| {
-        bytes.starts_with(&GZIP_MAGIC)
-            || ending == "json"
-            || bytes.trim_ascii_start().first() == Some(&b'{')
-    },
-    read: read_json,
-};
-
-fn read_json(bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError> {
-    let text = text_of(bytes, path, budget)?;
-    let text = without_mark(&text);
-    let is_packed = bytes.starts_with(&GZIP_MAGIC);
-    if is_packed && !matches!(text.trim_ascii_start().first(), Some(b'{' | b'[')) {
-        return read_unpacked(text, path, budget);
-    }
-    let format = Outline::format_of(text, budget);
-    budget
-        .work(text.len() as u64, "")
-        .map_err(|fault| FileError::variables(path, fault))?;
-    match format.as_deref() {
-        Some("\"gdcm-dataset\"") => {
-            // Pass on the compressed bytes: `Source::of` decompresses them again.
-            let source = Source::of(bytes, path, budget)?;
-            let loaded = dataset_from(&source, DatasetOrigin::File(path.to_owned()), budget)?;
-            let dataset = loaded.dataset.as_ref().clone();
-            return Ok(Contents::Dataset(Box::new(dataset), loaded.cautions));
-        }
-        Some("\"gdcm-models\"" | "\"gdcm-identified\"") => {
-            if let Some((models, unknown)) = found_models(text, path, budget) {
-                return Ok(Contents::Models(models, unknown));
-            }
-        }
-        _ => {}
-    }
-    Contents::row_major(read_variables(text, budget), path)
-}
-
-/// Reads decompressed content that is not JSON, in the format given by the content and by the file
-/// name without ".gz".
-fn read_unpacked(
-    text: &[u8],
-    path: &Path,
-    budget: &ReadingBudget<'_>,
-) -> Result<Contents, FileError> {
-    let importer = importer_of(text, &path.with_extension(""));
-    if importer.name == JSON.name {
-        Contents::row_major(read_variables(text, budget), path)
-    } else {
-        (importer.read)(text, path, budget)
-    }
-}
-
 /// Reads the members of a JSON object as variables; any other JSON value becomes a variable
 /// "models".
-fn read_variables(text: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
+pub(super) fn read_variables(
+    text: &[u8],
+    budget: &ReadingBudget<'_>,
+) -> Result<Vec<Variable>, VariableFault> {
     let members = match Tree::read(text, budget)? {
         Tree::Object(members) => members,
         other => vec![("models".to_owned(), other)],
@@ -96,8 +33,9 @@ fn read_variables(text: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variabl
     Ok(variables)
 }
 
+/// Converts a JSON value.
 fn value_from(json: Tree, budget: &ReadingBudget<'_>) -> Result<Value, VariableFault> {
-    budget.take(1, VALUE, "")?;
+    budget.take(1, VALUE_MEMORY, "")?;
     Ok(match json {
         Tree::Null => Value::empty(),
         Tree::Bool(flag) => Value::truth(flag),
@@ -159,6 +97,7 @@ fn number_array(list: &[Tree], budget: &ReadingBudget<'_>) -> Result<Option<Arra
         return Ok(Some(Array::matrix(1, count, values)));
     }
     budget.take(values.len() as u64, 8, "")?;
+    // Reorder the numbers from row-major order, as in the text, to column-major order.
     let re = Places::row_major(&shape)
         .into_iter()
         .flatten()

@@ -11,8 +11,9 @@ use gdcm_study::decisions::setting::SETTINGS;
 use gdcm_study::decisions::setting_row::{Kind, Setting};
 
 use crate::files::study_file::MOST_VARIANTS;
+use crate::formats::file_import::LARGEST_FILE;
+use crate::formats::folders::{DEEPEST, MOST_FILES};
 use crate::formats::recorded_columns::MOST_RECORDS;
-use crate::formats::{DEEPEST, LARGEST_FILE, MOST_FILES};
 use crate::import::recognise::{DEEPEST as DEEPEST_VALUE, MOST_FOUND};
 use crate::reading_budget::{MOST_MEMORY, MOST_WORK};
 

@@ -1,5 +1,5 @@
-//! Reading of files from other programs: the format interface, the list of formats, and the reading
-//! of folders.
+//! Formats of files from other programs: the interface of a format, the list of all formats, and
+//! the choice among them. `file_import.rs` reads files and folders with them.
 //!
 //! ```text
 //! bytes -> format, by the first bytes         (the ending decides only between text formats)
@@ -7,12 +7,19 @@
 //!       -> models or records                  (recognise)
 //! ```
 //!
+//! Readers take memory and work from a `ReadingBudget` before they use it. The last argument is the
+//! name of the variable in an error; where it is empty, a caller adds the name or there is none. A
+//! factor of 2 allows for vectors, which grow by doubling.
+//!
 //! A new format is an `Importer` in a file of its own in this folder, and an entry in `FORMATS`.
 
+pub mod element_order;
+mod file_import;
 mod folders;
 mod foreign_formats;
+mod json_and_gzip;
 mod json_tree;
-pub(crate) mod json_values;
+mod json_values;
 pub(crate) mod logs;
 pub mod mat;
 pub(crate) mod mat73;
@@ -20,7 +27,7 @@ pub mod npy;
 pub(crate) mod octave;
 pub(crate) mod recorded_columns;
 pub(crate) mod sparse_matrix;
-pub mod strides;
+pub(crate) mod stored_number;
 pub mod text;
 pub mod variables;
 pub(crate) mod zip_files;
@@ -28,35 +35,28 @@ pub(crate) mod zip_files;
 #[cfg(test)]
 mod limits_tests;
 
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::path::Path;
 
 use gdcm_model::assembly::FoundModel;
 use gdcm_model::dataset::Dataset;
 
 use self::variables::Variable;
 use crate::file_error::FileError;
-use crate::formats::folders::list_files;
 use crate::formats::foreign_formats::FOREIGN_FORMAT;
-use crate::formats::json_values::JSON;
+use crate::formats::json_and_gzip::JSON;
 use crate::formats::logs::{BLACKBOX, DATAFLASH, DATAFLASH_TEXT, ULOG};
 use crate::formats::mat::MAT;
 use crate::formats::mat73::HDF5;
 use crate::formats::npy::NPY;
 use crate::formats::octave::{OCTAVE_BINARY, OCTAVE_TEXT};
 use crate::formats::recorded_columns::Columns;
-use crate::formats::text::{LITERALS, TEXT};
+use crate::formats::text::{MATLAB_STATEMENTS, TEXT};
 use crate::formats::zip_files::ZIP;
 use crate::reading_budget::{ReadingBudget, VariableFault};
-use crate::source::{read_bytes, sha256};
 
+pub use file_import::FolderProgress;
+pub(crate) use file_import::{ImportedFile, import, import_bytes, import_file, with_file_name};
 pub use folders::sources_folder;
-#[cfg(test)]
-pub(crate) use folders::{DEEPEST, MOST_FILES};
-
-/// Maximum file size \[bytes\].
-pub(crate) const LARGEST_FILE: u64 = 512 << 20;
 
 /// A file format and the functions that recognise and read it.
 pub(crate) struct Importer {
@@ -84,7 +84,7 @@ static FORMATS: [Importer; 14] = [
     OCTAVE_TEXT,
     DATAFLASH_TEXT,
     JSON,
-    LITERALS,
+    MATLAB_STATEMENTS,
     TEXT,
 ];
 
@@ -181,98 +181,6 @@ fn ending_of(path: &Path) -> String {
     }
 }
 
-/// Receives the progress of reading files, and can cancel it.
-pub trait FolderProgress {
-    /// Receives the start of a file: its number, counted from 1, the number of files, and its name.
-    fn reading(&self, number: usize, count: usize, name: &str);
-    /// Receives the memory taken for the contents of a file \[bytes\].
-    fn taken(&self, _bytes: u64) {}
-    /// Returns the flag that cancels the reading when set.
-    fn stop(&self) -> Arc<AtomicBool> {
-        Arc::default()
-    }
-}
-
-/// A file that was read.
-pub(crate) struct ImportedFile<'f> {
-    pub(crate) path: &'f Path,
-    /// Path relative to the requested folder; for a file given by itself, its name.
-    pub(crate) name: &'f str,
-    /// SHA-256 of the file in lower-case hexadecimal.
-    pub(crate) sha256: String,
-    pub(crate) contents: Contents,
-}
-
-/// Reads a file whose bytes are in memory, in the format of the bytes.
-pub(crate) fn import_bytes<'f>(
-    bytes: &[u8],
-    path: &'f Path,
-    name: &'f str,
-    budget: &ReadingBudget<'_>,
-) -> Result<ImportedFile<'f>, FileError> {
-    let contents = (importer_of(bytes, path).read)(bytes, path, budget)?;
-    Ok(ImportedFile {
-        path,
-        name,
-        sha256: sha256(bytes, path, budget)?,
-        contents,
-    })
-}
-
-/// Reads a file in the format of its bytes.
-///
-/// # Errors
-/// [`FileError`] if the file exceeds `LARGEST_FILE`, or cannot be read.
-pub(crate) fn import_file<'f>(
-    path: &'f Path,
-    name: &'f str,
-    budget: &ReadingBudget<'_>,
-) -> Result<ImportedFile<'f>, FileError> {
-    import_bytes(&read_bytes(path, LARGEST_FILE, budget)?, path, name, budget)
-}
-
-/// Reads files and folders recursively and passes each file to `take`. Returns the number of files,
-/// and the reasons why files were skipped or could not be read. If only a single file is requested,
-/// its error is returned instead.
-pub(crate) fn import(
-    paths: &[PathBuf],
-    progress: &dyn FolderProgress,
-    mut take: impl FnMut(ImportedFile<'_>, &ReadingBudget<'_>) -> Result<(), FileError>,
-) -> Result<(usize, Vec<String>), FileError> {
-    let mut faults = Vec::new();
-    let files = list_files(paths, &mut faults)?;
-    let is_single = paths.len() == 1 && files.len() == 1;
-    let stop = progress.stop();
-    let report_memory = |taken| progress.taken(taken);
-    for (index, file) in files.iter().enumerate() {
-        if stop.load(Ordering::Relaxed) {
-            break;
-        }
-        progress.reading(index + 1, files.len(), &file.name);
-        let budget = ReadingBudget::default()
-            .stopped_by(Arc::clone(&stop))
-            .with_memory_callback(&report_memory);
-        let read = import_file(&file.path, &file.name, &budget);
-        match read.and_then(|imported| take(imported, &budget)) {
-            Ok(()) => {}
-            Err(error) if is_single => return Err(error),
-            Err(error) => faults.push(error.to_string()),
-        }
-    }
-    Ok((files.len(), faults))
-}
-
-/// Puts the file name before each remark that does not begin with it.
-pub(crate) fn of_file(name: &str, words: Vec<String>) -> impl Iterator<Item = String> {
-    words.into_iter().map(move |words| {
-        if words.starts_with(name) {
-            words
-        } else {
-            format!("{name}: {words}")
-        }
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -284,16 +192,19 @@ mod tests {
         assert_eq!(format(b"PK\x03\x04", "a.txt"), ZIP.name);
         assert_eq!(format(b"\x89HDF\r\n\x1a\n", "a.mat"), HDF5.name);
         assert_eq!(format(b" {\"A\": 1}", "a.txt"), JSON.name);
-        assert_eq!(format(b"A = [1 2];", "a.m"), LITERALS.name);
+        assert_eq!(format(b"A = [1 2];", "a.m"), MATLAB_STATEMENTS.name);
         assert_eq!(format(b"1,2\n3,4\n", "a.csv"), TEXT.name);
         // The content decides, not the extension.
         assert_eq!(
             format(b"% a model\nA = [1 2\n 3 4];", "a.txt"),
-            LITERALS.name
+            MATLAB_STATEMENTS.name
         );
         assert_eq!(format(b"% omega, re, im\n1,2,3\n4,5,6\n", "a.m"), TEXT.name);
         assert_eq!(format(b"Fs = 50\nt,P\n0,1\n1,2\n", "a.txt"), TEXT.name);
-        assert_eq!(format(b"A = [\n1 2\n3 4\n];", "a.m"), LITERALS.name);
+        assert_eq!(
+            format(b"A = [\n1 2\n3 4\n];", "a.m"),
+            MATLAB_STATEMENTS.name
+        );
         assert_eq!(
             format(
                 b"# Created by Octave 7.3.0\n# name: A\n# type: matrix\n",

@@ -1,4 +1,7 @@
 //! Sparse matrices, and their expansion to full matrices.
+//!
+//! A file gives [`SparseEntries`] (row and column of each element), or [`CompressedColumns`], which
+//! [`CompressedColumns::into_entries`] converts; [`SparseEntries::full_matrix`] expands them.
 
 use crate::formats::variables::{Array, ElementKind};
 use crate::reading_budget::{ReadingBudget, VariableFault};
@@ -29,8 +32,8 @@ impl SparseEntries {
     ) -> Result<Array, VariableFault> {
         let [height, width] = self.shape;
         let count = (height as u64).saturating_mul(width as u64);
-        let bytes = if self.im.is_some() { 16 } else { 8 };
-        budget.take(count, bytes, variable)?;
+        let bytes_per_element = if self.im.is_some() { 16 } else { 8 };
+        budget.take(count, bytes_per_element, variable)?;
         let im = match &self.im {
             Some(im) => Some(self.expand(im).ok_or_else(&outside)?),
             None => None,
@@ -52,6 +55,7 @@ impl SparseEntries {
             if row >= height || column >= width {
                 return None;
             }
+            // Column-major order: a column has `height` elements.
             *full.get_mut(column * height + row)? += value;
         }
         Some(full)
@@ -89,8 +93,9 @@ impl CompressedColumns {
         let mut rows = self.rows;
         rows.truncate(stored);
         let mut columns = Vec::new();
-        for (column, ends) in self.starts.windows(2).enumerate() {
-            columns.extend(std::iter::repeat_n(column, ends[1] - ends[0]));
+        // The elements of column j are those from starts[j] up to, but excluding, starts[j + 1].
+        for (column, range) in self.starts.windows(2).enumerate() {
+            columns.extend(std::iter::repeat_n(column, range[1] - range[0]));
         }
         Some(SparseEntries {
             shape: self.shape,

@@ -3,6 +3,12 @@
 //! All readers of such files (MATLAB, NumPy, text) return these values; what they mean for models
 //! and records is determined elsewhere.
 
+/// Memory charged for a record in addition to its fields \[bytes\]; positive also for records
+/// without fields.
+pub(crate) const RECORD_MEMORY: u64 = 64;
+/// Memory charged for a field in addition to its name and values \[bytes\].
+const FIELD_MEMORY: usize = 48;
+
 /// Kind of the elements of an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ElementKind {
@@ -102,13 +108,6 @@ pub struct StructArray {
     pub fields: Vec<(String, Vec<Value>)>,
 }
 
-/// Memory charged for a record in addition to its fields \[bytes\]; positive also for records
-/// without fields.
-pub(crate) const RECORD: u64 = 64;
-
-/// Memory charged for a field in addition to its name and values \[bytes\].
-const FIELD: usize = 48;
-
 /// Object of a class, or an array of such objects.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object {
@@ -192,7 +191,7 @@ impl Value {
                 let names: usize = records
                     .fields
                     .iter()
-                    .map(|(name, _)| FIELD + text_memory(name))
+                    .map(|(name, _)| FIELD_MEMORY + text_memory(name))
                     .sum();
                 size_of_val(records.shape.as_slice()) + names
             }

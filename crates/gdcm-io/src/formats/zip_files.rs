@@ -19,8 +19,8 @@ const LARGEST_RATIO: u64 = 1032;
 /// Number of bytes decompressed between two checks against the budget.
 const CHUNK: u64 = 1 << 20;
 
-/// Extension of NumPy arrays.
-const ARRAY: &str = ".npy";
+/// End of the names of NumPy arrays.
+const ARRAY_ENDING: &str = ".npy";
 
 /// Importer of zip archives: NumPy archives (`.npz`), and archives of files with any other format.
 pub(crate) const ZIP: Importer = Importer {
@@ -38,7 +38,7 @@ pub(crate) fn read_archive(
     budget: &ReadingBudget<'_>,
 ) -> Result<Contents, VariableFault> {
     let mut reading = ArchiveReading::default();
-    visit_files(bytes, |file| reading.take(file, budget))?;
+    visit_files(bytes, |file| reading.add(file, budget))?;
     Ok(Contents::Archive {
         variables: reading.variables,
         files: reading.files,
@@ -57,7 +57,8 @@ struct ArchiveReading {
 }
 
 impl ArchiveReading {
-    fn take(
+    /// Reads a file in the archive: an array, a file in another known format, or one to be ignored.
+    fn add(
         &mut self,
         file: &ZipFile<'_, '_>,
         budget: &ReadingBudget<'_>,
@@ -66,15 +67,15 @@ impl ArchiveReading {
         // the archive suffice to create it.
         let overhead = size_of::<Variable>() + size_of::<Contents>() + file.path.len();
         budget.take(1, overhead as u64, "")?;
-        if let Some(name) = file.path.strip_suffix(ARRAY) {
-            return self.take_array(file, name, budget);
+        if let Some(name) = file.path.strip_suffix(ARRAY_ENDING) {
+            return self.add_array(file, name, budget);
         }
         let path = Path::new(file.path);
         if is_known(path) {
             let bytes = file.unpack(file.path, budget)?;
             let importer = importer_of(&bytes, path);
             if importer.name != ZIP.name {
-                return self.take_contents(file, (importer.read)(&bytes, path, budget));
+                return self.add_contents(file, (importer.read)(&bytes, path, budget));
             }
         }
         self.ignored.push(format!(
@@ -84,7 +85,8 @@ impl ArchiveReading {
         Ok(())
     }
 
-    fn take_array(
+    /// Reads an array, which becomes the variable `name`.
+    fn add_array(
         &mut self,
         file: &ZipFile<'_, '_>,
         name: &str,
@@ -104,7 +106,7 @@ impl ArchiveReading {
     ///
     /// # Errors
     /// Only an exhausted budget.
-    fn take_contents(
+    fn add_contents(
         &mut self,
         file: &ZipFile<'_, '_>,
         contents: Result<Contents, FileError>,
@@ -191,11 +193,13 @@ impl ZipFile<'_, '_> {
         unpacked.map_err(|error| self.damaged(name, error.to_string()))
     }
 
+    /// Returns the error for a damaged entry.
     fn damaged(&self, name: &str, what: impl Into<String>) -> VariableFault {
         VariableFault::damaged(name, what, self.offset)
     }
 }
 
+/// Returns the error for an entry that cannot be unpacked, with a remedy.
 fn unsupported(name: &str, what: &str) -> VariableFault {
     VariableFault::unsupported(
         name,
@@ -206,6 +210,9 @@ fn unsupported(name: &str, what: &str) -> VariableFault {
 
 /// Reads a whole entry and compares its length; stops at the first byte beyond `length`. The
 /// archive reader compares the checksum at the end.
+///
+/// # Errors
+/// The inner error if the entry is damaged, the outer error if the reading is cancelled.
 fn read_whole(
     reader: impl Read,
     length: u64,
@@ -214,13 +221,13 @@ fn read_whole(
     let mut reader = reader.take(length.saturating_add(1));
     let mut unpacked = Vec::with_capacity(usize::try_from(length).unwrap_or(0));
     loop {
+        // No step of work, but an error if the reading is cancelled.
         budget.work(0, "")?;
         match reader.by_ref().take(CHUNK).read_to_end(&mut unpacked) {
             Ok(0) if unpacked.len() as u64 == length => return Ok(Ok(unpacked)),
             Ok(0) => {
                 return Ok(Err(std::io::Error::other(
-                    "its length differs from the stated \
-                length",
+                    "its length differs from the stated length",
                 )));
             }
             Ok(_) => {}

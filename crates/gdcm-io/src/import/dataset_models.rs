@@ -5,8 +5,8 @@ use std::path::Path;
 use gdcm_model::assembly::FoundModel;
 use gdcm_model::assembly::found_model::Facts;
 use gdcm_model::dataset::condition::ConditionRecord;
+use gdcm_model::dataset::dataset_draft::ModelDraft;
 use gdcm_model::dataset::model::Provenance;
-use gdcm_model::dataset::unchecked_dataset::ModelDraft;
 use gdcm_model::dataset::{BundleKind, Condition, Dataset};
 
 use crate::files::model_collection::labels;

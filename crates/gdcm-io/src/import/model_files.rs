@@ -15,7 +15,9 @@ use crate::formats::text::{
     TextTable, UnsaidUnit, read_matrices, read_matrix, read_table, split_complex,
 };
 use crate::formats::variables::Variable;
-use crate::formats::{Contents, FolderProgress, ImportedFile, import, import_bytes, of_file};
+use crate::formats::{
+    Contents, FolderProgress, ImportedFile, import, import_bytes, with_file_name,
+};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Key in [`Headings`] for all tables with as many columns as there are headings; any other key is
@@ -174,7 +176,7 @@ impl<'h> ModelReading<'h> {
                 for (inner, contents) in files {
                     self.add_archived_file(identity, &inner, contents, budget)?;
                 }
-                self.found.ignored.extend(of_file(name, ignored));
+                self.found.ignored.extend(with_file_name(name, ignored));
                 // `true`: the first index selects the matrix in NumPy arrays.
                 self.recognise(&variables, &[], identity, true, budget)
                     .map_err(error)?
@@ -281,8 +283,10 @@ impl<'h> ModelReading<'h> {
                 .or_default()
                 .extend(found.unused);
         }
-        self.found.faults.extend(of_file(name, found.faults));
-        self.found.ignored.extend(of_file(name, found.ignored));
+        self.found.faults.extend(with_file_name(name, found.faults));
+        self.found
+            .ignored
+            .extend(with_file_name(name, found.ignored));
     }
 
     /// Builds the models whose matrices are in separate files, and returns all models.

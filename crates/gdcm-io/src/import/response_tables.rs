@@ -2,9 +2,9 @@
 
 use gdcm_model::assembly::found_model::Facts;
 use gdcm_model::assembly::{ChannelLabel, FoundModel};
+use gdcm_model::dataset::dataset_draft::{ModelDraft, ResponseArray, ResponseDraft};
 use gdcm_model::dataset::measured_response::Estimate;
 use gdcm_model::dataset::model::{Origin, Provenance};
-use gdcm_model::dataset::unchecked_dataset::{ModelDraft, ResponseArray, ResponseDraft};
 
 use super::recognise::Found;
 use crate::files::model_collection::bare_draft;

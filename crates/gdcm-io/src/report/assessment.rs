@@ -1,115 +1,32 @@
-//! Report sections on the benefit of the scheduled correction, on the uncertainty of the results
-//! (M13), and on the meaning, benefit and cost of couplings in the physics models (M16).
-
-use std::sync::Arc;
+//! Report section on the benefit of the scheduled correction.
 
 use gdcm_method::fidelity::ACCEPTABLE;
 use gdcm_method::schedule::CostChange;
-use gdcm_model::dataset::{ConditionId, Pair, PairTable};
+use gdcm_model::dataset::{Pair, PairTable};
 use gdcm_model::number_format::decimals;
-use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_model::units::signed;
 use gdcm_plot::figure::assessment::{
-    assessment_figure, average_word, change_table, evidence_figure, usual_choice,
+    ChangeColumn, ChangeTable, assessment_figure, average_word, usual_choice,
 };
-use gdcm_plot::figure::axis::FrequencyUnit;
-use gdcm_plot::figure::poles::couplings_figure;
 use gdcm_study::results::analysis::Analysis;
 use gdcm_study::results::assessment_table::AssessmentTable;
-use gdcm_study::stages::engine::Engine;
-use gdcm_words::assessment::{
-    held_out_verdict, missing_cost_text, not_assessed_text, summary_text,
-};
-use gdcm_words::couplings::{
-    analysis_coupling_remarks, coupling_cost_table, coupling_matrix_tables, couplings_heading,
-    pole_table,
-};
+use gdcm_words::assessment::{missing_cost_text, not_assessed_text, summary_text};
 use gdcm_words::table::Table;
-use gdcm_words::uncertainty::{
-    bar_table, difference_table, difference_text, differences_summary, scatter_table,
-    second_variable_table,
-};
 
-use super::Unobtrusive;
-use super::page::{CONDITIONS_DRAWN, PAIRS_DRAWN, Page};
-
-/// Returns the analysis with confidence intervals, which are computed if missing.
-///
-/// # Errors
-/// [`Cancelled`] soon after `progress` requests it.
-pub(super) fn with_bars(
-    analysis: &Analysis,
-    engine: &mut Engine,
-    progress: &dyn Progress,
-) -> Result<Analysis, Cancelled> {
-    let uncertainty = match &analysis.uncertainty {
-        Some(uncertainty) => Arc::clone(uncertainty),
-        None => Arc::new(engine.uncertainty(analysis, &Unobtrusive(progress))?),
-    };
-    Ok(Analysis {
-        uncertainty: Some(uncertainty),
-        ..analysis.clone()
-    })
-}
-
-/// Adds the section on uncertainty; nothing if confidence intervals are not available.
-pub(super) fn add_uncertainty(page: &mut Page, analysis: &Analysis) {
-    let Some(uncertainty) = &analysis.uncertainty else {
-        return;
-    };
-    let dataset = &analysis.study.dataset;
-    page.section("Uncertainty");
-    page.paragraph(
-        "Each result is computed again with every other kept physics model, then with every other \
-        identified model, instead of the representative. The rms change due to the physics \
-        models is the trim uncertainty; the rms change due to the identified models, averaged \
-        with the other conditions, is the identification uncertainty. The half-width of a bar is \
-        Student's t times the root of the sum of their squares (M13). Differences that neither \
-        of them explains are a physical effect or a model-form error. An error common to all \
-        identified models is not detected, and a bar is not a bound.",
-    );
-    page.paragraph(&differences_summary(uncertainty));
-    let mut significant = Vec::new();
-    for difference in &uncertainty.differences {
-        if difference.is_significant(uncertainty.level) {
-            significant.push(format!(
-                "{}: {}.",
-                dataset.pair_name(difference.pair),
-                difference_text(difference, uncertainty.level)
-            ));
-        }
-    }
-    page.list(significant);
-    let pairs: Vec<Pair> = dataset
-        .measuring_pairs()
-        .marked()
-        .take(PAIRS_DRAWN)
-        .collect();
-    if let Some(figure) = evidence_figure(analysis, &pairs) {
-        let caption = "Shares of the variance, and standard deviations of ln k_o k_i, about the \
-            mean of each airspeed and about the schedule; above the bars, the ratio of the \
-            scatter to the expected scatter.";
-        page.figure(&figure, &figure.title, caption);
-    }
-    page.table(&scatter_table(dataset, uncertainty));
-    page.table(&difference_table(dataset, uncertainty).0);
-    page.table(&second_variable_table(dataset, uncertainty));
-    page.table(&bar_table(analysis, uncertainty));
-    if let Some(words) = held_out_verdict(analysis, usual_choice(analysis)) {
-        page.paragraph(&format!("Conditions {words}."));
-    }
-}
+use super::limits::{CONDITIONS_DRAWN, PAIRS_DRAWN};
+use super::page::Page;
+use super::wording::capital;
 
 /// Maximum number of responses in a figure, in four rows.
-const IN_A_FIGURE: usize = 12;
+const PAIRS_IN_A_FIGURE: usize = 12;
 /// Maximum number of conditions side by side in a table that fits on a page.
-const CONDITIONS: usize = 12;
+const CONDITIONS_SIDE_BY_SIDE: usize = 12;
 
 /// Adds the section on the change of J due to the scheduled correction.
 pub(super) fn add_assessment(page: &mut Page, analysis: &Analysis) {
     page.section("Assessment");
     let choice = usual_choice(analysis);
-    let table = AssessmentTable::of(analysis, choice);
+    let table = AssessmentTable::assess(analysis, choice);
     page.paragraph(&format!(
         "Change in J of the nominal model of each condition due to the scheduled correction; J is \
         the deviation from the identified representative, so negative changes are improvements. \
@@ -164,19 +81,10 @@ fn add_responses(
     add_tables(page, analysis, table, pairs, name);
 }
 
-/// Capitalises the first letter; a leading symbol is unchanged ("α of the gains").
-pub(super) fn capital(words: &str) -> String {
-    let mut capital = words.to_owned();
-    if let Some(first) = capital.get_mut(..1) {
-        first.make_ascii_uppercase();
-    }
-    capital
-}
-
 /// Adds figures of the changes in J of the responses `pairs` under the title `name`.
 fn add_figures(page: &mut Page, analysis: &Analysis, pairs: &[Pair], name: &str) {
     let drawn = &pairs[..pairs.len().min(PAIRS_DRAWN)];
-    for pairs in drawn.chunks(IN_A_FIGURE) {
+    for pairs in drawn.chunks(PAIRS_IN_A_FIGURE) {
         let figure = assessment_figure(analysis, pairs, usual_choice(analysis));
         page.figure(
             &figure,
@@ -204,22 +112,28 @@ fn add_tables(
 ) {
     let dataset = &*analysis.study.dataset;
     let shown = &assessment.conditions[..assessment.conditions.len().min(CONDITIONS_DRAWN)];
-    let mut conditions: Vec<(ConditionId, String)> = Vec::with_capacity(shown.len());
+    let mut columns: Vec<ChangeColumn> = Vec::with_capacity(shown.len());
     for assessed in shown {
-        conditions.push((assessed.condition, format!("cond. {}", assessed.condition)));
+        columns.push(ChangeColumn {
+            condition: assessed.condition,
+            heading: format!("cond. {}", assessed.condition),
+        });
     }
-    let table = change_table(
-        format!("ΔJ of {name}"),
-        (dataset, assessment),
+    let contents = ChangeTable {
+        dataset,
+        assessment,
         pairs,
-        &conditions,
-        CostChange::total,
+        columns: &columns,
+        part: CostChange::total,
+    };
+    page.wide_table(
+        &contents.table(format!("ΔJ of {name}")),
+        CONDITIONS_SIDE_BY_SIDE,
     );
-    page.wide_table(&table, CONDITIONS);
     let more = assessment.conditions.len() - shown.len();
     if more > 0 {
         page.paragraph(&format!(
-            "{more} more conditions were assessed; gdcm analyze writes all of them to \
+            "Conditions not in this table: {more}; gdcm analyze writes all of them to \
             assessment.csv."
         ));
     }
@@ -273,61 +187,4 @@ fn parts_table(analysis: &Analysis, assessment: &AssessmentTable, pairs: &[Pair]
         }
     }
     table
-}
-
-/// Maximum number of matrix columns that fit on a page.
-const MATRIX_COLUMNS: usize = 8;
-
-/// Returns the analysis with the assessment of its couplings, which is computed if missing;
-/// unchanged if no couplings were fitted.
-///
-/// # Errors
-/// [`Cancelled`] soon after `progress` requests it.
-pub(super) fn with_couplings(
-    analysis: Analysis,
-    engine: &mut Engine,
-    progress: &dyn Progress,
-) -> Result<Analysis, Cancelled> {
-    if analysis.coupling_assessment.is_some() || analysis.fitted_couplings().is_none() {
-        return Ok(analysis);
-    }
-    let study = &analysis.study;
-    let assessed =
-        engine.assess_couplings(study, study.settings.couplings, &Unobtrusive(progress))?;
-    Ok(Analysis {
-        coupling_assessment: assessed.and_then(Result::ok),
-        ..analysis
-    })
-}
-
-/// Adds the section on couplings, if they are requested.
-pub(super) fn add_couplings(page: &mut Page, analysis: &Analysis) {
-    if analysis.couplings.is_none() {
-        return;
-    }
-    page.section("Couplings");
-    page.paragraph(
-        "A mixing of the inputs and, if requested, a feedback of outputs to inputs, common to all \
-        conditions, precede the corrections of the channels. The representatives, G, D, gains, \
-        delays, leads and J in this report are based on the physics models with these couplings. \
-        The choice of the representative of a bundle and the suspected models are determined \
-        without them.",
-    );
-    let remarks = analysis_coupling_remarks(analysis).into_iter();
-    page.list(remarks.map(|remark| remark.text));
-    let Some(assessment) = &analysis.coupling_assessment else {
-        return;
-    };
-    page.paragraph(&format!("{}.", capital(&couplings_heading(assessment))));
-    page.table(&coupling_cost_table(assessment));
-    for table in coupling_matrix_tables(assessment, &analysis.study.dataset) {
-        page.wide_table(&table, MATRIX_COLUMNS);
-    }
-    page.table(&pole_table(assessment));
-    if let Some(figure) = couplings_figure(assessment, None, FrequencyUnit::default()) {
-        let caption = "Minimum singular value of I \u{2212} K H at the sticks in each condition: \
-            1 means that there is no loop; below 0.5 the loop is close to ringing. Poles of the \
-            condition with the smallest value.";
-        page.figure(&figure, &figure.title, caption);
-    }
 }

@@ -1,30 +1,27 @@
 //! Report section on the conditions: representatives, gains and delays with their basis, and plots.
+//!
+//! The tables are in `condition_tables`, the plots in `condition_plots`.
 
-use std::collections::BTreeSet;
-
-use gdcm_method::correction::{Channel, Outcome};
-use gdcm_method::fidelity::SUGGESTION_RATIO;
-use gdcm_model::dataset::{BundleKind, Condition, ModelId, Pair};
+use gdcm_method::correction::Outcome;
+use gdcm_model::dataset::{BundleKind, Condition};
 use gdcm_model::number_format::{compact, decimals};
-use gdcm_model::progress::{Cancelled, Progress, Unobserved};
-use gdcm_model::units::{number, s_to_ms, signed};
-use gdcm_plot::figure::bode::{BodeOptions, bode_figure, overview_figure};
+use gdcm_model::progress::{Cancelled, Progress};
+use gdcm_model::units::{number, s_to_ms};
 use gdcm_plot::figure::condition_source::condition_words;
-use gdcm_plot::figure::error::error_figure;
 use gdcm_plot::figure::gains::class_names;
-use gdcm_plot::figure::poles::poles_figure;
-use gdcm_plot::figure::{ConditionSource, Figure, Mark, Role, all_channels};
-use gdcm_study::jobs::curve_jobs::ConditionModes;
-use gdcm_study::stages::condition_curves::{CURVE_POINTS, curves_band};
-use gdcm_study::{Analysis, ConditionAnalysis, Engine, Study};
-use gdcm_words::Table;
-use gdcm_words::caution::{failure_text, undefined_text};
-use gdcm_words::condition_remarks::{details, remarks};
+use gdcm_study::results::condition_remarks::condition_remarks;
+use gdcm_study::results::remark_kind::RemarkKind;
+use gdcm_study::{Analysis, ConditionAnalysis, Engine};
+use gdcm_words::caution::failure_text;
 use gdcm_words::leads::lead_words;
-use gdcm_words::remark::RemarkKind;
+use gdcm_words::remark::remark_text;
+use gdcm_words::solution_details::details;
 
-use super::Unobtrusive;
-use super::page::{CONDITIONS_DRAWN, MODELS_SHOWN, PAIRS_DRAWN, PAIRS_LISTED, Page, names};
+use super::CancellationOnly;
+use super::condition_plots::add_condition_plots;
+use super::condition_tables::{add_models, add_responses, channel_table};
+use super::limits::CONDITIONS_DRAWN;
+use super::page::Page;
 
 /// Adds a subsection for each condition: representatives, gains and delays with their basis, and
 /// plots.
@@ -54,7 +51,7 @@ pub(super) fn add_conditions(
             Some(Ok(result)) => {
                 add_result(page, analysis, result);
                 if index < CONDITIONS_DRAWN {
-                    let step = Unobtrusive(progress);
+                    let step = CancellationOnly(progress);
                     add_condition_plots(page, analysis, result, engine, &step)?;
                 }
             }
@@ -69,40 +66,17 @@ pub(super) fn add_conditions(
     Ok(())
 }
 
-/// Computes the curves of a condition and adds its plots.
-fn add_condition_plots(
-    page: &mut Page,
-    analysis: &Analysis,
-    result: &ConditionAnalysis,
-    engine: &mut Engine,
-    progress: &dyn Progress,
-) -> Result<(), Cancelled> {
-    let study = &analysis.study;
-    let grid = (curves_band(&study.settings), CURVE_POINTS);
-    let curves = engine.curves(&study.dataset, result.condition.id(), grid, progress)?;
-    if let Some(curves) = curves {
-        let source = ConditionSource {
-            study,
-            analysis: Some(result),
-            schedule: analysis.schedule.as_ref().ok(),
-            curves: &curves,
-            variant: None,
-        };
-        add_plots(page, result, &source);
-    }
-    Ok(())
-}
-
 /// Adds the results of a condition as text and tables.
 fn add_result(page: &mut Page, analysis: &Analysis, result: &ConditionAnalysis) {
     page.facts(facts(analysis, result));
     let study = &analysis.study;
     let mut lines = Vec::new();
-    for remark in remarks(study, result, None) {
-        lines.push(match remark.kind {
-            RemarkKind::Good => remark.text,
-            RemarkKind::Caution => format!("Caution: {}", remark.text),
-            RemarkKind::Trouble => format!("Not matched: {}", remark.text),
+    for remark in condition_remarks(study, result, None) {
+        let text = remark_text(&remark, &study.dataset);
+        lines.push(match remark.kind() {
+            RemarkKind::Good => text,
+            RemarkKind::Caution => format!("Caution: {text}"),
+            RemarkKind::Trouble => format!("Not matched: {text}"),
         });
     }
     page.heading_within("Matched and unmatched responses, with reasons");
@@ -127,6 +101,7 @@ pub(super) fn proof_word(result: &ConditionAnalysis) -> &'static str {
     }
 }
 
+/// Returns names and values of the first table: flight state, bundles, bounds and objectives.
 fn facts<'a>(analysis: &Analysis, result: &ConditionAnalysis) -> Vec<(&'a str, String)> {
     let bounds = result.gain_bounds();
     let gains = &result.gains;
@@ -212,362 +187,4 @@ fn representative(analysis: &Analysis, result: &ConditionAnalysis, kind: BundleK
         "{} of {all} kept; represented by {name}{pinned}",
         all - choice.rejected.len().min(all)
     )
-}
-
-fn channel_table(analysis: &Analysis, result: &ConditionAnalysis) -> Table {
-    let dataset = &analysis.study.dataset;
-    let correction = &result.correction;
-    let title = format!(
-        "Condition {}: gain and delay of each channel",
-        result.condition.id()
-    );
-    let mut table = Table::new(title, ["channel", "side", "gain k", "delay τ [ms]"]);
-    let (inputs, outputs) = dataset.names_of_channels();
-    for channel in all_channels(dataset) {
-        let side = match channel {
-            Channel::Input(_) => "input",
-            Channel::Output(_) => "output",
-        };
-        let gain = correction.gain(channel);
-        let delay_s = correction.delay_s(channel);
-        let name = channel.name(&inputs, &outputs);
-        table.row([
-            name,
-            side.to_owned(),
-            decimals(gain, 4),
-            decimals(s_to_ms(delay_s), 2),
-        ]);
-    }
-    table
-}
-
-const RESPONSE_COLUMNS: [&str; 11] = [
-    "response",
-    "on-axis",
-    "treated as",
-    "G",
-    "net gain",
-    "D [ms]",
-    "net delay [ms]",
-    "J before",
-    "J after",
-    "ΔJ magnitude",
-    "ΔJ phase",
-];
-
-/// Adds the response table, and the reasons why some responses have no G and no D.
-fn add_responses(page: &mut Page, study: &Study, result: &ConditionAnalysis) {
-    let all: Vec<Pair> = study.dataset.on_axis().pairs().collect();
-    let measuring = study.dataset.measuring_pairs();
-    let mut shown = all.clone();
-    if all.len() > PAIRS_LISTED {
-        shown.retain(|pair| measuring[*pair] || study.settings.constrained[*pair]);
-    }
-    let title = format!(
-        "Condition {}: G, D and J of the representative before and after its own correction",
-        result.condition.id()
-    );
-    let mut table = Table::new(title, RESPONSE_COLUMNS);
-    for pair in &shown {
-        table.row(response_cells(study, result, *pair));
-    }
-    page.table(&table);
-    if shown.len() < all.len() {
-        page.paragraph(&format!(
-            "Not listed: {} responses that are neither on-axis nor held.",
-            all.len() - shown.len()
-        ));
-    }
-    page.list(undefined_lines(study, result));
-}
-
-/// Placeholder for a missing value in tables.
-const MISSING: &str = "–";
-
-/// Formats a value with `digits` decimals; a missing value as [`MISSING`].
-fn decimals_or_missing(value: Option<f64>, digits: usize) -> String {
-    match value {
-        Some(value) => decimals(value, digits),
-        None => MISSING.to_owned(),
-    }
-}
-
-/// Formats a change with its sign and one decimal; a missing value as [`MISSING`].
-fn change_or_missing(value: Option<f64>) -> String {
-    match value {
-        Some(value) => signed(value, 1),
-        None => MISSING.to_owned(),
-    }
-}
-
-fn response_cells(study: &Study, result: &ConditionAnalysis, pair: Pair) -> [String; 11] {
-    let cost = result.cost[pair];
-    let is_defined = result.wanted_gain(pair).is_some();
-    let treatment = if !is_defined {
-        "no G, no D"
-    } else if result.held()[pair] {
-        "held"
-    } else if study.settings.ignored[pair] {
-        "ignored"
-    } else {
-        "fitted"
-    };
-    let is_on_axis = study.dataset.on_axis()[pair];
-    let wanted_delay_ms = result.wanted_delay_s(pair).map(s_to_ms);
-    [
-        study.dataset.pair_name(pair),
-        if is_on_axis { "yes" } else { "no" }.to_owned(),
-        treatment.to_owned(),
-        decimals_or_missing(result.wanted_gain(pair), 3),
-        decimals(result.correction.net_gain(pair), 3),
-        decimals_or_missing(wanted_delay_ms, 1),
-        decimals(s_to_ms(result.correction.net_delay_s(pair)), 1),
-        decimals_or_missing(cost.map(|cost| cost.uncorrected.total()), 1),
-        decimals_or_missing(cost.map(|cost| cost.corrected.total()), 1),
-        change_or_missing(cost.map(|cost| cost.magnitude())),
-        change_or_missing(cost.map(|cost| cost.phase())),
-    ]
-}
-
-/// Returns a sentence for each reason why responses have no G and no D.
-fn undefined_lines(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
-    let mut reasons: Vec<(String, Vec<String>)> = Vec::new();
-    for (pair, why) in result.comparison.undefined.iter() {
-        let Some(why) = why.map(undefined_text) else {
-            continue;
-        };
-        let name = study.dataset.pair_name(pair);
-        match reasons.iter_mut().find(|(known, _)| *known == why) {
-            Some((_, pairs)) => pairs.push(name),
-            None => reasons.push((why, vec![name])),
-        }
-    }
-    let mut lines = Vec::with_capacity(reasons.len());
-    for (why, pairs) in reasons {
-        lines.push(format!("No G and no D of {}: {why}.", names(&pairs)));
-    }
-    lines
-}
-
-/// Adds a table of a bundle's models; of a long bundle, only the models that [`models_shown`]
-/// selects.
-fn add_models(page: &mut Page, study: &Study, result: &ConditionAnalysis, kind: BundleKind) {
-    let models = result.condition.bundle(kind);
-    let shown = models_shown(study, result, kind);
-    let is_physics = kind == BundleKind::Physics;
-    let columns = [
-        "model",
-        "kept",
-        "order",
-        "mean distance [√J]",
-        "discontinuity ratio",
-    ];
-    let columns = if is_physics {
-        &columns[..]
-    } else {
-        &columns[..4]
-    };
-    let mut table = Table::new(
-        format!("Condition {}: {kind} models", result.condition.id()),
-        columns.iter().copied(),
-    );
-    for &index in &shown {
-        let model = &models[index];
-        let ratio = if is_physics {
-            result.discontinuity_ratio(&model.name)
-        } else {
-            None
-        };
-        let ratio_words = match ratio {
-            Some(ratio) if ratio > SUGGESTION_RATIO => {
-                format!("{} (suspect)", decimals(ratio, 2))
-            }
-            ratio => decimals_or_missing(ratio, 2),
-        };
-        let order = match model.order() {
-            Some(order) => order.to_string(),
-            None => MISSING.to_owned(),
-        };
-        table.row([
-            model.name.clone(),
-            kept_word(study, result, kind, &model.name).to_owned(),
-            order,
-            decimals_or_missing(result.score(kind, &model.name), 2),
-            ratio_words,
-        ]);
-    }
-    page.table(&table);
-    if shown.len() < models.len() {
-        page.paragraph(&format!(
-            "{} of {} {kind} models are listed and drawn.",
-            shown.len(),
-            models.len()
-        ));
-    }
-}
-
-/// Describes in a word whether a model is kept.
-fn kept_word(
-    study: &Study,
-    result: &ConditionAnalysis,
-    kind: BundleKind,
-    name: &str,
-) -> &'static str {
-    let id = ModelId::new(result.condition.id(), kind, name);
-    if study.is_rejected(&id) {
-        "rejected"
-    } else if result
-        .cautions
-        .iter()
-        .any(|caution| caution.is_set_aside(kind, name))
-    {
-        "set aside"
-    } else if result.representative_name(kind) == name {
-        "represents"
-    } else {
-        "yes"
-    }
-}
-
-/// Maximum number of responses in a figure, in at most two rows.
-const IN_A_FIGURE: usize = 10;
-
-/// Adds the plots of a condition: the responses in the objective, their ratios and phase
-/// differences, an overview of all responses, and the poles.
-fn add_plots(page: &mut Page, result: &ConditionAnalysis, source: &ConditionSource<'_>) {
-    let options = BodeOptions {
-        hidden_models: models_hidden(source.study, result),
-        ..BodeOptions::default()
-    };
-    add_response_plots(page, source, &options);
-    add_overview(page, source, &options);
-    add_poles(page, source, &options);
-}
-
-/// Adds Bode plots of the responses in the objective (on-axis; all if none is on-axis), and plots
-/// of ratio and phase difference between the identified representative and the physics models.
-fn add_response_plots(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOptions) {
-    let id = source.curves.condition.id();
-    let measuring: Vec<Pair> = source.study.dataset.measuring_pairs().marked().collect();
-    let drawn = &measuring[..measuring.len().min(PAIRS_DRAWN)];
-    for pairs in drawn.chunks(IN_A_FIGURE) {
-        let title = format!("Condition {id}, responses{}", on_axis_words(source));
-        let caption = "Magnitude and phase of every model, and of the representative under its own and under the scheduled \
-                       correction.";
-        page.figure(&bode_figure(source, pairs, options), &title, caption);
-        let title = format!("Condition {id}, difference between identified and physics models");
-        let caption = "Ratio and phase difference of the identified representative and each kept physics model, with G, D, the \
-                       bounds and the quantiles.";
-        let figure = without_values(error_figure(source, pairs, options));
-        page.figure(&figure, &title, caption);
-    }
-    if drawn.len() < measuring.len() {
-        page.paragraph(&format!(
-            "{} of {} responses in the objective are drawn.",
-            drawn.len(),
-            measuring.len()
-        ));
-    }
-}
-
-/// Adds a plot of the magnitudes of all responses, unless there are too many for a figure.
-fn add_overview(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOptions) {
-    let without_bundles = BodeOptions {
-        hidden: BTreeSet::from([Role::Perturbed, Role::Identified, Role::Rejected]),
-        ..options.clone()
-    };
-    let overview = overview_figure(source, &without_bundles);
-    if overview.plots.len() <= 6 * IN_A_FIGURE {
-        let id = source.curves.condition.id();
-        page.figure(
-            &overview,
-            &format!("Condition {id}, magnitude of every response"),
-            "With J before and after the correction; * marks held responses.",
-        );
-    }
-}
-
-/// Adds a plot of the model poles, with their shifts due to couplings.
-fn add_poles(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOptions) {
-    let Ok(modes) = ConditionModes::of(&source.curves.condition, &Unobserved) else {
-        return;
-    };
-    let shifts = match source.analysis {
-        Some(result) => result.pole_shifts(),
-        None => Default::default(),
-    };
-    let id = source.curves.condition.id();
-    page.figure(
-        &poles_figure(source, &modes, options, (&|_| Vec::new(), &shifts)),
-        &format!("Condition {id}, poles of its models"),
-        "Physics models ×, identified models +; rays of equal damping ratio. Corrections of \
-        channels do not move poles; couplings do.",
-    );
-}
-
-/// Reduces line labels to their names ("G", "UB") for narrow frames: the tables give the values.
-fn without_values(mut figure: Figure) -> Figure {
-    let panels = figure.plots.iter_mut().flat_map(|plot| &mut plot.panels);
-    for mark in panels.flat_map(|panel| &mut panel.marks) {
-        if let Mark::Rule(rule) = mark {
-            rule.label = rule.label.split(' ').next().unwrap_or_default().to_owned();
-        }
-    }
-    figure
-}
-
-/// Returns " on axis" if the dataset marks on-axis responses. Otherwise all responses enter the
-/// objective, and the words are empty.
-fn on_axis_words(source: &ConditionSource<'_>) -> &'static str {
-    if source.study.dataset.on_axis().marked().next().is_some() {
-        " on axis"
-    } else {
-        ""
-    }
-}
-
-/// Returns the indices of the models of a bundle that are listed and drawn: all models of a short
-/// bundle; of a long bundle the representative, nominal and suggested models, then rejected models,
-/// then others spread evenly over the bundle.
-fn models_shown(study: &Study, result: &ConditionAnalysis, kind: BundleKind) -> BTreeSet<usize> {
-    let models = result.condition.bundle(kind);
-    if models.len() <= MODELS_SHOWN {
-        return (0..models.len()).collect();
-    }
-    let suggested = result.suggested();
-    let mut important = Vec::new();
-    let mut rejected = Vec::new();
-    for (index, model) in models.iter().enumerate() {
-        let is_suggested = kind == BundleKind::Physics && suggested.contains(&model.name);
-        let is_representative = result.representative_name(kind) == model.name;
-        if model.is_nominal() || is_representative || is_suggested {
-            important.push(index);
-        }
-        if study.is_rejected(&ModelId::new(result.condition.id(), kind, &model.name)) {
-            rejected.push(index);
-        }
-    }
-    rejected.truncate(MODELS_SHOWN / 2);
-    let evenly = (0..MODELS_SHOWN).map(|part| part * models.len() / MODELS_SHOWN);
-    let mut shown = BTreeSet::new();
-    for index in important.into_iter().chain(rejected).chain(evenly) {
-        if shown.len() < MODELS_SHOWN {
-            shown.insert(index);
-        }
-    }
-    shown
-}
-
-/// Returns the models of a condition that are not drawn.
-fn models_hidden(study: &Study, result: &ConditionAnalysis) -> BTreeSet<ModelId> {
-    let mut hidden = BTreeSet::new();
-    for kind in BundleKind::BOTH {
-        let shown = models_shown(study, result, kind);
-        for (index, model) in result.condition.bundle(kind).iter().enumerate() {
-            if !shown.contains(&index) {
-                hidden.insert(ModelId::new(result.condition.id(), kind, &model.name));
-            }
-        }
-    }
-    hidden
 }

@@ -2,11 +2,21 @@
 //! paper. The bytes depend only on the study.
 
 mod assessment;
+mod condition_plots;
+mod condition_tables;
 mod conditions;
+mod couplings;
+mod limits;
+mod models_left_out;
 mod page;
+mod provenance;
 mod requirements;
 mod schedule;
-mod study;
+mod settings;
+mod shown_models;
+mod summary;
+mod uncertainty;
+mod wording;
 
 use std::path::Path;
 
@@ -21,7 +31,7 @@ use crate::file_error::FileError;
 use crate::files::dataset_file::LoadedDataset;
 use crate::output_set::OutputSet;
 
-pub use self::study::assessment_sentence;
+pub use self::summary::assessment_sentence;
 
 const PROGRAM: &str = concat!("gdcm ", env!("CARGO_PKG_VERSION"));
 
@@ -41,7 +51,7 @@ pub struct ReportSource {
 impl ReportSource {
     /// Describes the files of a study: its dataset, and the study file if it is saved. Folders are
     /// omitted, so that the report does not depend on their location.
-    pub fn of(loaded: &LoadedDataset, study: Option<&Path>) -> Self {
+    pub fn from_files(loaded: &LoadedDataset, study: Option<&Path>) -> Self {
         let study = study
             .and_then(Path::file_name)
             .map(|name| sanitized(&name.to_string_lossy()));
@@ -65,8 +75,9 @@ pub struct ReportSubject<'a> {
     pub known: &'a KnownPoles,
 }
 
-/// Returns the report on an analysis as HTML; `engine` computes the responses that are plotted.
-/// Each condition is a progress step.
+/// Returns the report on an analysis as HTML. Error bars and the assessment of the couplings are
+/// computed first if the analysis lacks them, because several sections show them; `engine` also
+/// computes the responses that are plotted. Each condition is a progress step.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `progress` requests it.
@@ -76,17 +87,17 @@ pub fn report(
     engine: &mut Engine,
     progress: &dyn Progress,
 ) -> Result<String, Cancelled> {
-    let with_bars = assessment::with_bars(subject.analysis, engine, progress)?;
-    let analysis = &assessment::with_couplings(with_bars, engine, progress)?;
+    let with_bars = uncertainty::with_bars(subject.analysis, engine, progress)?;
+    let analysis = &couplings::with_couplings(with_bars, engine, progress)?;
     let mut page = Page::default();
-    study::add_summary(&mut page, analysis);
-    study::add_settings(&mut page, &analysis.study);
-    study::add_files(&mut page, &analysis.study, source);
-    study::add_left_out(&mut page, analysis);
-    assessment::add_couplings(&mut page, analysis);
+    summary::add_summary(&mut page, analysis);
+    settings::add_settings(&mut page, &analysis.study);
+    provenance::add_files(&mut page, &analysis.study, source);
+    models_left_out::add_models_left_out(&mut page, analysis);
+    couplings::add_couplings(&mut page, analysis);
     conditions::add_conditions(&mut page, analysis, engine, progress)?;
     schedule::add_schedule(&mut page, analysis);
-    assessment::add_uncertainty(&mut page, analysis);
+    uncertainty::add_uncertainty(&mut page, analysis);
     assessment::add_assessment(&mut page, analysis);
     requirements::add_requirements(
         &mut page,
@@ -99,7 +110,7 @@ pub fn report(
     )?;
     page.section("The method");
     page.fixed(include_str!("method.html"));
-    study::add_models(&mut page, &analysis.study);
+    provenance::add_models(&mut page, &analysis.study);
     let title = format!(
         "Gain and delay corrections of {}",
         analysis.study.dataset.name()
@@ -112,10 +123,11 @@ pub fn report(
     Ok(page.finish(&title, &[origin]))
 }
 
-/// Progress that forwards only cancellation: the steps of inner computations are not shown.
-struct Unobtrusive<'a>(&'a dyn Progress);
+/// Progress for computations within a step of the report: forwards cancellation, and does not show
+/// their own steps.
+struct CancellationOnly<'a>(&'a dyn Progress);
 
-impl Progress for Unobtrusive<'_> {
+impl Progress for CancellationOnly<'_> {
     fn cancelled(&self) -> bool {
         self.0.cancelled()
     }

@@ -7,28 +7,7 @@ use gdcm_plot::figure::{ColumnWidth, Figure};
 use gdcm_plot::paper::{escaped, inline_svg};
 use gdcm_words::Table;
 
-/// Maximum number of conditions with figures; the tables list all conditions.
-pub(super) const CONDITIONS_DRAWN: usize = 60;
-/// Maximum number of responses with figures, for on-axis and for off-axis responses each.
-pub(super) const PAIRS_DRAWN: usize = 40;
-/// Maximum number of responses for which all are listed in a table; if there are more, only on-axis
-/// and constrained responses are listed.
-pub(super) const PAIRS_LISTED: usize = 48;
-/// Maximum number of models of a bundle that are listed and drawn.
-pub(super) const MODELS_SHOWN: usize = 40;
-/// Maximum number of names in a list within a sentence.
-pub(super) const NAMES_SHOWN: usize = 12;
-
-/// Joins names with commas; of more than [`NAMES_SHOWN`] names, the first ones and the number of
-/// the others.
-pub(super) fn names<S: AsRef<str>>(all: &[S]) -> String {
-    let shown: Vec<&str> = all.iter().take(NAMES_SHOWN).map(AsRef::as_ref).collect();
-    let shown = shown.join(", ");
-    if all.len() <= NAMES_SHOWN {
-        return shown;
-    }
-    format!("{shown} and {} more", all.len() - NAMES_SHOWN)
-}
+use super::wording::counted_are;
 
 /// Maximum distance \[pt\] between a simplified line in a figure and its original points: less than
 /// the thinnest line width, hence invisible. Simplifying reduces the file size to a quarter.
@@ -158,7 +137,7 @@ impl Page {
         self.body.push_str("</tbody>\n</table>\n");
         if table.rows.len() > ROWS {
             let more = table.rows.len() - ROWS;
-            self.paragraph(&format!("{more} more rows are omitted here."));
+            self.paragraph(&format!("{} omitted here.", counted_are(more, "more row")));
         }
     }
 
@@ -420,16 +399,5 @@ mod tests {
     #[test]
     fn letters_of_every_language_stay() {
         assert_eq!(words("Höhe Δφ → 重量"), "Höhe Δφ → 重量");
-    }
-
-    #[test]
-    fn of_many_names_the_first_are_given_and_the_others_counted() {
-        assert_eq!(names(&["a", "b"]), "a, b");
-        let many: Vec<String> = (0..1000).map(|number| number.to_string()).collect();
-        assert!(
-            names(&many).ends_with("10, 11 and 988 more"),
-            "{}",
-            names(&many)
-        );
     }
 }

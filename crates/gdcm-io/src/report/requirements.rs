@@ -11,11 +11,13 @@ use gdcm_study::results::requirements::Requirements;
 use gdcm_study::results::time_histories::TimeHistories;
 use gdcm_study::{Engine, Study};
 use gdcm_words::Table;
-use gdcm_words::requirements::{RequirementsOverview, bandwidth_table, mode_table, summary_table};
+use gdcm_words::missing_results::{missing_reason_text, no_bandwidth_text, reversed_phase_text};
+use gdcm_words::requirements::{bandwidth_table, mode_table, summary_table};
+use gdcm_words::requirements_overview::RequirementsOverview;
 use gdcm_words::time_histories::{record_table, share_table};
 
 use super::page::Page;
-use super::{ReportSubject, Unobtrusive};
+use super::{CancellationOnly, ReportSubject};
 
 /// Maximum number of columns in a table that fits on a page.
 const COLUMNS: usize = 9;
@@ -35,7 +37,7 @@ pub(super) fn add_requirements(
         histories,
         known,
     } = subject;
-    let requirements = engine.requirements(analysis, known, &Unobtrusive(progress))?;
+    let requirements = engine.requirements(analysis, known, &CancellationOnly(progress))?;
     page.section("Requirements");
     page.paragraph(
         "Criteria used to accept simulators and flight control laws, evaluated for the physics \
@@ -61,11 +63,13 @@ pub(super) fn add_requirements(
     }
     let mut remarks = ConditionRemarks::default();
     for missing in &requirements.missing {
-        let words = format!("no {}: {}", missing.what, missing.why);
+        let why = missing_reason_text(&missing.why);
+        let words = format!("no {}: {why}", missing.what);
         remarks.add(missing.condition, words);
     }
     for caution in &requirements.cautions {
-        remarks.add(Some(caution.condition), caution.text.clone());
+        let words = reversed_phase_text(caution, &analysis.study.dataset);
+        remarks.add(Some(caution.condition), words);
     }
     page.list(remarks.lines());
     Ok(())
@@ -94,11 +98,11 @@ fn add_bandwidth(page: &mut Page, requirements: &Requirements, study: &Study) {
     let mut remarks = ConditionRemarks::default();
     for finding in &requirements.bandwidth {
         if !is_known(finding) {
-            let why = finding.absent.get("omega_bw_rad_s").cloned();
+            let why = finding.absent.get("omega_bw_rad_s");
             let words = format!(
                 "{}: {}",
                 dataset.pair_name(finding.pair),
-                why.unwrap_or_default()
+                why.map(no_bandwidth_text).unwrap_or_default()
             );
             remarks.add(Some(finding.condition), words);
         }
@@ -150,7 +154,7 @@ fn add_histories(page: &mut Page, histories: &TimeHistories) {
     }
     let mut remarks = ConditionRemarks::default();
     for missing in &histories.missing {
-        remarks.add(missing.condition, missing.why.clone());
+        remarks.add(missing.condition, missing_reason_text(&missing.why));
     }
     page.list(remarks.lines());
 }

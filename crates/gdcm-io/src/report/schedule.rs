@@ -2,22 +2,24 @@
 //! scheduled with airspeed.
 
 use gdcm_method::correction::{Channel, ChannelCorrection};
-use gdcm_method::schedule::Schedule;
+use gdcm_method::schedule::{Schedule, ScheduleKind, ScheduleSettings};
 use gdcm_model::dataset::{ConditionId, Dataset, Pair};
 use gdcm_model::number_format::{compact, decimals};
-use gdcm_model::units::{number, s_to_ms};
+use gdcm_model::units::{number, s_to_ms, six_digits};
 use gdcm_plot::figure::all_channels;
 use gdcm_plot::figure::condition_source::quantity_symbol;
-use gdcm_plot::figure::gains::{Across, Measure, channels_figure, net_gain_figure};
+use gdcm_plot::figure::gains::{Across, GainAxes, Measure, channels_figure, net_gain_figure};
 use gdcm_study::{Analysis, Study};
 use gdcm_words::Table;
-use gdcm_words::schedule::delayed_channel_text;
+use gdcm_words::lead_price::price_text;
+use gdcm_words::schedule::{delayed_channel_text, schedule_caution_text};
 
-use super::page::{PAIRS_DRAWN, Page, names};
-use super::study::schedule_words;
+use super::limits::PAIRS_DRAWN;
+use super::page::Page;
+use super::wording::names;
 
 /// Maximum number of channels in a figure, in two rows.
-const IN_A_FIGURE: usize = 12;
+const CHANNELS_IN_A_FIGURE: usize = 12;
 /// Maximum number of responses in a figure, in two rows.
 const PAIRS_IN_A_FIGURE: usize = 10;
 /// Maximum number of value columns in a table that fits on a page.
@@ -33,7 +35,10 @@ pub(super) fn add_schedule(page: &mut Page, analysis: &Analysis) {
     for (measure, quantity) in [(Measure::Gain, "Gains"), (Measure::Delay, "Delays")] {
         for (side, channels) in [("inputs", &inputs), ("outputs", &outputs)] {
             let title = format!("{quantity} of the {side} over conditions");
-            let axes = (measure, Across::Conditions);
+            let axes = GainAxes {
+                measure,
+                across: Across::Conditions,
+            };
             add_channels(page, analysis, channels, axes, &title);
         }
     }
@@ -44,16 +49,15 @@ pub(super) fn add_schedule(page: &mut Page, analysis: &Analysis) {
     }
 }
 
-/// Adds figures of the channels; `axes` are the plotted quantity and the quantity on the horizontal
-/// axis.
+/// Adds figures of the channels.
 fn add_channels(
     page: &mut Page,
     analysis: &Analysis,
     channels: &[Channel],
-    axes: (Measure, Across),
+    axes: GainAxes,
     title: &str,
 ) {
-    for channels in channels.chunks(IN_A_FIGURE) {
+    for channels in channels.chunks(CHANNELS_IN_A_FIGURE) {
         let uncertainty = analysis.uncertainty.as_deref();
         let figure = channels_figure(analysis, uncertainty, channels, axes);
         let caption = "Optimum of each condition, and the bounds of its search; dashed: no \
@@ -74,7 +78,10 @@ fn add_airspeed(page: &mut Page, analysis: &Analysis, schedule: &Schedule, chann
     }
     for (measure, quantity) in measures {
         let title = format!("Channel {quantity} over airspeed, and their schedule");
-        let axes = (measure, Across::Airspeed);
+        let axes = GainAxes {
+            measure,
+            across: Across::Airspeed,
+        };
         add_channels(page, analysis, channels, axes, &title);
     }
     for pairs in shown_pairs(&analysis.study).chunks(PAIRS_IN_A_FIGURE) {
@@ -85,6 +92,7 @@ fn add_airspeed(page: &mut Page, analysis: &Analysis, schedule: &Schedule, chann
     }
 }
 
+/// Adds form, degree and airspeeds of the schedule, and the conditions that it omits.
 fn add_schedule_facts(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
     let low = number(schedule.airspeeds.min_kt);
     let high = number(schedule.airspeeds.max_kt);
@@ -109,16 +117,39 @@ fn add_schedule_facts(page: &mut Page, analysis: &Analysis, schedule: &Schedule)
     ]);
 }
 
+/// Describes the kind, degree and variables of a schedule.
+fn schedule_words(settings: &ScheduleSettings) -> String {
+    let kind = match settings.kind {
+        ScheduleKind::Polynomial { degree } => format!("polynomial of degree {degree} in airspeed"),
+        ScheduleKind::Table => "table over airspeed, linear between its points".to_owned(),
+    };
+    let quantity = quantity_symbol(settings.quantity);
+    let delays = if settings.delays {
+        "delays are scheduled too"
+    } else {
+        "delays are not scheduled"
+    };
+    let second = match settings.second {
+        Some(variable) => format!(" and {variable}"),
+        None => String::new(),
+    };
+    format!(
+        "{kind}{second}, of {quantity}; airspeeds within {} kt count as equal; {delays}",
+        six_digits(settings.airspeed_tolerance_kt)
+    )
+}
+
 /// Adds the cost of leads, cautions about the schedule, and the delays that the schedule omits.
 fn add_schedule_remarks(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
     let dataset = &analysis.study.dataset;
     let (inputs, outputs) = dataset.names_of_channels();
     let mut lines = Vec::new();
     if let Some(price) = schedule.lead_price() {
-        lines.push(format!("Leads: {}.", price.words(&inputs, &outputs)));
+        lines.push(format!("Leads: {}.", price_text(&price, &inputs, &outputs)));
     }
     for caution in &schedule.cautions {
-        lines.push(format!("Caution: {}.", caution.words(&inputs, &outputs)));
+        let text = schedule_caution_text(caution, &inputs, &outputs);
+        lines.push(format!("Caution: {text}."));
     }
     for delayed in analysis.unscheduled_delays() {
         lines.push(format!(

@@ -7,7 +7,7 @@ use gdcm_io::import::model_files::{FoundModels, models_of_bytes};
 use gdcm_io::reading_budget::ReadingBudget;
 use gdcm_model::assembly::problem::ProblemKind;
 use gdcm_model::assembly::{Assembly, ChannelLabel, FoundModel, Rules, proposed_rules};
-use gdcm_model::dataset::unchecked_dataset::ResponseDraft;
+use gdcm_model::dataset::dataset_draft::ResponseDraft;
 
 use crate::program_folder;
 

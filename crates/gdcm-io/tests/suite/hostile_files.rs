@@ -333,7 +333,10 @@ fn a_named_pipe_is_skipped_with_a_word_in_a_folder_and_refused_before_it_is_read
     let found = read_models(&[folder.path().to_owned()], &Default::default(), &Silent).unwrap();
     assert_eq!(
         (found.files, found.faults[0].as_str()),
-        (1, "p.csv: skipped, because this is a named pipe, not a file")
+        (
+            1,
+            "p.csv: skipped, because this is a named pipe, not a file"
+        )
     );
     let given = read_models(std::slice::from_ref(&pipe), &Default::default(), &Silent).unwrap_err();
     assert!(

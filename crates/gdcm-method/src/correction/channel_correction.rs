@@ -4,8 +4,8 @@
 use gdcm_model::dataset::Pair;
 use gdcm_model::response::{GainDelay, LeadFilter};
 
+use super::channel_leads::ChannelLeads;
 use super::channels::{Channel, Channels};
-use super::leads::ChannelLeads;
 
 /// The correction `M_O H M_I`; each channel contributes `k e^(-tau s)`, eq. (12), or `k L(s)`
 /// (M15).
@@ -106,8 +106,8 @@ impl ChannelCorrection {
     /// Returns the correction factor of a response; `None` if its net gain is not positive, which
     /// is possible if `k` itself is scheduled.
     pub fn on(&self, pair: Pair) -> Option<GainDelay> {
-        let leads = Channel::of(pair).map(|channel| self.lead(channel));
-        Some(self.without_leads_on(pair)?.led(leads))
+        let leads = Channel::of_pair(pair).map(|channel| self.lead(channel));
+        Some(self.without_leads_on(pair)?.with_leads(leads))
     }
 
     /// Returns the factor as [`ChannelCorrection::on`], but without the lead filters; used for a

@@ -28,8 +28,9 @@ impl ChannelModel {
         }
     }
 
-    /// Creates a lead filter in continuous time, which is exact (M15.3). With `w1 = 1 / a`,
-    /// `w2 = 1 / b`:
+    /// Creates a lead filter in continuous time, which is exact (M15.3). With `w1 = 1 / a` and
+    /// `w2 = 1 / b`, where `a` and `b` are the time constants of numerator and denominator, and the
+    /// gain at infinite frequency `R`, `(a / b)^2` or `a / b`:
     ///
     /// ```text
     /// second order   A = [0 1; -w2^2 -sqrt(2) w2],  B = [0; 1],  C = [R (w1^2 - w2^2)  R sqrt(2) (w1 - w2)],  D = R

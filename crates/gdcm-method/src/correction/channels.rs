@@ -13,20 +13,20 @@ pub enum Channel {
 
 impl Channel {
     /// Iterates over all inputs, then all outputs.
-    pub fn all(inputs: usize, outputs: usize) -> impl Iterator<Item = Self> {
+    pub fn inputs_then_outputs(inputs: usize, outputs: usize) -> impl Iterator<Item = Self> {
         (0..inputs)
             .map(Self::Input)
             .chain((0..outputs).map(Self::Output))
     }
 
     /// Returns the output and the input of a response.
-    pub fn of(pair: Pair) -> [Self; 2] {
+    pub fn of_pair(pair: Pair) -> [Self; 2] {
         [Self::Output(pair.output), Self::Input(pair.input)]
     }
 
     /// Returns whether the channel is the input or the output of the response.
-    pub fn is_of(self, pair: Pair) -> bool {
-        Self::of(pair).contains(&self)
+    pub fn belongs_to(self, pair: Pair) -> bool {
+        Self::of_pair(pair).contains(&self)
     }
 
     /// Returns the name of the channel; if the name list is too short, its index counted from 1.
@@ -44,8 +44,8 @@ impl Channel {
     }
 
     /// Iterates over the channels of a dataset, the inputs first.
-    pub fn all_of(dataset: &Dataset) -> impl Iterator<Item = Self> + use<> {
-        Self::all(dataset.inputs().len(), dataset.outputs().len())
+    pub fn of_dataset(dataset: &Dataset) -> impl Iterator<Item = Self> + use<> {
+        Self::inputs_then_outputs(dataset.inputs().len(), dataset.outputs().len())
     }
 
     /// Returns the name of the channel in a dataset.
@@ -136,7 +136,7 @@ impl<T> Channels<T> {
 
     /// Iterates over the channels with their values, the inputs first.
     pub fn iter(&self) -> impl Iterator<Item = (Channel, &T)> {
-        Channel::all(self.inputs.len(), self.outputs.len())
+        Channel::inputs_then_outputs(self.inputs.len(), self.outputs.len())
             .zip(self.inputs.iter().chain(&self.outputs))
     }
 }

@@ -1,96 +1,169 @@
-//! Channels connected by constrained products, and feasible targets of the constrained entries (M8
-//! and M9, stage 1).
+//! Channels connected by constrained entries, and whether the constraints are feasible together (M8
+//! and M9).
+//!
+//! ```text
+//! value of a node = offset + s,      s: the scale of its component
+//! ```
+//!
+//! The *components* are the connected components of the graph whose nodes are the channels and
+//! whose edges are the constrained entries ([`super::constraints`]). A constrained entry prescribes
+//! a difference of two nodes in one component, which does not depend on `s`: the constraints leave
+//! the scales free, within the box.
 
 use gdcm_model::dataset::Pair;
 
-use super::branch_and_bound::objective::Objective;
 use super::branch_and_bound::rounded::Rounded;
-use super::branch_and_bound::term::{Function, Term};
-use super::channels::Channel;
+use super::constraints::{Constraints, PairNodes};
 use super::interval::Interval;
-use super::problem::Problem;
 
-/// Constraints on the channels: the prescribed sums of coordinates for the constrained entries, and
-/// a box.
-///
-/// The channels are the *nodes* of a graph, the inputs first. The value of an input node is its
-/// coordinate, that of an output node is minus its coordinate, so that a constrained entry
-/// prescribes the difference between two nodes.
+/// Infeasibility up to which a component is accepted as feasible: well below the 1e-8 of M8, so
+/// that the relative error of a product of gains stays below 1e-9.
+pub(crate) const ACCEPTED_INFEASIBILITY: f64 = 1e-9;
+
+/// The components, each with the interval of its free scale. A channel without a constrained entry
+/// is a component by itself.
 #[derive(Clone, Debug)]
-pub(crate) struct Constraints {
-    pub(crate) outputs: usize,
-    pub(crate) inputs: usize,
-    pub(crate) entries: Vec<ConstrainedSum>,
-    /// Permitted range of the coordinate, the same for every channel.
-    pub(crate) range: Interval,
+pub(crate) struct Components {
+    /// Placements of the inputs, then of the outputs.
+    nodes: Vec<Placement>,
+    inputs: usize,
+    /// Minimum scale of each component for which all its channels are inside the box.
+    pub(crate) lower: Vec<f64>,
+    /// Maximum scale of each component for which all its channels are inside the box.
+    pub(crate) upper: Vec<f64>,
+    /// Infeasibility of each component: the largest inconsistency among constraints that form a
+    /// loop, or the amount by which the box is too narrow.
+    infeasibility: Vec<f64>,
 }
 
-/// A constrained entry and its prescribed sum.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct ConstrainedSum {
-    pub(crate) pair: Pair,
-    /// Prescribed sum of the two channels' coordinates.
-    pub(crate) sum: f64,
-}
+impl Components {
+    /// Finds the components that the constrained entries form.
+    ///
+    /// ```text
+    /// 1  offsets: the first node of each component at 0, the others along a spanning tree of entries
+    /// 2  interval of each scale, from the box
+    /// 3  offsets moved so that scale 0 is the middle of each interval, and the new intervals
+    /// 4  infeasibility: an empty interval (in 2 and 3), or entries that close a loop and do not fit the offsets
+    /// ```
+    pub(crate) fn new(constraints: &Constraints) -> Self {
+        let mut placed: Vec<Option<Placement>> = vec![None; constraints.nodes()];
+        let mut count = 0;
+        for node in 0..placed.len() {
+            if placed[node].is_none() {
+                placed[node] = Some(Placement {
+                    component: count,
+                    offset: Rounded::default(),
+                });
+                count += 1;
+                place_connected_nodes(&mut placed, constraints);
+            }
+        }
+        let mut components = Self {
+            nodes: placed.into_iter().flatten().collect(),
+            inputs: constraints.inputs,
+            lower: vec![f64::NEG_INFINITY; count],
+            upper: vec![f64::INFINITY; count],
+            infeasibility: vec![0.0; count],
+        };
+        components.set_intervals(constraints);
+        components.centre_offsets(constraints.range);
+        components.set_intervals(constraints);
+        components.check_loops(constraints);
+        components
+    }
 
-/// The nodes of a response's input and output.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct PairNodes {
-    pub(crate) input: usize,
-    pub(crate) output: usize,
-}
+    pub(crate) fn count(&self) -> usize {
+        self.lower.len()
+    }
 
-impl Constraints {
-    /// Collects the constraints in `problem`.
-    pub(crate) fn new(problem: &Problem) -> Self {
-        let coordinate = problem.coordinate();
-        Self {
-            outputs: problem.delta.outputs(),
-            inputs: problem.delta.inputs(),
-            entries: problem
-                .constrained_entries()
-                .map(|entry| ConstrainedSum {
-                    pair: entry.pair,
-                    sum: coordinate.coordinate(entry.delta),
-                })
+    /// Returns the placements of the input nodes and of the output nodes.
+    pub(crate) fn nodes(&self) -> Nodes<'_> {
+        let (inputs, outputs) = self.nodes.split_at(self.inputs);
+        Nodes { inputs, outputs }
+    }
+
+    /// Returns the sum `x_i + y_o` of two channels in the same component, which does not depend on
+    /// the scale.
+    pub(crate) fn sum(&self, pair: Pair) -> f64 {
+        self.nodes[pair.input].offset.value - self.nodes[self.inputs + pair.output].offset.value
+    }
+
+    /// Returns whether all constraints are feasible together.
+    pub(crate) fn are_possible(&self) -> bool {
+        self.infeasibility
+            .iter()
+            .all(|infeasibility| *infeasibility <= ACCEPTED_INFEASIBILITY)
+    }
+
+    /// Returns whether the component of an entry is infeasible.
+    pub(crate) fn is_infeasible(&self, pair: Pair) -> bool {
+        self.infeasibility[self.nodes[pair.input].component] > ACCEPTED_INFEASIBILITY
+    }
+
+    /// Returns the coordinate of every channel (logarithm of the gain, or delay) at the given
+    /// scales.
+    pub(crate) fn channels(&self, scales: &[f64]) -> ChannelCoordinates {
+        let nodes = self.nodes();
+        ChannelCoordinates {
+            inputs: nodes
+                .inputs
+                .iter()
+                .map(|node| node.offset.value + scales[node.component])
                 .collect(),
-            range: problem.range(),
+            // `0.0 -` instead of a negation, which would turn zero into -0.
+            outputs: nodes
+                .outputs
+                .iter()
+                .map(|node| 0.0 - (node.offset.value + scales[node.component]))
+                .collect(),
         }
     }
 
-    /// Returns constraints on the same channels, with other entries.
-    pub(crate) fn with_entries(&self, entries: Vec<ConstrainedSum>) -> Self {
-        Self { entries, ..*self }
-    }
-
-    /// Returns the number of nodes, inputs plus outputs.
-    pub(crate) fn nodes(&self) -> usize {
-        self.inputs + self.outputs
-    }
-
-    /// Returns the nodes of an entry's input and output channel.
-    pub(crate) fn nodes_of(&self, pair: Pair) -> PairNodes {
-        PairNodes {
-            input: pair.input,
-            output: self.inputs + pair.output,
+    /// Step 3: shifts the offsets so that scale 0 is the middle of each component's interval, and
+    /// no channel is far outside the box there. Leaves the intervals unchanged.
+    fn centre_offsets(&mut self, range: Interval) {
+        // A scale at its end has two rounding errors: the end of the range, and the subtraction of
+        // the offset.
+        let error = 2.0 * f64::EPSILON * range.low.abs().max(range.high.abs());
+        for node in &mut self.nodes {
+            let middle = 0.5 * (self.lower[node.component] + self.upper[node.component]);
+            node.offset.add(Rounded {
+                value: middle,
+                error,
+            });
         }
     }
 
-    /// Returns the channel of a node.
-    pub(crate) fn channel(&self, node: usize) -> Channel {
-        if node < self.inputs {
-            Channel::Input(node)
-        } else {
-            Channel::Output(node - self.inputs)
+    /// Steps 2 and 3: sets the interval of every scale. An empty interval is replaced by its
+    /// midpoint and recorded as infeasibility.
+    fn set_intervals(&mut self, constraints: &Constraints) {
+        self.lower.fill(f64::NEG_INFINITY);
+        self.upper.fill(f64::INFINITY);
+        for (index, node) in self.nodes.iter().enumerate() {
+            let range = constraints.node_range(index);
+            let lower = &mut self.lower[node.component];
+            let upper = &mut self.upper[node.component];
+            *lower = lower.max(range.low - node.offset.value);
+            *upper = upper.min(range.high - node.offset.value);
+        }
+        for component in 0..self.count() {
+            let lacking = self.lower[component] - self.upper[component];
+            if lacking > 0.0 {
+                self.infeasibility[component] = lacking;
+                let middle = 0.5 * (self.lower[component] + self.upper[component]);
+                self.lower[component] = middle;
+                self.upper[component] = middle;
+            }
         }
     }
 
-    /// Returns the permitted range of a node's value.
-    pub(crate) fn node_range(&self, node: usize) -> Interval {
-        if node < self.inputs {
-            self.range
-        } else {
-            self.range.mirrored()
+    /// Step 4: raises the infeasibility of every component to the largest inconsistency of its
+    /// loops.
+    fn check_loops(&mut self, constraints: &Constraints) {
+        for entry in &constraints.entries {
+            let miss = (self.sum(entry.pair) - entry.sum).abs();
+            let component = self.nodes[entry.pair.input].component;
+            self.infeasibility[component] = self.infeasibility[component].max(miss);
         }
     }
 }
@@ -133,154 +206,9 @@ pub(crate) struct ChannelCoordinates {
     pub(crate) outputs: Vec<f64>,
 }
 
-/// Connected components of the bipartite graph of constrained entries, each with a free scale (M8,
-/// structure).
-///
-/// With the scale `s` of its component, a node has the value `offset + s`. A constrained sum, which
-/// is a difference of two nodes, therefore does not depend on `s`. The coordinates are logarithms
-/// of gains, or delays. A channel without a constrained entry is a component by itself.
-#[derive(Clone, Debug)]
-pub(crate) struct Components {
-    /// Placements of the inputs, then of the outputs.
-    nodes: Vec<Placement>,
-    inputs: usize,
-    /// Minimum scale of each component for which all its channels are inside the box.
-    pub(crate) lower: Vec<f64>,
-    /// Maximum scale of each component for which all its channels are inside the box.
-    pub(crate) upper: Vec<f64>,
-    /// Infeasibility of each component: the largest inconsistency among constraints that form a
-    /// loop, or the amount by which the bounds are too narrow.
-    strain: Vec<f64>,
-}
-
-/// Infeasibility up to which a component is accepted as feasible: well below the 1e-8 of M8, so
-/// that the relative error of a product of gains stays below 1e-9.
-pub(crate) const STRAIN: f64 = 1e-9;
-
-impl Components {
-    /// Finds the components that the constrained entries form.
-    pub(crate) fn new(constraints: &Constraints) -> Self {
-        let mut placed: Vec<Option<Placement>> = vec![None; constraints.nodes()];
-        let mut count = 0;
-        for node in 0..placed.len() {
-            if placed[node].is_none() {
-                placed[node] = Some(Placement {
-                    component: count,
-                    offset: Rounded::default(),
-                });
-                count += 1;
-                place_tied_nodes(&mut placed, constraints);
-            }
-        }
-        let mut components = Self {
-            nodes: placed.into_iter().flatten().collect(),
-            inputs: constraints.inputs,
-            lower: vec![f64::NEG_INFINITY; count],
-            upper: vec![f64::INFINITY; count],
-            strain: vec![0.0; count],
-        };
-        components.close_box(constraints);
-        components.centre(constraints.range);
-        components.close_box(constraints);
-        components.strain_loops(constraints);
-        components
-    }
-
-    pub(crate) fn count(&self) -> usize {
-        self.lower.len()
-    }
-
-    /// Returns the placements of the input nodes and of the output nodes.
-    pub(crate) fn nodes(&self) -> Nodes<'_> {
-        let (inputs, outputs) = self.nodes.split_at(self.inputs);
-        Nodes { inputs, outputs }
-    }
-
-    /// Returns the sum of the coordinates of two channels in the same component, which does not
-    /// depend on the scale.
-    pub(crate) fn sum(&self, pair: Pair) -> f64 {
-        self.nodes[pair.input].offset.value - self.nodes[self.inputs + pair.output].offset.value
-    }
-
-    /// Returns whether all constraints are feasible together.
-    pub(crate) fn are_possible(&self) -> bool {
-        self.strain.iter().all(|strain| *strain <= STRAIN)
-    }
-
-    /// Returns whether the component of an entry is infeasible.
-    fn is_strained(&self, pair: Pair) -> bool {
-        self.strain[self.nodes[pair.input].component] > STRAIN
-    }
-
-    /// Returns the coordinate of every channel (logarithm of the gain, or delay) at the given
-    /// scales.
-    pub(crate) fn channels(&self, scales: &[f64]) -> ChannelCoordinates {
-        let nodes = self.nodes();
-        ChannelCoordinates {
-            inputs: nodes
-                .inputs
-                .iter()
-                .map(|node| node.offset.value + scales[node.component])
-                .collect(),
-            // `0.0 -` instead of a negation, which would turn zero into -0.
-            outputs: nodes
-                .outputs
-                .iter()
-                .map(|node| 0.0 - (node.offset.value + scales[node.component]))
-                .collect(),
-        }
-    }
-
-    /// Shifts the offsets so that scale 0 is the middle of each component's interval, and no
-    /// channel is far outside the box there.
-    fn centre(&mut self, range: Interval) {
-        // A scale at its end has two rounding errors: the end of the range, and the subtraction of
-        // the offset.
-        let error = 2.0 * f64::EPSILON * range.low.abs().max(range.high.abs());
-        for node in &mut self.nodes {
-            let middle = 0.5 * (self.lower[node.component] + self.upper[node.component]);
-            node.offset.add(Rounded {
-                value: middle,
-                error,
-            });
-        }
-    }
-
-    /// Sets the interval of every scale. An empty interval is replaced by its midpoint and recorded
-    /// as infeasibility.
-    fn close_box(&mut self, constraints: &Constraints) {
-        self.lower.fill(f64::NEG_INFINITY);
-        self.upper.fill(f64::INFINITY);
-        for (index, node) in self.nodes.iter().enumerate() {
-            let range = constraints.node_range(index);
-            let lower = &mut self.lower[node.component];
-            let upper = &mut self.upper[node.component];
-            *lower = lower.max(range.low - node.offset.value);
-            *upper = upper.min(range.high - node.offset.value);
-        }
-        for component in 0..self.count() {
-            let lacking = self.lower[component] - self.upper[component];
-            if lacking > 0.0 {
-                self.strain[component] = lacking;
-                let middle = 0.5 * (self.lower[component] + self.upper[component]);
-                self.lower[component] = middle;
-                self.upper[component] = middle;
-            }
-        }
-    }
-
-    /// Raises the infeasibility of every component to the largest inconsistency of its loops.
-    fn strain_loops(&mut self, constraints: &Constraints) {
-        for entry in &constraints.entries {
-            let miss = (self.sum(entry.pair) - entry.sum).abs();
-            let strain = &mut self.strain[self.nodes[entry.pair.input].component];
-            *strain = strain.max(miss);
-        }
-    }
-}
-
-/// Places every node that constrained entries connect with a placed node, along a spanning tree.
-fn place_tied_nodes(placed: &mut [Option<Placement>], constraints: &Constraints) {
+/// Step 1: places every node that constrained entries connect with a placed node, along a spanning
+/// tree.
+fn place_connected_nodes(placed: &mut [Option<Placement>], constraints: &Constraints) {
     let mut grown = true;
     while grown {
         grown = false;
@@ -293,90 +221,5 @@ fn place_tied_nodes(placed: &mut [Option<Placement>], constraints: &Constraints)
             }
             grown = true;
         }
-    }
-}
-
-/// Result of stage 1: the feasible sums nearest to the prescribed sums, subject to the box and the
-/// loops.
-#[derive(Clone, Debug)]
-pub(crate) struct Reached {
-    /// The constrained entries with their targets, in the order of [`Constraints::entries`].
-    pub(crate) targets: Vec<ConstrainedSum>,
-    /// Components for the constrained entries at their targets.
-    pub(crate) components: Components,
-    /// A point in the box that attains the targets, one value per node; `None` if every entry is
-    /// feasible.
-    pub(crate) point: Option<Vec<f64>>,
-}
-
-/// Finds the targets: `min sum (x_o + y_i - delta)^2` over the constrained entries, subject to the
-/// box (M8, reachability; M9).
-///
-/// Feasible components keep their prescribed sums exactly. `minimise` returns the minimum of a sum
-/// of squares over a box; it is called only if an entry is infeasible.
-pub(crate) fn reach<E>(
-    constraints: &Constraints,
-    minimise: impl FnOnce(&Objective) -> Result<Vec<f64>, E>,
-) -> Result<Reached, E> {
-    let asked = Components::new(constraints);
-    if asked.are_possible() {
-        return Ok(Reached {
-            targets: constraints.entries.clone(),
-            components: asked,
-            point: None,
-        });
-    }
-    let point = minimise(&nearest_sums(constraints, &asked))?;
-    let mut targets = constraints.entries.clone();
-    for target in &mut targets {
-        if asked.is_strained(target.pair) {
-            let nodes = constraints.nodes_of(target.pair);
-            target.sum = point[nodes.input] - point[nodes.output];
-        }
-    }
-    let components = Components::new(&constraints.with_entries(targets.clone()));
-    Ok(Reached {
-        targets,
-        components,
-        point: Some(point),
-    })
-}
-
-/// Builds the least-squares problem of stage 1 for the infeasible components: one scale for each
-/// node, and the ground.
-fn nearest_sums(constraints: &Constraints, asked: &Components) -> Objective {
-    let mut lower = Vec::new();
-    let mut upper = Vec::new();
-    for node in 0..constraints.nodes() {
-        let range = constraints.node_range(node);
-        lower.push(range.low);
-        upper.push(range.high);
-    }
-    lower.push(0.0);
-    upper.push(0.0);
-    let mut terms = Vec::new();
-    for entry in &constraints.entries {
-        if asked.is_strained(entry.pair) {
-            let nodes = constraints.nodes_of(entry.pair);
-            let centre = Rounded {
-                value: entry.sum,
-                error: 0.0,
-            };
-            terms.push(Term {
-                from: nodes.output,
-                to: nodes.input,
-                function: Function::Quadratic {
-                    weight: 1.0,
-                    centre,
-                    relative: 0.0,
-                },
-            });
-        }
-    }
-    Objective {
-        lower,
-        upper,
-        terms,
-        constant: Rounded::default(),
     }
 }

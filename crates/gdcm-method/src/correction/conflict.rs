@@ -2,8 +2,8 @@
 
 use gdcm_model::dataset::Pair;
 
+use super::channel_bounds::Bounds;
 use super::channels::Channel;
-use super::problem::Bounds;
 use super::quantity::Quantity;
 
 /// A minimal infeasible set of constrained entries and bounds: releasing any of its members makes
@@ -25,7 +25,8 @@ pub struct Conflict {
 pub enum ConflictKind {
     /// The net value prescribed for two channels exceeds the maximum that the upper bound permits.
     AboveUpper {
-        channels: (Channel, Channel),
+        /// The input and the output.
+        channels: [Channel; 2],
         /// Product of gains, or sum of delays \[s\], prescribed by the entries.
         asked: f64,
         /// Minimum sufficient upper bound.
@@ -34,7 +35,8 @@ pub enum ConflictKind {
     /// The net value prescribed for two channels is below the minimum that the lower bound permits;
     /// for delays, it is a phase lead.
     BelowLower {
-        channels: (Channel, Channel),
+        /// The input and the output.
+        channels: [Channel; 2],
         /// Product of gains, or (negative) sum of delays \[s\], prescribed by the entries.
         asked: f64,
         /// Maximum sufficient lower bound; `None` for delays, whose lower bound is fixed.
@@ -63,14 +65,25 @@ pub enum ConflictKind {
     Unclear,
 }
 
+impl ConflictKind {
+    /// Returns the stable code, for programs and tests.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::AboveUpper { .. } => "above-upper-bound",
+            Self::BelowLower { .. } => "below-lower-bound",
+            Self::TooFarApart { .. } => "too-far-apart",
+            Self::Loop { .. } => "loop",
+            Self::Unclear => "unclear",
+        }
+    }
+}
+
 impl Conflict {
     /// Lists the channels whose bounds take part in the conflict; empty for a loop.
     pub fn channels(&self) -> Vec<Channel> {
         match self.kind {
             ConflictKind::AboveUpper { channels, .. }
-            | ConflictKind::BelowLower { channels, .. } => {
-                vec![channels.0, channels.1]
-            }
+            | ConflictKind::BelowLower { channels, .. } => channels.to_vec(),
             ConflictKind::TooFarApart {
                 greater, lesser, ..
             } => vec![greater, lesser],

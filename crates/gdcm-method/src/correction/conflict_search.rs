@@ -1,15 +1,20 @@
 //! Search for the conflict behind each constrained entry whose target could not be met in stage 1.
-
-use std::collections::VecDeque;
+//!
+//! The nodes, their values `s` and the entries as prescribed differences of nodes are those of
+//! [`super::constraints`]. A missed entry is a *pull* from one node to another; the pulls are the
+//! directed edges of a graph, the *flow* ([`super::pull_flow`]).
 
 use gdcm_model::dataset::Pair;
 
 use super::branch_and_bound::effort::{Effort, SearchStopped};
 use super::channels::Channel;
-use super::components::{Constraints, PairNodes, Reached, STRAIN};
+use super::components::ACCEPTED_INFEASIBILITY;
 use super::conflict::{Conflict, ConflictKind};
+use super::constraints::Constraints;
 use super::problem::Problem;
-use super::rounding::three_digits;
+use super::pull_flow::{Flow, Pull};
+use super::reachable_targets::Reached;
+use super::three_digits::three_digits;
 
 /// An entry that stage 1 could not meet, with the smallest conflict that explains it.
 #[derive(Clone, Debug)]
@@ -21,15 +26,15 @@ pub(crate) struct EntryConflict {
 /// Finds the smallest conflict behind each entry that stage 1 missed by more than `tolerance` (in
 /// coordinates); the same conflict can appear several times.
 ///
-/// Stage 1 is a least-squares problem, so that its residuals form a flow: the pull of a missed
-/// entry on a channel is balanced by another missed entry or by an active bound. Every path in this
-/// flow from bound to bound, and every loop, is an infeasible set, and every missed entry lies on
-/// such a path or loop (Farkas). If a part of the path or loop is infeasible by itself, that part
-/// is the conflict, and the residual of the entry is a compromise with it.
+/// Stage 1 is a least-squares problem, so that its residuals balance: the pull of a missed entry on
+/// a channel is balanced by another missed entry or by an active bound. Every path in the flow from
+/// bound to bound, and every loop, is an infeasible set, and every missed entry lies on such a path
+/// or loop (Farkas). If a part of the path or loop is infeasible by itself, that part is the
+/// conflict, and the residual of the entry is a compromise with it.
 ///
 /// ```text
 /// for each missed entry
-///     1  loop <- shortest way along the flow from the end of the entry back to its start
+///     1  loop <- the entry, and the shortest way along the flow from its end back to its start
 ///     2  path <- shortest way from a lower bound to its start, the entry, shortest way from its end to an upper bound
 ///     3  the shorter of both, where each bound counts as one entry
 ///     4  its shortest part that the bounds at both ends do not permit, if any
@@ -44,15 +49,20 @@ pub(crate) fn entry_conflicts(
     let Some(point) = &reached.point else {
         return Ok(Vec::new());
     };
-    let flow = Flow::new(problem, constraints, reached, point);
+    let search = ConflictSearch {
+        problem,
+        constraints,
+        flow: Flow::new(constraints, reached, point),
+    };
+    let pulls = &search.flow.pulls;
     let mut found = Vec::new();
-    for pull in &flow.pulls {
+    for pull in pulls {
         let missing = pull.weight - (point[pull.to] - point[pull.from]);
         if missing > tolerance {
             // Three breadth-first searches; each examines every pull at every channel.
-            effort.spend((flow.pulls.len() * constraints.nodes()) as u64 / 8);
+            effort.spend((pulls.len() * constraints.nodes()) as u64 / 8);
             effort.check()?;
-            if let Some(conflict) = flow.smallest_through(pull) {
+            if let Some(conflict) = search.smallest_through(pull) {
                 found.push(EntryConflict {
                     missed: pull.pair,
                     conflict,
@@ -63,29 +73,6 @@ pub(crate) fn entry_conflicts(
     Ok(found)
 }
 
-/// A constrained entry that stage 1 missed: it requires `s_to - s_from >= weight`, but the actual
-/// difference is smaller.
-#[derive(Clone, Copy)]
-struct Pull {
-    from: usize,
-    to: usize,
-    weight: f64,
-    pair: Pair,
-}
-
-impl Pull {
-    /// Returns the entry in the opposite direction, which is equivalent because the constraint is
-    /// an equality.
-    fn reversed(&self) -> Self {
-        Self {
-            from: self.to,
-            to: self.from,
-            weight: -self.weight,
-            pair: self.pair,
-        }
-    }
-}
-
 /// Shape of a sequence of pulls.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Shape {
@@ -93,79 +80,21 @@ enum Shape {
     Loop,
 }
 
-/// Direction of a walk relative to the pulls.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Direction {
-    Along,
-    Against,
-}
-
-/// The missed entries, as a directed graph of pulls between nodes.
-struct Flow<'a> {
+/// The flow of the missed entries, with the problem whose conflicts it explains.
+struct ConflictSearch<'a> {
     problem: &'a Problem,
     constraints: &'a Constraints,
-    pulls: Vec<Pull>,
-    /// For each node, whether its lower bound balances the pulls.
-    at_lower: Vec<bool>,
-    /// For each node, whether its upper bound balances the pulls.
-    at_upper: Vec<bool>,
+    flow: Flow,
 }
 
-impl<'a> Flow<'a> {
-    /// Collects the entries missed at `point`, the result of stage 1.
-    fn new(
-        problem: &'a Problem,
-        constraints: &'a Constraints,
-        reached: &Reached,
-        point: &[f64],
-    ) -> Self {
-        let mut pulls = Vec::new();
-        // Sum of the pulls on each node.
-        let mut net = vec![0.0; constraints.nodes()];
-        for (asked, target) in constraints.entries.iter().zip(&reached.targets) {
-            let missing = asked.sum - target.sum;
-            // Skip smaller residuals, which are rounding errors of stage 1.
-            if missing.abs() <= 1e-11 * (1.0 + asked.sum.abs()) {
-                continue;
-            }
-            let PairNodes { input, output } = constraints.nodes_of(asked.pair);
-            let upwards = Pull {
-                from: output,
-                to: input,
-                weight: asked.sum,
-                pair: asked.pair,
-            };
-            let pull = if missing > 0.0 {
-                upwards
-            } else {
-                upwards.reversed()
-            };
-            net[pull.from] -= missing.abs();
-            net[pull.to] += missing.abs();
-            pulls.push(pull);
-        }
-        let mut at_lower = Vec::new();
-        let mut at_upper = Vec::new();
-        for (node, &net) in net.iter().enumerate() {
-            let range = constraints.node_range(node);
-            at_lower.push(point[node] <= range.low && net < 0.0);
-            at_upper.push(point[node] >= range.high && net > 0.0);
-        }
-        Self {
-            problem,
-            constraints,
-            pulls,
-            at_lower,
-            at_upper,
-        }
-    }
-
-    /// Returns the smaller conflict: the shortest loop through `pull`, or the shortest path through
-    /// it from bound to bound; each bound counts as one entry.
+impl ConflictSearch<'_> {
+    /// Steps 1 to 4: returns the smaller conflict: the shortest loop through `pull`, or the
+    /// shortest path through it from bound to bound; each bound counts as one entry.
     fn smallest_through(&self, pull: &Pull) -> Option<Conflict> {
-        let around = self.shortest_walk(pull.to, Direction::Along, |node| node == pull.from);
-        let path = self.path_through(pull);
+        let around = self.flow.way_back(pull);
+        let path = self.flow.path_through(pull);
         match (around, path) {
+            // The loop has `around.len() + 1` entries, the path also two bounds.
             (Some(around), Some(path)) if around.len() < path.len() + 2 => {
                 Some(self.loop_conflict(pull, around))
             }
@@ -176,17 +105,6 @@ impl<'a> Flow<'a> {
             (Some(around), None) => Some(self.loop_conflict(pull, around)),
             (None, None) => None,
         }
-    }
-
-    /// Returns the shortest path from a lower bound through `pull` to an upper bound.
-    fn path_through(&self, pull: &Pull) -> Option<Vec<Pull>> {
-        let onward = self.shortest_walk(pull.to, Direction::Along, |node| self.at_upper[node])?;
-        let mut path =
-            self.shortest_walk(pull.from, Direction::Against, |node| self.at_lower[node])?;
-        path.reverse();
-        path.push(*pull);
-        path.extend(onward);
-        Some(path)
     }
 
     /// Returns the conflict in the loop formed by `pull` and the path `around`, which leads back to
@@ -206,9 +124,9 @@ impl<'a> Flow<'a> {
         self.conflict(entries, ConflictKind::Loop { mismatch })
     }
 
-    /// Returns the conflict in the shortest proper part of a sequence that the bounds at its two
-    /// ends do not permit; `None` if there is none. In a loop, a part may continue from the last
-    /// pull to the first.
+    /// Step 4: returns the conflict in the shortest proper part of a sequence that the bounds at
+    /// its two ends do not permit; `None` if there is none. In a loop, a part may continue from the
+    /// last pull to the first.
     fn smallest_part(&self, pulls: &[Pull], shape: Shape) -> Option<Conflict> {
         let count = pulls.len();
         for length in 1..count {
@@ -241,7 +159,7 @@ impl<'a> Flow<'a> {
         let needed: f64 = run.iter().map(|pull| pull.weight).sum();
         let most = self.constraints.node_range(last.to).high;
         let least = self.constraints.node_range(first.from).low;
-        needed - (most - least) > STRAIN
+        needed - (most - least) > ACCEPTED_INFEASIBILITY
     }
 
     /// Returns the conflict of a path from a node at its minimum to a node at its maximum.
@@ -253,15 +171,17 @@ impl<'a> Flow<'a> {
         let start = self.constraints.channel(start);
         let end = self.constraints.channel(end);
         // The value of an output node is minus its coordinate: at the minimum of the node, the
-        // output is at its upper bound.
+        // output is at its upper bound. From an output to an input, `needed` is therefore the sum
+        // of both coordinates, from an input to an output minus the sum; a bound of half the sum on
+        // both channels suffices.
         let kind = match (start, end) {
             (Channel::Output(_), Channel::Input(_)) => ConflictKind::AboveUpper {
-                channels: (end, start),
+                channels: [end, start],
                 asked: coordinate.value(needed),
                 upper: three_digits(coordinate.value(0.5 * needed), f64::ceil),
             },
             (Channel::Input(_), Channel::Output(_)) => ConflictKind::BelowLower {
-                channels: (start, end),
+                channels: [start, end],
                 asked: coordinate.value(-needed),
                 lower: self.sufficient_lower(coordinate.value(-0.5 * needed)),
             },
@@ -287,7 +207,7 @@ impl<'a> Flow<'a> {
             lesser,
             asked,
             upper: three_digits(quantity.net(bounds.lower, asked), f64::ceil),
-            lower: self.sufficient_lower(quantity.without(bounds.upper, asked)),
+            lower: self.sufficient_lower(quantity.other_channel(bounds.upper, asked)),
         }
     }
 
@@ -308,54 +228,4 @@ impl<'a> Flow<'a> {
             kind,
         }
     }
-
-    /// Finds the shortest walk from `start` to a node for which `is_end` holds, by breadth-first
-    /// search. Returns its pulls in the order of the walk; `None` if there is no such walk.
-    fn shortest_walk(
-        &self,
-        start: usize,
-        direction: Direction,
-        is_end: impl Fn(usize) -> bool,
-    ) -> Option<Vec<Pull>> {
-        let mut came_by: Vec<Option<Pull>> = vec![None; self.constraints.nodes()];
-        let mut queue = VecDeque::from([start]);
-        while let Some(node) = queue.pop_front() {
-            if is_end(node) {
-                return walk_back(&came_by, start, node, direction);
-            }
-            for pull in &self.pulls {
-                let (leaves, enters) = match direction {
-                    Direction::Along => (pull.from, pull.to),
-                    Direction::Against => (pull.to, pull.from),
-                };
-                if leaves == node && enters != start && came_by[enters].is_none() {
-                    came_by[enters] = Some(*pull);
-                    queue.push_back(enters);
-                }
-            }
-        }
-        None
-    }
-}
-
-/// Collects the pulls from `start` to `end`; `came_by` holds the pull by which each node was
-/// reached.
-fn walk_back(
-    came_by: &[Option<Pull>],
-    start: usize,
-    end: usize,
-    direction: Direction,
-) -> Option<Vec<Pull>> {
-    let mut walked = Vec::new();
-    let mut node = end;
-    while node != start {
-        let pull = came_by[node]?;
-        node = match direction {
-            Direction::Along => pull.from,
-            Direction::Against => pull.to,
-        };
-        walked.push(pull);
-    }
-    walked.reverse();
-    Some(walked)
 }

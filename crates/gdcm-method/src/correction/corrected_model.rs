@@ -1,7 +1,6 @@
-//! A corrected model given by matrices (M10); its delays are approximated by rational functions if
-//! they require states.
-
-use nalgebra::DMatrix;
+//! A corrected model `M_O H M_I` given by matrices (M10): the model `H` in series with the gain and
+//! the delay or lead filter of each input (`M_I`) and output channel (`M_O`). Its delays are
+//! approximated by rational functions if they require states.
 
 use gdcm_model::dataset::StateSpace;
 use gdcm_model::dataset::limits::MOST_STATES;
@@ -13,6 +12,7 @@ use super::channel_correction::ChannelCorrection;
 use super::channel_model::ChannelModel;
 use super::channels::{Channel, Channels};
 use super::pade::Pade;
+use super::series_connection::Blocks;
 
 /// Maximum deviation of a delay from a whole number of samples, in samples: computed delays have
 /// rounding errors.
@@ -41,9 +41,13 @@ pub struct CorrectedModel {
     /// Number of lead filter states of each channel; those of inputs precede all other states,
     /// those of outputs follow all others.
     pub lead_states: Channels<usize>,
+    /// Lead filter of each channel; empty if the correction has no leads.
     leads: Channels<Option<LeadFilter>>,
+    /// `None` in continuous time.
     sample_time_s: Option<f64>,
+    /// Delay of each channel, of correction and model together.
     delays_s: Channels<f64>,
+    /// Approximant of the delays in continuous time.
     pade: Pade,
 }
 
@@ -283,107 +287,15 @@ fn lead_model(
     }
 }
 
-/// The matrices A, B, C and D, in continuous or discrete time.
-struct Blocks {
-    a: DMatrix<f64>,
-    b: DMatrix<f64>,
-    c: DMatrix<f64>,
-    d: DMatrix<f64>,
-}
-
-impl Blocks {
-    /// Returns the matrices of the model with the gains of the channels, without delays.
-    fn with_gains(model: &StateSpace, correction: &ChannelCorrection) -> Self {
-        let mut blocks = Self {
-            a: model.a().clone(),
-            b: model.b().clone(),
-            c: model.c().clone(),
-            d: model.d().clone(),
-        };
-        for (input, &gain) in correction.input_gains.iter().enumerate() {
-            blocks.b.column_mut(input).scale_mut(gain);
-            blocks.d.column_mut(input).scale_mut(gain);
-        }
-        for (output, &gain) in correction.output_gains.iter().enumerate() {
-            blocks.c.row_mut(output).scale_mut(gain);
-            blocks.d.row_mut(output).scale_mut(gain);
-        }
-        blocks
-    }
-
-    /// Combines the models of parallel channels into a block-diagonal system.
-    fn block_diagonal(channels: &[ChannelModel]) -> Self {
-        let states = channels.iter().map(ChannelModel::order).sum();
-        let count = channels.len();
-        let mut blocks = Self {
-            a: DMatrix::zeros(states, states),
-            b: DMatrix::zeros(states, count),
-            c: DMatrix::zeros(count, states),
-            d: DMatrix::zeros(count, count),
-        };
-        let mut first = 0;
-        for (channel, model) in channels.iter().enumerate() {
-            let order = model.order();
-            blocks
-                .a
-                .view_mut((first, first), (order, order))
-                .copy_from(&model.a);
-            blocks
-                .b
-                .view_mut((first, channel), (order, 1))
-                .copy_from(&model.b);
-            blocks
-                .c
-                .view_mut((channel, first), (1, order))
-                .copy_from(&model.c);
-            blocks.d[(channel, channel)] = model.d;
-            first += order;
-        }
-        blocks
-    }
-
-    /// Connects the input channels before this system, and the output channels after it.
-    fn between(&self, channels: &Channels<ChannelModel>) -> Self {
-        Self::block_diagonal(&channels.inputs)
-            .then(self)
-            .then(&Self::block_diagonal(&channels.outputs))
-    }
-
-    /// Connects two systems in series: the outputs of this system drive `next`. The states of this
-    /// system come first.
-    fn then(&self, next: &Self) -> Self {
-        let first = self.a.nrows();
-        let second = next.a.nrows();
-        let states = first + second;
-        let mut a = DMatrix::zeros(states, states);
-        a.view_mut((0, 0), (first, first)).copy_from(&self.a);
-        a.view_mut((first, 0), (second, first))
-            .copy_from(&(&next.b * &self.c));
-        a.view_mut((first, first), (second, second))
-            .copy_from(&next.a);
-        let mut b = DMatrix::zeros(states, self.b.ncols());
-        b.rows_mut(0, first).copy_from(&self.b);
-        b.rows_mut(first, second).copy_from(&(&next.b * &self.d));
-        let mut c = DMatrix::zeros(next.c.nrows(), states);
-        c.columns_mut(0, first).copy_from(&(&next.d * &self.c));
-        c.columns_mut(first, second).copy_from(&next.c);
-        Self {
-            a,
-            b,
-            c,
-            d: &next.d * &self.d,
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use nalgebra::Complex;
+    use nalgebra::{Complex, DMatrix};
 
     use gdcm_model::dataset::{Band, Dynamics, Pair};
     use gdcm_model::response::{FrequencyGrid, LeadOrder, PreparedModel};
 
-    use super::super::leads::{ChannelLeads, LeadDesign, LeadSettings};
+    use super::super::channel_leads::ChannelLeads;
+    use super::super::lead_design::{LeadDesign, LeadSettings};
     use super::*;
 
     /// Returns a model with two inputs, two outputs and three states; poles from 1 to 5 rad/s.
@@ -419,7 +331,7 @@ mod tests {
     ) {
         let grid = FrequencyGrid::logarithmic(Band::new(0.5, 12.0).unwrap(), 12);
         let [found, plain] = [&corrected.model, plant]
-            .map(|model| PreparedModel::of(&Dynamics::StateSpace(model.clone())).response(&grid));
+            .map(|model| PreparedModel::new(&Dynamics::StateSpace(model.clone())).response(&grid));
         let correction = correction();
         for pair in [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(output, input)| Pair { output, input }) {
             let found = found.curve(pair);
@@ -570,7 +482,7 @@ mod tests {
             );
             let grid = FrequencyGrid::logarithmic(Band::new(0.5, 12.0).unwrap(), 12);
             let [found, plain] = [&corrected.model, &plant()].map(|model| {
-                PreparedModel::of(&Dynamics::StateSpace(model.clone())).response(&grid)
+                PreparedModel::new(&Dynamics::StateSpace(model.clone())).response(&grid)
             });
             for pair in
                 [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(output, input)| Pair { output, input })

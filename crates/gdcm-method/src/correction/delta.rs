@@ -1,15 +1,22 @@
 //! Delta gain and delta delay: the gain and delay by which a single response would have to be
-//! corrected, eq. (5), (9); and the channel bounds, from their spread over the band (M7).
+//! corrected, eq. (5), (9).
+//!
+//! ```text
+//! G    = median |H_ref| / |H_sim|                       D = median Delta phi(H_sim, H_ref) / omega
+//! band delay = sum W omega Delta phi / sum W omega^2    W: coherence weight, otherwise 1 (M15.2)
+//! ```
 
 use serde::{Deserialize, Serialize};
 
-use gdcm_model::dataset::{Pair, PairTable};
+use gdcm_model::dataset::PairTable;
 use gdcm_model::response::PolarResponse;
-use gdcm_model::statistics::quantile;
 use gdcm_model::units::db_to_ratio;
 
-use super::GainBounds;
 use crate::fidelity::{CoherenceWeights, Mismatch};
+
+/// Magnitude \[dB\] beyond which a ratio (above 1e50 or below 1e-50) is regarded as infinite or
+/// zero, because the objective cannot represent its square (M6).
+pub const LARGEST_GAIN_DB: f64 = 1000.0;
 
 /// Models from which G is computed; D is always computed from the representatives.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -110,9 +117,9 @@ pub(crate) fn band_delay_s(
 ) -> f64 {
     let mut moment = 0.0;
     let mut square = 0.0;
-    for (place, (phase, omega)) in phase.zip(omega).enumerate() {
+    for (index, (phase, omega)) in phase.zip(omega).enumerate() {
         let weight = match weights {
-            Some(weights) => weights[place],
+            Some(weights) => weights[index],
             None => 1.0,
         };
         moment += weight * omega * phase;
@@ -120,10 +127,6 @@ pub(crate) fn band_delay_s(
     }
     moment / square
 }
-
-/// Magnitude \[dB\] beyond which a ratio (above 1e50 or below 1e-50) is regarded as infinite or
-/// zero, because the objective cannot represent its square (M6).
-pub const LARGEST_GAIN_DB: f64 = 1000.0;
 
 /// Computes the mismatch of every response that both models contain and whose ratio is finite and
 /// not zero, at the frequencies that count; `coherence_weights` selects and weights them, otherwise
@@ -146,7 +149,7 @@ pub fn mismatch_table(
 }
 
 /// Returns `|H_ref| / |H_sim|` at each frequency.
-fn ratios(mismatch: &Mismatch) -> Vec<f64> {
+pub(super) fn ratios(mismatch: &Mismatch) -> Vec<f64> {
     mismatch
         .magnitude_db
         .iter()
@@ -155,57 +158,10 @@ fn ratios(mismatch: &Mismatch) -> Vec<f64> {
 }
 
 /// Returns `Delta phi(H_sim, H_ref) / omega` \[s\] at each frequency.
-fn delays(phase: &[f64], omega: &[f64]) -> Vec<f64> {
+pub(super) fn delays(phase: &[f64], omega: &[f64]) -> Vec<f64> {
     phase
         .iter()
         .zip(omega)
         .map(|(phase, omega)| phase / omega)
         .collect()
-}
-
-/// Selects the mismatches to be pooled: those of the responses in `measuring`, or all if none of
-/// these is defined.
-fn pooled<'a>(
-    mismatch: &'a PairTable<Option<Mismatch>>,
-    measuring: &PairTable<bool>,
-) -> impl Iterator<Item = &'a Mismatch> + use<'a> {
-    let marked: Vec<Pair> = measuring
-        .marked()
-        .filter(|&pair| mismatch[pair].is_some())
-        .collect();
-    let pairs = if marked.is_empty() {
-        mismatch.pairs().collect()
-    } else {
-        marked
-    };
-    pairs.into_iter().filter_map(|pair| mismatch[pair].as_ref())
-}
-
-/// Computes the gain bounds `LB = min(1, q-quantile)` and `UB = max(1, (1-q)-quantile)` of
-/// `|H_ref| / |H_sim|`, pooled over frequencies and responses (M7).
-pub fn gain_bounds(
-    mismatch: &PairTable<Option<Mismatch>>,
-    measuring: &PairTable<bool>,
-    q: f64,
-) -> GainBounds {
-    let mut pool: Vec<f64> = pooled(mismatch, measuring).flat_map(ratios).collect();
-    let lower = quantile(&mut pool, q).min(1.0);
-    let upper = quantile(&mut pool, 1.0 - q).max(1.0);
-    GainBounds { lower, upper }
-}
-
-/// Computes the upper delay bound `UB = max(0, (1-q)-quantile)` \[s\] of `Delta phi / omega`,
-/// pooled over frequencies and responses (M7).
-pub fn delay_upper_s(
-    mismatch: &PairTable<Option<Mismatch>>,
-    measuring: &PairTable<bool>,
-    omega: &[f64],
-    q: f64,
-) -> f64 {
-    let mut pool = Vec::new();
-    for mismatch in pooled(mismatch, measuring) {
-        let phase = mismatch.phase_difference(omega);
-        pool.extend(delays(&phase, mismatch.omega(omega)));
-    }
-    quantile(&mut pool, 1.0 - q).max(0.0)
 }

@@ -1,9 +1,10 @@
-//! Minimum of a least-squares objective over its box, found by the interior-point method of
-//! Clarabel.
+//! Minimum of a least-squares objective `F(s)` over its box `lower <= s <= upper`, found by the
+//! interior-point method of Clarabel. Its variables `s` are the scales of an [`Objective`].
 
 use gdcm_numerics::{CscMatrix, DefaultSettings, convex_program};
 
-use super::branch_and_bound::objective::{Curvature, Differentiable, Expansion, Objective};
+use super::branch_and_bound::expansion::{Curvature, Differentiable, Expansion};
+use super::branch_and_bound::objective::Objective;
 use super::problem::ProblemError;
 
 /// Returns a point within about 1e-9 of the minimum over the box.

@@ -2,15 +2,12 @@
 //! the filters add above it (M15.6).
 
 use gdcm_model::dataset::Pair;
-use gdcm_model::units::{number, signed};
 
+use super::channel_leads::ChannelLeads;
 use super::channels::Channels;
-use super::leads::ChannelLeads;
 
 /// Multiple of the upper end of the band at which the gain above the band is computed (M15.6).
 pub const ABOVE_BAND: f64 = 10.0;
-/// Gain \[dB\] below which the displayed value, rounded to 0.1 dB, is zero.
-const NOTHING_DB: f64 = 0.05;
 
 /// Frequency limit of a model with leads, and the gain that the filters add at ten times this
 /// frequency.
@@ -25,7 +22,7 @@ pub struct LeadPrice {
 
 impl LeadPrice {
     /// Computes the price of leads; `None` if no channel has a filter.
-    pub fn of(leads: &ChannelLeads) -> Option<Self> {
+    pub fn new(leads: &ChannelLeads) -> Option<Self> {
         let filters = leads.filters();
         if filters.iter().all(|(_, filter)| filter.is_none()) {
             return None;
@@ -61,46 +58,6 @@ impl LeadPrice {
     pub fn of_pair_db(&self, pair: Pair) -> f64 {
         self.gains_db.outputs[pair.output] + self.gains_db.inputs[pair.input]
     }
-
-    /// Describes the frequency limit: "not valid above 12 rad/s".
-    pub fn limit_words(&self) -> String {
-        format!("not valid above {} rad/s", number(self.limit_rad_s))
-    }
-
-    /// Describes the frequency limit, and the gain of each channel with a filter: "not valid above
-    /// 12 rad/s: at 120 rad/s the leads add +9.1 dB on LON, +11.3 dB on Q; the gain of a response
-    /// increases by the sum for its input and output".
-    pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
-        let mut gains = Vec::new();
-        for (channel, &gain_db) in self.gains_db.iter() {
-            if gain_db > NOTHING_DB {
-                let name = channel.name(inputs, outputs);
-                gains.push(format!("{} dB on {name}", signed(gain_db, 1)));
-            }
-        }
-        if gains.is_empty() {
-            return self.limit_words();
-        }
-        format!(
-            "{}: at {} rad/s the leads add {}; the gain of a response increases by the sum for \
-            its input and output",
-            self.limit_words(),
-            number(self.above_rad_s()),
-            gains.join(", ")
-        )
-    }
-
-    /// Describes the added gain of a response: "+18.9 dB at 120 rad/s"; `None` if it rounds to
-    /// zero.
-    pub fn pair_words(&self, pair: Pair) -> Option<String> {
-        let gain_db = self.of_pair_db(pair);
-        if gain_db > NOTHING_DB {
-            let above_rad_s = number(self.above_rad_s());
-            Some(format!("{} dB at {above_rad_s} rad/s", signed(gain_db, 1)))
-        } else {
-            None
-        }
-    }
 }
 
 #[cfg(test)]
@@ -108,7 +65,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::super::channels::Channel;
-    use super::super::leads::{LeadDesign, LeadSettings};
+    use super::super::lead_design::{LeadDesign, LeadSettings};
     use super::*;
 
     fn leads(input_s: f64, output_s: f64) -> ChannelLeads {
@@ -128,7 +85,7 @@ mod tests {
     #[test]
     fn a_response_pays_for_the_filters_of_both_its_channels_at_ten_times_the_band() {
         let leads = leads(-0.04, -0.02);
-        let price = LeadPrice::of(&leads).expect("both have a filter");
+        let price = LeadPrice::new(&leads).expect("both have a filter");
         let pair = Pair {
             output: 0,
             input: 0,
@@ -143,22 +100,13 @@ mod tests {
         );
         assert_eq!(price.limit_rad_s, 12.0);
         assert_eq!(price.above_rad_s(), 120.0);
-        let words = price.words(&["LON".to_owned()], &["Q".to_owned()]);
-        assert!(
-            words.starts_with("not valid above 12 rad/s: at 120 rad/s the leads add +"),
-            "{words}"
-        );
-        assert!(
-            words.contains(" dB on LON, +") && words.contains(" dB on Q;"),
-            "{words}"
-        );
     }
 
     #[test]
     fn delays_cost_nothing_and_a_schedule_costs_the_most_of_its_airspeeds() {
-        assert_eq!(LeadPrice::of(&leads(0.01, 0.0)), None);
-        let input_leads = LeadPrice::of(&leads(-0.04, -0.01)).expect("leads");
-        let output_leads = LeadPrice::of(&leads(-0.02, -0.03)).expect("leads");
+        assert_eq!(LeadPrice::new(&leads(0.01, 0.0)), None);
+        let input_leads = LeadPrice::new(&leads(-0.04, -0.01)).expect("leads");
+        let output_leads = LeadPrice::new(&leads(-0.02, -0.03)).expect("leads");
         let most = input_leads.clone().or_more(&output_leads);
         assert_eq!(most.gains_db.inputs[0], input_leads.gains_db.inputs[0]);
         assert_eq!(most.gains_db.outputs[0], output_leads.gains_db.outputs[0]);

@@ -48,10 +48,11 @@ impl Pade {
 
     /// Creates the state-space model of the approximant for a positive delay \[s\].
     ///
-    /// The ladder is `t = e_1' (L/z + S)^-1 e_1` with `L = diag(1, 3, 5, ...)` and `S` with 1 above
-    /// and -1 below the diagonal. With `R = S + e_1 e_1'` and `K = L^(-1/2) R L^(-1/2)`, the
-    /// matrices are `A = -(2/tau) K^-1`, `B = 2/sqrt(tau) K^-1 e_1`, `C = 2/sqrt(tau) e_1' K^-1`,
-    /// `D = (-1)^N`.
+    /// The ladder is `t = e_1' (L/z + S)^-1 e_1` with `L = diag(1, 3, 5, ...)`, the first unit vector
+    /// `e_1`, and `S` skew-symmetric with 1 directly above the diagonal and 0 elsewhere above it. Then
+    /// `(1 - t) / (1 + t) = 1 - 2 e_1' (L/z + R)^-1 e_1` with `R = S + e_1 e_1'`. With
+    /// `K = L^(-1/2) R L^(-1/2)` and `z = tau s / 2`, this is the state-space model
+    /// `A = -(2/tau) K^-1`, `B = 2/sqrt(tau) K^-1 e_1`, `C = 2/sqrt(tau) e_1' K^-1`, `D = (-1)^N`.
     pub fn model(self, delay_s: f64) -> ChannelModel {
         let gain = 2.0 / delay_s.sqrt();
         ChannelModel {
@@ -75,10 +76,21 @@ impl Pade {
         ladder_root(row) * ladder_root(column) * self.ladder_inverse(row, column)
     }
 
-    /// Returns an entry of `R^-1`, which is 1, 0 or -1 (found by solving with R from its ends
-    /// inwards).
+    /// Returns an entry of `R^-1`, which is 1, 0 or -1.
+    ///
+    /// `R x = b` has the rows `x_1 + x_2 = b_1`, `x_(k+1) - x_(k-1) = b_k` and `-x_(N-1) = b_N`
+    /// (counted from 1; `x_1 = b_1` for N = 1). Solved from the last row, for `k` with the parity
+    /// of N and then upwards from the first row:
+    ///
+    /// ```text
+    /// x_(k-1) = -(b_k + b_(k+2) + ... + b_N)
+    /// x_k     = b_j summed over all j with the parity of N, plus b_j summed over j < k with the other parity
+    /// ```
     fn ladder_inverse(self, row: usize, column: usize) -> f64 {
-        match (self.has_parity(row), self.has_parity(column)) {
+        match (
+            self.has_parity_of_order(row),
+            self.has_parity_of_order(column),
+        ) {
             (true, true) => 1.0,
             (true, false) if column < row => 1.0,
             (false, true) if column > row => -1.0,
@@ -86,19 +98,19 @@ impl Pade {
         }
     }
 
-    /// Returns whether `place + 1`, the index counted from 1, has the same parity as the order.
-    /// (`place` is counted from 0.)
-    fn has_parity(self, place: usize) -> bool {
-        (place + 1) % 2 == self.order % 2
+    /// Returns whether an index, given counted from 0, has the parity of the order when it is
+    /// counted from 1.
+    fn has_parity_of_order(self, index: usize) -> bool {
+        (index + 1) % 2 == self.order % 2
     }
 
     /// Computes the lag missing from the approximant \[rad\] at `angle = omega tau`:
     /// `angle - 2 arg theta_N(j angle / 2)`.
     ///
-    /// The denominators are the reverse Bessel polynomials,
-    /// `theta_n = (2n - 1) theta_(n-1) + z^2 theta_(n-2)`. The ratio of consecutive polynomials
-    /// lies above the real axis, so that the sum of the angles of these ratios is continuous,
-    /// without extra turns.
+    /// The approximant is `theta_N(-z) / theta_N(z)` with the reverse Bessel polynomials
+    /// `theta_n = (2n - 1) theta_(n-1) + z^2 theta_(n-2)`. The ratio `theta_n / theta_(n-1)` lies
+    /// above the real axis, so that the sum of the angles of these ratios is `arg theta_N`,
+    /// continuous without extra turns.
     pub fn phase_error(self, angle: f64) -> f64 {
         let z = Complex::new(0.0, 0.5 * angle);
         let mut ratio = 1.0 + z;
@@ -111,9 +123,9 @@ impl Pade {
     }
 }
 
-/// Returns the square root of a diagonal entry of `L = diag(1, 3, 5, ...)`.
-fn ladder_root(place: usize) -> f64 {
-    ((2 * place + 1) as f64).sqrt()
+/// Returns the square root of a diagonal entry of `L = diag(1, 3, 5, ...)`, counted from 0.
+fn ladder_root(index: usize) -> f64 {
+    ((2 * index + 1) as f64).sqrt()
 }
 
 #[cfg(test)]

@@ -1,33 +1,27 @@
 //! Problem for the channel values: eq. (7) for gains, eq. (11) for delays, M15.4 for signed delays.
 
-use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
 
 use gdcm_model::dataset::{Pair, PairTable};
 
-use super::branch_and_bound::effort::SearchStopped;
+pub use super::problem_error::ProblemError;
+
+use super::channel_bounds::Bounds;
 use super::interval::Interval;
 use super::quantity::{Coordinate, GainObjective, Quantity};
 
-/// Minimum and maximum value of every channel (M7): gains `0 < lower <= upper`; delays \[s\], with
-/// `lower` zero; signed delays \[s\], `lower <= 0 <= upper` (M15.4).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(from = "[f64; 2]", into = "[f64; 2]")]
-pub struct Bounds {
-    pub lower: f64,
-    pub upper: f64,
-}
+/// Valid delta gains; outside this range, their squares overflow or underflow.
+const GAINS: RangeInclusive<f64> = 1e-50..=1e50;
 
-impl From<[f64; 2]> for Bounds {
-    fn from([lower, upper]: [f64; 2]) -> Self {
-        Self { lower, upper }
-    }
-}
+/// Valid gain bounds (-180 to 180 dB); outside this range, products overflow during the search for
+/// a proof.
+const GAIN_BOUNDS: RangeInclusive<f64> = 1e-9..=1e9;
 
-impl From<Bounds> for [f64; 2] {
-    fn from(bounds: Bounds) -> Self {
-        [bounds.lower, bounds.upper]
-    }
-}
+/// Maximum magnitude of a delta delay or bound \[s\]; beyond it, its square overflows.
+const MOST_DELAY_S: f64 = 1e50;
+
+/// Valid weights of the regularisation.
+const ALPHAS: RangeInclusive<f64> = 0.0..=1e12;
 
 /// Deviation \[s\] up to which a loop of constrained delays is accepted as consistent: half a unit
 /// of the last displayed digit.
@@ -62,92 +56,6 @@ pub struct Problem {
     /// consistent.
     pub agreement: f64,
 }
-
-/// Reason why gains or delays cannot be computed.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ProblemError {
-    /// A table differs in shape from the table of deltas.
-    #[error(
-        "the table of {table} entries has {} outputs and {} inputs, but the {quantity}s have {} and {}",
-        found.0,
-        found.1,
-        expected.0,
-        expected.1
-    )]
-    Shape {
-        quantity: Quantity,
-        table: &'static str,
-        /// Number of outputs and inputs in the table.
-        found: (usize, usize),
-        /// Number of outputs and inputs in the table of deltas.
-        expected: (usize, usize),
-    },
-    /// A constrained entry has no delta.
-    #[error("the response of output {} to input {} has no delta {quantity}, so its {quantity} cannot be held", pair.output + 1, pair.input + 1)]
-    ConstrainedUndefined { quantity: Quantity, pair: Pair },
-    /// A delta gain is not a positive number with a representable square.
-    #[error("the delta gain of output {} and input {} is {gain}; it must be from 1e-50 to 1e50", pair.output + 1, pair.input + 1)]
-    Gain {
-        pair: Pair,
-        /// Delta gain; a ratio, not in dB.
-        gain: f64,
-    },
-    /// A delta delay is not finite, or too large.
-    #[error("the delta delay of output {} and input {} is {delay_s} s; it must be a number below 1e50 s", pair.output + 1, pair.input + 1)]
-    Delay {
-        pair: Pair,
-        /// Delta delay \[s\].
-        delay_s: f64,
-    },
-    /// The bounds are invalid for the quantity, see [`Bounds`].
-    #[error("{}", bounds_error(*quantity, *bounds))]
-    Bounds { quantity: Quantity, bounds: Bounds },
-    /// `alpha` is negative, too large or not a number.
-    #[error("alpha is {alpha}; it must be a number from 0 to 1e12")]
-    Alpha { alpha: f64 },
-    /// The quadratic program for the delays was not solved.
-    #[error("the quadratic program for the delays was not solved: {reason}")]
-    Program {
-        /// Status reported by the solver.
-        reason: String,
-    },
-    /// The search was stopped by its caller.
-    #[error("the search for the optimum was stopped")]
-    Stopped,
-}
-
-/// Returns the message about invalid bounds.
-fn bounds_error(quantity: Quantity, bounds: Bounds) -> String {
-    let Bounds { lower, upper } = bounds;
-    match quantity {
-        Quantity::Gain(_) => format!(
-            "the gain bounds {lower} and {upper} must be from 1e-9 to 1e9, and the lower bound not above the upper bound"
-        ),
-        Quantity::Delay => format!(
-            "the delay bounds are {lower} s and {upper} s; the lower bound must be 0, the upper bound from 0 to 1e50 s"
-        ),
-        Quantity::SignedDelay => format!(
-            "the signed delay bounds are {lower} s and {upper} s; the lower bound must be from -1e50 to 0 s, the upper bound \
-             from 0 to 1e50 s"
-        ),
-    }
-}
-
-impl From<SearchStopped> for ProblemError {
-    fn from(_: SearchStopped) -> Self {
-        ProblemError::Stopped
-    }
-}
-
-/// Valid delta gains; outside this range, their squares overflow or underflow.
-const GAINS: std::ops::RangeInclusive<f64> = 1e-50..=1e50;
-
-/// Valid gain bounds (-180 to 180 dB); outside this range, products overflow during the search for
-/// a proof.
-const GAIN_BOUNDS: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
-
-/// Maximum magnitude of a delta delay or bound \[s\]; beyond it, its square overflows.
-const MOST_DELAY_S: f64 = 1e50;
 
 /// A response and its delta gain or delta delay.
 #[derive(Clone, Copy, Debug)]
@@ -218,7 +126,7 @@ impl Problem {
             self.check_delta(pair, *delta)?;
         }
         self.check_bounds()?;
-        if (0.0..=1e12).contains(&self.alpha) {
+        if ALPHAS.contains(&self.alpha) {
             Ok(())
         } else {
             Err(ProblemError::Alpha { alpha: self.alpha })
@@ -288,7 +196,7 @@ impl Problem {
             .fit_entries()
             .map(|Entry { pair, delta }| {
                 self.quantity
-                    .miss(delta, outputs[pair.output], inputs[pair.input])
+                    .residual(delta, outputs[pair.output], inputs[pair.input])
                     .powi(2)
             })
             .sum();
@@ -305,7 +213,7 @@ impl Problem {
         let departures: f64 = outputs
             .iter()
             .chain(regularised_inputs)
-            .map(|value| self.quantity.miss(neutral, *value, neutral).powi(2))
+            .map(|value| self.quantity.residual(neutral, *value, neutral).powi(2))
             .sum();
         fit + self.alpha * departures
     }
@@ -355,8 +263,8 @@ impl Problem {
     /// Returns the permitted range of the coordinate, the same for every channel.
     pub(crate) fn range(&self) -> Interval {
         let coordinate = self.coordinate();
-        let low = coordinate.coordinate(self.bounds.lower);
-        let high = coordinate.coordinate(self.bounds.upper);
+        let low = coordinate.transform(self.bounds.lower);
+        let high = coordinate.transform(self.bounds.upper);
         match coordinate {
             Coordinate::Logarithm => Interval { low, high },
             // Limit the range: along a path of constrained entries, a channel differs by at most

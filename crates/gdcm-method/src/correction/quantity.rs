@@ -1,5 +1,11 @@
 //! Quantity of the channels (gain, delay or signed delay), its residuals, and the coordinate in
-//! which the net value is a sum.
+//! which the net value of a response is a sum:
+//!
+//! ```text
+//! net value     k_o k_i                       tau_o + tau_i
+//! residual      G - k_o k_i, or in dB         D - tau_o - tau_i
+//! coordinate    ln k                          tau / unit
+//! ```
 
 use std::fmt;
 
@@ -34,6 +40,9 @@ pub enum Quantity {
 
 /// dB per unit of natural logarithm.
 const DECIBEL: f64 = 20.0 / std::f64::consts::LN_10;
+
+/// Seconds per millisecond.
+const SECONDS_PER_MS: f64 = 1e-3;
 
 /// `(20 / ln 10)^2`: squared dB per unit of squared natural logarithm.
 pub(crate) const SQUARED_DECIBEL: f64 = DECIBEL * DECIBEL;
@@ -70,17 +79,17 @@ impl Quantity {
     }
 
     /// Computes the value of a channel from the net value and the value of the other channel.
-    pub(crate) fn without(self, net: f64, other: f64) -> f64 {
+    pub(crate) fn other_channel(self, net: f64, channel: f64) -> f64 {
         if self.is_gain() {
-            net / other
+            net / channel
         } else {
-            net - other
+            net - channel
         }
     }
 
-    /// Computes the residual of an entry, whose square is summed in the objective: a difference of
-    /// ratios, dB or seconds.
-    pub(crate) fn miss(self, delta: f64, output: f64, input: f64) -> f64 {
+    /// Computes the residual of an entry with the target `delta` (G or D), whose square is summed
+    /// in the objective: a difference of ratios, dB or seconds.
+    pub(crate) fn residual(self, delta: f64, output: f64, input: f64) -> f64 {
         match self {
             Quantity::Gain(GainObjective::Ratio) => delta - output * input,
             Quantity::Gain(GainObjective::Decibel) => 20.0 * (delta / (output * input)).log10(),
@@ -89,8 +98,8 @@ impl Quantity {
     }
 
     /// Computes the derivative of an entry's squared residual with respect to the logarithm of a
-    /// gain, or to a delay.
-    pub(crate) fn slope(self, delta: f64, output: f64, input: f64) -> f64 {
+    /// gain, or to a delay; it is the same for the output and the input.
+    pub(crate) fn squared_residual_slope(self, delta: f64, output: f64, input: f64) -> f64 {
         let net = self.net(output, input);
         match self {
             Quantity::Gain(GainObjective::Ratio) => 2.0 * net * (net - delta),
@@ -114,7 +123,7 @@ impl Quantity {
         if self.is_gain() {
             slope / DECIBEL
         } else {
-            1e-3 * slope
+            SECONDS_PER_MS * slope
         }
     }
 }
@@ -140,7 +149,7 @@ pub(crate) enum Coordinate {
 
 impl Coordinate {
     /// Converts a gain, or a delay in seconds, to its coordinate.
-    pub(crate) fn coordinate(self, value: f64) -> f64 {
+    pub(crate) fn transform(self, value: f64) -> f64 {
         match self {
             Coordinate::Logarithm => value.ln(),
             Coordinate::Time { unit_s } => value / unit_s,

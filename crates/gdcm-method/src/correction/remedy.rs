@@ -5,12 +5,13 @@ use std::collections::BTreeSet;
 use gdcm_model::dataset::Pair;
 
 use super::branch_and_bound::effort::{Effort, SearchStopped};
-use super::components::{Components, Constraints, Placement, STRAIN};
+use super::components::{ACCEPTED_INFEASIBILITY, Components, Placement};
 use super::conflict::Conflict;
+use super::constraints::Constraints;
 use super::interval::Interval;
 use super::problem::Problem;
 use super::quantity::Quantity;
-use super::rounding::three_digits;
+use super::three_digits::three_digits;
 
 /// Single changes, each of which makes all constrained entries feasible at their delta; empty if
 /// several changes are needed.
@@ -60,6 +61,11 @@ impl Remedy {
             free,
         }))
     }
+
+    /// Returns whether no single change is sufficient.
+    pub fn is_empty(&self) -> bool {
+        self.upper.is_none() && self.lower.is_none() && self.free.is_empty()
+    }
 }
 
 /// Finds the conflicting entries whose release alone makes all other entries feasible.
@@ -74,7 +80,7 @@ fn sufficient_releases(
         .collect();
     let mut sufficient = Vec::new();
     for pair in suspects {
-        // Work: each channel is placed by a walk along the constrained entries.
+        // Work: `Components::new` places each channel by a walk along the constrained entries.
         effort.spend((constraints.nodes() * constraints.entries.len()) as u64 / 8);
         effort.check()?;
         let mut others = constraints.entries.clone();
@@ -87,6 +93,16 @@ fn sufficient_releases(
 }
 
 /// Sufficient ends of the channels' coordinate range, each for an unchanged other end.
+///
+/// In a component with the scale `s`, the offsets `a` of the inputs and `b` of the outputs, the
+/// coordinates are `a + s` and `-(b + s)` ([`Components`]). Some `s` places all of them in
+/// `low ..= high` if and only if
+///
+/// ```text
+/// high - low  >=  max a - min a,  max b - min b          (width)
+/// low   <=  (min a - max b) / 2                          (lowest pair: sum of a low input and a low output)
+/// high  >=  (max a - min b) / 2                          (highest pair)
+/// ```
 #[derive(Default)]
 struct SufficientRange {
     /// Maximum sufficient lower end.
@@ -102,13 +118,12 @@ impl SufficientRange {
         let components = Components::new(constraints);
         for entry in &constraints.entries {
             let mismatch = (components.sum(entry.pair) - entry.sum).abs();
-            if mismatch > STRAIN || mismatch.is_nan() {
+            if mismatch > ACCEPTED_INFEASIBILITY || mismatch.is_nan() {
                 return Self::default();
             }
         }
         let nodes = components.nodes();
-        // `widest`: maximum width required by a component. `lowest`, `highest`: ends required by
-        // the sums of channel pairs.
+        // Over all components: required width, end required by the lowest pair, and by the highest.
         let mut widest = 0.0_f64;
         let mut lowest = f64::INFINITY;
         let mut highest = f64::NEG_INFINITY;
@@ -125,6 +140,7 @@ impl SufficientRange {
             lowest = lowest.min(0.5 * (inputs.low - outputs.high));
             highest = highest.max(0.5 * (inputs.high - outputs.low));
         }
+        // A change of one end is sufficient only if the pairs do not require the other end to move.
         let Interval { low, high } = constraints.range;
         let rounding = 1e-12 * (1.0 + low.abs() + high.abs());
         let mut sufficient = Self::default();

@@ -1,5 +1,14 @@
 //! Objective of a problem as a function of the scales that its constrained entries leave free (M8,
-//! structure).
+//! proof).
+//!
+//! ```text
+//! F = sum w (delta - net)^2 + alpha sum (channel - neutral)^2,     w = 1 for a fitted entry
+//! coordinate of net = offset + s_input - s_output
+//! ```
+//!
+//! `s_input` and `s_output` are the scales of the components ([`super::components`]) of the entry's
+//! input and output. The deviation of a channel from neutral is an entry too; its other scale is a
+//! last scale that is always 0, the *ground*.
 
 use super::branch_and_bound::exponential::{CombinedEntries, ProductEntry};
 use super::branch_and_bound::objective::Objective;
@@ -62,8 +71,8 @@ fn fit_entries(problem: &Problem, components: &Components) -> Vec<SquareEntry> {
     entries
 }
 
-/// Lists the regularised deviations of the channels from their neutral value, each as an entry with
-/// the ground as its other scale.
+/// Lists the regularised deviations of the channels from their neutral value, each as an entry
+/// whose other scale is the ground.
 fn departures(problem: &Problem, components: &Components) -> Vec<SquareEntry> {
     let ground = components.count();
     let delta = problem.quantity.neutral();
@@ -98,20 +107,23 @@ fn in_coordinate(entries: &[SquareEntry], coordinate: Coordinate, factor: f64) -
         .iter()
         .map(|entry| SquareEntry {
             weight: factor * entry.weight,
-            delta: coordinate.coordinate(entry.delta),
+            delta: coordinate.transform(entry.delta),
             ..*entry
         })
         .collect()
 }
 
-/// Combines entries compared as ratios into one term for each pair of scales that share an entry;
-/// `forward` contains the entries whose input scale has the larger index.
+/// Combines entries compared as ratios into one term for each pair of scales that share an entry, a
+/// function of `u = s_to - s_from` with `from < to`. Its `forward` part contains the entries with
+/// the input in `to`, its `backward` part those with the input in `from`.
 fn ratio_terms(entries: &[SquareEntry], scales: usize) -> TermSum {
+    // The entries with these output and input scales are at `output * scales + input`.
     let mut groups: Vec<Vec<ProductEntry>> = vec![Vec::new(); scales * scales];
     let mut constant = Rounded::default();
     for entry in entries {
         let product = ProductEntry::new(entry.weight, entry.delta, entry.offset);
         if entry.output == entry.input {
+            // Both channels in one component: no scale changes the entry.
             constant.add(product.square());
         } else {
             groups[entry.output * scales + entry.input].push(product);
@@ -155,6 +167,6 @@ fn uncorrected_square(quantity: Quantity, coordinate: Coordinate, delta: f64) ->
     match quantity {
         Quantity::Gain(GainObjective::Ratio) => delta * delta,
         Quantity::Gain(GainObjective::Decibel) => SQUARED_DECIBEL * (delta.ln().powi(2) + 1.0),
-        Quantity::Delay | Quantity::SignedDelay => coordinate.coordinate(delta).powi(2),
+        Quantity::Delay | Quantity::SignedDelay => coordinate.transform(delta).powi(2),
     }
 }

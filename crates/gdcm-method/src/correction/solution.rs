@@ -2,10 +2,9 @@
 //! entries whose delta is infeasible.
 
 use gdcm_model::dataset::{Pair, PairTable};
-use gdcm_model::units::{s_to_ms, telling, told_apart};
 
-use super::branch_and_bound::search::Limit;
-use super::channels::{Channels, pair_name};
+use super::branch_and_bound::proof_budget::Limit;
+use super::channels::Channels;
 use super::conflict::Conflict;
 use super::quantity::Quantity;
 use super::remedy::Remedy;
@@ -36,24 +35,11 @@ impl Outcome {
         }
     }
 
-    /// Describes the outcome in a sentence.
-    pub fn words(self) -> String {
+    /// Returns the stable code, for programs and tests.
+    pub fn code(self) -> &'static str {
         match self {
-            Outcome::Proven { .. } => {
-                "Proven: no gains within the bounds that satisfy the held responses are better."
-                    .to_owned()
-            }
-            Outcome::NotProven { gap, limit } => {
-                let ended = match limit {
-                    Limit::Work => "because its work budget was exhausted",
-                    Limit::Memory => "because its memory budget was exhausted",
-                    Limit::Rounding => "because of rounding errors",
-                };
-                let percent = 100.0 * gap;
-                format!(
-                    "Not proven: gains that are up to {percent:.2} % better may exist; the search ended {ended}."
-                )
-            }
+            Outcome::Proven { .. } => "proven",
+            Outcome::NotProven { .. } => "not-proven",
         }
     }
 }
@@ -108,48 +94,6 @@ impl Unmatched {
     /// delay: reference minus corrected model.
     pub fn phase_left_deg(&self, omega: f64) -> f64 {
         (self.delta - self.target).to_degrees() * -omega
-    }
-
-    /// Describes the deviation; for a delay including the phase error that remains at `omega_top`
-    /// \[rad/s\], the upper end of the band.
-    pub fn words(&self, omega_top: f64, inputs: &[String], outputs: &[String]) -> String {
-        let pair = pair_name(self.pair, inputs, outputs);
-        match self.quantity {
-            Quantity::Gain(_) => self.gain_words(&pair),
-            Quantity::SignedDelay if self.delta < 0.0 => self.lead_words(&pair, omega_top),
-            Quantity::Delay | Quantity::SignedDelay => self.delay_words(&pair, omega_top),
-        }
-    }
-
-    fn gain_words(&self, pair: &str) -> String {
-        let (target, delta) = told_apart(self.target, self.delta, 3);
-        let sign = if self.excess > 0.0 { "+" } else { "" };
-        let excess = telling(self.excess, 1);
-        format!("{pair} is held at {target} instead of {delta} ({sign}{excess} dB).")
-    }
-
-    fn lead_words(&self, pair: &str, omega_top: f64) -> String {
-        let (target, delta) = told_apart(s_to_ms(-self.target), s_to_ms(-self.delta), 1);
-        let left = telling(self.phase_left_deg(omega_top).abs(), 0);
-        format!(
-            "{pair} gets {target} of the {delta} ms of lead that it needs; a phase error of \
-            {left}° remains at {omega_top} rad/s."
-        )
-    }
-
-    fn delay_words(&self, pair: &str, omega_top: f64) -> String {
-        let excess_ms = 1e3 * self.excess;
-        let size_ms = telling(excess_ms.abs(), 1);
-        let why = if self.why.is_lone_lead() && self.why.entries == [self.pair] {
-            let lead_ms = telling(excess_ms, 1);
-            format!("{pair} needs {lead_ms} ms of lead, which a delay cannot provide")
-        } else if excess_ms > 0.0 {
-            format!("{pair} gets {size_ms} ms more delay than it needs")
-        } else {
-            format!("{pair} lacks {size_ms} ms of delay")
-        };
-        let left = telling(self.phase_left_deg(omega_top).abs(), 0);
-        format!("{why}; a phase error of {left}° remains at {omega_top} rad/s.")
     }
 }
 

@@ -1,12 +1,14 @@
 //! Closing of the output-to-input loop around a response, frequency by frequency (M16.3).
 //!
 //! ```text
-//! F = (I - H K)^-1 H = H (I - K H)^-1: the m x m inverse is used
+//! F = (I - H K)^-1 H = H (I - K H)^-1: the m x m inverse is used, H p x m, K m x p
 //! 1  T <- I - K H
 //! 2  for each row j of T: swap the column k >= j with the largest |T_jk| with column j; from the columns k > j subtract the multiple
 //!       of column j that makes T_jk zero; swap and reduce the columns of H in the same way
 //! 3  for each column j of H from the last: divide it by T_jj; from the columns k < j subtract T_jk times column j
 //! ```
+//!
+//! Both matrices are stored column by column: `T_jk` is at `k m + j`, `H_ok` at `k p + o`.
 //!
 //! Gaussian elimination with partial pivoting, by columns: Golub & Van Loan, "Matrix Computations",
 //! 4th ed. 2013, 3.4.
@@ -17,6 +19,7 @@ use nalgebra::{Complex, DMatrix};
 pub(super) struct ClosedLoop<'a> {
     /// Feedback `K`, m x p.
     feedback: &'a DMatrix<f64>,
+    /// Whether `K` is zero, so that `F = H`.
     is_open: bool,
     /// `T`, m x m, column by column.
     difference: Vec<Complex<f64>>,
@@ -34,8 +37,8 @@ impl<'a> ClosedLoop<'a> {
         }
     }
 
-    /// Replaces `H` (p x m, column by column) by `F = (I - H K)^-1 H`; returns `false` if the
-    /// result is not finite.
+    /// Replaces `H` (p x m, column by column) by `F = (I - H K)^-1 H`; returns `false`, with
+    /// meaningless values in `response`, if the result is not finite.
     pub(super) fn close(&mut self, response: &mut [Complex<f64>]) -> bool {
         if self.is_open {
             return response.iter().all(|value| value.is_finite());
@@ -72,7 +75,9 @@ impl<'a> ClosedLoop<'a> {
         let (inputs, outputs) = self.feedback.shape();
         let pivot = self.pivot(at);
         let size = self.difference[pivot * inputs + at].norm_sqr();
-        let is_usable = size.is_finite() && size > 0.0;
+        if !size.is_finite() || size <= 0.0 {
+            return false;
+        }
         for row in 0..inputs {
             self.difference
                 .swap(at * inputs + row, pivot * inputs + row);
@@ -90,7 +95,7 @@ impl<'a> ClosedLoop<'a> {
             step.apply(&mut self.difference, inputs);
             step.apply(response, outputs);
         }
-        is_usable
+        true
     }
 
     /// Returns the column, from `at` on, whose entry in row `at` has the maximum modulus; the last

@@ -1,16 +1,33 @@
-//! A condition's contribution to the normal equations in one pass, assembled from small blocks
-//! (M16.2).
+//! A condition's contribution to the normal equations `G theta = b` of a pass, assembled from small
+//! blocks; rows of the design matrix are not stored (M16.2).
 //!
-//! In input column i, every unknown has the column `F[:,j]` times a factor: `v^k` for `M_ji`,
-//! `R'_oi` for `K_jo`. With `t = (1, R'_oi ...)` and `P = F^H q^2 F`, m x m, the blocks are
+//! The pass minimises, over the entries `theta` of the mixing `M` (m x m) and the feedback `K`
+//! (m x p),
 //!
 //! ```text
-//! G[(a, j), (b, l)] = Re conj(t_a) t_b P_jl,
-//! b[(a, j)] = Re conj(t_a) z_j,    z = F^H q^2 (S R')[:,i],
+//! sum q^2 |S R' - F M - F K R'|^2,    S = (I - H K_0)^-1,    F = S H
 //! ```
 //!
-//! summed over the frequencies. Rows of the design matrix are not stored. The airspeed `v` is the
-//! same at all frequencies of a condition, and is applied in `normal_equations`.
+//! over conditions, frequencies and responses. `H` is the physics response and `R'` the flight
+//! response without its channels' delays and leads, both p x m; `K_0` and `M_0` are the couplings of
+//! the previous pass; `q` is the weight of a response (`weighted_condition`).
+//!
+//! In input column i, the unknowns `M_ji` and `K_jo` multiply the column `F[:,j]` times 1 and times
+//! `R'_oi`. With these factors as `t`, the entries of `G` and `b` are sums over the frequencies:
+//!
+//! ```text
+//! for each frequency:
+//! 1  F <- (I - H K_0)^-1 H
+//!    for each input column i:
+//! 2     q^2 <- weights of column i, which depend on column i of F M_0
+//! 3     t   <- (1, R'_oi for every fed-back output o)
+//! 4     z   <- F^H q^2 (S R')[:,i],   S R' = R' + F K_0 R'  because  S = I + F K_0
+//! 5     G[(a, j), (b, l)] += Re conj(t_a) t_b P_jl,   P = F^H q^2 F, m x m;   b[(a, j)] += Re conj(t_a) z_j
+//! ```
+//!
+//! The index pair `(a, j)` stands for the unknown with the column `t_a F[:,j]`: `M_ji` for a = 0,
+//! and `K_jo` for a > 0, where o is the a-th fed-back output. The airspeed, on which `M_ii` depends,
+//! is the same at all frequencies of a condition; its powers are applied in `normal_equations`.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -22,53 +39,23 @@ use super::error::CouplingError;
 use super::pair_products::{CHUNK, PairProducts, ProductChunk, RowParts, pair_count};
 use super::weighted_condition::WeightedCondition;
 
-/// The couplings of the previous pass, evaluated at a condition.
-struct LastPass<'a> {
-    /// Mixing `M(V)`, m x m.
-    mixing: DMatrix<f64>,
-    /// Feedback `K`, m x p.
-    feedback: &'a DMatrix<f64>,
-    /// Outputs with a column in `K`.
-    fed_back: &'a [usize],
-}
-
 /// A condition's contribution to the normal equations.
 pub(super) struct ConditionBlocks {
     /// Blocks that involve unknowns of M, for each input column.
     pub(super) columns: Vec<ColumnBlocks>,
-    /// Products of two unknowns of K, summed over the input columns.
+    /// Entries of `G` for two unknowns of K, summed over the input columns.
     pub(super) feedback: PairProducts,
-    /// Right-hand side for the unknowns of K: one row per fed-back output, one column per input.
+    /// Entries of `b` for the unknowns of K: one row per fed-back output, one column per input.
     pub(super) right: DMatrix<f64>,
 }
 
-/// Products of the unknowns of M in one input column with one another and with the unknowns of K.
+/// Entries of `G` and `b` for the unknowns of M in one input column.
 #[derive(Clone)]
 pub(super) struct ColumnBlocks {
     /// One row for each product `t_0 t_b`, where `t_0 = 1`.
-    pub(super) products: PairProducts,
+    products: PairProducts,
+    /// Entries of `b`, one for each input j.
     pub(super) right: DVector<f64>,
-}
-
-/// Work memory for one frequency.
-struct Scratch {
-    /// One column of `H_c = F M`.
-    coupled: Vec<Complex<f64>>,
-    /// One column of `S R'`.
-    target: Vec<Complex<f64>>,
-    /// `q^2` for each output.
-    squared_weights: Vec<f64>,
-    z: Vec<Complex<f64>>,
-    t: Vec<Complex<f64>>,
-}
-
-/// Closed-loop response `F = S H` at one frequency.
-struct ClosedResponse {
-    /// Index of the frequency.
-    k: usize,
-    /// `F`, column by column.
-    f: Vec<Complex<f64>>,
-    rows: RowParts,
 }
 
 impl ConditionBlocks {
@@ -92,16 +79,18 @@ impl ConditionBlocks {
         let (inputs, outputs) = last.feedback.shape();
         let factors = fed_back.len() + 1;
         let mut blocks = Self::zeros(inputs, fed_back.len());
-        let mut scratch = Scratch::new(inputs, outputs, factors);
+        let mut terms = ColumnTerms::zeros(inputs, outputs, factors);
         let mut chunk = ProductChunk::new(inputs, factors);
         let mut closed_loop = ClosedLoop::new(last.feedback);
+        // Indices of the frequencies at which a response has a weight.
         let counting: Vec<usize> = (0..condition.omega.len())
-            .filter(|&k| condition.counts_at(k))
+            .filter(|&k| condition.has_weight_at(k))
             .collect();
         for frequencies in counting.chunks(CHUNK) {
             if progress.cancelled() {
                 return Err(CouplingError::Cancelled(Cancelled));
             }
+            // Step 1.
             let mut closed = Vec::with_capacity(frequencies.len());
             for &k in frequencies {
                 closed.push(ClosedResponse::new(condition, k, &mut closed_loop)?);
@@ -109,15 +98,15 @@ impl ConditionBlocks {
             for input in 0..inputs {
                 chunk.clear();
                 for response in &closed {
-                    scratch.mix(&response.f, &last, input);
-                    if scratch.weigh(condition, response.k, input) {
-                        scratch.project(&response.f, condition.flight(response.k, input), &last);
-                        chunk.push(&scratch.t, &response.rows, &scratch.squared_weights);
-                        blocks.add_right(&scratch, input);
+                    // Steps 2 to 4.
+                    if terms.set(condition, response, &last, input) {
+                        chunk.push(&terms.factors, &response.rows, &terms.squared_weights);
+                        blocks.add_right(&terms, input);
                     }
                 }
-                blocks.columns[input].products.add_chunk(&chunk, 0);
-                blocks.feedback.add_chunk(&chunk, factors);
+                // Step 5, for all frequencies of the chunk at once.
+                blocks.columns[input].products.add_pairs_with_first(&chunk);
+                blocks.feedback.add_pairs_without_first(&chunk);
             }
         }
         Ok(blocks)
@@ -135,11 +124,11 @@ impl ConditionBlocks {
         }
     }
 
-    /// Adds the right-hand sides of an input column at one frequency.
-    fn add_right(&mut self, scratch: &Scratch, input: usize) {
-        for (j, z) in scratch.z.iter().enumerate() {
+    /// Adds `Re conj(t_a) z_j` of an input column at one frequency (step 5); `t_0` is 1.
+    fn add_right(&mut self, terms: &ColumnTerms, input: usize) {
+        for (j, z) in terms.projection.iter().enumerate() {
             self.columns[input].right[j] += z.re;
-            for (fed_back, t) in scratch.t[1..].iter().enumerate() {
+            for (fed_back, t) in terms.factors[1..].iter().enumerate() {
                 self.right[(fed_back, j)] += t.re * z.re + t.im * z.im;
             }
         }
@@ -152,94 +141,171 @@ impl ConditionBlocks {
     }
 }
 
+impl ColumnBlocks {
+    /// Returns the entry of `G` for `M_ji` and `M_li`, without powers of the airspeed.
+    pub(super) fn mixing_entry(&self, j: usize, l: usize) -> f64 {
+        self.products.entry(0, j, l)
+    }
+
+    /// Returns the entry of `G` for `M_ji` and `K_lo`, without powers of the airspeed; `fed_back` is
+    /// the index of o among the fed-back outputs.
+    pub(super) fn mixing_feedback_entry(&self, j: usize, l: usize, fed_back: usize) -> f64 {
+        self.products.entry(fed_back + 1, j, l)
+    }
+}
+
+/// The couplings of the previous pass, evaluated at a condition.
+struct LastPass<'a> {
+    /// Mixing `M_0` at the condition's airspeed, m x m.
+    mixing: DMatrix<f64>,
+    /// Feedback `K_0`, m x p.
+    feedback: &'a DMatrix<f64>,
+    /// Outputs with a column in `K`.
+    fed_back: &'a [usize],
+}
+
+/// Closed-loop response `F = S H` at one frequency, in both storage orders.
+struct ClosedResponse {
+    /// Index of the frequency in the condition.
+    k: usize,
+    /// `F`, column by column.
+    columns: Vec<Complex<f64>>,
+    /// `F`, row by row.
+    rows: RowParts,
+}
+
 impl ClosedResponse {
+    /// Closes the loop around the physics response at frequency `k` (step 1).
     fn new(
         condition: &WeightedCondition<'_>,
         k: usize,
         closed_loop: &mut ClosedLoop<'_>,
     ) -> Result<Self, CouplingError> {
-        let mut f = condition.physics(k).to_vec();
-        if !closed_loop.close(&mut f) {
+        let mut columns = condition.physics(k).to_vec();
+        if !closed_loop.close(&mut columns) {
             return Err(CouplingError::SingularLoop {
                 condition: condition.id,
                 omega_rad_s: condition.omega[k],
             });
         }
-        let inputs = condition.inputs();
-        let outputs = condition.outputs();
-        let mut re = Vec::with_capacity(f.len());
-        let mut im = Vec::with_capacity(f.len());
-        for output in 0..outputs {
-            for input in 0..inputs {
-                let value = f[input * outputs + output];
-                re.push(value.re);
-                im.push(value.im);
-            }
-        }
-        Ok(Self {
-            k,
-            f,
-            rows: RowParts { re, im },
-        })
+        let rows = RowParts::from_columns(&columns, condition.outputs());
+        Ok(Self { k, columns, rows })
     }
 }
 
-impl Scratch {
-    fn new(inputs: usize, outputs: usize, factors: usize) -> Self {
+/// Terms of an input column at one frequency; the memory is reused.
+struct ColumnTerms {
+    /// Input column of `F M_0`, p values.
+    coupled: Vec<Complex<f64>>,
+    /// `q^2` for each output.
+    squared_weights: Vec<f64>,
+    /// `t`: 1, then the flight response of each fed-back output.
+    factors: Vec<Complex<f64>>,
+    /// Input column of `S R'`, p values.
+    target: Vec<Complex<f64>>,
+    /// `z = F^H q^2 (S R')[:,i]`, m values.
+    projection: Vec<Complex<f64>>,
+}
+
+impl ColumnTerms {
+    fn zeros(inputs: usize, outputs: usize, factors: usize) -> Self {
         let zero = Complex::new(0.0, 0.0);
         Self {
             coupled: vec![zero; outputs],
-            target: vec![zero; outputs],
             squared_weights: vec![0.0; outputs],
-            z: vec![zero; inputs],
-            t: vec![zero; factors],
+            factors: vec![zero; factors],
+            target: vec![zero; outputs],
+            projection: vec![zero; inputs],
         }
     }
 
-    /// Computes column `input` of `H_c = F M`.
-    fn mix(&mut self, f: &[Complex<f64>], last: &LastPass<'_>, input: usize) {
-        self.coupled.fill(Complex::new(0.0, 0.0));
-        for (column, factor) in f
-            .chunks_exact(self.coupled.len())
-            .zip(last.mixing.column(input).iter())
-        {
-            for (sum, value) in self.coupled.iter_mut().zip(column) {
-                *sum += value * *factor;
-            }
+    /// Computes the terms of column `input` (steps 2 to 4). Returns `false`, without valid terms, if
+    /// every weight is zero.
+    fn set(
+        &mut self,
+        condition: &WeightedCondition<'_>,
+        closed: &ClosedResponse,
+        last: &LastPass<'_>,
+        input: usize,
+    ) -> bool {
+        let flight = condition.flight(closed.k, input);
+        set_coupled(&mut self.coupled, &closed.columns, last, input);
+        let counts =
+            condition.squared_weights(closed.k, input, &self.coupled, &mut self.squared_weights);
+        if !counts {
+            return false;
+        }
+        set_factors(&mut self.factors, flight, last.fed_back);
+        set_target(&mut self.target, &closed.columns, flight, last);
+        set_projection(
+            &mut self.projection,
+            &closed.columns,
+            &self.squared_weights,
+            &self.target,
+        );
+        true
+    }
+}
+
+/// Sets `coupled` to column `input` of `F M_0`.
+fn set_coupled(
+    coupled: &mut [Complex<f64>],
+    f: &[Complex<f64>],
+    last: &LastPass<'_>,
+    input: usize,
+) {
+    coupled.fill(Complex::new(0.0, 0.0));
+    let outputs = coupled.len();
+    let mixing = last.mixing.column(input);
+    for (column, factor) in f.chunks_exact(outputs).zip(mixing.iter()) {
+        for (sum, value) in coupled.iter_mut().zip(column) {
+            *sum += value * *factor;
         }
     }
+}
 
-    /// Computes `q^2` in column `input`; returns `false` if every weight is zero.
-    fn weigh(&mut self, condition: &WeightedCondition<'_>, k: usize, input: usize) -> bool {
-        condition.squared_weights(k, input, &self.coupled, &mut self.squared_weights)
+/// Sets `t` to 1 and the flight responses of the fed-back outputs (step 3).
+fn set_factors(t: &mut [Complex<f64>], flight: &[Complex<f64>], fed_back: &[usize]) {
+    t[0] = Complex::new(1.0, 0.0);
+    for (t, &output) in t[1..].iter_mut().zip(fed_back) {
+        *t = flight[output];
     }
+}
 
-    /// Computes `t` and `z` for the column `flight` of `R'`. Since `S = I + F K`, the product
-    /// `S R'` is `R' + F K R'`.
-    fn project(&mut self, f: &[Complex<f64>], flight: &[Complex<f64>], last: &LastPass<'_>) {
-        self.t[0] = Complex::new(1.0, 0.0);
-        for (t, &output) in self.t[1..].iter_mut().zip(last.fed_back) {
-            *t = flight[output];
+/// Sets `target` to `R' + F K_0 R'` for the input column `flight` of `R'` (step 4).
+fn set_target(
+    target: &mut [Complex<f64>],
+    f: &[Complex<f64>],
+    flight: &[Complex<f64>],
+    last: &LastPass<'_>,
+) {
+    target.copy_from_slice(flight);
+    for (input, column) in f.chunks_exact(flight.len()).enumerate() {
+        // Entry `input` of `K_0 R'`.
+        let fed: Complex<f64> = last
+            .fed_back
+            .iter()
+            .map(|&output| flight[output] * last.feedback[(input, output)])
+            .sum();
+        for (sum, value) in target.iter_mut().zip(column) {
+            *sum += value * fed;
         }
-        self.target.copy_from_slice(flight);
-        let outputs = flight.len();
-        for (row, column) in f.chunks_exact(outputs).enumerate() {
-            let fed: Complex<f64> = last
-                .fed_back
-                .iter()
-                .map(|&output| flight[output] * last.feedback[(row, output)])
-                .sum();
-            for (sum, value) in self.target.iter_mut().zip(column) {
-                *sum += value * fed;
-            }
-        }
-        for (z, column) in self.z.iter_mut().zip(f.chunks_exact(outputs)) {
-            *z = column
-                .iter()
-                .zip(&self.target)
-                .zip(&self.squared_weights)
-                .map(|((value, target), squared)| value.conj() * target * *squared)
-                .sum();
-        }
+    }
+}
+
+/// Sets `z` to `F^H q^2 target` (step 4).
+fn set_projection(
+    z: &mut [Complex<f64>],
+    f: &[Complex<f64>],
+    squared_weights: &[f64],
+    target: &[Complex<f64>],
+) {
+    for (z, column) in z.iter_mut().zip(f.chunks_exact(target.len())) {
+        *z = column
+            .iter()
+            .zip(target)
+            .zip(squared_weights)
+            .map(|((value, target), squared)| value.conj() * target * *squared)
+            .sum();
     }
 }

@@ -9,7 +9,7 @@ use gdcm_model::units::{number, telling};
 pub enum CouplingError {
     /// No condition has a response that both of its representatives contain.
     #[error(
-        "no coupling fit: none of the {conditions} conditions has a response that is available in \
+        "no coupling fit: none of the conditions ({conditions}) has a response that is available in \
         both its physics and its identified representative"
     )]
     NothingToFit { conditions: usize },

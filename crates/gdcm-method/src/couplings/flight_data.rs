@@ -8,14 +8,14 @@ use nalgebra::Complex;
 use gdcm_model::dataset::PairTable;
 use gdcm_model::dataset::model::ModelBands;
 use gdcm_model::response::FrequencyResponse;
-use gdcm_model::response::curve_values::interpolate_values;
+use gdcm_model::response::interpolation::interpolate_values;
 
 use crate::correction::Channels;
-use crate::correction::leads::LeadDesign;
-use crate::uncertainty::spread::Measurement;
+use crate::correction::lead_design::LeadDesign;
+use crate::uncertainty::coherence_error::Measurement;
 
-/// Returns the mean signed delay of each channel \[s\] over the conditions; `None` without
-/// conditions.
+/// Returns the mean signed delay of each channel \[s\] over the conditions, which have the same
+/// channels; `None` without conditions.
 pub fn mean_delays_s(conditions: &[Channels<f64>]) -> Option<Channels<f64>> {
     let count = conditions.len() as f64;
     let first = conditions.first()?;
@@ -34,7 +34,7 @@ pub fn mean_delays_s(conditions: &[Channels<f64>]) -> Option<Channels<f64>> {
 /// `L = e^(-j omega tau)` for a signed delay `tau` \[s\], or the lead filter that `design` provides
 /// for a negative delay (M15). Without a design, the exponential is used for every delay.
 #[must_use]
-pub fn without_channels(
+pub fn without_delays_and_leads(
     flight: &FrequencyResponse,
     omega: &[f64],
     delays_s: &Channels<f64>,
@@ -64,8 +64,9 @@ fn channel_response(tau_s: f64, omega: &[f64], design: Option<&LeadDesign>) -> V
 }
 
 /// Returns the standard deviation of `ln H` from a model's bands, p x m curves on `omega`
-/// \[rad/s\]: `sd^2 = 1/2 ((sd_dB ln 10 / 20)^2 + (sd_deg pi / 180)^2)`, linear in `ln omega`,
-/// constant beyond the bands' ends (M16.2).
+/// \[rad/s\]: `sd^2 = 1/2 ((sd_dB ln 10 / 20)^2 + (sd_deg pi / 180)^2)`, the mean of the variances
+/// of real part and imaginary part of `ln H`; linear in `ln omega`, constant beyond the bands' ends
+/// (M16.2).
 pub fn response_deviation(bands: &ModelBands, omega: &[f64]) -> PairTable<Vec<f64>> {
     bands.sd_db().map(|pair, sd_db| {
         let sd_db = interpolate_values(bands.omega(), sd_db, omega);
@@ -102,7 +103,7 @@ mod tests {
     use gdcm_model::dataset::Pair;
 
     use super::*;
-    use crate::correction::leads::LeadSettings;
+    use crate::correction::lead_design::LeadSettings;
 
     fn signed_delays() -> Channels<f64> {
         Channels {
@@ -139,7 +140,7 @@ mod tests {
                 })
                 .collect()
         });
-        let remainder = without_channels(
+        let remainder = without_delays_and_leads(
             &FrequencyResponse::new(flight),
             &omega,
             &signed_delays(),
@@ -152,7 +153,7 @@ mod tests {
             );
         }
         let ones = FrequencyResponse::new(PairTable::filled(1, 2, vec![Complex::from(1.0); 3]));
-        let turned = without_channels(&ones, &omega, &signed_delays(), None);
+        let turned = without_delays_and_leads(&ones, &omega, &signed_delays(), None);
         let expected = Complex::from_polar(1.0, -0.05 * omega[2]);
         assert!(
             (turned.curve(Pair::new(0, 1))[2] - expected).norm() < 1e-15,

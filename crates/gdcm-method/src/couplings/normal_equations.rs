@@ -2,9 +2,13 @@
 //!
 //! ```text
 //! 1  G, b <- the conditions' blocks summed, with powers of the airspeed v for the unknowns M_ji
-//! 2  scale rows and columns by the root of the diagonal, because the entries of K differ in unit
+//! 2  divide rows and columns by the root of the diagonal, because the entries of K differ in unit
 //! 3  (G + rho diag G) theta = b + rho diag G theta_0,   theta_0: M = I, K = 0;  solved as an arrow
 //! ```
+//!
+//! `G theta = b` are the equations for the entries `theta` of the mixing M and the feedback K
+//! (`condition_blocks`), `rho` is the relative regularisation. The blocks of G are arranged in
+//! `arrow_system`, the order of the unknowns in `unknown_layout`.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -18,6 +22,7 @@ use super::unknown_layout::{FeedbackUnknown, MixingUnknown, UnknownLayout};
 /// The normal equations, `G theta = b`.
 pub(super) struct NormalEquations<'a> {
     layout: &'a UnknownLayout,
+    /// Equations for the unknowns in M, for each input column.
     columns: Vec<ArrowColumn>,
     /// Normal matrix entries of pairs of unknowns in K.
     feedback: PairProducts,
@@ -71,6 +76,7 @@ impl<'a> NormalEquations<'a> {
 
     /// Returns the normal matrix entry for two unknowns in K.
     fn feedback_entry(&self, row: &FeedbackUnknown, column: &FeedbackUnknown) -> f64 {
+        // Stored for pairs of outputs in ascending order; G is symmetric.
         let count = self.right.nrows();
         if row.fed_back <= column.fed_back {
             let pair = pair_index(row.fed_back, column.fed_back, count);
@@ -174,13 +180,11 @@ fn add_column(
         equations.right[row] += factor * blocks.right[unknown.to];
         for (column, other) in mixing.iter().enumerate() {
             equations.block[(row, column)] +=
-                factor * v.powi(other.power) * blocks.products.entry(0, unknown.to, other.to);
+                factor * v.powi(other.power) * blocks.mixing_entry(unknown.to, other.to);
         }
         for (column, other) in feedback.iter().enumerate() {
-            equations.border[(row, column)] += factor
-                * blocks
-                    .products
-                    .entry(other.fed_back + 1, unknown.to, other.input);
+            equations.border[(row, column)] +=
+                factor * blocks.mixing_feedback_entry(unknown.to, other.input, other.fed_back);
         }
     }
 }
@@ -237,6 +241,7 @@ impl<'a> Scaling<'a> {
         }
     }
 
+    /// Sets the scale of an unknown from its diagonal entry of `G`.
     fn set(&mut self, index: usize, diagonal: f64) {
         if diagonal > 0.0 {
             self.scale[index] = diagonal.sqrt().recip();
@@ -260,6 +265,7 @@ impl<'a> Scaling<'a> {
         scale * right + self.regularisation(index) * self.unknowns[index].uncoupled() / scale
     }
 
+    /// Returns the indices of the unknowns that no response determines.
     fn undetermined(&self) -> Vec<usize> {
         (0..self.unknowns.len())
             .filter(|&index| !self.is_determined[index])

@@ -1,12 +1,17 @@
 //! Sums of products over frequencies, by pair of factors and pair of inputs in the normal equations
 //! (M16.2).
 //!
-//! The sum of `Re conj(t_a) t_b P_jl` over frequencies is a difference of two matrix products, with
-//! a row for each pair `a <= b` and a column for each pair `j <= l`:
+//! At each frequency there are factors `t_0, t_1, ...`, of which `t_0` is 1, and an m x m matrix
+//! `P = F^H q^2 F`; both are defined in `condition_blocks`. The sum of `Re conj(t_a) t_b P_jl` over
+//! the frequencies is a difference of two matrix products, with a row for each pair `a <= b` and a
+//! column for each pair `j <= l`:
 //!
 //! ```text
-//! Re(conj(t_a) t_b P_jl) = Re(conj(t_a) t_b) Re P_jl - Im(conj(t_a) t_b) Im P_jl,   P = F^H q^2 F,   P_lj = conj P_jl
+//! Re(conj(t_a) t_b P_jl) = Re(conj(t_a) t_b) Re P_jl - Im(conj(t_a) t_b) Im P_jl,   P_lj = conj P_jl
 //! ```
+//!
+//! Pairs are ordered by their first, then by their second index: (0,0), (0,1), ... (1,1), (1,2), ...
+//! The pairs with `t_0` therefore come before all others.
 
 use nalgebra::{Complex, DMatrix, DMatrixView};
 
@@ -19,7 +24,8 @@ pub(super) fn pair_count(count: usize) -> usize {
     count * (count + 1) / 2
 }
 
-/// Returns the index of the pair `a <= b` among `count` items, row by row.
+/// Returns the index of the pair `a <= b` among `count` items. Before it are the pairs with a smaller
+/// first index, `count + (count - 1) + ...` with `a` terms, and `b - a` pairs with the same one.
 pub(super) fn pair_index(a: usize, b: usize, count: usize) -> usize {
     a * count - a * a.saturating_sub(1) / 2 + b - a
 }
@@ -46,7 +52,7 @@ impl PairProducts {
     }
 
     /// Returns the sum for the factor pair `row` and the inputs `j` and `l`, which may be in either
-    /// order.
+    /// order: `P_lj` is the conjugate of `P_jl`.
     pub(super) fn entry(&self, row: usize, j: usize, l: usize) -> f64 {
         if j <= l {
             let column = pair_index(j, l, self.inputs);
@@ -57,8 +63,18 @@ impl PairProducts {
         }
     }
 
-    /// Adds the products of a chunk; `first` is the chunk's row of the first factor pair.
-    pub(super) fn add_chunk(&mut self, chunk: &ProductChunk, first: usize) {
+    /// Adds a chunk's products for the factor pairs that contain `t_0`; there is a row for each.
+    pub(super) fn add_pairs_with_first(&mut self, chunk: &ProductChunk) {
+        self.add_rows_from(chunk, 0);
+    }
+
+    /// Adds a chunk's products for the factor pairs without `t_0`; there is a row for each.
+    pub(super) fn add_pairs_without_first(&mut self, chunk: &ProductChunk) {
+        self.add_rows_from(chunk, chunk.t_re.nrows() - self.real.nrows());
+    }
+
+    /// Adds a chunk's products; `first` is the chunk's row that belongs to the first row here.
+    fn add_rows_from(&mut self, chunk: &ProductChunk, first: usize) {
         let (rows, columns) = self.real.shape();
         if rows == 0 || chunk.filled == 0 {
             return;
@@ -68,7 +84,7 @@ impl PairProducts {
             (&mut self.imaginary, &chunk.t_im, &chunk.p_im),
         ] {
             let factors = factors.view((first, 0), (rows, chunk.filled));
-            // The transpose, read without copying.
+            // The transpose, read without copying: rows by frequency, columns by pair of inputs.
             let weighted = DMatrixView::from_slice_with_strides(
                 weighted.as_slice(),
                 chunk.filled,
@@ -87,7 +103,7 @@ impl PairProducts {
     }
 }
 
-/// Factors of the products, a column for each frequency.
+/// Factors of the products at up to [`CHUNK`] frequencies, a column for each.
 pub(super) struct ProductChunk {
     /// Number of filled columns.
     filled: usize,
@@ -103,8 +119,25 @@ pub(super) struct ProductChunk {
 
 /// A p x m matrix, its real and imaginary parts stored row by row.
 pub(super) struct RowParts {
-    pub(super) re: Vec<f64>,
-    pub(super) im: Vec<f64>,
+    re: Vec<f64>,
+    im: Vec<f64>,
+}
+
+impl RowParts {
+    /// Reorders a matrix with `outputs` rows that is stored column by column.
+    pub(super) fn from_columns(columns: &[Complex<f64>], outputs: usize) -> Self {
+        let inputs = columns.len() / outputs;
+        let mut re = Vec::with_capacity(columns.len());
+        let mut im = Vec::with_capacity(columns.len());
+        for output in 0..outputs {
+            for input in 0..inputs {
+                let value = columns[input * outputs + output];
+                re.push(value.re);
+                im.push(value.im);
+            }
+        }
+        Self { re, im }
+    }
 }
 
 impl ProductChunk {
@@ -131,6 +164,7 @@ impl ProductChunk {
         self.filled += 1;
     }
 
+    /// Writes `conj(t_a) t_b` for each pair `a <= b` into the next column.
     fn push_factors(&mut self, t: &[Complex<f64>]) {
         let pairs = self.t_re.nrows();
         let t_re = &mut self.t_re.as_mut_slice()[self.filled * pairs..][..pairs];
@@ -146,6 +180,8 @@ impl ProductChunk {
         }
     }
 
+    /// Writes `P_jl = sum q^2 conj(F_oj) F_ol` over the outputs o, for each pair `j <= l`, into the
+    /// next column.
     fn push_weighted(&mut self, f: &RowParts, squared_weights: &[f64]) {
         let inputs = f.re.len() / squared_weights.len();
         let pairs = self.p_re.nrows();
@@ -164,10 +200,12 @@ impl ProductChunk {
 
 /// Adds `q^2 conj(f_j) f_l` for each pair `j <= l` in a row `f` of `F`.
 fn add_outer_product(re: &[f64], im: &[f64], squared: f64, p_re: &mut [f64], p_im: &mut [f64]) {
+    // Index of the pair (j, j); the pairs (j, l) with l > j follow it.
     let mut start = 0;
     for j in 0..re.len() {
         let left_re = squared * re[j];
         let left_im = squared * im[j];
+        // From here on, `re` and `im` begin with `f_j`.
         let re = &re[j..];
         let im = &im[j..];
         let end = start + re.len();

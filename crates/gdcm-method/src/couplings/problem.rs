@@ -7,7 +7,7 @@ use gdcm_model::response::FrequencyResponse;
 
 pub use super::error::CouplingError;
 pub use super::flight_data::{
-    coherence_deviation, mean_delays_s, response_deviation, without_channels,
+    coherence_deviation, mean_delays_s, response_deviation, without_delays_and_leads,
 };
 
 use crate::fidelity::CoherenceWeights;
@@ -39,7 +39,7 @@ pub struct CouplingCondition {
     /// `H`, p x m: the physics representative, not finite where a response is missing.
     pub physics: Arc<FrequencyResponse>,
     /// `R'`, p x m: the identified representative without the channels' delays and leads
-    /// ([`without_channels`]); not finite where a response is missing.
+    /// ([`without_delays_and_leads`]); not finite where a response is missing.
     pub flight: FrequencyResponse,
     /// Responses available in both representatives (M6, M6a); the others have weight 0.
     pub usable: PairTable<bool>,

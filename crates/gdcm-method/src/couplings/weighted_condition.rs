@@ -1,8 +1,19 @@
-//! A condition arranged by frequency, with the weight of each response (M16.2).
+//! A condition arranged by frequency, with the weight `q` of each response (step 5 of `couplings`,
+//! M16.2).
 //!
 //! ```text
-//! q = s w_gamma / max(|R'|, |H_c| / 2) / (1 + (e s / 10)^2)^(1/4),   s = w_p / sqrt(1 + (sd / 0.06)^2),   e^2: the summand of J (M4)
+//! q = s w_gamma / max(|R'|, |H_c| / 2) / (1 + (e s / 10)^2)^(1/4),    s = w_p / sqrt(1 + (sd / 0.06)^2)
 //! ```
+//!
+//! | symbol | meaning |
+//! |---|---|
+//! | `R'`, `H_c` | flight response; physics response with the couplings of the previous pass |
+//! | `w_p` | 2 for an on-axis response, otherwise 1 |
+//! | `sd` | standard deviation of the identified model's `ln H` |
+//! | `w_gamma^2` | weight from the coherence (M4a) |
+//! | `e^2` | summand of J: squared errors of `H_c` against `R'` in dB and deg (M4) |
+//!
+//! `s` and `w_gamma` are the same in all passes; `|H_c|` and `e` change.
 
 use nalgebra::Complex;
 
@@ -37,8 +48,11 @@ pub(super) struct WeightedCondition<'a> {
     pub(super) omega: &'a [f64],
     outputs: usize,
     inputs: usize,
+    /// `H`, ordered like [`columns_by_frequency`].
     physics: Vec<Complex<f64>>,
+    /// `R'`, in the same order.
     flight: Vec<Complex<f64>>,
+    /// Weight of each response, in the same order.
     weights: Vec<FixedWeight>,
 }
 
@@ -74,18 +88,13 @@ impl<'a> WeightedCondition<'a> {
         self.outputs
     }
 
-    /// Returns the input count, `m`.
-    pub(super) fn inputs(&self) -> usize {
-        self.inputs
-    }
-
     /// Returns whether any response has a nonzero weight.
-    pub(super) fn counts(&self) -> bool {
+    pub(super) fn has_weight(&self) -> bool {
         self.weights.iter().any(|weight| weight.s > 0.0)
     }
 
     /// Returns whether any response has a nonzero weight at frequency `k`.
-    pub(super) fn counts_at(&self, k: usize) -> bool {
+    pub(super) fn has_weight_at(&self, k: usize) -> bool {
         let size = self.inputs * self.outputs;
         self.weights[k * size..][..size]
             .iter()
@@ -143,8 +152,8 @@ impl FixedWeight {
     }
 }
 
-/// Returns the values frequency by frequency, each p x m stored column by column; missing values are
-/// zero.
+/// Returns the values frequency by frequency, each p x m stored column by column: the value of
+/// `[output, input]` at frequency k is at `(k m + input) p + output`. Missing values are zero.
 fn columns_by_frequency(curves: &PairTable<Vec<Complex<f64>>>, points: usize) -> Vec<Complex<f64>> {
     let inputs = curves.inputs();
     let outputs = curves.outputs();
@@ -164,7 +173,8 @@ fn columns_by_frequency(curves: &PairTable<Vec<Complex<f64>>>, points: usize) ->
     values
 }
 
-/// Returns the fixed weights, ordered like [`columns_by_frequency`].
+/// Returns the fixed weights, ordered like [`columns_by_frequency`], by the rules in
+/// [`WeightedCondition::new`].
 fn fixed_weights(
     problem: &CouplingProblem,
     condition: &CouplingCondition,
@@ -194,27 +204,37 @@ fn fixed_weights(
                     && condition.usable[pair]
                     && has_row
                     && has_flight(condition, pair, k);
-                if !counts {
-                    weights.push(FixedWeight::default());
-                    continue;
-                }
-                let axis = if problem.on_axis[pair] { ON_AXIS } else { 1.0 };
-                let deviation = match &condition.deviation {
-                    Some(table) => table[pair][k],
-                    None => 0.0,
-                };
-                let s = axis / (1.0 + (deviation / DEVIATION).powi(2)).sqrt();
-                weights.push(FixedWeight {
-                    s: s.max(0.0),
-                    coherence: match &coherence {
-                        Some(table) => table[pair][k].max(0.0),
-                        None => 1.0,
-                    },
+                weights.push(if counts {
+                    FixedWeight {
+                        s: deviation_weight(problem, condition, pair, k),
+                        coherence: match &coherence {
+                            Some(table) => table[pair][k].max(0.0),
+                            None => 1.0,
+                        },
+                    }
+                } else {
+                    FixedWeight::default()
                 });
             }
         }
     }
     weights
+}
+
+/// Returns `s = w_p / sqrt(1 + (sd / 0.06)^2)` at frequency `k`; 0 if it is NaN.
+fn deviation_weight(
+    problem: &CouplingProblem,
+    condition: &CouplingCondition,
+    pair: Pair,
+    k: usize,
+) -> f64 {
+    let axis = if problem.on_axis[pair] { ON_AXIS } else { 1.0 };
+    let deviation = match &condition.deviation {
+        Some(table) => table[pair][k],
+        None => 0.0,
+    };
+    let s = axis / (1.0 + (deviation / DEVIATION).powi(2)).sqrt();
+    s.max(0.0)
 }
 
 /// Returns whether a flight response is available at frequency `k`.

@@ -1,7 +1,8 @@
-//! Frequency weights from a measured reference's coherence (M4a).
+//! Frequency weights from a measured reference's coherence (M4a): a frequency with a coherence
+//! below a threshold is left out, the others are weighted by `W` ([`coherence_weight`]).
 
 use gdcm_model::dataset::{Dynamics, Pair, PairTable};
-use gdcm_model::response::curve_values::coherence_at;
+use gdcm_model::response::interpolation::coherence_at;
 
 /// The frequencies of a response with sufficient coherence, each with its weight.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,7 +42,7 @@ impl CoherenceWeights {
                 None => true,
             };
             let weight = coherence_weight(coherence);
-            // A frequency with zero weight would only increase the frequency count N'.
+            // A frequency with zero weight would only increase the count by which J is divided.
             if coherence >= threshold && weight > 0.0 && is_valid {
                 selected.places.push(place);
                 selected.omega.push(omega);

@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use pulp::{Arch, Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
-use gdcm_model::response::frequency_response::PolarCurve;
+use gdcm_model::response::polar_response::PolarCurve;
 use gdcm_model::statistics::{mean, median, weighted_median};
 
 /// Weight of the squared magnitude error \[dB^2\], `W_g` (Tischler & Remple 2012, chapter 11).

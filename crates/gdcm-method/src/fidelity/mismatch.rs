@@ -1,9 +1,16 @@
-//! Mismatch between a response and its reference, frequency by frequency.
+//! Mismatch between a simulated response and its reference, frequency by frequency.
+//!
+//! ```text
+//! e_dB = |H_sim|_dB - |H_ref|_dB,   Delta phi = arg(H_sim conj(H_ref)), unwrapped over frequency (M3, M6b)
+//! ```
+//!
+//! The errors cover the *grid*, all frequencies of the comparison, or only its frequencies with a
+//! coherence weight (M4a). Functions that take `omega` or `grid` expect the whole grid.
 
 use std::f64::consts::{PI, TAU};
 
-use gdcm_model::response::curve_values::centred_unwrap;
-use gdcm_model::response::frequency_response::PolarCurve;
+use gdcm_model::response::phase_unwrapping::centred_unwrap;
+use gdcm_model::response::polar_response::PolarCurve;
 use gdcm_model::response::{GainDelay, wrap};
 use gdcm_model::statistics::{median, weighted_median};
 
@@ -21,8 +28,8 @@ pub struct Mismatch {
     /// Frequencies with weights, if the reference has coherence (M4a); otherwise the errors cover
     /// the whole grid with equal weights.
     pub coherence_weights: Option<CoherenceWeights>,
-    /// Whole turns \[rad\] that are added to `Delta phi` after phase unwrapping; zero for the
-    /// representatives (M13.1).
+    /// Whole turns \[rad\] that are added to `Delta phi` after phase unwrapping, set by
+    /// [`Mismatch::align_branch`]; zero for the representatives (M13.1).
     pub turn: f64,
 }
 
@@ -39,8 +46,8 @@ impl Mismatch {
         }
     }
 
-    /// Restricts the difference to the weighted frequencies: all frequencies without coherence;
-    /// `None` if no frequency has a weight (M4a).
+    /// Restricts the difference to the frequencies with a coherence weight (M4a); `None` if there
+    /// are none. Without `coherence_weights`, the difference is not changed.
     pub fn coherence_weighted(self, coherence_weights: Option<&CoherenceWeights>) -> Option<Self> {
         let Some(coherence_weights) = coherence_weights else {
             return Some(self);
@@ -115,7 +122,8 @@ impl Mismatch {
         multiplied
     }
 
-    /// Picks the values at the errors' frequencies from a value at each grid point.
+    /// Picks the values at the errors' frequencies from a value at each grid point; the inverse of
+    /// [`Mismatch::on_grid`].
     fn at_errors(&self, values: &[f64]) -> Vec<f64> {
         match &self.coherence_weights {
             Some(weights) => weights.pick(values),
@@ -142,6 +150,7 @@ impl Mismatch {
     pub fn phase_difference(&self, omega: &[f64]) -> Vec<f64> {
         let mut phase = self.unwrapped();
         let omega = self.omega(omega);
+        // Branch: the whole turns at each frequency (M6b).
         if phase.iter().any(|phase| phase.abs() > PI) {
             let delay_s = nearest_pure_delay_s(&phase, omega);
             for (phase, omega) in phase.iter_mut().zip(omega) {

@@ -2,17 +2,20 @@
 //! mode tracks across models, and unnoticeable added dynamics.
 
 pub mod absolute_deviations;
+pub(crate) mod assignment;
 pub mod coherence_weights;
 pub mod cost;
+pub mod discontinuity;
 pub mod distance;
 pub mod mismatch;
 pub mod mode_tracks;
 pub mod muad;
 mod pure_delay;
+pub mod representative;
 
 pub use coherence_weights::CoherenceWeights;
 pub use cost::{ACCEPTABLE, Cost, CostAverage, summand};
-pub use distance::{Discontinuity, SUGGESTION_RATIO};
+pub use discontinuity::{Discontinuity, SUGGESTION_RATIO};
 pub use mismatch::Mismatch;
 pub use mode_tracks::{ModeTrack, mode_tracks};
-pub use muad::{Muad, leaves};
+pub use muad::{Muad, ranges_outside};

@@ -1,21 +1,14 @@
 //! A mode followed across the models of a bundle, and the models at which it jumps.
 //!
-//! The modes are matched by an assignment with minimum total cost.
-//!
-//! ```text
-//! 1  row potentials u_i, column potentials v_j, with u_i + v_j <= c_ij, equal where i goes with j
-//! 2  for each row i in turn: grow a column tree from i by the least reduced cost c_ij - u_i - v_j (Dijkstra),
-//!    moving the potentials with it, until a column is free
-//! 3  shift the assignments along the path from i to that column
-//! ```
-//!
-//! Kuhn, "The Hungarian method for the assignment problem", Naval Research Logistics Quarterly 2,
-//! 1955, with shortest augmenting paths: Jonker & Volgenant, Computing 38, 1987. O(rows^2 columns).
+//! The modes of each model are matched to the modes of a reference model by the assignment with the
+//! minimum sum of s-plane distances, so that one close match does not force a distant one.
 
 use nalgebra::Complex;
 
 use gdcm_model::response::Mode;
 use gdcm_model::statistics::median;
+
+use super::assignment::cheapest_assignment;
 
 /// Minimum distance of a jump from the centre, in track spreads: a smooth track over perturbations
 /// in both directions ends at two to three spreads.
@@ -97,18 +90,18 @@ fn track(reference: usize, modes: Vec<Option<usize>>, poles: &[Option<Complex<f6
 }
 
 /// Returns the match in `model` for each mode in `reference`; `None` for a mode without a match in
-/// a smaller model.
+/// a smaller model. The rows of the assignment are the modes of the smaller model.
 fn matched(reference: &[Mode], model: &[Mode]) -> Vec<Option<usize>> {
     let mut matches = vec![None; reference.len()];
     if reference.len() <= model.len() {
-        let columns = least_total(reference.len(), model.len(), |row, column| {
+        let columns = cheapest_assignment(reference.len(), model.len(), |row, column| {
             (reference[row].pole - model[column].pole).norm()
         });
         for (place, mode) in columns.into_iter().enumerate() {
             matches[place] = Some(mode);
         }
     } else {
-        let columns = least_total(model.len(), reference.len(), |row, column| {
+        let columns = cheapest_assignment(model.len(), reference.len(), |row, column| {
             (reference[column].pole - model[row].pole).norm()
         });
         for (mode, place) in columns.into_iter().enumerate() {
@@ -116,113 +109,6 @@ fn matched(reference: &[Mode], model: &[Mode]) -> Vec<Option<usize>> {
         }
     }
     matches
-}
-
-/// Assigns a different column to each row with the smallest total cost; needs at least as many
-/// columns as rows, and finite costs.
-pub(crate) fn least_total(
-    rows: usize,
-    columns: usize,
-    cost: impl Fn(usize, usize) -> f64,
-) -> Vec<usize> {
-    let mut assignment = Assignment {
-        row_potentials: vec![0.0; rows],
-        column_potentials: vec![0.0; columns],
-        row_of: vec![None; columns],
-    };
-    for row in 0..rows {
-        assignment.augment(row, &cost);
-    }
-    let mut column_of = vec![0; rows];
-    for (column, row) in assignment.row_of.into_iter().enumerate() {
-        if let Some(row) = row {
-            column_of[row] = column;
-        }
-    }
-    column_of
-}
-
-/// A partial assignment of minimum cost.
-struct Assignment {
-    /// `u`, by row.
-    row_potentials: Vec<f64>,
-    /// `v`, by column.
-    column_potentials: Vec<f64>,
-    /// Each column's row; `None` for a free column.
-    row_of: Vec<Option<usize>>,
-}
-
-impl Assignment {
-    /// Assigns a column to the row `new`, and reassigns earlier rows where that costs less (steps 2
-    /// and 3).
-    fn augment(&mut self, new: usize, cost: &impl Fn(usize, usize) -> f64) {
-        let columns = self.row_of.len();
-        let mut distance = vec![f64::INFINITY; columns];
-        // The previous column on the path from the new row; `None` at the row itself.
-        let mut before: Vec<Option<usize>> = vec![None; columns];
-        let mut in_tree = vec![false; columns];
-        let mut last = None;
-        let mut row = new;
-        loop {
-            for column in 0..columns {
-                if in_tree[column] {
-                    continue;
-                }
-                let reduced =
-                    cost(row, column) - self.row_potentials[row] - self.column_potentials[column];
-                if reduced < distance[column] {
-                    distance[column] = reduced;
-                    before[column] = last;
-                }
-            }
-            let open = (0..columns).filter(|&column| !in_tree[column]);
-            let Some(next) = open.min_by(|&a, &b| distance[a].total_cmp(&distance[b])) else {
-                return;
-            };
-            self.shift_potentials(new, &in_tree, &mut distance, next);
-            in_tree[next] = true;
-            last = Some(next);
-            match self.row_of[next] {
-                Some(owner) => row = owner,
-                None => break,
-            }
-        }
-        self.shift_assignments(new, &before, last);
-    }
-
-    /// Moves the tree's potentials so that the reduced cost to `next` becomes zero.
-    fn shift_potentials(
-        &mut self,
-        new: usize,
-        in_tree: &[bool],
-        distance: &mut [f64],
-        next: usize,
-    ) {
-        let step = distance[next];
-        self.row_potentials[new] += step;
-        for (column, owner) in self.row_of.iter().enumerate() {
-            match owner {
-                Some(owner) if in_tree[column] => {
-                    self.row_potentials[*owner] += step;
-                    self.column_potentials[column] -= step;
-                }
-                _ => distance[column] -= step,
-            }
-        }
-    }
-
-    /// Gives each column on the path back from `last` the previous column's row, and the first
-    /// column the row `new`.
-    fn shift_assignments(&mut self, new: usize, before: &[Option<usize>], last: Option<usize>) {
-        let mut at = last;
-        while let Some(column) = at {
-            at = before[column];
-            self.row_of[column] = match at {
-                Some(previous) => self.row_of[previous],
-                None => Some(new),
-            };
-        }
-    }
 }
 
 #[cfg(test)]
@@ -306,51 +192,5 @@ mod tests {
             [Some(0), None]
         );
         assert_eq!(mode_tracks(&[&[], &large], 0), []);
-    }
-}
-
-#[cfg(test)]
-mod assignment_tests {
-    use proptest::prelude::*;
-
-    use super::*;
-
-    /// Minimum total over all assignments, by exhaustive search.
-    fn tried_out(costs: &[Vec<f64>], row: usize, taken: &mut Vec<usize>) -> f64 {
-        if row == costs.len() {
-            return 0.0;
-        }
-        let mut least = f64::INFINITY;
-        for column in 0..costs[row].len() {
-            if !taken.contains(&column) {
-                taken.push(column);
-                least = least.min(costs[row][column] + tried_out(costs, row + 1, taken));
-                taken.pop();
-            }
-        }
-        least
-    }
-
-    #[test]
-    fn the_nearest_is_not_taken_where_the_total_suffers() {
-        // Column 0 is the cheapest for both rows, and the only cheap column for row 1.
-        let costs = [[1.0, 2.0, 9.0], [1.0, 9.0, 9.0]];
-        assert_eq!(least_total(2, 3, |row, column| costs[row][column]), [1, 0]);
-        assert_eq!(least_total(0, 3, |_, _| 0.0), [0; 0]);
-    }
-
-    proptest! {
-        #[test]
-        fn no_assignment_costs_less(entries in prop::collection::vec(0.0_f64..10.0, 25), rows in 1_usize..=5) {
-            let costs: Vec<Vec<f64>> = (0..rows).map(|row| entries[5 * row..5 * row + 5].to_vec()).collect();
-            let columns = least_total(rows, 5, |row, column| costs[row][column]);
-            let mut distinct = columns.clone();
-            distinct.sort_unstable();
-            distinct.dedup();
-            prop_assert_eq!(distinct.len(), rows);
-            let total: f64 = columns.iter().enumerate().map(|(row, &column)| costs[row][column]).sum();
-            // Sums of five terms are rounded in another order.
-            prop_assert!((total - tried_out(&costs, 0, &mut Vec::new())).abs() < 1e-13);
-        }
     }
 }

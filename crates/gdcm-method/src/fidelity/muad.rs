@@ -20,6 +20,7 @@ use nalgebra::Complex;
 use gdcm_model::units::ratio_to_db;
 
 /// A ratio of two quadratic polynomials, highest power first, and a delay \[s\].
+/// Evaluated at `s = j omega`.
 struct Factor {
     numerator: [f64; 3],
     denominator: [f64; 3],
@@ -92,9 +93,9 @@ impl Muad {
         }
     }
 
-    /// Returns the distance from an error to the nearer envelope \[dB and deg\], positive outside,
-    /// negative inside.
-    fn outside(&self, error_db: f64, error_deg: f64) -> [f64; 2] {
+    /// Returns the distances from an error to the nearer limit of magnitude \[dB\] and phase
+    /// \[deg\], positive outside, negative inside.
+    fn distances_outside(&self, error_db: f64, error_deg: f64) -> [f64; 2] {
         [
             distance_outside(self.magnitude_db, error_db),
             distance_outside(self.phase_deg, error_deg),
@@ -108,28 +109,33 @@ fn distance_outside(envelope: [f64; 2], error: f64) -> f64 {
     (least - error).max(error - most)
 }
 
-/// Returns the `omega` ranges \[rad/s\] in which a mismatch, model over reference, leaves an
-/// envelope: ascending and disjoint.
+/// Returns the ranges of `omega` \[rad/s\], start and end, in which a mismatch, model over
+/// reference, is outside an envelope: ascending and disjoint.
 ///
 /// The errors \[dB\] and \[deg\] are given at the ascending frequencies `omega`; the phase error is
 /// its value near zero. Between two frequencies the distance from the envelope is linear in `ln
 /// omega`.
-pub fn leaves(omega: &[f64], error_db: &[f64], error_deg: &[f64]) -> Vec<(f64, f64)> {
+pub fn ranges_outside(omega: &[f64], error_db: &[f64], error_deg: &[f64]) -> Vec<(f64, f64)> {
     let mut outside_db = Vec::with_capacity(omega.len());
     let mut outside_deg = Vec::with_capacity(omega.len());
     for ((&omega, &error_db), &error_deg) in omega.iter().zip(error_db).zip(error_deg) {
-        let [magnitude, phase] = Muad::at(omega).outside(error_db, error_deg);
+        let [magnitude, phase] = Muad::at(omega).distances_outside(error_db, error_deg);
         outside_db.push(magnitude);
         outside_deg.push(phase);
     }
     let mut ranges = ranges_above_zero(omega, &outside_db);
     ranges.extend(ranges_above_zero(omega, &outside_deg));
+    merge_overlapping(ranges)
+}
+
+/// Sorts ranges, and merges those that overlap or meet.
+fn merge_overlapping(mut ranges: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     ranges.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut merged: Vec<(f64, f64)> = Vec::new();
-    for range in ranges {
+    for (start, end) in ranges {
         match merged.last_mut() {
-            Some(last) if range.0 <= last.1 => last.1 = last.1.max(range.1),
-            _ => merged.push(range),
+            Some((_, last_end)) if start <= *last_end => *last_end = last_end.max(end),
+            _ => merged.push((start, end)),
         }
     }
     merged
@@ -139,20 +145,20 @@ pub fn leaves(omega: &[f64], error_db: &[f64], error_deg: &[f64]) -> Vec<(f64, f
 /// linearly in `ln omega`.
 fn ranges_above_zero(omega: &[f64], values: &[f64]) -> Vec<(f64, f64)> {
     let mut ranges = Vec::new();
-    let mut begun = None;
+    let mut range_start = None;
     for k in 0..values.len() {
         let is_above = values[k] > 0.0;
-        match begun {
-            None if is_above && k == 0 => begun = Some(omega[0]),
-            None if is_above => begun = Some(zero_crossing(omega, values, k)),
+        match range_start {
+            None if is_above && k == 0 => range_start = Some(omega[0]),
+            None if is_above => range_start = Some(zero_crossing(omega, values, k)),
             Some(start) if !is_above => {
                 ranges.push((start, zero_crossing(omega, values, k)));
-                begun = None;
+                range_start = None;
             }
             _ => {}
         }
     }
-    if let (Some(start), Some(&end)) = (begun, omega.last()) {
+    if let (Some(start), Some(&end)) = (range_start, omega.last()) {
         ranges.push((start, end));
     }
     ranges
@@ -171,7 +177,7 @@ mod tests {
     #[test]
     fn an_error_that_stays_inside_leaves_nowhere() {
         let omega: Vec<f64> = (1..=100).map(|k| 0.1 * f64::from(k)).collect();
-        assert_eq!(leaves(&omega, &[0.0; 100], &[0.0; 100]), []);
+        assert_eq!(ranges_outside(&omega, &[0.0; 100], &[0.0; 100]), []);
     }
 
     #[test]
@@ -180,7 +186,7 @@ mod tests {
         let omega: Vec<f64> = (0..=200)
             .map(|k| 10.0_f64.powf(-1.0 + 0.01 * f64::from(k)))
             .collect();
-        let ranges = leaves(&omega, &[2.0; 201], &[0.0; 201]);
+        let ranges = ranges_outside(&omega, &[2.0; 201], &[0.0; 201]);
         assert_eq!(ranges.len(), 1);
         for end in [ranges[0].0, ranges[0].1] {
             // Between two frequencies the envelope deviates from a straight line by about 1e-4 dB.
@@ -195,7 +201,7 @@ mod tests {
     #[test]
     fn ranges_of_magnitude_and_phase_are_merged_where_they_meet() {
         let omega = [1.0, 2.0, 3.0, 4.0, 5.0];
-        let ranges = leaves(
+        let ranges = ranges_outside(
             &omega,
             &[9.0, 9.0, 0.0, 0.0, 0.0],
             &[0.0, 0.0, -90.0, -90.0, 0.0],
@@ -203,7 +209,7 @@ mod tests {
         assert_eq!(ranges.len(), 1, "{ranges:?}");
         assert_eq!(ranges[0].0, 1.0);
         assert!((4.0..5.0).contains(&ranges[0].1));
-        let to_the_end = leaves(&omega, &[0.0; 5], &[0.0, 0.0, 0.0, 0.0, 60.0]);
+        let to_the_end = ranges_outside(&omega, &[0.0; 5], &[0.0, 0.0, 0.0, 0.0, 60.0]);
         assert_eq!(to_the_end.len(), 1);
         assert_eq!(to_the_end[0].1, 5.0);
     }

@@ -9,20 +9,13 @@ const STEP_S: f64 = 1e-3;
 /// Number of steps between neighbouring delays of the coarse grid.
 const COARSE: i32 = 16;
 
-/// Delays on a grid: `first_s`, `first_s + step_s`, ...
-struct DelayGrid {
-    first_s: f64,
-    step_s: f64,
-    count: usize,
-}
-
 /// Returns the delay \[s\] among -0.600, -0.599 ... 0.600 with the largest likeness `L = sum
 /// cos(phase - omega delay)`, the first among equals (M6b).
 ///
 /// ```text
-/// 1  L at every 16th delay
-/// 2  |dL / d delay| <= sum omega bounds the rise of L between coarse delays: evaluate L at every delay near those
-///    coarse delays from which it could rise to the maximum of step 1
+/// 1  L at every 16th delay (coarse grid)
+/// 2  L at each of the 16 delays around a coarse delay (fine grid), unless L cannot rise to the maximum of step 1
+///    there: it rises by at most sum omega per second, because |dL / d delay| <= sum omega
 /// ```
 pub(super) fn nearest_pure_delay_s(phase: &[f64], omega: &[f64]) -> f64 {
     let coarse_steps: Vec<i32> = (-STEPS..=STEPS + COARSE / 2)
@@ -45,6 +38,7 @@ pub(super) fn nearest_pure_delay_s(phase: &[f64], omega: &[f64]) -> f64 {
         if likeness + rise < greatest {
             continue;
         }
+        // Fine grid: half a coarse step to either side.
         let first = (step - COARSE / 2).max(-STEPS);
         let end = (step + COARSE / 2).min(STEPS + 1);
         let fine_grid = DelayGrid {
@@ -63,28 +57,36 @@ pub(super) fn nearest_pure_delay_s(phase: &[f64], omega: &[f64]) -> f64 {
     best_s
 }
 
+/// Delays on a grid: `first_s`, `first_s + step_s`, ...
+struct DelayGrid {
+    first_s: f64,
+    step_s: f64,
+    count: usize,
+}
+
 /// Returns the delay \[s\] at a step.
 fn delay_s(step: i32) -> f64 {
     STEP_S * f64::from(step)
 }
 
-/// Computes `sum cos(phase - omega delay)` for each delay in a grid.
+/// Computes `L = sum cos(phase - omega delay)` for each delay in a grid, as the real part of
+/// `sum e^(j (phase - omega delay))`.
 fn likenesses(phase: &[f64], omega: &[f64], grid: &DelayGrid) -> Vec<f64> {
-    // The terms are rotated from each delay to the next: computing every cosine takes a dozen times
-    // as long.
-    let mut left = Vec::with_capacity(phase.len());
+    // The summands are rotated from each delay to the next: computing every cosine takes a dozen
+    // times as long.
+    let mut summands = Vec::with_capacity(phase.len());
     for (phase, omega) in phase.iter().zip(omega) {
-        left.push(Complex::from_polar(1.0, phase - omega * grid.first_s));
+        summands.push(Complex::from_polar(1.0, phase - omega * grid.first_s));
     }
-    let turns: Vec<Complex<f64>> = omega
+    let rotations: Vec<Complex<f64>> = omega
         .iter()
         .map(|omega| Complex::from_polar(1.0, -omega * grid.step_s))
         .collect();
     let mut likenesses = Vec::with_capacity(grid.count);
     for _ in 0..grid.count {
-        likenesses.push(left.iter().map(|left| left.re).sum());
-        for (left, turn) in left.iter_mut().zip(&turns) {
-            *left *= turn;
+        likenesses.push(summands.iter().map(|summand| summand.re).sum());
+        for (summand, rotation) in summands.iter_mut().zip(&rotations) {
+            *summand *= rotation;
         }
     }
     likenesses

@@ -1,16 +1,24 @@
 //! The attitude response to an input, `Theta(j omega)`, from which bandwidth and phase delay are
-//! read (M17.1), and a model response sampled once on the search frequencies.
+//! read (M17.1): magnitude and continuous phase.
+//!
+//! ```text
+//! Theta = H / (j omega) for a rate, H for an attitude
+//! 1  evaluate Theta on the grid; keep the first run of values without a gap
+//! 2  unwrap the phase, and add whole turns so that it is in (-270, 90] deg at the lowest frequency of the band
+//! 3  between grid points: evaluate Theta exactly, on the branch of the neighbouring phases
+//! ```
 
 use std::f64::consts::{FRAC_PI_2, TAU};
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 use nalgebra::Complex;
 
-use gdcm_model::dataset::{Band, Channel, Dynamics, Pair};
+use gdcm_model::dataset::{Band, Channel};
 use gdcm_model::message_text::quoted;
-use gdcm_model::response::curve_values::{between, unwrap};
-use gdcm_model::response::frequency_response::log_spaced;
-use gdcm_model::response::{FrequencyResponse, GainDelay, PreparedModel, wrap};
+use gdcm_model::response::frequency_grid::log_spaced;
+use gdcm_model::response::interpolation::between;
+use gdcm_model::response::phase_unwrapping::unwrap;
+use gdcm_model::response::wrap;
 use gdcm_model::units::physical_unit::PhysicalUnit;
 use gdcm_model::units::{number, ratio_to_db};
 
@@ -19,6 +27,9 @@ const SEARCH_POINTS: usize = 400;
 /// A model is searched from the lower band end divided by this factor to the upper band end times
 /// this factor.
 const SEARCH_BEYOND_BAND: f64 = 4.0;
+/// Phases \[deg\] at the lowest frequency of the band that do not indicate a reversed sign: all but
+/// 45 to 135 deg, which on the branch (-270, 90] are -270 to -225 deg and 45 to 90 deg.
+const NOT_REVERSED_DEG: RangeInclusive<f64> = -225.0..=45.0;
 
 /// Quantity that an output represents: an attitude or its rate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -54,8 +65,8 @@ impl AttitudeOutput {
     ///
     /// # Errors
     /// [`AttitudeResponseError::NotAnAttitude`] for any other unit.
-    pub fn of(output: &Channel) -> Result<Self, AttitudeResponseError> {
-        match PhysicalUnit::of(&output.unit).map(|unit| unit.name) {
+    pub fn classify(output: &Channel) -> Result<Self, AttitudeResponseError> {
+        match PhysicalUnit::parse(&output.unit).map(|unit| unit.name) {
             Some("deg/s" | "rad/s") => Ok(Self::Rate),
             Some("deg" | "rad") => Ok(Self::Attitude),
             _ => Err(AttitudeResponseError::NotAnAttitude {
@@ -173,7 +184,7 @@ impl<'a> AttitudeResponse<'a> {
     /// input has 0 to -90 deg. The bandwidths are then wrong.
     pub fn reversed_phase_deg(&self) -> Option<f64> {
         let phase_deg = self.phase[self.lowest_of_band].to_degrees();
-        if (-225.0..=45.0).contains(&phase_deg) {
+        if NOT_REVERSED_DEG.contains(&phase_deg) {
             None
         } else {
             Some(phase_deg)
@@ -251,111 +262,4 @@ fn first_run(polar: &[Option<Polar>]) -> Range<usize> {
         .position(Option::is_none)
         .unwrap_or(polar.len() - start);
     start..start + length
-}
-
-/// A model with its response on the search frequencies, which are continued in equal ratios up to
-/// twice the highest search frequency: a phase delay needs `2 omega_180`.
-pub struct SampledModel {
-    prepared: PreparedModel,
-    omega: Vec<f64>,
-    values: FrequencyResponse,
-    /// Number of search frequencies.
-    searched: usize,
-}
-
-impl SampledModel {
-    /// Samples a model for a search in and around `band`.
-    pub fn of(dynamics: &Dynamics, band: Band) -> Self {
-        let prepared = PreparedModel::of(dynamics);
-        let mut omega = search_frequencies(band);
-        let searched = omega.len();
-        let highest = omega[omega.len() - 1];
-        let ratio = omega[1] / omega[0];
-        let beyond = std::iter::successors(Some(highest * ratio), |omega| Some(omega * ratio));
-        // `1 +`: the interpolation needs a sample beyond the highest frequency.
-        omega.extend(beyond.take(1 + (2f64.ln() / ratio.ln()).ceil() as usize));
-        let values = prepared.at(&omega);
-        Self {
-            prepared,
-            omega,
-            values,
-            searched,
-        }
-    }
-
-    /// Returns the response under `correction`, exact at any frequency (M2, M10).
-    pub fn exact(
-        &self,
-        pair: Pair,
-        correction: GainDelay,
-    ) -> impl Fn(&[f64]) -> Vec<Complex<f64>> + '_ {
-        move |omega| {
-            if *omega == self.omega[..self.searched] {
-                let values = &self.values.curve(pair)[..self.searched];
-                return corrected(values, omega, correction);
-            }
-            corrected(self.prepared.at(omega).curve(pair), omega, correction)
-        }
-    }
-
-    /// Returns the response under `correction`, interpolated between the samples by a cubic over ln
-    /// omega; NaN outside the samples.
-    pub fn interpolated(
-        &self,
-        pair: Pair,
-        correction: GainDelay,
-    ) -> impl Fn(&[f64]) -> Vec<Complex<f64>> + '_ {
-        let cubic = CubicInterpolation {
-            curve: self.values.curve(pair),
-            start: self.omega[0].ln(),
-            step: (self.omega[1] / self.omega[0]).ln(),
-        };
-        move |omega| {
-            omega
-                .iter()
-                .map(|&omega| match cubic.at(omega) {
-                    Some(value) => value * correction.at(omega),
-                    None => Complex::new(f64::NAN, f64::NAN),
-                })
-                .collect()
-        }
-    }
-}
-
-/// Returns the values at these frequencies under `correction`.
-fn corrected(values: &[Complex<f64>], omega: &[f64], correction: GainDelay) -> Vec<Complex<f64>> {
-    values
-        .iter()
-        .zip(omega)
-        .map(|(value, omega)| value * correction.at(*omega))
-        .collect()
-}
-
-/// A response sampled at equal steps of ln omega.
-struct CubicInterpolation<'a> {
-    curve: &'a [Complex<f64>],
-    /// ln omega at the first sample.
-    start: f64,
-    /// Step of ln omega.
-    step: f64,
-}
-
-impl CubicInterpolation<'_> {
-    /// Interpolates through the four nearest samples; `None` outside the samples.
-    fn at(&self, omega: f64) -> Option<Complex<f64>> {
-        let place = (omega.ln() - self.start) / self.step;
-        let last = (self.curve.len() - 1) as f64;
-        if !(-1e-9..=last + 1e-9).contains(&place) {
-            return None;
-        }
-        let from = (place.floor() - 1.0).clamp(0.0, last - 3.0);
-        Some(cubic(&self.curve[from as usize..][..4], place - from))
-    }
-}
-
-/// Evaluates the cubic through four values at 0, 1, 2, 3 (Lagrange).
-fn cubic(values: &[Complex<f64>], at: f64) -> Complex<f64> {
-    let [a, b, c, d] = [at, at - 1.0, at - 2.0, at - 3.0];
-    values[0] * (-b * c * d / 6.0) + values[1] * (a * c * d / 2.0) - values[2] * (a * b * d / 2.0)
-        + values[3] * (a * b * c / 6.0)
 }

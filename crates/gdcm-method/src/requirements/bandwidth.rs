@@ -15,18 +15,19 @@
 //!
 //! ADS-33E-PRF, "Handling qualities requirements for military rotorcraft", 2000, 3.3.2.1 and figure
 //! 4; MIL-DTL-32742. `attitude_response` does step 1, `phase_delay` steps 5 to 7; standard
-//! deviations come from `response_deviation`.
+//! deviations come from `bandwidth_deviation`.
 
 use serde::{Deserialize, Serialize};
 
 use gdcm_model::dataset::Band;
 
+pub use super::bandwidth_deviation::PairBand;
 pub use super::bandwidth_metric::{AboveBand, Metric, NoMetric};
 pub use super::phase_delay::PhaseLine;
-pub use super::response_deviation::{PairBand, substitution_bar};
+pub use super::substitution_bar::substitution_bar;
 
 use super::attitude_response::AttitudeResponse;
-use super::crossing::root_between;
+use super::root_search::root_between;
 
 /// Gain margin at `omega_gain` \[dB\].
 const GAIN_MARGIN_DB: f64 = 6.0;
@@ -89,7 +90,7 @@ pub struct Bandwidth {
 impl Bandwidth {
     /// Computes bandwidth and phase delay of `attitude`, with standard deviations if an uncertainty
     /// band is available.
-    pub fn of(
+    pub fn read(
         attitude: &AttitudeResponse<'_>,
         settings: &BandwidthSettings,
         deviation: Option<PairBand<'_>>,
@@ -185,7 +186,7 @@ impl Reading<'_> {
         });
         let deviation = self
             .deviation
-            .and_then(|band| band.phase_crossing(self.attitude, root));
+            .and_then(|band| band.phase_crossing_sd(self.attitude, root));
         self.metric(root, [root, root], deviation)
     }
 
@@ -246,7 +247,7 @@ impl Reading<'_> {
         });
         let deviation = self
             .deviation
-            .and_then(|band| band.gain_crossing(self.attitude, root, top));
+            .and_then(|band| band.gain_crossing_sd(self.attitude, root, top));
         self.metric(root, [root, top], deviation)
     }
 
@@ -301,7 +302,7 @@ impl Reading<'_> {
         let Some(line) = PhaseLine::read(self.attitude, from) else {
             return Err(NoMetric::ResponseEnds { needed: to });
         };
-        let deviation = self.deviation.and_then(|band| band.phase_delay(from));
+        let deviation = self.deviation.and_then(|band| band.phase_delay_sd(from));
         let metric = self.metric(line.phase_delay_s(), [from, to], deviation)?;
         Ok(PhaseDelay { metric, line })
     }

@@ -10,16 +10,17 @@ use gdcm_model::dataset::model::ModelBands;
 use gdcm_model::dataset::state_space::Timing;
 use gdcm_model::dataset::{Band, Channel, Dynamics, Pair, PairTable, StateSpace};
 use gdcm_model::response::GainDelay;
-use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::response::frequency_grid::log_spaced;
 
 use super::attitude_response::{
-    AttitudeResponse, AttitudeResponseError, ResponseAt, SampledModel, search_frequencies,
+    AttitudeResponse, AttitudeResponseError, ResponseAt, search_frequencies,
 };
 use super::bandwidth::{
     AboveBand, Bandwidth, BandwidthSettings, CommandType, Metric, NoMetric, PairBand,
     substitution_bar,
 };
 use super::known_answers::{answers, attitudes, number};
+use super::sampled_response::SampledResponse;
 use super::{AttitudeOutput, BandwidthRule};
 
 /// The only response of a model with one input and one output.
@@ -61,7 +62,7 @@ fn evaluate(
 ) -> Bandwidth {
     let frequencies = search_frequencies(settings.band);
     let attitude = AttitudeResponse::new(response, output, &frequencies, settings.band).unwrap();
-    Bandwidth::of(&attitude, settings, deviation)
+    Bandwidth::read(&attitude, settings, deviation)
 }
 
 /// Evaluates a rate response, `s` times the given attitude.
@@ -145,19 +146,22 @@ fn an_output_is_a_rate_or_an_attitude_by_its_unit() {
         ("deg", AttitudeOutput::Attitude),
         ("rad", AttitudeOutput::Attitude),
     ] {
-        assert_eq!(AttitudeOutput::of(&Channel::new("P", unit)), Ok(expected));
+        assert_eq!(
+            AttitudeOutput::classify(&Channel::new("P", unit)),
+            Ok(expected)
+        );
     }
     // A rotor speed is not an angular rate of the fuselage.
     for unit in ["rpm", "g", "m/s^2"] {
         assert_eq!(
-            AttitudeOutput::of(&Channel::new("NZ", unit)),
+            AttitudeOutput::classify(&Channel::new("NZ", unit)),
             Err(AttitudeResponseError::NotAnAttitude {
                 output: "NZ".into(),
                 unit: unit.into()
             })
         );
     }
-    let error = AttitudeOutput::of(&Channel::new("NZ", "m/s^2")).unwrap_err();
+    let error = AttitudeOutput::classify(&Channel::new("NZ", "m/s^2")).unwrap_err();
     assert_eq!(
         error.to_string(),
         "\"NZ\" in \"m/s^2\" has no bandwidth: it is neither a rate (deg/s, rad/s) nor an attitude (deg, rad)"
@@ -224,8 +228,8 @@ fn slow_modes_below_the_band_move_neither_branch_nor_crossings() {
     );
     assert!((value(turned.omega_180) / value(plain.omega_180) - 1.0).abs() < 0.1);
     assert!((value(turned.omega_bw) / value(plain.omega_bw) - 1.0).abs() < 0.2);
-    // A phase that falls through -135 deg below the band but rises above it again has its crossing
-    // within the band.
+    // The phase falls through -135 deg and rises above this level again, both below the band; the
+    // crossing that counts is the later one within the band.
     let dipping = rate_bandwidth(
         |s| short(s) * (s * s + 0.001 * s + 0.04) / (s * s + 0.001 * s + 0.0225),
         &rate,
@@ -333,10 +337,10 @@ fn measured_bandwidth(top: f64) -> Bandwidth {
     )
     .unwrap();
     let omega = measured.omega().to_vec();
-    let model = SampledModel::of(&Dynamics::Measured(measured), band());
+    let model = SampledResponse::new(&Dynamics::Measured(measured), band());
     let response = model.exact(ONLY, GainDelay::NONE);
     let attitude = AttitudeResponse::new(&response, AttitudeOutput::Rate, &omega, band()).unwrap();
-    Bandwidth::of(&attitude, &settings(CommandType::Rate), None)
+    Bandwidth::read(&attitude, &settings(CommandType::Rate), None)
 }
 
 #[test]
@@ -385,7 +389,7 @@ fn a_model_and_its_correction_are_evaluated_exactly() {
         input_delays_s: Some(vec![0.02]),
         ..Timing::default()
     };
-    let model = SampledModel::of(&Dynamics::StateSpace(lag.timed(timing).unwrap()), band());
+    let model = SampledResponse::new(&Dynamics::StateSpace(lag.timed(timing).unwrap()), band());
     let correction = GainDelay::new(1.7, 0.04);
     let rate = settings(CommandType::Rate);
     let exact = evaluate(

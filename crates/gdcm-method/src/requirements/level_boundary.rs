@@ -112,7 +112,7 @@ impl TryFrom<Vec<LevelBoundary>> for LevelBoundaries {
 
 impl LevelBoundaries {
     /// Returns the boundaries in file order.
-    pub fn all(&self) -> &[LevelBoundary] {
+    pub fn as_slice(&self) -> &[LevelBoundary] {
         &self.0
     }
 
@@ -151,7 +151,7 @@ mod tests {
     fn boundaries_are_read_and_come_back_as_they_were() {
         let text = r#"[{"name":"Level 1","axis":"P","points":[[2.0,0.0],[2.0,0.15],[3.0,0.25]]},{"name":"Level 1","axis":"Q","points":[[1.0,0.0],[1.0,0.2]]}]"#;
         let boundaries = read(text).unwrap();
-        assert_eq!(boundaries.all().len(), 2);
+        assert_eq!(boundaries.as_slice().len(), 2);
         assert_eq!(
             boundaries.of_axis("Q").next().unwrap().points[1],
             [1.0, 0.2]

@@ -8,19 +8,19 @@
 //!
 //! | file | content | standard |
 //! |---|---|---|
-//! | `attitude_response` | response from which bandwidths are read | |
-//! | `bandwidth`, `phase_delay`, `response_deviation`, `level_boundary` | bandwidth, phase delay, their uncertainty and levels | ADS-33E-PRF 3.3.2, 3.4.1; MIL-DTL-32742 |
+//! | `attitude_response`, `sampled_response` | response from which bandwidths are read | |
+//! | `bandwidth`, `phase_delay`, `bandwidth_deviation`, `substitution_bar`, `level_boundary` | bandwidth, phase delay, their uncertainty and levels | ADS-33E-PRF 3.3.2, 3.4.1; MIL-DTL-32742 |
 //! | `mode_comparison`, `mode_pairing`, `mode_name`, `mode_values`, `mode_tolerance` | modes | 14 CFR part 60, appendix C, table C2A, 2.c.3.a, 2.d.3.a |
-//! | `summary` | J, rms in time, Theil's coefficients, MUAD | MIL-STD-1797A, appendix A, 4.2.1.2 |
-//! | `test_input` | steps and doublets | |
-//! | `tolerance`, `tolerance_table` | time histories within tolerances | 14 CFR part 60, appendix C, table C2A; CS-FSTD(H) |
+//! | `summary`, `rms_cost` | J, rms in time, Theil's coefficients, MUAD | MIL-STD-1797A, appendix A, 4.2.1.2 |
+//! | `test_input`, `test_response` | steps and doublets; simulated responses to them | |
+//! | `tolerance_table`, `tolerance_check` | time histories within tolerances | 14 CFR part 60, appendix C, table C2A; CS-FSTD(H) |
 
 pub mod attitude_response;
 pub mod bandwidth;
+mod bandwidth_deviation;
 mod bandwidth_metric;
 #[cfg(test)]
 mod bandwidth_tests;
-mod crossing;
 pub mod level_boundary;
 pub mod mode_comparison;
 #[cfg(test)]
@@ -31,13 +31,17 @@ mod mode_tolerance;
 mod mode_values;
 mod phase_delay;
 mod positive_number;
-mod response_deviation;
+pub mod rms_cost;
+mod root_search;
+pub mod sampled_response;
+mod substitution_bar;
 pub mod summary;
 pub mod test_input;
-pub mod tolerance;
-mod tolerance_table;
+mod test_response;
+pub mod tolerance_check;
 #[cfg(test)]
-mod tolerance_tests;
+mod tolerance_check_tests;
+mod tolerance_table;
 
 pub use attitude_response::AttitudeOutput;
 pub use bandwidth::BandwidthRule;
@@ -45,7 +49,7 @@ pub use level_boundary::LevelBoundaries;
 pub use mode_comparison::{ModeToleranceTable, ModeVerdict};
 pub use mode_name::{ModeName, NamedBy};
 pub use test_input::{TestInput, TestInputShape};
-pub use tolerance::{RecordCheck, Tolerance, ToleranceTable};
+pub use tolerance_check::{RecordCheck, Tolerance, ToleranceTable};
 
 /// Reference results for M17, from independent code.
 #[cfg(test)]

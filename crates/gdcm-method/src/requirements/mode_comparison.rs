@@ -223,7 +223,7 @@ impl Naming {
                 return naming;
             }
         }
-        let (name, named_by) = ModeName::of(&flown.modes[mode], &[]);
+        let (name, named_by) = ModeName::determine(&flown.modes[mode], &[]);
         Self {
             name,
             named_by,
@@ -233,7 +233,7 @@ impl Naming {
 
     /// Returns the name from the states of `model`; `None` if they are unnamed.
     fn from_states(model: ModelModes<'_>, pair: ModePair) -> Option<Self> {
-        match ModeName::of(&model.modes[pair.mode], model.states) {
+        match ModeName::determine(&model.modes[pair.mode], model.states) {
             (name, NamedBy::States) => Some(Self {
                 name,
                 named_by: NamedBy::States,

@@ -10,7 +10,13 @@
 //!       oscillation: Dutch roll
 //!       real, p at least half of these: roll subsidence; otherwise, below 1 rad/s: spiral
 //! else by frequency and damping, a guess
+//!    oscillation: below 0.6 rad/s phugoid; below 5 rad/s Dutch roll if the damping is below 0.4, else short period;
+//!       below 25 rad/s regressing flap if the damping is above 0.2
+//!    real: below 0.5 rad/s spiral; 1 to 10 rad/s roll subsidence
 //! ```
+//!
+//! u, v, w are velocities along the body axes, p, q, r the angular rates about them, and phi, theta,
+//! psi the bank, pitch and heading angles.
 //!
 //! G. D. Padfield, "Helicopter Flight Dynamics", 2nd ed. 2007, 4.3.
 
@@ -76,62 +82,11 @@ pub enum NamedBy {
     Frequency,
 }
 
-/// Returns a state's kind by its name ("q \[rad/s\]", "theta", "b1c_dot", "a (lon flap)"): the
-/// usual letter for a body axis, an attitude, or "flap" for the cyclic flap; `None` for any other.
-fn state_kind(name: &str) -> Option<&'static str> {
-    let lower = name.to_lowercase();
-    if lower.contains("flap") {
-        return Some("flap");
-    }
-    let end = lower.find([' ', '[', '(']).unwrap_or(lower.len());
-    let word: String = lower[..end]
-        .chars()
-        .filter(|letter| *letter != '_')
-        .collect();
-    Some(match word.trim_end_matches("dot") {
-        "u" | "ub" | "vx" => "u",
-        "v" | "vb" | "vy" | "beta" => "v",
-        "w" | "wb" | "vz" | "alpha" => "w",
-        "p" | "pb" => "p",
-        "q" | "qb" => "q",
-        "r" | "rb" => "r",
-        "phi" | "bank" => "phi",
-        "theta" => "theta",
-        "psi" | "heading" => "psi",
-        "a1" | "b1" | "a1s" | "b1s" | "a1c" | "b1c" | "beta1c" | "beta1s" | "betac" | "betas" => {
-            "flap"
-        }
-        _ => return None,
-    })
-}
-
-/// Participation of named states in a mode.
-struct KindShares<'a> {
-    /// Index and participation of each participating state.
-    shares: &'a [(usize, f64)],
-    states: &'a [String],
-}
-
-impl KindShares<'_> {
-    /// Returns the summed participation of these kinds.
-    fn sum(&self, kinds: &[&str]) -> f64 {
-        self.shares
-            .iter()
-            .filter(|(state, _)| {
-                let name = self.states.get(*state);
-                let kind = name.and_then(|name| state_kind(name));
-                kind.is_some_and(|kind| kinds.contains(&kind))
-            })
-            .map(|(_, share)| share)
-            .sum()
-    }
-}
-
 impl ModeName {
     /// Names a mode: by state participation if `states` is not empty, otherwise by frequency and
     /// damping. `None` if this is inconclusive, or if the pole cannot be separated from another,
     /// for example with identical actuators.
-    pub fn of(mode: &Mode, states: &[String]) -> (Option<Self>, NamedBy) {
+    pub fn determine(mode: &Mode, states: &[String]) -> (Option<Self>, NamedBy) {
         if states.is_empty() {
             return (Self::by_frequency(mode), NamedBy::Frequency);
         }
@@ -142,27 +97,27 @@ impl ModeName {
     /// Names a mode by the kinds of states that participate; `shares` holds their indices and
     /// participations.
     fn by_states(mode: &Mode, shares: &[(usize, f64)], states: &[String]) -> Option<Self> {
+        use StateKind::{CyclicFlap, P, Phi, Psi, Q, R, Theta, U, V, W};
+
         let shares = KindShares { shares, states };
-        let cyclic_flap = shares.sum(&["flap"]);
+        let cyclic_flap = shares.sum(&[CyclicFlap]);
         let is_slow_enough = mode.frequency_rad_s < FASTEST_REGRESSING_RAD_S;
         if cyclic_flap >= FLAP_SHARE && mode.oscillates() && is_slow_enough {
             return Some(Self::RegressingFlap);
         }
-        let longitudinal = shares.sum(&["u", "w", "q", "theta"]);
-        let lateral = shares.sum(&["v", "p", "r", "phi", "psi"]);
+        let longitudinal = shares.sum(&[U, W, Q, Theta]);
+        let lateral = shares.sum(&[V, P, R, Phi, Psi]);
         if longitudinal.max(lateral) < FUSELAGE_SHARE {
             return None;
         }
         match (longitudinal > lateral, mode.oscillates()) {
             // `_`: also for two real poles, into which the oscillation can split.
-            (true, _) if shares.sum(&["u", "theta"]) > shares.sum(&["w", "q"]) => {
-                Some(Self::Phugoid)
-            }
+            (true, _) if shares.sum(&[U, Theta]) > shares.sum(&[W, Q]) => Some(Self::Phugoid),
             (true, true) => Some(Self::ShortPeriod),
-            (true, false) if shares.sum(&["q"]) > shares.sum(&["w"]) => Some(Self::PitchSubsidence),
+            (true, false) if shares.sum(&[Q]) > shares.sum(&[W]) => Some(Self::PitchSubsidence),
             (true, false) => Some(Self::Heave),
             (false, true) => Some(Self::DutchRoll),
-            (false, false) if shares.sum(&["p"]) >= 0.5 * lateral => Some(Self::RollSubsidence),
+            (false, false) if shares.sum(&[P]) >= 0.5 * lateral => Some(Self::RollSubsidence),
             (false, false) if mode.frequency_rad_s < FASTEST_SPIRAL_RAD_S => Some(Self::Spiral),
             (false, false) => None,
         }
@@ -181,6 +136,82 @@ impl ModeName {
             (false, 1.0..10.0) => Some(Self::RollSubsidence),
             _ => None,
         }
+    }
+}
+
+/// Participation of named states in a mode.
+struct KindShares<'a> {
+    /// Index and participation of each participating state.
+    shares: &'a [(usize, f64)],
+    states: &'a [String],
+}
+
+impl KindShares<'_> {
+    /// Returns the summed participation of these kinds.
+    fn sum(&self, kinds: &[StateKind]) -> f64 {
+        self.shares
+            .iter()
+            .filter(|(state, _)| {
+                let name = self.states.get(*state);
+                let kind = name.and_then(|name| StateKind::from_name(name));
+                kind.is_some_and(|kind| kinds.contains(&kind))
+            })
+            .map(|(_, share)| share)
+            .sum()
+    }
+}
+
+/// Kind of a state that tells modes apart.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum StateKind {
+    /// Velocity along the longitudinal body axis.
+    U,
+    /// Velocity along the lateral body axis, or sideslip.
+    V,
+    /// Velocity along the vertical body axis, or incidence.
+    W,
+    /// Roll rate.
+    P,
+    /// Pitch rate.
+    Q,
+    /// Yaw rate.
+    R,
+    /// Bank angle.
+    Phi,
+    /// Pitch angle.
+    Theta,
+    /// Heading.
+    Psi,
+    CyclicFlap,
+}
+
+impl StateKind {
+    /// Recognises a state by its name ("q \[rad/s\]", "theta", "b1c_dot", "a (lon flap)"); `None`
+    /// for any other state.
+    fn from_name(name: &str) -> Option<Self> {
+        let lower = name.to_lowercase();
+        if lower.contains("flap") {
+            return Some(Self::CyclicFlap);
+        }
+        let end = lower.find([' ', '[', '(']).unwrap_or(lower.len());
+        let word: String = lower[..end]
+            .chars()
+            .filter(|letter| *letter != '_')
+            .collect();
+        Some(match word.trim_end_matches("dot") {
+            "u" | "ub" | "vx" => Self::U,
+            "v" | "vb" | "vy" | "beta" => Self::V,
+            "w" | "wb" | "vz" | "alpha" => Self::W,
+            "p" | "pb" => Self::P,
+            "q" | "qb" => Self::Q,
+            "r" | "rb" => Self::R,
+            "phi" | "bank" => Self::Phi,
+            "theta" => Self::Theta,
+            "psi" | "heading" => Self::Psi,
+            "a1" | "b1" | "a1s" | "b1s" | "a1c" | "b1c" | "beta1c" | "beta1s" | "betac"
+            | "betas" => Self::CyclicFlap,
+            _ => return None,
+        })
     }
 }
 
@@ -212,7 +243,7 @@ mod tests {
         let states: Vec<String> = states.iter().map(|name| (*name).to_owned()).collect();
         uncontrolled_modes(a)
             .iter()
-            .map(|mode| ModeName::of(mode, &states))
+            .map(|mode| ModeName::determine(mode, &states))
             .collect()
     }
 

@@ -10,16 +10,18 @@
 //!    an unpaired flown mode counts as 1
 //! ```
 //!
-//! `omega_min` is the lower band end: below it flight resolves poles only by their absolute
+//! `r_k` are the residues of mode k in the outputs, with `v_k` and `w_k` the right and the left
+//! eigenvector of its pole `lambda_k`, and `C` and `B` the output and the input matrix; primes mark the
+//! other model. `omega_min` is the lower band end: below it flight resolves poles only by their absolute
 //! difference. `c` is the modal assurance criterion, 1 for equal shapes and 0 for orthogonal
 //! shapes: Allemang & Brown, "A correlation coefficient for modal vector analysis", Proc. 1st
-//! International Modal Analysis Conference, 1982. Assignment: see `fidelity/mode_tracks.rs`.
+//! International Modal Analysis Conference, 1982. Assignment: see `fidelity/assignment.rs`.
 
 use nalgebra::Complex;
 
 use gdcm_model::response::Mode;
 
-use crate::fidelity::mode_tracks::least_total;
+use crate::fidelity::assignment::cheapest_assignment;
 
 /// Maximum s-plane distance within a pair, relative to the larger modulus.
 pub const LARGEST_PAIR_DISTANCE: f64 = 0.5;
@@ -57,15 +59,16 @@ pub(super) fn mode_pairs(
     let columns = single_modes(model);
     let scales = output_scales(flown, least_rad_s);
     // Each flown mode has an additional column, which leaves it unpaired.
-    let assigned = least_total(
-        rows.len(),
-        columns.len() + rows.len(),
-        |row, column| match columns.get(column) {
-            Some(&mode) => pair_cost(&flown[rows[row]], &model[mode], &scales, least_rad_s)
-                .unwrap_or(BARRED_COST),
-            None => UNPAIRED_COST,
-        },
-    );
+    let assigned =
+        cheapest_assignment(
+            rows.len(),
+            columns.len() + rows.len(),
+            |row, column| match columns.get(column) {
+                Some(&mode) => pair_cost(&flown[rows[row]], &model[mode], &scales, least_rad_s)
+                    .unwrap_or(BARRED_COST),
+                None => UNPAIRED_COST,
+            },
+        );
     let mut pairs = Vec::with_capacity(rows.len());
     for (row, column) in assigned.into_iter().enumerate() {
         let pair = columns.get(column).and_then(|&mode| {

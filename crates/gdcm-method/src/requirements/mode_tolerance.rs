@@ -9,7 +9,7 @@ use gdcm_model::units::number;
 
 use super::mode_name::ModeName;
 use super::mode_values::ModeValues;
-use super::positive_number::{NamedNumber, first_not_positive};
+use super::positive_number::{NamedLimit, WrongLimit, first_not_positive};
 
 /// A row: a tolerance of the period, and alternative tolerances of amplitude and damping.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -108,14 +108,26 @@ impl ModeTolerance {
 
     /// Checks the tolerances; `row` counts from 1.
     fn check(&self, row: usize) -> Result<(), ModeToleranceError> {
-        let values = [
-            ("period", Some(self.period)),
-            ("period_s", self.period_s),
-            ("amplitude_time", Some(self.amplitude_time)),
-            ("damping_ratio", Some(self.damping_ratio)),
+        let limits = [
+            NamedLimit {
+                name: "period",
+                value: Some(self.period),
+            },
+            NamedLimit {
+                name: "period_s",
+                value: self.period_s,
+            },
+            NamedLimit {
+                name: "amplitude_time",
+                value: Some(self.amplitude_time),
+            },
+            NamedLimit {
+                name: "damping_ratio",
+                value: Some(self.damping_ratio),
+            },
         ];
-        match first_not_positive(values) {
-            Some(NamedNumber { name, value: found }) => Err(ModeToleranceError {
+        match first_not_positive(&limits) {
+            Some(WrongLimit { name, value: found }) => Err(ModeToleranceError {
                 row,
                 response: self.response.clone(),
                 name,

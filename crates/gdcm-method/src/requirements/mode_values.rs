@@ -1,6 +1,7 @@
 //! Period, time to half amplitude and damping ratio of a mode, with standard deviations (M17.3).
 //!
 //! ```text
+//! lambda: the mode's pole, Re and Im its parts; sd_Re, sd_Im: their standard deviations
 //! period 2 pi / |Im|, time to half amplitude ln 2 / -Re (negative: to double), damping ratio -Re / |lambda|
 //! sd of period T: T sd_Im / |Im|;   sd of time to half t: t sd_Re / |Re|;
 //! sd of damping ratio: sqrt((Im^2 sd_Re)^2 + (Re Im sd_Im)^2) / |lambda|^3

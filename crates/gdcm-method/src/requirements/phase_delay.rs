@@ -1,8 +1,14 @@
-//! Phase delay from the phase between `omega_180` and `2 omega_180` (M17.1, steps 5 to 7).
+//! Phase delay from the phase between `omega_180`, where it is -180 deg, and `2 omega_180` (steps 5 to
+//! 7 in `bandwidth`, M17.1).
+//!
+//! ```text
+//! tau_p = -(Phi(2 omega_180) + pi) / (2 omega_180), if the phase Phi departs from its chord by at most 10 deg
+//! tau_p = -1/2 slope of the least-squares line through Phi, otherwise: its phase loss from omega_180 to 2 omega_180, over 2 omega_180
+//! ```
 
 use std::f64::consts::PI;
 
-use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::response::frequency_grid::log_spaced;
 use gdcm_model::statistics::mean;
 
 use super::attitude_response::AttitudeResponse;

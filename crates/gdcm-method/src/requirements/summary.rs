@@ -3,21 +3,82 @@
 //!
 //! ```text
 //! J:      J_mag + J_phase after the correction, averaged over the on-axis responses and over all (M4)
-//! J_rms:  sqrt(1 / (n_t n_o) sum (y - y^)' W (y - y^)), W = 1 in deg/s, deg, ft/s^2, ft/s: 1 deg counts as 1 ft/s^2
+//! J_rms:  weighted rms of y - y^ over all outputs together (rms_cost)
 //! Theil:  rms(y - y^) / (rms y + rms y^) for each channel (M14, 6)
 //! MUAD:   1 - sum ln(b/a) / ln(omega_N/omega_1) over the ranges (a, b) in which the error leaves an envelope
 //! ```
 //!
-//! Tischler & Remple, "Aircraft and Rotorcraft System Identification", 2nd ed. 2012, 14.3 (J_rms
-//! and its weights); MIL-STD-1797A, appendix A, 4.2.1.2 (MUAD).
+//! `y` are the flown and `y^` the simulated outputs; the band extends from `omega_1` to `omega_N`.
+//!
+//! MUAD: MIL-STD-1797A, appendix A, 4.2.1.2.
 
 use gdcm_model::dataset::{Channel, Pair, PairTable};
 use gdcm_model::response::{GainDelay, wrap};
-use gdcm_model::simulation::{Validation, ValidationWindow};
+use gdcm_model::simulation::Validation;
 use gdcm_model::statistics::mean;
-use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit, conversion_factor};
 
-use crate::fidelity::{CostAverage, Mismatch, leaves};
+use super::rms_cost::RmsCost;
+use crate::fidelity::{CostAverage, Mismatch, ranges_outside};
+
+/// A model in a condition, compared with flight.
+#[derive(Clone, Copy)]
+pub struct SummarySource<'a> {
+    /// Difference between each response of the model and of the identified representative; `None`
+    /// where no comparison exists.
+    pub mismatch: &'a PairTable<Option<Mismatch>>,
+    /// Correction of each response; `None` without a positive net gain.
+    pub correction: &'a dyn Fn(Pair) -> Option<GainDelay>,
+    pub on_axis: &'a PairTable<bool>,
+    /// Band frequencies \[rad/s\], ascending.
+    pub omega: &'a [f64],
+    /// Kind of average over frequency in J.
+    pub average: CostAverage,
+    /// Comparison of the model with a record of flight, if any.
+    pub validation: Option<&'a Validation>,
+    pub outputs: &'a [Channel],
+}
+
+/// The summary costs of a model in a condition.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Summary {
+    pub cost: OnAxisAndAll,
+    /// `J_rms`; `None` without a record.
+    pub rms: Option<RmsCost>,
+    /// Theil's coefficient by output, 0 to 1; empty without a record, `None` for a constant output.
+    pub theil: Vec<Option<f64>>,
+    /// Mean share of the band inside MUAD, 0 to 1.
+    pub muad: OnAxisAndAll,
+}
+
+impl Summary {
+    /// Computes all costs under the correction in `source`.
+    pub fn compute(source: &SummarySource<'_>) -> Self {
+        let SummarySource {
+            mismatch,
+            correction,
+            on_axis,
+            omega,
+            average,
+            validation,
+            outputs,
+        } = *source;
+        let costs = mismatch.map(|pair, mismatch| {
+            let correction = correction(pair)?;
+            let cost = mismatch.as_ref()?.cost(omega, correction, average);
+            Some(cost.total())
+        });
+        let muad_shares =
+            mismatch.map(|pair, mismatch| muad_share(mismatch.as_ref()?, omega, correction(pair)?));
+        Self {
+            cost: OnAxisAndAll::average(&costs, on_axis),
+            rms: validation.and_then(|validation| RmsCost::compute(&validation.windows, outputs)),
+            theil: validation
+                .map(|validation| validation.theil.clone())
+                .unwrap_or_default(),
+            muad: OnAxisAndAll::average(&muad_shares, on_axis),
+        }
+    }
+}
 
 /// Means over the on-axis responses and over all responses.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -54,68 +115,6 @@ fn mean_or_none(values: &[f64]) -> Option<f64> {
     Some(mean(values))
 }
 
-/// The weighted rms error in time, `J_rms`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RmsCost {
-    /// `J_rms` \[deg, deg/s, ft/s, ft/s^2\].
-    pub value: f64,
-    /// Indices of outputs without a weight, in units other than angle, speed or acceleration.
-    pub left_out: Vec<usize>,
-}
-
-impl RmsCost {
-    /// Computes the cost over all samples of `windows`; `None` without samples, or if no output has
-    /// a weight.
-    pub fn of(windows: &[ValidationWindow], outputs: &[Channel]) -> Option<Self> {
-        let mut counted: Vec<WeightedOutput> = Vec::new();
-        let mut left_out = Vec::new();
-        for (output, channel) in outputs.iter().enumerate() {
-            match unit_factor(&channel.unit) {
-                Some(factor) => counted.push(WeightedOutput { output, factor }),
-                None => left_out.push(output),
-            }
-        }
-        let mut sum = 0.0;
-        let mut samples = 0;
-        for window in windows {
-            samples += window.measured.nrows();
-            for &WeightedOutput { output, factor } in &counted {
-                if output < window.measured.ncols() {
-                    let error = window.measured.column(output) - window.simulated.column(output);
-                    sum += factor * factor * error.norm_squared();
-                }
-            }
-        }
-        let count = samples * counted.len();
-        if count == 0 {
-            return None;
-        }
-        Some(Self {
-            value: (sum / count as f64).sqrt(),
-            left_out,
-        })
-    }
-}
-
-/// An output that counts in `J_rms`.
-struct WeightedOutput {
-    output: usize,
-    /// Factor from the output's unit to deg, deg/s, ft/s or ft/s^2.
-    factor: f64,
-}
-
-/// Returns the factor from a unit to deg, deg/s, ft/s or ft/s^2; `None` for any other unit.
-fn unit_factor(unit: &str) -> Option<f64> {
-    let counted = match PhysicalUnit::of(unit)?.dimension {
-        Dimension::Angle => "deg",
-        Dimension::AngularRate => "deg/s",
-        Dimension::Speed => "ft/s",
-        Dimension::Acceleration => "ft/s^2",
-        _ => return None,
-    };
-    conversion_factor(unit, counted)
-}
-
 /// Returns the share of the band, in `ln omega`, in which a response error stays inside both MUAD
 /// envelopes after `correction`; `None` with fewer than two frequencies.
 pub fn muad_share(mismatch: &Mismatch, omega: &[f64], correction: GainDelay) -> Option<f64> {
@@ -131,78 +130,16 @@ pub fn muad_share(mismatch: &Mismatch, omega: &[f64], correction: GainDelay) -> 
         .phases(&mismatch.phase, omega)
         .map(|phase| wrap(phase).to_degrees())
         .collect();
-    let outside: f64 = leaves(omega, &error_db, &error_deg)
+    let outside: f64 = ranges_outside(omega, &error_db, &error_deg)
         .iter()
         .map(|(from, to)| (to / from).ln())
         .sum();
     Some((1.0 - outside / (last / first).ln()).clamp(0.0, 1.0))
 }
 
-/// A model in a condition, compared with flight.
-#[derive(Clone, Copy)]
-pub struct SummarySource<'a> {
-    /// Difference between each response of the model and of the identified representative; `None`
-    /// where no comparison exists.
-    pub mismatch: &'a PairTable<Option<Mismatch>>,
-    /// Correction of each response; `None` without a positive net gain.
-    pub correction: &'a dyn Fn(Pair) -> Option<GainDelay>,
-    pub on_axis: &'a PairTable<bool>,
-    /// Band frequencies \[rad/s\], ascending.
-    pub omega: &'a [f64],
-    /// Kind of average over frequency in J.
-    pub average: CostAverage,
-    /// Comparison of the model with a record of flight, if any.
-    pub validation: Option<&'a Validation>,
-    pub outputs: &'a [Channel],
-}
-
-/// The summary costs of a model in a condition.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Summary {
-    pub cost: OnAxisAndAll,
-    /// `J_rms`; `None` without a record.
-    pub rms: Option<RmsCost>,
-    /// Theil's coefficient by output, 0 to 1; empty without a record, `None` for a constant output.
-    pub theil: Vec<Option<f64>>,
-    /// Mean share of the band inside MUAD, 0 to 1.
-    pub muad: OnAxisAndAll,
-}
-
-impl Summary {
-    /// Computes all costs under the correction in `source`.
-    pub fn of(source: &SummarySource<'_>) -> Self {
-        let SummarySource {
-            mismatch,
-            correction,
-            on_axis,
-            omega,
-            average,
-            validation,
-            outputs,
-        } = *source;
-        let costs = mismatch.map(|pair, mismatch| {
-            let correction = correction(pair)?;
-            let cost = mismatch.as_ref()?.cost(omega, correction, average);
-            Some(cost.total())
-        });
-        let muad_shares =
-            mismatch.map(|pair, mismatch| muad_share(mismatch.as_ref()?, omega, correction(pair)?));
-        Self {
-            cost: OnAxisAndAll::average(&costs, on_axis),
-            rms: validation.and_then(|validation| RmsCost::of(&validation.windows, outputs)),
-            theil: validation
-                .map(|validation| validation.theil.clone())
-                .unwrap_or_default(),
-            muad: OnAxisAndAll::average(&muad_shares, on_axis),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use nalgebra::DMatrix;
-
-    use gdcm_model::response::frequency_response::log_spaced;
+    use gdcm_model::response::frequency_grid::log_spaced;
     use gdcm_model::units::db_to_ratio;
 
     use super::*;
@@ -221,43 +158,8 @@ mod tests {
         }
     }
 
-    /// A window with three outputs, stored one after the other.
-    fn window(measured: &[f64], simulated: &[f64]) -> ValidationWindow {
-        let samples = measured.len() / 3;
-        ValidationWindow {
-            record: 0,
-            start_s: 0.0,
-            sample_time_s: 0.1,
-            measured: DMatrix::from_column_slice(samples, 3, measured),
-            simulated: DMatrix::from_column_slice(samples, 3, simulated),
-        }
-    }
-
     fn outputs() -> [Channel; 3] {
         [("P", "deg/s"), ("NZ", "m/s^2"), ("T", "N")].map(|(name, unit)| Channel::new(name, unit))
-    }
-
-    #[test]
-    fn a_degree_counts_as_a_foot_a_second_squared() {
-        // Errors of 3 deg/s and 1 ft/s^2 in both samples; the force has no weight.
-        let windows = [window(
-            &[3.0, -3.0, 0.3048, 0.0, 9.0, 9.0],
-            &[0.0, 0.0, 0.0, 0.3048, 0.0, 0.0],
-        )];
-        let cost = RmsCost::of(&windows, &outputs()).unwrap();
-        assert!(
-            (cost.value - 5.0_f64.sqrt()).abs() < 1e-13,
-            "the root of (9 + 1) / 2: {cost:?}"
-        );
-        assert_eq!(cost.left_out, [2]);
-        assert_eq!(RmsCost::of(&[], &outputs()), None);
-        assert_eq!(RmsCost::of(&windows, &outputs()[2..]), None);
-        let twice = [windows[0].clone(), windows[0].clone()];
-        assert_eq!(
-            RmsCost::of(&twice, &outputs()).unwrap(),
-            cost,
-            "repeated data do not change a mean"
-        );
     }
 
     #[test]
@@ -273,7 +175,7 @@ mod tests {
             validation: None,
             outputs: &outputs(),
         };
-        let summary = Summary::of(&source);
+        let summary = Summary::compute(&source);
         assert_eq!(
             (summary.cost.all, summary.muad.on_axis, summary.rms),
             (Some(0.0), Some(1.0), None)
@@ -286,7 +188,7 @@ mod tests {
         // 2 dB exceed the upper magnitude between about 2 and 6 rad/s (muad.rs).
         let omega = omega();
         let two_db = mismatch(2.0, 0.0);
-        let ranges = leaves(&omega, &[2.0; 200], &[0.0; 200]);
+        let ranges = ranges_outside(&omega, &[2.0; 200], &[0.0; 200]);
         let expected = 1.0 - (ranges[0].1 / ranges[0].0).ln() / 24.0_f64.ln();
         assert!((muad_share(&two_db, &omega, GainDelay::NONE).unwrap() - expected).abs() < 1e-14);
         assert_eq!(
@@ -345,7 +247,7 @@ mod tests {
             validation: None,
             outputs: &outputs(),
         };
-        let summary = Summary::of(&source);
+        let summary = Summary::compute(&source);
         // 20 W_g 2^2 = 80, by M4.
         assert_eq!((summary.cost.on_axis, summary.muad.on_axis), (None, None));
         assert!((summary.cost.all.unwrap() - 80.0).abs() < 1e-12);

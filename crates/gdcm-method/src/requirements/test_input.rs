@@ -1,10 +1,7 @@
-//! Test inputs (steps and doublets), and model responses to them (M17.2).
+//! Test inputs: steps and doublets (M17.2). `test_response` simulates a model with them.
 
-use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use gdcm_model::dataset::StateSpace;
-use gdcm_model::simulation::FirstOrderHold;
 use gdcm_model::units::number;
 
 /// Shape of a test input over time.
@@ -31,7 +28,7 @@ pub struct TestInput {
 /// Reasons why a model has no response to a test.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TestInputError {
-    #[error("there is no input {}: the model has {inputs} inputs", input + 1)]
+    #[error("there is no input {}: the number of inputs of the model is {inputs}", input + 1)]
     NoInput { input: usize, inputs: usize },
     /// The size is not finite, or the duration is not above zero and at most 600 s.
     #[error("test input: expected a finite size and a duration greater than 0 s and at most \
@@ -48,6 +45,8 @@ pub enum TestInputError {
 
 /// Maximum test duration \[s\].
 const LONGEST_S: f64 = 600.0;
+/// Added to each sample number, so that a change at a sample is not missed due to rounding.
+const ROUNDING_SAMPLES: f64 = 1e-6;
 
 impl Default for TestInput {
     /// Returns a unit step that lasts two seconds.
@@ -88,8 +87,9 @@ impl TestInput {
     /// [`TestInputError::Numbers`] otherwise.
     pub fn checked(self) -> Result<Self, TestInputError> {
         let duration_s = self.duration_s;
-        let is_duration = duration_s.is_finite() && duration_s > 0.0 && duration_s <= LONGEST_S;
-        if self.size.is_finite() && is_duration {
+        let is_valid_duration =
+            duration_s.is_finite() && duration_s > 0.0 && duration_s <= LONGEST_S;
+        if self.size.is_finite() && is_valid_duration {
             Ok(self)
         } else {
             Err(TestInputError::Numbers {
@@ -103,8 +103,7 @@ impl TestInput {
     pub fn signal(&self, sample_time_s: f64, samples: usize) -> Vec<f64> {
         (0..samples)
             .map(|n| {
-                // The added millionth of a sample covers rounding errors.
-                let time_s = (n as f64 + 1e-6) * sample_time_s;
+                let time_s = (n as f64 + ROUNDING_SAMPLES) * sample_time_s;
                 self.at(time_s)
             })
             .collect()
@@ -120,49 +119,10 @@ impl TestInput {
             TestInputShape::Doublet | TestInputShape::Step => self.size,
         }
     }
-
-    /// Simulates the outputs of `model` from rest, samples x outputs: the input acts from the first
-    /// sample on, and every later change is a ramp over one sample time \[s\].
-    ///
-    /// # Errors
-    /// [`TestInputError`] if there is no such input, its numbers are invalid, or the model cannot
-    /// be simulated.
-    pub fn answer(
-        &self,
-        model: &StateSpace,
-        input: usize,
-        sample_time_s: f64,
-        samples: usize,
-    ) -> Result<DMatrix<f64>, TestInputError> {
-        self.checked()?;
-        if input >= model.inputs() {
-            return Err(TestInputError::NoInput {
-                input,
-                inputs: model.inputs(),
-            });
-        }
-        if !model.timing().is_plain() {
-            return Err(TestInputError::Timing);
-        }
-        let held = FirstOrderHold::new(model, sample_time_s).ok_or(TestInputError::NotFinite)?;
-        let mut moved = DMatrix::zeros(samples, model.inputs());
-        moved
-            .column_mut(input)
-            .copy_from_slice(&self.signal(sample_time_s, samples));
-        let answer = held.simulate(&DVector::zeros(model.order()), &moved);
-        if answer.iter().any(|value| !value.is_finite()) {
-            return Err(TestInputError::NotFinite);
-        }
-        Ok(answer)
-    }
 }
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::dmatrix;
-
-    use gdcm_model::dataset::state_space::Timing;
-
     use super::*;
 
     fn test(shape: TestInputShape) -> TestInput {
@@ -171,16 +131,6 @@ mod tests {
             size: 10.0,
             duration_s: 1.0,
         }
-    }
-
-    fn lag() -> StateSpace {
-        StateSpace::new(
-            dmatrix![-2.0],
-            dmatrix![0.0, 1.0],
-            dmatrix![1.0],
-            dmatrix![0.0, 0.0],
-        )
-        .unwrap()
     }
 
     #[test]
@@ -192,61 +142,6 @@ mod tests {
         assert_eq!(
             test(TestInputShape::Doublet).signal(0.25, 6),
             [10.0, 10.0, -10.0, -10.0, 0.0, 0.0]
-        );
-    }
-
-    #[test]
-    fn the_answer_of_a_lag_to_a_step_is_its_known_one() {
-        let answer = test(TestInputShape::Step)
-            .answer(&lag(), 1, 0.1, 10)
-            .unwrap();
-        for (n, y) in answer.iter().enumerate() {
-            // 10 / 2 (1 - e^(-2 t)); rounding errors over ten steps.
-            let expected = 5.0 * (1.0 - (-0.2 * n as f64).exp());
-            assert!((y - expected).abs() < 1e-13, "{n}: {y} {expected}");
-        }
-    }
-
-    #[test]
-    fn a_test_that_cannot_be_simulated_is_refused() {
-        let step = test(TestInputShape::Step);
-        assert_eq!(
-            step.answer(&lag(), 2, 0.1, 5).unwrap_err(),
-            TestInputError::NoInput {
-                input: 2,
-                inputs: 2
-            }
-        );
-        let without_duration = TestInput {
-            duration_s: 0.0,
-            ..step
-        };
-        assert_eq!(
-            without_duration.answer(&lag(), 1, 0.1, 5).unwrap_err(),
-            TestInputError::Numbers {
-                size: 10.0,
-                duration_s: 0.0
-            }
-        );
-        let delay = Timing {
-            output_delays_s: Some(vec![0.1]),
-            ..Timing::default()
-        };
-        assert_eq!(
-            step.answer(&lag().timed(delay).unwrap(), 1, 0.1, 5)
-                .unwrap_err(),
-            TestInputError::Timing
-        );
-        let diverging = StateSpace::new(
-            dmatrix![2000.0],
-            dmatrix![0.0, 1.0],
-            dmatrix![1.0],
-            dmatrix![0.0, 0.0],
-        )
-        .unwrap();
-        assert_eq!(
-            step.answer(&diverging, 1, 0.1, 5).unwrap_err(),
-            TestInputError::NotFinite
         );
     }
 

@@ -10,7 +10,7 @@ use gdcm_model::message_text::quoted;
 use gdcm_model::units::number;
 use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit, conversion_factor};
 
-use super::positive_number::{NamedNumber, first_not_positive};
+use super::positive_number::{NamedLimit, WrongLimit, first_not_positive};
 
 const DEFAULT_SOURCE: &str = "14 CFR part 60, appendix C, table C2A; CS-FSTD(H)";
 const TEN_PERCENT: Option<f64> = Some(0.1);
@@ -138,12 +138,18 @@ impl Tolerance {
         if self.channel.trim().is_empty() {
             return Err(ToleranceError::NoChannelName { row, quantity });
         }
-        let wrong = first_not_positive([
-            ("absolute", Some(self.absolute)),
-            ("relative", self.relative),
-        ]);
-        match wrong {
-            Some(NamedNumber { name, value: found }) => Err(ToleranceError::NotPositive {
+        let limits = [
+            NamedLimit {
+                name: "absolute",
+                value: Some(self.absolute),
+            },
+            NamedLimit {
+                name: "relative",
+                value: self.relative,
+            },
+        ];
+        match first_not_positive(&limits) {
+            Some(WrongLimit { name, value: found }) => Err(ToleranceError::NotPositive {
                 row,
                 quantity,
                 name,
@@ -209,13 +215,13 @@ impl Tolerance {
 
 /// Returns the unit of an angular rate's time integral; `None` for any other unit.
 fn integral_unit(rate: &str) -> Option<&'static str> {
-    let rate = PhysicalUnit::of(rate)?;
+    let rate = PhysicalUnit::parse(rate)?;
     if rate.dimension != Dimension::AngularRate {
         return None;
     }
     ["deg", "rad"]
         .into_iter()
-        .find(|angle| PhysicalUnit::of(angle).is_some_and(|angle| angle.size == rate.size))
+        .find(|angle| PhysicalUnit::parse(angle).is_some_and(|angle| angle.size == rate.size))
 }
 
 impl ToleranceTable {

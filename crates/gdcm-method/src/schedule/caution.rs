@@ -1,7 +1,6 @@
 //! Cautions about a schedule (M11b, M12, M15.6).
 
 use gdcm_model::dataset::ConditionId;
-use gdcm_model::units::{s_to_ms, signed, told_apart};
 
 use crate::correction::Channel;
 
@@ -87,54 +86,6 @@ impl ScheduleCaution {
             ScheduleCaution::SignedDelayApart { .. } => "signed-delay-apart",
             ScheduleCaution::NotPositive => "scheduled-gain-not-positive",
             ScheduleCaution::CostsMore(_) => "scheduled-cost-doubled",
-        }
-    }
-
-    /// Describes the caution, with these channel names.
-    pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
-        match self {
-            ScheduleCaution::DegreeLowered { asked, clusters } => format!(
-                "degree {asked} needs {} distinct airspeeds, but the conditions have only \
-                {clusters}: the degree is lowered to {}",
-                asked + 1,
-                clusters - 1
-            ),
-            ScheduleCaution::Overshoot {
-                channel,
-                between_kt: [low, high],
-                airspeed_kt,
-                gain,
-                range: [least, most],
-            } => {
-                let name = channel.name(inputs, outputs);
-                format!(
-                    "between {low:.1} and {high:.1} kt the gain of {name} overshoots: {gain:.3} at {airspeed_kt:.1} kt, \
-                     where the conditions' gains range from {least:.3} to {most:.3}; lower the degree or use a table"
-                )
-            }
-            ScheduleCaution::SignedDelayApart {
-                channel,
-                condition,
-                tau_s,
-                elsewhere_s,
-            } => format!(
-                "{}: the signed delay is {} ms in condition {condition}, but on average {} ms in \
-                the other conditions; it cannot be scheduled over airspeed",
-                channel.name(inputs, outputs),
-                signed(s_to_ms(*tau_s), 0),
-                signed(s_to_ms(*elsewhere_s), 0)
-            ),
-            ScheduleCaution::NotPositive => {
-                "a scheduled gain is not positive at an airspeed between the conditions".to_owned()
-            }
-            ScheduleCaution::CostsMore(cost) => {
-                // Rounded to enough digits that both values differ.
-                let (scheduled, own) = told_apart(cost.scheduled, cost.own, 0);
-                format!(
-                    "condition {}, model {}: mean on-axis J {scheduled} with the schedule, {own} with the condition's own correction",
-                    cost.condition, cost.model
-                )
-            }
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Every channel's gain (and delay, where requested) as a function of airspeed (M11, M13.7, M15.5).
+//! Every channel's gain (and delay, where requested) as a function of airspeed (M11, M13.7, M15.5): fit and evaluation.
 //!
 //! ```text
 //! 1  cluster the conditions' airspeeds; v = (V - mean V) / (half the range of V)
@@ -6,12 +6,17 @@
 //! 3  contribution gamma z from the second variable, if any, subtracted from these values
 //! 4  the remainder regressed on v: polynomial by least squares, or means by cluster
 //! 5  the delays, or the signed delays, regressed where these are scheduled
+//! 6  checks between the conditions (interpolation_check)
 //! ```
+//!
+//! `V` is the airspeed, `k` a channel's gain, `z` the second variable scaled to -1 to 1, and `gamma`
+//! its coefficient.
 
 use gdcm_model::dataset::condition::FlightState;
 
 use super::airspeeds::Airspeeds;
 use super::caution::ScheduleCaution;
+use super::delay_schedule::DelaySchedule;
 use super::error::ScheduleError;
 use super::lead_schedule::LeadSchedule;
 use super::regression::{Regression, design, interpolation_weights, powers};
@@ -39,22 +44,26 @@ pub struct Schedule {
     pub cautions: Vec<ScheduleCaution>,
 }
 
-/// Every channel's delay as a function of airspeed.
-#[derive(Clone, Debug, PartialEq)]
-pub struct DelaySchedule {
-    /// Delays by channel \[s\].
-    pub taus_s: Channels<Regression>,
-    /// The conditions' upper bounds \[s\], interpolated linearly: no scheduled delay exceeds them.
-    pub upper_s: Regression,
-}
-
 impl Schedule {
-    /// Fits the schedule, without cautions (steps 1 to 5).
+    /// Fits the schedule to the conditions' corrections and checks it between them.
     ///
     /// # Errors
     /// [`ScheduleError`] without conditions, if a condition lacks the second variable, or if its
     /// effect cannot be separated from the effect of airspeed.
-    pub(super) fn fit(
+    pub fn fit(
+        points: &[ScheduledPoint<'_>],
+        settings: ScheduleSettings,
+    ) -> Result<Self, ScheduleError> {
+        let mut schedule = Self::fit_unchecked(points, settings)?;
+        schedule.cautions = schedule.find_cautions(points);
+        Ok(schedule)
+    }
+
+    /// Fits the schedule, without cautions (steps 1 to 5).
+    ///
+    /// # Errors
+    /// The same as for [`Schedule::fit`].
+    pub(super) fn fit_unchecked(
         points: &[ScheduledPoint<'_>],
         settings: ScheduleSettings,
     ) -> Result<Self, ScheduleError> {
@@ -73,9 +82,9 @@ impl Schedule {
                     .zip(scaled)
                     .map(|(value, scaled)| value - slopes[channel] * scaled)
                     .collect();
-                fit_regression(&airspeeds, &remainder, settings.kind)
+                Regression::fit(&airspeeds, &remainder, settings.kind)
             }
-            None => fit_regression(&airspeeds, values, settings.kind),
+            None => Regression::fit(&airspeeds, values, settings.kind),
         });
         let leads = LeadSchedule::fit(points, &airspeeds, settings.tau_degree);
         let delays = if settings.delays && leads.is_none() {
@@ -107,7 +116,7 @@ impl Schedule {
         let mut highest: Option<LeadPrice> = None;
         for step in 0..=steps {
             let leads = leads.at(&self.airspeeds, self.step_kt(step));
-            let Some(price) = LeadPrice::of(&leads) else {
+            let Some(price) = LeadPrice::new(&leads) else {
                 continue;
             };
             highest = Some(match highest {
@@ -205,32 +214,6 @@ impl Schedule {
     }
 }
 
-impl DelaySchedule {
-    /// Fits the conditions' delays and their upper bounds; needs at least one condition.
-    fn fit(points: &[ScheduledPoint<'_>], airspeeds: &Airspeeds, kind: ScheduleKind) -> Self {
-        let taus_s = points[0].correction.channels(|channel| {
-            let taus_s: Vec<f64> = points
-                .iter()
-                .map(|point| point.correction.pure_delay_s(channel))
-                .collect();
-            fit_regression(airspeeds, &taus_s, kind)
-        });
-        let bounds_s: Vec<f64> = points.iter().map(|point| point.delay_upper_s).collect();
-        Self {
-            taus_s,
-            upper_s: Regression::table(airspeeds, &bounds_s),
-        }
-    }
-
-    /// Returns the delays \[s\] at an airspeed \[kt\], limited to the range from zero to the upper
-    /// bound.
-    fn at(&self, airspeeds: &Airspeeds, airspeed_kt: f64) -> Channels<f64> {
-        let upper_s = self.upper_s.at(airspeeds, airspeed_kt);
-        self.taus_s
-            .map(|_, tau_s| tau_s.at(airspeeds, airspeed_kt).min(upper_s).max(0.0))
-    }
-}
-
 /// Returns the values to regress, by channel and condition (step 2); needs at least one condition.
 fn regressed_values(
     points: &[ScheduledPoint<'_>],
@@ -268,14 +251,6 @@ fn fit_second_term(
     SecondTerm::fit(variable, second, &columns, values).map(Some)
 }
 
-/// Fits a function of airspeed to one value for each condition (step 4).
-fn fit_regression(airspeeds: &Airspeeds, values: &[f64], kind: ScheduleKind) -> Regression {
-    match kind {
-        ScheduleKind::Polynomial { degree } => Regression::polynomial(airspeeds, values, degree),
-        ScheduleKind::Table => Regression::table(airspeeds, values),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use gdcm_model::dataset::Pair;
@@ -288,7 +263,7 @@ mod tests {
         let corrections = [0.8, 1.1, 0.9, 1.3].map(|gain| correction(gain, gain * gain));
         let airspeeds_kt = [40.0, 70.0, 100.0, 140.0];
         let points = points(&airspeeds_kt, &corrections, 1.0);
-        let schedule = Schedule::of(&points, ScheduleSettings::default()).unwrap();
+        let schedule = Schedule::fit(&points, ScheduleSettings::default()).unwrap();
         let products: Vec<f64> = corrections
             .iter()
             .map(|c| c.net_gain(Pair::new(0, 0)).ln())
@@ -304,7 +279,7 @@ mod tests {
     #[test]
     fn without_conditions_there_is_no_schedule() {
         assert_eq!(
-            Schedule::of(&[], ScheduleSettings::default()),
+            Schedule::fit(&[], ScheduleSettings::default()),
             Err(ScheduleError::NoCondition)
         );
     }
@@ -319,7 +294,7 @@ mod tests {
             second: None,
         }];
         assert_eq!(
-            Schedule::of(&points, ScheduleSettings::default())
+            Schedule::fit(&points, ScheduleSettings::default())
                 .unwrap()
                 .at(60.0)
                 .input_delays_s,
@@ -330,7 +305,7 @@ mod tests {
             ..ScheduleSettings::default()
         };
         assert_eq!(
-            Schedule::of(&points, settings)
+            Schedule::fit(&points, settings)
                 .unwrap()
                 .at(60.0)
                 .input_delays_s,
@@ -355,7 +330,7 @@ mod tests {
             delays: true,
             ..ScheduleSettings::default()
         };
-        let schedule = Schedule::of(&points, settings).unwrap();
+        let schedule = Schedule::fit(&points, settings).unwrap();
         let [at_70, at_90, at_110] =
             [70.0, 90.0, 110.0].map(|kt| schedule.at(kt).input_delays_s[0]);
         assert_eq!(

@@ -111,7 +111,7 @@ impl Schedule {
                 .collect(),
             // A missing power has the coefficient 0.
             _ => {
-                let mut figures = regression.figures().to_vec();
+                let mut figures = regression.parameters().to_vec();
                 figures.resize(columns, 0.0);
                 figures
             }
@@ -126,7 +126,7 @@ mod tests {
     use crate::schedule::{ScheduleKind, ScheduleSettings, ScheduledPoint};
 
     fn coefficients(points: &[ScheduledPoint<'_>], settings: ScheduleSettings) -> CoefficientTable {
-        Schedule::of(points, settings)
+        Schedule::fit(points, settings)
             .unwrap()
             .coefficients(&["LON".to_owned()], &["Q".to_owned()])
     }

@@ -1,27 +1,19 @@
-//! Checks of a schedule between its conditions (M11b).
+//! Checks of a schedule between its conditions (M11b): a polynomial through few airspeeds can leave
+//! the range of the gains to which it is fitted.
 
 use super::caution::ScheduleCaution;
 use super::channel_schedule::{STEPS, Schedule};
-use super::error::ScheduleError;
 use super::scheduled_point::ScheduledPoint;
-use super::settings::{ScheduleKind, ScheduleSettings};
+use super::settings::ScheduleKind;
 use crate::correction::Channel;
 
-impl Schedule {
-    /// Fits the schedule to the conditions' corrections and checks it between them.
-    ///
-    /// # Errors
-    /// [`ScheduleError`] without conditions, if a condition lacks the second variable, or if its
-    /// effect cannot be separated from the effect of airspeed.
-    pub fn of(
-        points: &[ScheduledPoint<'_>],
-        settings: ScheduleSettings,
-    ) -> Result<Self, ScheduleError> {
-        let mut schedule = Self::fit(points, settings)?;
-        schedule.cautions = schedule.find_cautions(points);
-        Ok(schedule)
-    }
+/// Distance of a gain from the conditions' range that does not count as an overshoot, relative to
+/// the width of the range.
+const TOLERATED_SHARE: f64 = 0.5;
+/// Relative rounding error that does not count as an overshoot where all gains are equal.
+const ROUNDING: f64 = 1e-9;
 
+impl Schedule {
     /// Returns whether interpolation between the conditions is unreliable: a gain overshoots there,
     /// or is not positive.
     pub fn interpolation_fails(&self) -> bool {
@@ -33,7 +25,9 @@ impl Schedule {
         })
     }
 
-    fn find_cautions(&self, points: &[ScheduledPoint<'_>]) -> Vec<ScheduleCaution> {
+    /// Checks the degree, and every gain between the clusters; `points` are the conditions to which
+    /// the schedule is fitted.
+    pub(super) fn find_cautions(&self, points: &[ScheduledPoint<'_>]) -> Vec<ScheduleCaution> {
         let mut cautions = Vec::new();
         let clusters = self.airspeeds.clusters.len();
         if let ScheduleKind::Polynomial { degree: asked } = self.settings.kind
@@ -74,8 +68,8 @@ impl Schedule {
             let gain = point.correction.gain(channel);
             range = [range[0].min(gain), range[1].max(gain)];
         }
-        // The second term keeps rounding from counting as an overshoot where all gains are equal.
-        let mut farthest = 0.5 * (range[1] - range[0]) + 1e-9 * range[1];
+        // At first the distance from the range that is tolerated, then the largest distance so far.
+        let mut farthest = TOLERATED_SHARE * (range[1] - range[0]) + ROUNDING * range[1];
         let mut found = None;
         for neighbours in self.airspeeds.clusters_kt().windows(2) {
             let between_kt = [neighbours[0], neighbours[1]];
@@ -103,13 +97,14 @@ impl Schedule {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::schedule::ScheduleSettings;
     use crate::schedule::test_points::{correction, points};
 
     /// The schedule with gains 1, 1.1, 1 at these airspeeds \[kt\].
     fn parabola(airspeeds_kt: [f64; 3]) -> Schedule {
         let corrections = [1.0, 1.1, 1.0].map(|gain| correction(gain, gain * gain));
         let points = points(&airspeeds_kt, &corrections, 1.0);
-        Schedule::of(&points, ScheduleSettings::default()).unwrap()
+        Schedule::fit(&points, ScheduleSettings::default()).unwrap()
     }
 
     #[test]

@@ -6,7 +6,8 @@ use super::airspeeds::Airspeeds;
 use super::regression::Regression;
 use super::scheduled_point::ScheduledPoint;
 use crate::correction::Channels;
-use crate::correction::leads::{ChannelLeads, LeadDesign};
+use crate::correction::channel_leads::ChannelLeads;
+use crate::correction::lead_design::LeadDesign;
 
 /// Every channel's signed delay as a function of airspeed: the sum of two regressions is the
 /// regression of the sum, so every response's net lead is scheduled exactly.
@@ -63,7 +64,7 @@ impl LeadSchedule {
     pub fn degree(&self) -> usize {
         self.taus_s
             .iter()
-            .map(|(_, regression)| regression.figures().len().saturating_sub(1))
+            .map(|(_, regression)| regression.parameters().len().saturating_sub(1))
             .max()
             .unwrap_or(0)
     }
@@ -91,7 +92,7 @@ impl LeadSchedule {
 mod tests {
     use super::*;
     use crate::correction::ChannelCorrection;
-    use crate::correction::leads::LeadSettings;
+    use crate::correction::lead_design::LeadSettings;
     use crate::schedule::test_points::{correction, points};
 
     /// Corrections with these signed delays \[s\] in input and output.

@@ -1,4 +1,9 @@
 //! Regression on airspeed: polynomial or lookup table (M11).
+//!
+//! ```text
+//! polynomial:  f(V) = c_0 + c_1 v + c_2 v^2 + ...,  c by least squares;  v is the scaled airspeed, limited to the conditions' range
+//! table:       the mean in each airspeed cluster, linear between the clusters, constant beyond them
+//! ```
 
 use nalgebra::{DMatrix, DVector};
 
@@ -20,14 +25,23 @@ pub enum Regression {
 }
 
 impl Regression {
-    /// Fits a polynomial by least squares; its degree is less than the cluster count.
-    pub fn polynomial(airspeeds: &Airspeeds, figures: &[f64], degree: usize) -> Self {
-        let degree = airspeeds.attainable_degree(degree);
+    /// Fits a function of this form to one value for each condition.
+    pub(super) fn fit(airspeeds: &Airspeeds, values: &[f64], kind: ScheduleKind) -> Self {
+        match kind {
+            ScheduleKind::Polynomial { degree } => Self::polynomial(airspeeds, values, degree),
+            ScheduleKind::Table => Self::table(airspeeds, values),
+        }
+    }
+
+    /// Fits a polynomial to one value for each condition by least squares; its degree is less than
+    /// the cluster count.
+    pub fn polynomial(airspeeds: &Airspeeds, values: &[f64], degree: usize) -> Self {
         let rows = design(airspeeds, ScheduleKind::Polynomial { degree });
-        let qr = DMatrix::from_fn(rows.len(), degree + 1, |row, power| rows[row][power]).qr();
-        // Full column rank, because there are at least as many distinct v as columns: R has no zero
-        // on its diagonal.
-        let projected = qr.q().transpose() * DVector::from_column_slice(figures);
+        let powers = rows[0].len();
+        let qr = DMatrix::from_fn(rows.len(), powers, |row, power| rows[row][power]).qr();
+        let projected = qr.q().transpose() * DVector::from_column_slice(values);
+        // The fallback is never used: there are at least as many distinct v as powers, so that R
+        // has no zero on its diagonal.
         let coefficients = qr
             .r()
             .solve_upper_triangular(&projected)
@@ -37,16 +51,16 @@ impl Regression {
         }
     }
 
-    /// Computes the mean values by cluster.
-    pub fn table(airspeeds: &Airspeeds, figures: &[f64]) -> Self {
+    /// Computes the means by cluster from one value for each condition.
+    pub fn table(airspeeds: &Airspeeds, values: &[f64]) -> Self {
         Self::Table {
             airspeeds_kt: airspeeds.clusters_kt(),
-            values: airspeeds.cluster_means(figures),
+            values: airspeeds.cluster_means(values),
         }
     }
 
-    /// Returns the coefficients, lowest power first, or the table's values.
-    pub fn figures(&self) -> &[f64] {
+    /// Returns the fitted parameters: the coefficients, lowest power first, or the table's values.
+    pub fn parameters(&self) -> &[f64] {
         match self {
             Regression::Polynomial { coefficients } => coefficients,
             Regression::Table { values, .. } => values,
@@ -58,6 +72,7 @@ impl Regression {
     pub fn at(&self, airspeeds: &Airspeeds, airspeed_kt: f64) -> f64 {
         match self {
             Regression::Polynomial { coefficients } => {
+                // Limited to the conditions' range by `scaled`.
                 let v = airspeeds.scaled(airspeed_kt);
                 coefficients
                     .iter()
@@ -79,8 +94,8 @@ impl Regression {
     }
 }
 
-/// Returns the design matrix: a row for each condition, with powers of `v` for a polynomial and
-/// cluster indicators for a table.
+/// Returns the design matrix: a row for each condition, with powers of `v` for a polynomial, up to
+/// the degree that the clusters allow, and cluster indicators for a table.
 pub(super) fn design(airspeeds: &Airspeeds, kind: ScheduleKind) -> Vec<Vec<f64>> {
     match kind {
         ScheduleKind::Polynomial { degree } => {
@@ -111,6 +126,7 @@ struct Bracket {
 }
 
 impl Bracket {
+    /// Finds the neighbours of `x` in the ascending `places`.
     fn new(places: &[f64], x: f64) -> Self {
         let after = places.partition_point(|&place| place < x);
         let last = places.len() - 1;
@@ -139,6 +155,7 @@ pub(super) fn interpolation_weights(places: &[f64], x: f64) -> Vec<f64> {
         after,
         fraction,
     } = Bracket::new(places, x);
+    // At an end both are the same point, which the second assignment gives the weight 1.
     weights[after] = fraction;
     weights[before] = 1.0 - fraction;
     weights
@@ -161,12 +178,12 @@ mod tests {
     #[test]
     fn a_parabola_is_found_exactly() {
         let airspeeds = airspeeds();
-        let figures: Vec<f64> = airspeeds
+        let values: Vec<f64> = airspeeds
             .values_kt
             .iter()
             .map(|&airspeed_kt| parabola(airspeed_kt))
             .collect();
-        let regression = Regression::polynomial(&airspeeds, &figures, 2);
+        let regression = Regression::polynomial(&airspeeds, &values, 2);
         // Least squares with a condition number of about 5.
         assert!((regression.at(&airspeeds, 120.0) - parabola(120.0)).abs() < 1e-13);
         assert!(
@@ -191,7 +208,7 @@ mod tests {
         let airspeeds = Airspeeds::new(vec![60.0, 90.1, 63.9, 62.0, 90.0], 2.0).unwrap();
         let line = Regression::polynomial(&airspeeds, &[1.0; 5], 3);
         assert_eq!(
-            line.figures().len(),
+            line.parameters().len(),
             2,
             "two clusters allow a straight line"
         );
@@ -240,13 +257,13 @@ mod tests {
     proptest! {
         #[test]
         fn the_residual_of_least_squares_is_orthogonal_to_every_power(
-            figures in prop::collection::vec(-1.0_f64..1.0, 5), degree in 0_usize..=3,
+            values in prop::collection::vec(-1.0_f64..1.0, 5), degree in 0_usize..=3,
         ) {
             let airspeeds = airspeeds();
-            let regression = Regression::polynomial(&airspeeds, &figures, degree);
+            let regression = Regression::polynomial(&airspeeds, &values, degree);
             for power in 0..=degree {
-                let product: f64 = airspeeds.values_kt.iter().zip(&figures)
-                    .map(|(&kt, figure)| (figure - regression.at(&airspeeds, kt)) * airspeeds.scaled(kt).powi(power as i32))
+                let product: f64 = airspeeds.values_kt.iter().zip(&values)
+                    .map(|(&kt, value)| (value - regression.at(&airspeeds, kt)) * airspeeds.scaled(kt).powi(power as i32))
                     .sum();
                 prop_assert!(product.abs() < 1e-12);
             }

@@ -1,4 +1,12 @@
 //! A second variable's contribution to a schedule (M11 with another column, M13.7).
+//!
+//! ```text
+//! y(V, z) = f(V) + gamma z,   gamma = z_r' y / z_r' z_r,   z_r = z - Q Q' z
+//! ```
+//!
+//! `y` is a channel's regressed value, `z` the variable scaled to -1 to 1 over the conditions, `f` the
+//! function of airspeed, and `Q` an orthonormal basis of its design columns. By the
+//! Frisch-Waugh-Lovell theorem this `gamma` is the coefficient of `z` in the common least-squares fit.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -27,9 +35,7 @@ impl SecondTerm {
     /// Fits `gamma` by least squares.
     ///
     /// `values` has the second variable of each condition, `airspeed_design` the other design
-    /// columns (a row for each condition), `regressed` the values by channel and condition. By the
-    /// Frisch-Waugh-Lovell theorem `gamma = z_r' y / z_r' z_r`, where `z_r` is the residual of `z`
-    /// after projection on the other columns.
+    /// columns (a row for each condition), `regressed` the values by channel and condition.
     ///
     /// # Errors
     /// [`ScheduleError::NotToldApart`] if the second variable depends linearly on those columns.
@@ -52,6 +58,7 @@ impl SecondTerm {
             .q();
         let z = DVector::from_column_slice(&scaled);
         let residual = &z - &q * (q.transpose() * &z);
+        // Without a range `z` is NaN, which the first comparison covers.
         if greatest <= least || residual.norm() <= DEPENDENT * z.norm() {
             return Err(ScheduleError::NotToldApart(variable));
         }
@@ -121,7 +128,7 @@ mod tests {
             second: Some(SecondVariable::Altitude),
             ..ScheduleSettings::default()
         };
-        Schedule::of(&points, settings)
+        Schedule::fit(&points, settings)
     }
 
     fn exponential(kt: f64, feet: f64) -> f64 {

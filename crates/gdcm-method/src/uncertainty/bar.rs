@@ -1,4 +1,12 @@
 //! Error bar of a value (M13.3).
+//!
+//! ```text
+//! whole bar: q_0 +- t(nu) u,   u^2 = s_phys^2 + s_id^2,   nu by Satterthwaite's formula (variance_component)
+//! inner bar: q_0 +- t(nu_id) s_id
+//! ```
+//!
+//! `q_0` is the value with both representatives, `s_phys` and `s_id` are the standard deviations due
+//! to the unknown trim and the identification, and `t` is Student's quantile at the confidence level.
 
 use super::distributions::student_quantile;
 use super::variance_component::{VarianceComponent, satterthwaite};
@@ -96,27 +104,51 @@ impl Bar {
 
     /// Returns remarks on missing parts, a missing spread, and a source other than the models'
     /// spread.
-    pub fn remarks(&self) -> Vec<&'static str> {
+    pub fn remarks(&self) -> Vec<BarRemark> {
         let mut remarks = Vec::new();
         if self.trim.is_none() {
-            remarks.push("uncertainty of the trim not included");
+            remarks.push(BarRemark::NoTrim);
         }
         if self.identification.is_none() {
-            remarks.push("uncertainty of the identification not included");
+            remarks.push(BarRemark::NoIdentification);
         }
         if self.parts().next().is_some() && self.variance() == 0.0 {
-            remarks.push("the bundle has no spread");
+            remarks.push(BarRemark::NoSpread);
         }
         match self.source {
             IdentificationSource::Spread => {}
-            IdentificationSource::Coherence => {
-                remarks.push("identification part from the coherence");
-            }
-            IdentificationSource::ModelBand => {
-                remarks.push("identification part from the model's confidence band")
-            }
+            IdentificationSource::Coherence => remarks.push(BarRemark::FromCoherence),
+            IdentificationSource::ModelBand => remarks.push(BarRemark::FromModelBand),
         }
         remarks
+    }
+}
+
+/// Remark on an error bar.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BarRemark {
+    /// The uncertainty of the trim is not included.
+    NoTrim,
+    /// The uncertainty of the identification is not included.
+    NoIdentification,
+    /// All models of the bundle give the same value.
+    NoSpread,
+    /// The identification part is computed from the coherence.
+    FromCoherence,
+    /// The identification part is computed from the standard deviations of the model.
+    FromModelBand,
+}
+
+impl BarRemark {
+    /// Returns the stable code, for programs and tests.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::NoTrim => "no-trim",
+            Self::NoIdentification => "no-identification",
+            Self::NoSpread => "no-spread",
+            Self::FromCoherence => "from-coherence",
+            Self::FromModelBand => "from-model-band",
+        }
     }
 }
 
@@ -153,7 +185,7 @@ mod tests {
         ] {
             assert!((found - expected).abs() < 1e-9, "{found} {expected}");
         }
-        assert_eq!(bar.remarks(), Vec::<&str>::new());
+        assert_eq!(bar.remarks(), []);
     }
 
     #[test]
@@ -161,7 +193,7 @@ mod tests {
         let none = bar(0.0, 0.0);
         assert_eq!(
             (none.half_width(0.9), none.remarks()),
-            (None, vec!["the bundle has no spread"])
+            (None, vec![BarRemark::NoSpread])
         );
         let alone = Bar {
             trim: None,
@@ -170,10 +202,7 @@ mod tests {
         };
         assert_eq!(
             alone.remarks(),
-            [
-                "uncertainty of the trim not included",
-                "uncertainty of the identification not included"
-            ]
+            [BarRemark::NoTrim, BarRemark::NoIdentification]
         );
         assert_eq!(alone.interval(0.9), None);
     }

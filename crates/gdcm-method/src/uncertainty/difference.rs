@@ -1,4 +1,11 @@
 //! Significance of differences between two conditions (M13.4).
+//!
+//! ```text
+//! ratio <- |delta| / u_delta,   delta = q_c - q_c',   u_delta = sqrt(u_c^2 + u_c'^2);   p from Student's distribution
+//! ```
+//!
+//! `q_c` and `u_c` are the value and the standard deviation of a condition's error bar. Over several
+//! differences, the probabilities p are corrected by Holm's method.
 
 use super::bar::Bar;
 use super::distributions::student_two_sided;
@@ -18,7 +25,7 @@ pub struct Difference {
 
 impl Difference {
     /// Computes `first - second`.
-    pub fn of(first: &Bar, second: &Bar) -> Self {
+    pub fn between(first: &Bar, second: &Bar) -> Self {
         let deviation = (first.variance() + second.variance()).sqrt();
         Self {
             delta: first.value - second.value,

@@ -16,26 +16,39 @@
 //!
 //! | step | file |
 //! |---|---|
-//! | 1 to 3, 6 | `scalar`, `spread`, `bar` |
+//! | 1 to 3 | `scalar`, `spread` |
 //! | 4, 5 | `variance_component`, `coherence_error` |
+//! | 6 | `bar`, `condition_bars` |
 //! | 7 | `difference` |
-//! | 8 to 10 | `least_squares` |
+//! | 8 | `design`, `variance_decomposition` |
+//! | 9 | `schedule_band` |
+//! | 10 | `second_variable_effect` |
+//!
+//! `q` is a scalar result of a condition, such as `ln k`; `u` and `nu` are the standard deviation and
+//! the degrees of freedom of its bar; `s_coh` is the measurement error from the coherence; `f` and
+//! `h_c` are the degrees of freedom and the hat values of the schedule's fit; `t` is Student's
+//! quantile. The other symbols are defined in the files.
 
 pub mod bar;
-mod coherence_error;
+pub mod coherence_error;
+pub mod condition_bars;
+mod design;
 mod difference;
 mod distributions;
-pub mod least_squares;
-mod scalar;
+pub mod scalar;
+mod schedule_band;
+pub mod second_variable_effect;
 pub mod settings;
 pub mod spread;
 mod variance_component;
+mod variance_decomposition;
 
 pub use bar::{Bar, IdentificationSource};
+pub use design::Design;
 pub use difference::{Difference, holm};
 pub use distributions::student_quantile;
-pub use least_squares::{
-    BandWidths, Design, ScheduleBand, SecondVariableDesign, VarianceDecomposition,
-};
 pub use scalar::Scalar;
+pub use schedule_band::{BandWidths, ScheduleBand};
+pub use second_variable_effect::SecondVariableDesign;
 pub use variance_component::VarianceComponent;
+pub use variance_decomposition::VarianceDecomposition;

@@ -91,7 +91,7 @@ fn scalars(outputs: usize, inputs: usize) -> Vec<Scalar> {
         }
     }
     for scalar in of_channel {
-        scalars.extend(Channel::all(inputs, outputs).map(scalar));
+        scalars.extend(Channel::inputs_then_outputs(inputs, outputs).map(scalar));
     }
     scalars
 }

@@ -1,40 +1,38 @@
-//! Changes in a condition's values if its models are substituted (M13.1), and the error bars of all
-//! conditions (M13.2, M13.3).
+//! Changes in a condition's values if its models are substituted (M13.1).
+//!
+//! ```text
+//! s_phys^2 <- mean of (q - q_0)^2 over the other kept physics models, each instead of the representative
+//! s_own^2  <- the same over the other kept identified models
+//! ```
+//!
+//! `q` is a scalar of the condition, `q_0` its value with both representatives.
 
-pub use super::coherence_error::{CoherenceError, Measurement};
-pub use super::scalar::{Figures, Scalar, ScalarTable};
-
-use super::bar::{Bar, IdentificationSource};
-use super::variance_component::{VarianceComponent, pooled};
-
-/// Standard error of an identified representative, from its confidence band or its coherence.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ReportedUncertainty {
-    pub part: VarianceComponent,
-    /// Source of the standard error: coherence or confidence band.
-    pub source: IdentificationSource,
-}
+use super::scalar::{Figures, Scalar, ScalarTable};
+use super::variance_component::VarianceComponent;
 
 /// Mean square changes in a scalar.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Changes {
-    trim: Option<VarianceComponent>,
-    own: Option<VarianceComponent>,
-    left_out: usize,
+pub(super) struct Changes {
+    /// `s_phys^2`: changes due to other physics models.
+    pub(super) trim: Option<VarianceComponent>,
+    /// `s_own^2`: changes due to other identified models.
+    pub(super) own: Option<VarianceComponent>,
+    /// Number of substitutions for which the scalar does not exist.
+    pub(super) left_out: usize,
 }
 
 /// Changes in a condition's scalars if other models in its bundles replace the representatives
 /// (M13.1).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionSpread {
-    changes: ScalarTable<Changes>,
+    pub(super) changes: ScalarTable<Changes>,
 }
 
 impl ConditionSpread {
     /// Computes the mean squares about the representatives' scalars. `trim` has an entry for each
     /// other kept physics model, `own` for each other kept identified model; `None` if the analysis
     /// with that model failed.
-    pub fn of(
+    pub fn new(
         representatives: &Figures,
         trim: &[Option<&Figures>],
         own: &[Option<&Figures>],
@@ -65,100 +63,4 @@ fn changes_from(base: f64, scalar: Scalar, swaps: &[Option<&Figures>]) -> Vec<f6
         }
     }
     changes
-}
-
-/// Data of a condition from which its bars are computed.
-#[derive(Clone, Debug)]
-pub struct BarSource<'a> {
-    /// Scalars with both representatives.
-    pub figures: Figures,
-    /// Changes of the scalars if other models are substituted.
-    pub spread: &'a ConditionSpread,
-    /// Standard errors of the identified representative; `None` where unavailable.
-    pub reported: ScalarTable<Option<ReportedUncertainty>>,
-    /// Lower and upper bound on a channel delay \[s\].
-    pub delay_bounds_s: [f64; 2],
-}
-
-/// Computes the bars by condition (M13.2, M13.3). Each scalar's identification part is pooled over
-/// the conditions. A scalar that does not exist has no bar.
-pub fn bars(conditions: &[BarSource<'_>], prior_degrees: f64) -> Vec<ScalarTable<Option<Bar>>> {
-    let Some(first) = conditions.first() else {
-        return Vec::new();
-    };
-    let identification = first.figures.map(|scalar, _| {
-        let own: Vec<Option<VarianceComponent>> = conditions
-            .iter()
-            .map(|condition| condition.spread.changes[scalar].own)
-            .collect();
-        pooled(&own, prior_degrees)
-    });
-    let mut bars = Vec::with_capacity(conditions.len());
-    for (index, condition) in conditions.iter().enumerate() {
-        bars.push(condition.figures.map(|scalar, value| {
-            let spread = identification[scalar][index];
-            Some(condition.bar(scalar, (*value)?, spread))
-        }));
-    }
-    bars
-}
-
-impl BarSource<'_> {
-    /// Returns a scalar's bar with the pooled identification part `spread`.
-    fn bar(&self, scalar: Scalar, value: f64, spread: Option<VarianceComponent>) -> Bar {
-        let changes = self.spread.changes[scalar];
-        let (identification, source) = match self.reported[scalar] {
-            Some(reported) if reported.replaces(spread) => (Some(reported.part), reported.source),
-            _ => (spread, IdentificationSource::Spread),
-        };
-        let range = match scalar {
-            Scalar::ChannelDelay(_) => self.delay_bounds_s,
-            _ => [f64::NEG_INFINITY, f64::INFINITY],
-        };
-        Bar {
-            value,
-            trim: changes.trim,
-            identification,
-            source,
-            left_out: changes.left_out,
-            range,
-        }
-    }
-}
-
-impl ReportedUncertainty {
-    /// Returns whether the standard error replaces the spread: if it is larger, or if there is no
-    /// spread. The spread of leave-one-record-out models underestimates the error of a single model
-    /// by a factor of about the square root of the number of records (Efron's jackknife); the
-    /// standard error does not.
-    fn replaces(&self, spread: Option<VarianceComponent>) -> bool {
-        spread.is_none_or(|spread| self.part.variance > spread.variance)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn component(variance: f64) -> VarianceComponent {
-        VarianceComponent {
-            variance,
-            degrees_of_freedom: 3.0,
-        }
-    }
-
-    #[test]
-    fn a_reported_error_replaces_a_smaller_spread() {
-        for source in [
-            IdentificationSource::ModelBand,
-            IdentificationSource::Coherence,
-        ] {
-            let reported = ReportedUncertainty {
-                part: component(0.04),
-                source,
-            };
-            assert!(reported.replaces(None) && reported.replaces(Some(component(0.01))));
-            assert!(!reported.replaces(Some(component(0.09))));
-        }
-    }
 }

@@ -48,8 +48,8 @@ impl VarianceComponent {
     }
 }
 
-/// Computes the degrees of freedom of a sum of variances, `u^4 / sum(s^4 / nu)`; `None` if all are
-/// zero.
+/// Computes the degrees of freedom of a sum of variances, `u^4 / sum(s^4 / nu)`, where `s^2` are the
+/// variances, `nu` their degrees of freedom and `u^2 = sum s^2`; `None` if all variances are zero.
 ///
 /// F. E. Satterthwaite, "An approximate distribution of estimates of variance components",
 /// *Biometrics Bulletin* 2, 1946.
@@ -73,12 +73,16 @@ pub fn satterthwaite(parts: impl IntoIterator<Item = VarianceComponent>) -> Opti
     Some(sum * sum / spread)
 }
 
-/// Computes the pooled identification part of each condition (M13.2): `(n s_own^2 + d_0 s_pooled^2)
-/// / (n + d_0)` with `d_0 = min(prior, sum of the others' n)`. `None` if no condition has two
-/// identified models.
+/// Computes the pooled identification part of each condition (M13.2).
 ///
-/// `own` holds the mean square of each condition. A condition with a single identified model has
-/// `None` and takes the pooled variance.
+/// ```text
+/// s_id^2 = (n s_own^2 + d_0 s_pooled^2) / (n + d_0),
+/// s_pooled^2 = sum n s_own^2 / sum n over all conditions,   d_0 = min(prior_degrees, sum of the others' n)
+/// ```
+///
+/// `own` holds `s_own^2`, the mean square of each condition, with its degrees of freedom n. A
+/// condition with a single identified model has `None`, n = 0, and takes the pooled variance. `None`
+/// if no condition has two identified models, or if `d_0` is 0 for such a condition.
 pub fn pooled(
     own: &[Option<VarianceComponent>],
     prior_degrees: f64,
@@ -88,26 +92,25 @@ pub fn pooled(
     let square: f64 = known
         .map(|part| part.degrees_of_freedom * part.variance)
         .sum();
-    let mut pooled = Vec::with_capacity(own.len());
-    for own in own {
-        let own = own.unwrap_or(VarianceComponent {
-            variance: 0.0,
-            degrees_of_freedom: 0.0,
-        });
-        let n = own.degrees_of_freedom;
+    let mut identification = Vec::with_capacity(own.len());
+    for component in own {
+        let (n, own_variance) = match component {
+            Some(component) => (component.degrees_of_freedom, component.variance),
+            None => (0.0, 0.0),
+        };
         let borrowed = prior_degrees.min(count - n);
         let degrees = n + borrowed;
         // A condition with a single model has no estimate if nothing is borrowed from the others.
-        pooled.push(if count > 0.0 && degrees > 0.0 {
+        identification.push(if count > 0.0 && degrees > 0.0 {
             Some(VarianceComponent {
-                variance: (n * own.variance + borrowed * square / count) / degrees,
+                variance: (n * own_variance + borrowed * square / count) / degrees,
                 degrees_of_freedom: degrees,
             })
         } else {
             None
         });
     }
-    pooled
+    identification
 }
 
 #[cfg(test)]

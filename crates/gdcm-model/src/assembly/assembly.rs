@@ -1,46 +1,21 @@
-//! Models found in files, with the engineer's rules applied to them.
+//! Models found in files, with the engineer's rules applied to them: the entry point of this folder.
+//!
+//! The problems are described in `problem_lines.rs`, the cautions in `position_caution.rs`.
 
 use std::path::Path;
 
-use super::dataset_draft::dataset_draft;
+use super::assembled_draft::dataset_draft;
 use super::found_model::FoundModel;
+use super::indexed_part::{parts_by_condition, parts_in_use};
 use super::part::Part;
 use super::problem::{Problem, ProblemKind};
-use super::problem_search::{
-    channel_problems, condition_problems, part_problems, parts_by_condition, parts_in_use,
-};
+use super::problem_search::{channel_problems, condition_problems, part_problems};
 use super::proposed_rows::proposed_rows;
 use super::question_scope::set_scopes;
 use super::rules::Rules;
 use crate::dataset::Dataset;
-use crate::dataset::channel::ChannelSide;
-use crate::dataset::unchecked_dataset::DatasetDraft;
+use crate::dataset::dataset_draft::DatasetDraft;
 use crate::names::RowRole;
-
-/// Caution about models whose channels were matched by position, because their files do not name
-/// them.
-#[derive(Clone, Debug, PartialEq)]
-pub struct AssemblyCaution {
-    /// Inputs, outputs or both.
-    pub sides: Vec<ChannelSide>,
-    /// Indices of the models in [`Assembly::parts`].
-    pub parts: Vec<usize>,
-}
-
-impl AssemblyCaution {
-    /// Returns a stable code for scripts and tests.
-    pub fn code(&self) -> &'static str {
-        "channels-by-position"
-    }
-}
-
-/// A description of a problem, with the model to which it belongs.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ProblemLine {
-    /// Index of the first model with the problem; `None` for a problem of the whole dataset.
-    pub part: Option<usize>,
-    pub text: String,
-}
 
 /// Models found in files, each with its place in the dataset, and the open problems.
 #[derive(Clone, Debug, PartialEq)]
@@ -98,52 +73,6 @@ impl Assembly {
         &self.problems
     }
 
-    /// Describes a problem: the model, the missing or contradictory fact, and the command-line
-    /// option that settles it, if there is one.
-    pub fn words(&self, problem: &Problem) -> String {
-        let mut words = String::new();
-        if let Some(part) = problem.part {
-            words.push_str(&format!("{}: ", self.parts[part].found.key()));
-        }
-        words.push_str(&problem.kind.to_string());
-        if let Some(option) = problem.option() {
-            words.push_str(&format!(" ({option})"));
-        }
-        words
-    }
-
-    /// Lists the problems. A problem shared by several models appears once, with its first model
-    /// and the count of other models.
-    pub fn problem_lines(&self) -> Vec<ProblemLine> {
-        let mut distinct: Vec<SharedProblem<'_>> = Vec::new();
-        for problem in &self.problems {
-            let known = distinct.iter_mut().find(|known| {
-                known.first.kind == problem.kind && known.first.scope == problem.scope
-            });
-            match known {
-                Some(known) => known.others += 1,
-                None => distinct.push(SharedProblem {
-                    first: problem,
-                    others: 0,
-                }),
-            }
-        }
-        let mut lines = Vec::with_capacity(distinct.len());
-        for SharedProblem { first, others } in distinct {
-            let mut text = self.words(first);
-            match others {
-                0 => {}
-                1 => text.push_str(" (and 1 other model)"),
-                others => text.push_str(&format!(" (and {others} other models)")),
-            }
-            lines.push(ProblemLine {
-                part: first.part,
-                text,
-            });
-        }
-        lines
-    }
-
     /// Returns the dataset, or `None` while there are problems. Relative file names of models and
     /// flight records are prefixed with `folder`, the path from the dataset's folder to the files.
     pub fn dataset(&self, folder: &str) -> Option<Dataset> {
@@ -171,59 +100,6 @@ impl Assembly {
         }
         without
     }
-
-    /// Returns points for the engineer to review; unlike problems, they do not keep the dataset
-    /// from being built.
-    pub fn cautions(&self) -> Vec<AssemblyCaution> {
-        let mut cautions: Vec<AssemblyCaution> = Vec::new();
-        for part in parts_in_use(&self.parts) {
-            let sides = part.part.sides_by_position();
-            if sides.is_empty() {
-                continue;
-            }
-            match cautions.iter_mut().find(|caution| caution.sides == sides) {
-                Some(known) => known.parts.push(part.index),
-                None => cautions.push(AssemblyCaution {
-                    sides,
-                    parts: vec![part.index],
-                }),
-            }
-        }
-        cautions
-    }
-
-    /// Describes a caution: which channels were assumed, and up to three of the model files.
-    pub fn caution_words(&self, caution: &AssemblyCaution) -> String {
-        const MOST_FILES: usize = 3;
-        let mut files: Vec<String> = Vec::new();
-        for part in caution.parts.iter().take(MOST_FILES) {
-            files.push(self.parts[*part].found.key());
-        }
-        if caution.parts.len() > MOST_FILES {
-            files.push(format!("{} more", caution.parts.len() - MOST_FILES));
-        }
-        let mut sides: Vec<String> = Vec::new();
-        for side in &caution.sides {
-            let channels = side.of(&self.rules.inputs, &self.rules.outputs);
-            let names: Vec<&str> = channels
-                .iter()
-                .map(|channel| channel.name.as_str())
-                .collect();
-            sides.push(format!("{side}s taken as {}", names.join(", ")));
-        }
-        format!(
-            "channels without names in the file: {}, by their position in the dataset; check the \
-            order, or name the channels under \"models\" in the rules (files: {})",
-            sides.join(" and "),
-            files.join(", ")
-        )
-    }
-}
-
-/// A problem and the count of other models with the same problem.
-struct SharedProblem<'p> {
-    first: &'p Problem,
-    others: usize,
 }
 
 /// Finds all problems in the dataset's channels, in each model and in each condition. If there are
@@ -282,9 +158,11 @@ fn prefix_file(file: &mut String, folder: &str) {
 mod tests {
     use super::*;
     use crate::assembly::found_model::Facts;
+    use crate::assembly::position_caution::PositionCaution;
     use crate::assembly::proposed_rules::proposed_rules;
     use crate::assembly::test_models::{at_airspeed, found_model, measured_model};
-    use crate::dataset::unchecked_dataset::ModelDraft;
+    use crate::dataset::channel::ChannelSide;
+    use crate::dataset::dataset_draft::ModelDraft;
     use crate::names::ChannelRule;
 
     #[test]
@@ -402,7 +280,7 @@ mod tests {
         let both = vec![ChannelSide::Input, ChannelSide::Output];
         assert_eq!(
             cautions,
-            [AssemblyCaution {
+            [PositionCaution {
                 sides: both.clone(),
                 parts: vec![0, 1]
             }]

@@ -3,8 +3,8 @@
 use nalgebra::DMatrix;
 
 use super::channel_match::ChannelUse;
+use crate::dataset::dataset_draft::{BandsDraft, ModelDraft, ResponseArray, ResponseDraft};
 use crate::dataset::state_space::Timing;
-use crate::dataset::unchecked_dataset::{BandsDraft, ModelDraft, ResponseArray, ResponseDraft};
 
 /// File channels of a model, one entry per dataset channel; `None` if the model lacks the channel.
 #[derive(Clone, Copy)]
@@ -152,6 +152,7 @@ fn pick_table(array: &ResponseArray, uses: ChannelUses<'_>, scaling: Scaling) ->
                 (Some(output), Some(input))
                     if output.index < output_count && input.index < input_count =>
                 {
+                    // The last index runs fastest: `count` values of each response.
                     let start = (output.index * input_count + input.index) * count;
                     let known = &array.values[start..start + count];
                     match scaling {

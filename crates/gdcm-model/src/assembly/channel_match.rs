@@ -1,13 +1,13 @@
 //! Matching of file channels to dataset channels, and the factors between them.
 
-use super::declarations::DeclaredChannels;
+use super::declarations::ModelDeclarations;
 use super::found_model::ChannelLabel;
+use super::name_likeness::{Likeness, matched_name};
 use super::problem::ProblemKind;
 use crate::dataset::channel::ChannelSide;
-use crate::names::channel_alias::same_channel;
+use crate::names::ChannelRule;
 use crate::names::signed_name::sign_between;
-use crate::names::{ChannelRule, SignedName};
-use crate::units::number;
+use crate::number_format::number;
 use crate::units::physical_unit::conversion_factor;
 
 /// A file channel matched to a dataset channel.
@@ -43,7 +43,7 @@ pub(super) struct ChannelMatcher<'a> {
     pub labels: &'a [ChannelLabel],
     /// The dataset's channels.
     pub rules: &'a [ChannelRule],
-    pub declared: &'a DeclaredChannels<'a>,
+    pub declared: &'a ModelDeclarations<'a>,
     /// Whether channels may be missing, as in a measured response; at least one must be found.
     pub partial: bool,
 }
@@ -61,15 +61,18 @@ impl ChannelMatcher<'_> {
                 && self.labels.iter().all(|label| label.name.is_none()),
             ..ChannelMatch::default()
         };
+        // Step 1.
         if found.by_position && self.labels.len() != self.rules.len() {
             return self.wrong_count();
         }
         for (place, rule) in self.rules.iter().enumerate() {
+            // Steps 1 and 2.
             let index = if found.by_position {
                 Some(place)
             } else {
                 self.find(rule, &mut found.problems)
             };
+            // Steps 3 and 4.
             let used = index.map(|index| {
                 let used = self.converted(index, rule, &mut found);
                 self.signed(used, rule, &mut found.problems)
@@ -302,67 +305,6 @@ impl ChannelMatcher<'_> {
     }
 }
 
-/// Agreement between a name in a file and the name or an alias of a dataset channel.
-#[derive(Clone, Copy)]
-enum Likeness {
-    /// Same as the channel's name.
-    Name,
-    /// Same as an alias from the rules.
-    Alias,
-    /// Same as the name or an alias from the rules, apart from sign marks.
-    SameButForSign,
-    /// Another name for the same channel in the alias table.
-    Channel,
-}
-
-impl Likeness {
-    const CLOSEST_FIRST: [Self; 4] = [Self::Name, Self::Alias, Self::SameButForSign, Self::Channel];
-
-    fn holds(self, name: &str, rule: &ChannelRule) -> bool {
-        match self {
-            Self::Name => name == rule.name,
-            Self::Alias => rule.aliases.iter().any(|alias| alias == name),
-            Self::SameButForSign => {
-                let unsigned = unsigned_name(name);
-                unsigned == unsigned_name(&rule.name)
-                    || rule
-                        .aliases
-                        .iter()
-                        .any(|alias| unsigned_name(alias) == unsigned)
-            }
-            Self::Channel => {
-                let unsigned = unsigned_name(name);
-                same_channel(&unsigned, &unsigned_name(&rule.name))
-                    || rule
-                        .aliases
-                        .iter()
-                        .any(|alias| same_channel(&unsigned, &unsigned_name(alias)))
-            }
-        }
-    }
-}
-
-fn unsigned_name(name: &str) -> String {
-    SignedName::parse(name).name
-}
-
-/// Returns the alias from the rules that agrees with a name in a file, or else the channel's name.
-fn matched_name<'r>(name: &str, rule: &'r ChannelRule) -> &'r str {
-    if name == rule.name {
-        return &rule.name;
-    }
-    if let Some(alias) = rule.aliases.iter().find(|alias| *alias == name) {
-        return alias;
-    }
-    let unsigned = unsigned_name(name);
-    for alias in &rule.aliases {
-        if unsigned_name(alias) == unsigned {
-            return alias;
-        }
-    }
-    &rule.name
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -379,7 +321,7 @@ mod tests {
             side,
             labels,
             rules,
-            declared: &DeclaredChannels::default(),
+            declared: &ModelDeclarations::default(),
             partial,
         }
         .run()
@@ -390,7 +332,7 @@ mod tests {
         side: ChannelSide,
         labels: &[ChannelLabel],
         rules: &[ChannelRule],
-        declared: &DeclaredChannels<'_>,
+        declared: &ModelDeclarations<'_>,
     ) -> ChannelMatch {
         ChannelMatcher {
             side,
@@ -454,9 +396,9 @@ mod tests {
             from: "in".into(),
             factor: 8.5,
         };
-        let declared = DeclaredChannels {
+        let declared = ModelDeclarations {
             conversions: &[factor],
-            ..DeclaredChannels::default()
+            ..ModelDeclarations::default()
         };
         let found = matched_as_declared(
             ChannelSide::Input,
@@ -528,9 +470,9 @@ mod tests {
                 signs,
                 ..ChannelDeclarations::default()
             };
-            let declared = DeclaredChannels {
+            let declared = ModelDeclarations {
                 channels,
-                ..DeclaredChannels::default()
+                ..ModelDeclarations::default()
             };
             let found = matched_as_declared(ChannelSide::Output, &labels, &rules, &declared);
             (
@@ -564,9 +506,9 @@ mod tests {
             ..rule("R", "deg/s")
         }];
         let factor_of = |label: ChannelLabel, channels: ChannelDeclarations| {
-            let declared = DeclaredChannels {
+            let declared = ModelDeclarations {
                 channels,
-                ..DeclaredChannels::default()
+                ..ModelDeclarations::default()
             };
             let found = matched_as_declared(ChannelSide::Output, &[label], &rules, &declared);
             assert!(found.problems.is_empty(), "{:?}", found.problems);

@@ -1,4 +1,7 @@
 //! Units, factors and signs that the engineer declares for channels.
+//!
+//! [`ChannelDeclarations`] are declared for the models in a scope ([`ScopedDeclarations`]); those that
+//! apply to a single model are merged into its [`ModelDeclarations`].
 
 use std::collections::BTreeMap;
 
@@ -51,6 +54,7 @@ impl ChannelDeclarations {
         }
     }
 
+    /// Renames a channel.
     pub(super) fn rename(&mut self, old: &str, new: &str) {
         rename_key(&mut self.units, old, new);
         rename_key(&mut self.factors, old, new);
@@ -68,7 +72,8 @@ pub(super) fn rename_key<T>(map: &mut BTreeMap<String, T>, old: &str, new: &str)
 /// Declarations and the models to which they apply.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct ScopedDeclarations {
-    pub of: FileScope,
+    #[serde(rename = "of")]
+    pub scope: FileScope,
     #[serde(flatten)]
     pub channels: ChannelDeclarations,
 }
@@ -83,21 +88,22 @@ pub(super) fn applicable_declarations<'d>(
 ) -> Vec<&'d ScopedDeclarations> {
     let mut applicable: Vec<&ScopedDeclarations> = declarations
         .iter()
-        .filter(|declared| declared.of.holds(found, role))
+        .filter(|declared| declared.scope.holds(found, role))
         .collect();
-    applicable.sort_by_key(|declared| declared.of.rank(found));
+    applicable.sort_by_key(|declared| declared.scope.rank(found));
     applicable
 }
 
 /// All units, factors and signs declared for the channels of a single model.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct DeclaredChannels<'r> {
+pub struct ModelDeclarations<'r> {
     /// Factors between units without a fixed ratio.
     pub conversions: &'r [UnitRule],
+    /// Merged declarations of all scopes that include the model.
     pub channels: ChannelDeclarations,
 }
 
-impl DeclaredChannels<'_> {
+impl ModelDeclarations<'_> {
     /// Returns the declared sign. Without a sign but with a declared factor, returns 1, because the
     /// factor includes the sign; `None` without either.
     pub fn sign_of(&self, channel: &str) -> Option<f64> {

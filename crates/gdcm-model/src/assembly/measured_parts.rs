@@ -1,12 +1,13 @@
-//! Joining of measured responses from several files into a single model.
+//! Joining of measured responses from several files into a single model. A measured model consists
+//! of one or more parts ([`Part`]), which have the same name and together give its responses.
 
 use std::ops::Range;
 
 use super::channel_conversion::bands_or_full_range;
 use super::part::Part;
 use super::rules::Rules;
+use crate::dataset::dataset_draft::{ModelDraft, ResponseArray, ResponseDraft};
 use crate::dataset::model::Provenance;
-use crate::dataset::unchecked_dataset::{ModelDraft, ResponseArray, ResponseDraft};
 
 /// Valid band of an unmeasured response \[rad/s\]: an empty band.
 const NOT_MEASURED: [f64; 2] = [0.0, 0.0];
@@ -33,6 +34,8 @@ fn join_response(joined: &mut ResponseDraft, response: &ResponseDraft) {
     let count = joined.omega.len();
     let new_bands = bands_or_full_range(response);
     let mut bands = bands_or_full_range(joined);
+    // `place` numbers the responses row by row: output times input count plus input. Each has two
+    // ends of a band, and `count` values.
     for place in 0..joined.re.shape[0] * joined.re.shape[1] {
         let band = 2 * place..2 * place + 2;
         let is_new = new_bands.values[band.clone()] != NOT_MEASURED;
@@ -82,6 +85,7 @@ pub(super) fn note_unmeasured(model: &mut ModelDraft, rules: &Rules) {
     }
     let input_count = rules.inputs.len().max(1);
     let mut unmeasured = Vec::new();
+    // `place` numbers the responses row by row, as in `join_response`.
     for (place, band) in bands.values.chunks(2).enumerate() {
         if band == NOT_MEASURED
             && let Some(output) = rules.outputs.get(place / input_count)

@@ -1,4 +1,4 @@
-//! A model with its place in the dataset and its channels matched.
+//! A part of the dataset: a model with its place in the dataset and its channels matched.
 
 use super::channel_match::{ChannelMatch, ChannelMatcher};
 use super::found_model::{ChannelLabel, FoundModel};
@@ -14,7 +14,7 @@ use crate::names::KnownChannels;
 pub struct Part {
     pub found: FoundModel,
     pub row: Row,
-    /// Input and output names: from the rules, the file, or the file's name.
+    /// Labels of inputs and outputs, with names from the rules, the file, or the file's name.
     pub labels: [Vec<ChannelLabel>; 2],
     pub inputs: ChannelMatch,
     pub outputs: ChannelMatch,
@@ -32,6 +32,7 @@ impl Part {
     ///    ambiguous.
     pub(super) fn new(found: FoundModel, row: Row, rules: &Rules) -> Self {
         let rule = rules.rows.get(&found.key());
+        // Step 1.
         let named = found.labels_with_name(KnownChannels::Dataset {
             inputs: &rules.inputs,
             outputs: &rules.outputs,
@@ -41,6 +42,7 @@ impl Part {
         let [mut input_labels, mut output_labels] = named.labels;
         rename_labels(&mut input_labels, input_names);
         rename_labels(&mut output_labels, output_names);
+        // Step 2.
         let declared = rules.declared(&found, row.role);
         let input_matcher = ChannelMatcher {
             side: ChannelSide::Input,
@@ -58,6 +60,7 @@ impl Part {
         };
         let mut inputs = input_matcher.run();
         let mut outputs = output_matcher.run();
+        // Step 3.
         inputs
             .problems
             .extend(name_count_problem(&input_matcher, input_names));
@@ -77,7 +80,7 @@ impl Part {
             });
         }
         Self {
-            sample_time_s: missing_sample_time(&found, rule, rules),
+            sample_time_s: sample_time_from_rules(&found, rule, rules),
             labels: [input_labels, output_labels],
             found,
             row,
@@ -116,16 +119,20 @@ fn name_count_problem(
     if names.len() == matcher.labels.len() {
         return None;
     }
-    Some(ProblemKind::Names {
+    Some(ProblemKind::NameCount {
         side: matcher.side,
-        said: names.len(),
+        given: names.len(),
         found: matcher.labels.len(),
     })
 }
 
 /// Returns the sample time \[s\] from the rules for a model with matrices whose file gives none;
 /// otherwise `None`.
-fn missing_sample_time(found: &FoundModel, rule: Option<&RowRule>, rules: &Rules) -> Option<f64> {
+fn sample_time_from_rules(
+    found: &FoundModel,
+    rule: Option<&RowRule>,
+    rules: &Rules,
+) -> Option<f64> {
     if found.draft.timing.sample_time_s.is_some() || found.response().is_some() {
         return None;
     }

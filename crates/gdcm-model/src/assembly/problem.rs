@@ -4,10 +4,11 @@ use std::fmt;
 
 use super::file_scope::FileScope;
 use crate::dataset::channel::ChannelSide;
-use crate::dataset::unchecked_dataset::ResponseDraft;
+use crate::dataset::dataset_draft::ResponseDraft;
 use crate::names::RowRole;
 use crate::names::response_name::ResponseNameError;
-use crate::units::number;
+use crate::number_format::counted;
+use crate::number_format::number;
 
 /// A missing or contradictory fact about a model, a condition or the dataset.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -73,8 +74,9 @@ pub enum ProblemKind {
     },
     /// Channels without names whose count differs from the dataset's.
     #[error(
-        "the model has {found} {side}s without names, but the dataset has {expected}; name \
-        them under \"models\" in the rules"
+        "the model has {} without names, but the dataset has {expected}; name them under \
+        \"models\" in the rules",
+        counted(*found, &side.to_string())
     )]
     Unnamed {
         side: ChannelSide,
@@ -119,11 +121,14 @@ pub enum ProblemKind {
     },
     /// Declared channel names whose count differs from the model's channel count.
     #[error(
-        "{said} names are given for {found} {side}s of the model; give one for each, in the file's order"
+        "{} given for {} of the model; give one name for each, in the file's order",
+        counted(*given, "name"), counted(*found, &side.to_string())
     )]
-    Names {
+    NameCount {
         side: ChannelSide,
-        said: usize,
+        /// Number of names in the rules.
+        given: usize,
+        /// Number of channels of the model.
         found: usize,
     },
     #[error("choose its condition")]
@@ -155,7 +160,7 @@ pub enum ProblemKind {
     #[error("condition {condition} has {found} nominal models; it needs exactly one")]
     Nominal { condition: i64, found: usize },
     #[error("duplicate name \"{name}\" among the {bundle} models of condition {condition}")]
-    Name {
+    DuplicateName {
         condition: i64,
         /// "physics" or "identified".
         bundle: &'static str,
@@ -234,14 +239,14 @@ impl ProblemKind {
             Self::ResponseUnmatched { .. } => "response-unmatched",
             Self::ResponseName { .. } => "response-name",
             Self::ResponseTwice { .. } => "response-twice",
-            Self::Names { .. } => "names",
+            Self::NameCount { .. } => "names",
             Self::NoCondition => "no-condition",
             Self::NoRole => "no-role",
             Self::NoAirspeed => "no-airspeed",
             Self::Contradiction { .. } => "contradiction",
             Self::NameContradiction { .. } => "name-contradiction",
             Self::Nominal { .. } => "nominal",
-            Self::Name { .. } => "duplicate-name",
+            Self::DuplicateName { .. } => "duplicate-name",
             Self::MeasuredPhysics(_) => "measured-physics",
             Self::Grids { .. } => "grids",
             Self::Dataset(_) => "dataset",

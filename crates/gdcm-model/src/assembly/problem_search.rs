@@ -2,42 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use super::indexed_part::IndexedPart;
 use super::part::Part;
 use super::problem::{GridSpan, Problem, ProblemKind};
 use super::row::Row;
 use super::rules::Rules;
 use crate::names::RowRole;
-use crate::units::number;
-
-/// A model that is not left out, and its index among all models.
-#[derive(Clone, Copy)]
-pub(super) struct IndexedPart<'p> {
-    pub index: usize,
-    pub part: &'p Part,
-}
-
-/// Returns the models that are not left out.
-pub(super) fn parts_in_use(parts: &[Part]) -> Vec<IndexedPart<'_>> {
-    let mut in_use = Vec::new();
-    for (index, part) in parts.iter().enumerate() {
-        if !part.row.left_out {
-            in_use.push(IndexedPart { index, part });
-        }
-    }
-    in_use
-}
-
-/// Groups the models in use by condition, in ascending order; models without a condition are
-/// skipped.
-pub(super) fn parts_by_condition(parts: &[Part]) -> BTreeMap<i64, Vec<IndexedPart<'_>>> {
-    let mut conditions: BTreeMap<i64, Vec<IndexedPart<'_>>> = BTreeMap::new();
-    for part in parts_in_use(parts) {
-        if let Some(condition) = part.part.row.condition {
-            conditions.entry(condition).or_default().push(part);
-        }
-    }
-    conditions
-}
+use crate::number_format::number;
 
 /// Returns a problem for each missing list of channels, and for each dataset channel without a
 /// unit.
@@ -83,6 +54,7 @@ pub(super) fn part_problems(part: &Part, rules: &Rules) -> Vec<ProblemKind> {
     problems
 }
 
+/// Finds missing facts of a row, and a role or a sample time that its model contradicts.
 fn row_problems(part: &Part) -> Vec<ProblemKind> {
     let mut problems = Vec::new();
     if part.row.condition.is_none() {
@@ -96,7 +68,7 @@ fn row_problems(part: &Part) -> Vec<ProblemKind> {
         Some(_) => {}
     }
     if part.sample_time_s.is_none() {
-        problems.extend(missing_sample_time(part));
+        problems.extend(sample_time_problem(part));
     }
     problems
 }
@@ -106,7 +78,7 @@ fn row_problems(part: &Part) -> Vec<ProblemKind> {
 /// All poles lie inside the unit circle, or as little outside as an unstable helicopter mode, and
 /// at least half of them (two or more) lie near 1. As continuous-time poles, those near 1 would be
 /// modes that diverge within about a second.
-fn missing_sample_time(part: &Part) -> Option<ProblemKind> {
+fn sample_time_problem(part: &Part) -> Option<ProblemKind> {
     /// Real part above which a pole is regarded as near 1.
     const NEAR: f64 = 0.5;
     /// Maximum magnitude of a pole; above 1 to admit unstable modes.
@@ -224,6 +196,7 @@ fn name_problems(condition: i64, parts: &[IndexedPart<'_>], rules: &Rules) -> Ve
         } else {
             &mut physics
         };
+        // The models with the same name that come before this one.
         let earlier = bundle.entry(&part.row.name).or_default();
         if let Some(last) = earlier.last() {
             let kind = match (last.found.response(), part.found.response()) {
@@ -236,7 +209,7 @@ fn name_problems(condition: i64, parts: &[IndexedPart<'_>], rules: &Rules) -> Ve
                     second: part.found.key(),
                     second_grid: GridSpan::new(b),
                 }),
-                _ => Some(ProblemKind::Name {
+                _ => Some(ProblemKind::DuplicateName {
                     condition,
                     bundle: if is_identified {
                         "identified"

@@ -1,21 +1,16 @@
 //! Proposal of each model's place in the dataset (condition, role, name and trim), from the file,
 //! its name and the rules.
 
-use std::cmp::Ordering;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
+use super::condition_numbers::number_conditions;
 use super::found_model::{FoundModel, path_without_extension};
-use super::row::{NameContradiction, Row};
+use super::name_contradictions::{name_contradictions, trim_offsets};
+use super::row::Row;
 use super::rules::Rules;
 use crate::dataset::model::Origin;
 use crate::names::RowRole;
-use crate::names::name_facts::NameFacts;
 use crate::names::name_pattern::{read_name, unread_offsets};
-
-/// Maximum difference \[kt\] between an airspeed in a file and the rounded airspeed in its name.
-const AIRSPEED_TOLERANCE_KT: f64 = 1.0;
-/// Maximum relative difference between another value in a file and the rounded value in its name.
-const RELATIVE_TOLERANCE: f64 = 0.01;
 
 /// Proposes a row for each model.
 ///
@@ -113,104 +108,6 @@ fn implied_role(model: &FoundModel, row: &Row) -> Option<RowRole> {
     None
 }
 
-/// Returns the trim offsets stated in the file, by coordinate.
-fn trim_offsets(origin: &Origin) -> BTreeMap<String, f64> {
-    match origin {
-        Origin::Nominal { perturbation } | Origin::Perturbed { perturbation } => {
-            perturbation.clone().unwrap_or_default()
-        }
-        Origin::Identified { .. } => BTreeMap::new(),
-    }
-}
-
-/// Compares the values in a file with the rounded values in its name and folder names. If a file
-/// holds models at several airspeeds, only trim offsets are compared, because the other values in
-/// the names cannot apply to all its models.
-fn name_contradictions(
-    model: &FoundModel,
-    models: &[FoundModel],
-    from_name: &NameFacts,
-) -> Vec<NameContradiction> {
-    let facts = &model.facts;
-    let mut contradictions = Vec::new();
-    if facts.is_of_dataset {
-        return contradictions;
-    }
-    if !has_several_airspeeds(models, model.file()) {
-        let comparisons = [
-            Comparison {
-                field: "condition".to_owned(),
-                of_file: facts.condition.map(|id| id as f64),
-                of_name: from_name.condition.map(|id| id as f64),
-                tolerance: 0.0,
-            },
-            Comparison {
-                field: "airspeed_kt".to_owned(),
-                of_file: facts.airspeed_kt,
-                of_name: from_name.airspeed_kt,
-                tolerance: AIRSPEED_TOLERANCE_KT,
-            },
-            Comparison::relative("altitude_ft", facts.altitude_ft, from_name.altitude_ft),
-            Comparison::relative("mass_kg", facts.mass_kg, from_name.mass_kg),
-        ];
-        for comparison in comparisons {
-            contradictions.extend(comparison.contradiction());
-        }
-    }
-    for (coordinate, offset) in trim_offsets(&model.draft.origin) {
-        let of_name = from_name.perturbation.get(&coordinate).copied();
-        let field = format!("perturbation, {coordinate}");
-        let comparison = Comparison::relative(&field, Some(offset), of_name);
-        contradictions.extend(comparison.contradiction());
-    }
-    contradictions
-}
-
-/// A quantity as given by a file, and as given by the name of the file.
-struct Comparison {
-    /// Key of the quantity in the rules.
-    field: String,
-    of_file: Option<f64>,
-    of_name: Option<f64>,
-    /// Maximum difference attributed to rounding.
-    tolerance: f64,
-}
-
-impl Comparison {
-    /// Creates a comparison with the relative tolerance.
-    fn relative(field: &str, of_file: Option<f64>, of_name: Option<f64>) -> Self {
-        Self {
-            field: field.to_owned(),
-            of_file,
-            of_name,
-            tolerance: RELATIVE_TOLERANCE * of_file.unwrap_or(0.0).abs(),
-        }
-    }
-
-    fn contradiction(self) -> Option<NameContradiction> {
-        let of_file = self.of_file?;
-        let of_name = self.of_name?;
-        if (of_file - of_name).abs() <= self.tolerance {
-            return None;
-        }
-        Some(NameContradiction {
-            field: self.field,
-            of_file,
-            of_name,
-        })
-    }
-}
-
-/// Returns whether a file holds models at several airspeeds, and thus several conditions.
-fn has_several_airspeeds(models: &[FoundModel], file: &str) -> bool {
-    let mut airspeeds = models
-        .iter()
-        .filter(|model| model.file() == file)
-        .filter_map(|model| model.facts.airspeed_kt);
-    let first = airspeeds.next();
-    airspeeds.any(|airspeed| Some(airspeed) != first)
-}
-
 /// Returns the default name of a model: "measured" for a part of a measured model; otherwise the
 /// name in the file, the variable if the file has several models, or the file name.
 fn default_name(model: &FoundModel, models: &[FoundModel], rules: &Rules, path: &str) -> String {
@@ -235,62 +132,6 @@ fn default_name(model: &FoundModel, models: &[FoundModel], rules: &Rules, path: 
     } else {
         stem.to_owned()
     }
-}
-
-/// Numbers the conditions: one per flight point if any file holds models at several airspeeds,
-/// otherwise one per folder in alphabetical order.
-fn number_conditions(models: &[FoundModel], rows: &mut [Row]) {
-    let files: BTreeSet<&str> = models.iter().map(FoundModel::file).collect();
-    let by_airspeed = files
-        .into_iter()
-        .any(|file| has_several_airspeeds(models, file));
-    if by_airspeed {
-        number_flight_points(rows);
-    } else {
-        number_folders(models, rows);
-    }
-}
-
-fn number_folders(models: &[FoundModel], rows: &mut [Row]) {
-    let folders: BTreeSet<String> = models.iter().map(folder).collect();
-    for (model, row) in models.iter().zip(rows) {
-        let own = folder(model);
-        let place = folders.iter().position(|folder| *folder == own);
-        row.condition = place.map(|place| place as i64 + 1);
-    }
-}
-
-/// Returns the folder of a model's file; empty if the path has no folder.
-fn folder(model: &FoundModel) -> String {
-    match path_without_extension(model.file()).rsplit_once('/') {
-        Some((folder, _)) => folder.to_owned(),
-        None => String::new(),
-    }
-}
-
-/// Numbers the distinct flight points in ascending order from 1; models without an airspeed get no
-/// condition.
-fn number_flight_points(rows: &mut [Row]) {
-    let mut points: Vec<[f64; 3]> = rows.iter().filter_map(flight_point).collect();
-    points.sort_by(|a, b| a.partial_cmp(b).unwrap_or(Ordering::Equal));
-    points.dedup();
-    for row in rows {
-        row.condition = None;
-        if let Some(own) = flight_point(row) {
-            let place = points.iter().position(|point| *point == own);
-            row.condition = place.map(|place| place as i64 + 1);
-        }
-    }
-}
-
-/// Returns airspeed \[kt\], altitude \[ft\] and mass \[kg\]; `None` without an airspeed. An unknown
-/// altitude or mass sorts before all known values.
-fn flight_point(row: &Row) -> Option<[f64; 3]> {
-    Some([
-        row.airspeed_kt?,
-        row.altitude_ft.unwrap_or(f64::MIN),
-        row.mass_kg.unwrap_or(f64::MIN),
-    ])
 }
 
 /// Proposes the nominal role in each condition without a nominal model, if exactly one model there

@@ -53,13 +53,13 @@ impl<'m> LabelledModel<'m> {
     fn new(found: &'m FoundModel) -> Self {
         Self {
             found,
-            labels: found.labels_with_name(KnownChannels::Field).labels,
+            labels: found.labels_with_name(KnownChannels::AliasTable).labels,
         }
     }
 
     fn labels(&self, side: ChannelSide) -> &[ChannelLabel] {
         let [inputs, outputs] = &self.labels;
-        side.of(inputs, outputs)
+        side.pick(inputs, outputs)
     }
 
     fn named_count(&self, side: ChannelSide) -> usize {
@@ -71,7 +71,7 @@ impl<'m> LabelledModel<'m> {
 
     /// Returns whether the file, rather than its name, names a channel on this side.
     fn names_itself(&self, side: ChannelSide) -> bool {
-        side.of(&self.found.inputs, &self.found.outputs)
+        side.pick(&self.found.inputs, &self.found.outputs)
             .iter()
             .any(|label| label.name.is_some())
     }
@@ -89,9 +89,11 @@ impl<'m> LabelledModel<'m> {
 /// 3. Give each channel the unit that is used by most files.
 /// 4. If no model with matrices names its channels, number the missing channels.
 fn proposed_channels(models: &[LabelledModel<'_>], side: ChannelSide) -> Vec<ChannelRule> {
+    // Step 1.
     let mut order: Vec<&LabelledModel<'_>> = models.iter().collect();
     order.sort_by_key(|model| (Reverse(model.named_count(side)), !model.names_itself(side)));
     let first_is_measured = order.first().is_some_and(|model| model.is_measured());
+    // Step 2; the units are counted meanwhile.
     let mut channels: Vec<ChannelRule> = Vec::new();
     let mut units: Vec<UnitCounts> = Vec::new();
     for model in order {
@@ -120,9 +122,11 @@ fn proposed_channels(models: &[LabelledModel<'_>], side: ChannelSide) -> Vec<Cha
             }
         }
     }
+    // Step 3.
     for (channel, units) in channels.iter_mut().zip(units) {
         channel.unit = units.most_used();
     }
+    // Step 4.
     let all_unnamed = models
         .iter()
         .all(|model| model.is_measured() || model.named_count(side) == 0);

@@ -1,4 +1,5 @@
-//! Scope of each question about a channel: all models, the models with a role, or a single file.
+//! Scope of each question about a channel: all models, the models with a role, or a single file. The
+//! scope is part of the command-line option that answers the question ("--sign NZ=-1:identified").
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,6 +15,7 @@ use crate::names::ChannelRule;
 /// The scope is the widest one (all models, or the models with a role) in which every model with
 /// the channel has the same problem. If there is none, the scope is the model itself.
 pub(super) fn set_scopes(problems: &mut [Problem], parts: &[Part], rules: &Rules) {
+    // Indices of the models that raise each question.
     let mut asking: BTreeMap<Question, BTreeSet<usize>> = BTreeMap::new();
     for problem in problems.iter() {
         if let (Some(part), Some(question)) = (problem.part, problem.kind.question()) {
@@ -72,10 +74,12 @@ fn scopes_asking(
     scopes
 }
 
+/// Returns the scope of a model's role; `None` without a role.
 fn role_scope(part: &Part) -> Option<FileScope> {
     part.row.role.map(FileScope::of_role)
 }
 
+/// Returns whether a model has a dataset channel, among its inputs or outputs.
 fn has_channel(part: &Part, channel: &str, rules: &Rules) -> bool {
     is_used(&rules.inputs, &part.inputs.uses, channel)
         || is_used(&rules.outputs, &part.outputs.uses, channel)

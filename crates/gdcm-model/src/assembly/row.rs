@@ -1,9 +1,9 @@
-//! The place of a model in the dataset.
+//! The place of a model in the dataset, shown as a row of the table of models.
 
 use std::collections::BTreeMap;
 
 use crate::names::RowRole;
-use crate::units::number;
+use crate::number_format::number;
 
 /// The place of a model in the dataset; `None` for an unknown value.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -30,7 +30,8 @@ pub struct Row {
 /// A value in a file that contradicts the names of file and folders.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NameContradiction {
-    /// Key of the quantity in the rules: "airspeed_kt".
+    /// Key of the quantity in the rules: "airspeed_kt", or "perturbation, roll_deg" for a trim
+    /// offset.
     pub field: String,
     pub of_file: f64,
     pub of_name: f64,

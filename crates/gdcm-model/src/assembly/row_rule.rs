@@ -61,13 +61,15 @@ pub struct RowRule {
 }
 
 impl RowRule {
-    /// Returns whether the rule gives a value for a field on which a file and its name disagree.
+    /// Returns whether the rule gives a value for a field on which a file and its name disagree;
+    /// `field` is [`NameContradiction::field`](super::row::NameContradiction::field).
     pub(super) fn settles(&self, field: &str) -> bool {
         match field {
             "condition" => self.condition.is_some(),
             "airspeed_kt" => self.airspeed_kt.is_some(),
             "altitude_ft" => self.altitude_ft.is_some(),
             "mass_kg" => self.mass_kg.is_some(),
+            // "perturbation, " and a coordinate.
             _ => self.perturbation.is_some(),
         }
     }

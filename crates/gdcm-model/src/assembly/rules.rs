@@ -1,9 +1,10 @@
-//! The engineer's rules for the files in a folder. Rules and files together determine the dataset.
+//! The engineer's rules for the files in a folder: channels, conversions, signs and values for single
+//! models. Rules and files together determine the dataset.
 
 use std::collections::BTreeMap;
 
 use super::declarations::{
-    ChannelDeclarations, DeclaredChannels, ScopedDeclarations, Signs, UnitRule,
+    ChannelDeclarations, ModelDeclarations, ScopedDeclarations, Signs, UnitRule,
     applicable_declarations, rename_key,
 };
 use super::file_scope::FileScope;
@@ -34,7 +35,9 @@ pub struct Rules {
     pub patterns: Vec<NamePattern>,
     /// Factors between units without a fixed ratio.
     pub units: Vec<UnitRule>,
-    /// Sign factors for all files, 1 or -1; they override sign marks in names.
+    /// Sign factors for all files, 1 or -1; they override sign marks in names. This map,
+    /// `role_signs` and `declarations` are separate keys in a rules file, and all three may give a
+    /// sign; [`Self::declared`] merges them.
     pub signs: Signs,
     /// Sign factors by role, "identified" or "physics"; they override `signs`.
     pub role_signs: BTreeMap<String, Signs>,
@@ -73,7 +76,7 @@ impl Default for Rules {
 impl Rules {
     /// Returns the dataset's inputs or outputs.
     pub fn channels_mut(&mut self, side: ChannelSide) -> &mut Vec<ChannelRule> {
-        side.of(&mut self.inputs, &mut self.outputs)
+        side.pick(&mut self.inputs, &mut self.outputs)
     }
 
     /// Renames a dataset channel.
@@ -94,7 +97,7 @@ impl Rules {
             channel.aliases.push(old.clone());
         }
         for (output, input) in &mut self.on_axis {
-            let on_side = side.of(input, output);
+            let on_side = side.pick(input, output);
             if *on_side == old {
                 on_side.clone_from(&name);
             }
@@ -119,7 +122,7 @@ impl Rules {
 
     /// Marks the responses of a channel that are on-axis by convention.
     fn mark_standard_on_axis(&mut self, side: ChannelSide, name: &str) {
-        for other in side.of(&self.outputs, &self.inputs) {
+        for other in side.pick(&self.outputs, &self.inputs) {
             let [output, input] = match side {
                 ChannelSide::Input => [&other.name, name],
                 ChannelSide::Output => [name, &other.name],
@@ -133,7 +136,7 @@ impl Rules {
 
     /// Returns the units, factors and signs that apply to the channels of a model. Declarations for
     /// a file override those for a folder, then those for a role, then those for all models.
-    pub fn declared(&self, found: &FoundModel, role: Option<RowRole>) -> DeclaredChannels<'_> {
+    pub fn declared(&self, found: &FoundModel, role: Option<RowRole>) -> ModelDeclarations<'_> {
         let mut declarations = vec![signs_in_scope(FileScope::All, &self.signs)];
         for (role, signs) in &self.role_signs {
             declarations.push(signs_in_scope(FileScope::from(role.clone()), signs));
@@ -146,7 +149,7 @@ impl Rules {
         if let Some(row) = self.rows.get(&found.key()) {
             channels.override_by(&row.declarations());
         }
-        DeclaredChannels {
+        ModelDeclarations {
             conversions: &self.units,
             channels,
         }
@@ -155,6 +158,7 @@ impl Rules {
     /// Adds declarations; they override earlier declarations for the same channels and models.
     /// Signs are stored in [`Self::signs`] for all models, and in [`Self::role_signs`] for a role.
     pub fn declare(&mut self, scope: FileScope, declared: &ChannelDeclarations) {
+        // `None` if there are no signs for a role, which then needs no entry in `role_signs`.
         let signs = match &scope {
             FileScope::Files(_) => {
                 self.declarations_mut(scope).override_by(declared);
@@ -185,12 +189,12 @@ impl Rules {
         let known = self
             .declarations
             .iter()
-            .position(|declared| declared.of == scope);
+            .position(|declared| declared.scope == scope);
         let index = match known {
             Some(index) => index,
             None => {
                 self.declarations.push(ScopedDeclarations {
-                    of: scope,
+                    scope,
                     channels: ChannelDeclarations::default(),
                 });
                 self.declarations.len() - 1
@@ -200,9 +204,10 @@ impl Rules {
     }
 }
 
+/// Returns declarations that contain only signs.
 fn signs_in_scope(scope: FileScope, signs: &Signs) -> ScopedDeclarations {
     ScopedDeclarations {
-        of: scope,
+        scope,
         channels: ChannelDeclarations {
             signs: signs.clone(),
             ..ChannelDeclarations::default()

@@ -3,9 +3,9 @@
 use nalgebra::DMatrix;
 
 use super::found_model::{ChannelLabel, Facts, FoundModel};
+use crate::dataset::dataset_draft::{ModelDraft, ResponseArray, ResponseDraft};
 use crate::dataset::model::{Origin, Provenance};
 use crate::dataset::state_space::Timing;
-use crate::dataset::unchecked_dataset::{ModelDraft, ResponseArray, ResponseDraft};
 
 /// Creates a measured response from one input at 1 and 5 rad/s; `values` holds two real values per
 /// output.

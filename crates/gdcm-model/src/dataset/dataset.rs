@@ -1,13 +1,14 @@
-//! The complete dataset, and the frequency band in which models are compared.
+//! The complete dataset: channels, conditions and models, consistent with one another.
 
 use std::sync::Arc;
 
-use serde::{Deserialize, Serialize};
-
-use super::channel::{BundleKind, Channel, ConditionId, ModelId, Pair, PairTable};
+use super::band::Band;
+use super::channel::Channel;
 use super::condition::Condition;
-use super::model::{Dynamics, Model};
-use crate::units::number;
+use super::dynamics::Dynamics;
+use super::model::Model;
+use super::model_id::{BundleKind, ConditionId, ModelId};
+use super::pair_table::{Pair, PairTable};
 
 /// Channels, on-axis responses, default band, and the flight conditions with their models (M1).
 ///
@@ -210,7 +211,8 @@ impl Dataset {
         )
     }
 
-    /// Returns the input names and the output names.
+    /// Returns the names of all channels: inputs, then outputs. The names of a single response come
+    /// in the other order ([`Self::channel_names`]).
     pub fn names_of_channels(&self) -> (Vec<String>, Vec<String>) {
         (
             channel_names(&self.header.inputs),
@@ -218,7 +220,7 @@ impl Dataset {
         )
     }
 
-    /// Returns the channel names of a response, output first.
+    /// Returns the channel names of a response: output, then input.
     pub fn channel_names(&self, pair: Pair) -> (String, String) {
         (
             self.header.outputs[pair.output].name.clone(),
@@ -309,98 +311,4 @@ fn check_conditions(
         }
     }
     Ok(())
-}
-
-/// Minimum lower end of a band \[rad/s\]: a period of 17 hours.
-pub const LEAST_OMEGA: f64 = 1e-4;
-/// Maximum upper end of a band \[rad/s\]: 16 kHz.
-pub const GREATEST_OMEGA: f64 = 1e5;
-
-/// A frequency band \[rad/s\], `LEAST_OMEGA <= min < max <= GREATEST_OMEGA`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "[f64; 2]", into = "[f64; 2]")]
-pub struct Band {
-    min: f64,
-    max: f64,
-}
-
-/// Error for a band that is empty, reversed or outside the frequency limits.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "the frequency band must be {} <= min < max <= {} (rad/s), found min {}, max {}",
-    number(LEAST_OMEGA), number(GREATEST_OMEGA), number(*min), number(*max)
-)]
-pub struct BandError {
-    /// Lower end \[rad/s\], as given.
-    pub min: f64,
-    /// Upper end \[rad/s\], as given.
-    pub max: f64,
-}
-
-impl TryFrom<[f64; 2]> for Band {
-    type Error = BandError;
-
-    fn try_from([min, max]: [f64; 2]) -> Result<Self, BandError> {
-        Self::new(min, max)
-    }
-}
-
-impl From<Band> for [f64; 2] {
-    fn from(band: Band) -> Self {
-        [band.min, band.max]
-    }
-}
-
-impl Band {
-    /// Creates the band from `min` to `max` \[rad/s\].
-    pub fn new(min: f64, max: f64) -> Result<Self, BandError> {
-        if LEAST_OMEGA <= min && min < max && max <= GREATEST_OMEGA {
-            Ok(Self { min, max })
-        } else {
-            Err(BandError { min, max })
-        }
-    }
-
-    /// Creates a band that may exceed the frequency limits, `0 < min < max`, such as a plotted
-    /// range.
-    pub fn beyond(min: f64, max: f64) -> Result<Self, BandError> {
-        if 0.0 < min && min < max && max.is_finite() {
-            Ok(Self { min, max })
-        } else {
-            Err(BandError { min, max })
-        }
-    }
-
-    /// Returns the lower end \[rad/s\].
-    pub fn min(self) -> f64 {
-        self.min
-    }
-
-    /// Returns the upper end \[rad/s\].
-    pub fn max(self) -> f64 {
-        self.max
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_reversed_empty_or_non_positive_band_is_refused() {
-        let nan = f64::NAN;
-        for (min, max) in [
-            (12.0, 0.5),
-            (1.0, 1.0),
-            (0.0, 1.0),
-            (-1.0, 1.0),
-            (nan, 1.0),
-            (1.0, nan),
-            (1.0, 1.1e5),
-        ] {
-            assert!(Band::new(min, max).is_err(), "{min} .. {max}");
-        }
-        assert!(Band::new(0.5, 12.0).is_ok() && Band::new(LEAST_OMEGA, GREATEST_OMEGA).is_ok());
-        assert!(Band::beyond(1e-300, 1e300).is_ok() && Band::beyond(0.0, 1.0).is_err());
-    }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::channel::BundleKind;
+use super::model_id::BundleKind;
 use crate::message_text::quoted;
 
 /// The place of a condition in a dataset file.

@@ -2,9 +2,9 @@
 
 use nalgebra::Complex;
 
-use super::channel::{Pair, PairTable};
 use super::limits::{AVERAGES, WINDOW_S};
-use crate::units::number;
+use super::pair_table::{Pair, PairTable};
+use crate::number_format::number;
 
 /// A frequency response measured (or exported) at `N` frequencies, given instead of a state-space
 /// model.

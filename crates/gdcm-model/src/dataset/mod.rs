@@ -1,55 +1,39 @@
 //! The engineer's data: channels, models and flight conditions, checked once at construction (M1).
 
+pub mod band;
 pub mod channel;
+mod channel_remedy;
 pub mod condition;
+mod condition_record;
+mod content_hash;
 #[expect(
     clippy::module_inception,
     reason = "the file holds the type after which the folder is named"
 )]
 pub mod dataset;
+pub mod dataset_draft;
 mod draft_checks;
+pub mod draft_fault;
+mod dynamics;
+mod flight_state;
+pub mod limits;
 pub mod location;
 pub mod measured_response;
 pub mod model;
+mod model_draft_checks;
+mod model_id;
+mod pair_table;
+mod provenance;
 pub mod state_space;
-pub mod unchecked_dataset;
+mod timing;
+mod uncertainty_bands;
 
-pub use channel::{BundleKind, Channel, ConditionId, ModelId, Pair, PairTable};
+pub use band::Band;
+pub use channel::Channel;
 pub use condition::Condition;
-pub use dataset::{Band, Dataset};
-pub use model::{Dynamics, Model};
+pub use dataset::Dataset;
+pub use dynamics::Dynamics;
+pub use model::Model;
+pub use model_id::{BundleKind, ConditionId, ModelId};
+pub use pair_table::{Pair, PairTable};
 pub use state_space::StateSpace;
-
-/// Upper limits on file contents: they bound the memory and time that a faulty or hostile file can
-/// take.
-pub mod limits {
-    /// Maximum length of the text in a file \[bytes\], before or after decompression: 128 MiB,
-    /// enough for about 500 conditions of the example's size.
-    pub const LARGEST_TEXT: u64 = 128 << 20;
-    /// Maximum number of inputs, and of outputs: the largest number tested with gains and delays.
-    /// Tables of responses grow with the product of both, and the search for the best gains grows
-    /// faster.
-    pub const MOST_CHANNELS: usize = 32;
-    /// Maximum number of on-axis, constrained or ignored responses.
-    pub const MOST_PAIRS: usize = MOST_CHANNELS * MOST_CHANNELS;
-    /// Maximum number of conditions: the comparison of ids takes quadratic time.
-    pub const MOST_CONDITIONS: usize = 5000;
-    /// Maximum number of models in a bundle: the comparison of names takes quadratic time.
-    pub const MOST_MODELS: usize = 5000;
-    /// Maximum number of records in a condition: the comparison of names takes quadratic time.
-    pub const MOST_RECORDS: usize = 1000;
-    /// Maximum number of pieces in a record, and of source records listed by a model.
-    pub const MOST_PIECES: usize = 1000;
-    /// Maximum number of models in all conditions together.
-    pub const MOST_MODELS_IN_ALL: usize = 50_000;
-    /// Maximum number of states in a model: the cost of a response is cubic in the state count.
-    pub const MOST_STATES: usize = 1000;
-    /// Maximum number of frequencies in a measured response.
-    pub const MOST_FREQUENCIES: usize = 100_000;
-    /// Maximum number of coordinates in a perturbation.
-    pub const MOST_COORDINATES: usize = 50;
-    /// Minimum and maximum number of independent averages in a measured response.
-    pub const AVERAGES: [f64; 2] = [1e-6, 1e6];
-    /// Minimum and maximum window length in a measured response \[s\].
-    pub const WINDOW_S: [f64; 2] = [1e-6, 1e6];
-}

@@ -1,9 +1,8 @@
-//! A linear time-invariant model in state-space form, with its sample time and channel delays
-//! (M2a).
+//! A linear time-invariant model in state-space form.
 
 use nalgebra::DMatrix;
 
-use crate::units::number;
+pub use super::timing::{GREATEST_CHANNEL_DELAY_S, Timing, TimingError};
 
 /// A linear model `x' = A x + B u`, `y = C x + D u`, with `n` states, `m` inputs and `p` outputs;
 /// discrete-time, or with delayed channels, according to its [`Timing`] (M2a).
@@ -153,138 +152,6 @@ fn check_finite(name: char, matrix: &DMatrix<f64>) -> Result<(), StateSpaceError
     })
 }
 
-/// Maximum delay of an input or output channel \[s\].
-pub const GREATEST_CHANNEL_DELAY_S: f64 = 60.0;
-
-/// Sample time and channel delays of a model, which are not part of its matrices (M2a).
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Timing {
-    /// Sample time T \[s\] of a discrete-time model; `None` in continuous time.
-    pub sample_time_s: Option<f64>,
-    /// Delay of each input \[s\]; `None` without delays.
-    pub input_delays_s: Option<Vec<f64>>,
-    /// Delay of each output \[s\]; `None` without delays.
-    pub output_delays_s: Option<Vec<f64>>,
-}
-
-/// Error for an invalid sample time or delay.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum TimingError {
-    #[error("sample_time_s: expected a positive number of seconds (omit it for continuous time), \
-        found {}", number(*.0))]
-    SampleTime(f64),
-    #[error("{list}: expected {expected} delays, one for each channel, found {found}")]
-    Count {
-        /// `input_delays_s` or `output_delays_s`.
-        list: &'static str,
-        expected: usize,
-        found: usize,
-    },
-    #[error("{list}, entry {entry}: expected a delay from 0 to {GREATEST_CHANNEL_DELAY_S} s, found {}", number(*value))]
-    Delay {
-        /// `input_delays_s` or `output_delays_s`.
-        list: &'static str,
-        /// Entry, counted from 1.
-        entry: usize,
-        value: f64,
-    },
-}
-
-impl Timing {
-    /// Returns whether the timing is plain: continuous time without delays.
-    pub fn is_plain(&self) -> bool {
-        *self == Self::default()
-    }
-
-    /// Returns the Nyquist frequency `pi / T` \[rad/s\], at and above which a discrete-time model
-    /// has no response; `None` in continuous time.
-    pub fn nyquist_rad_s(&self) -> Option<f64> {
-        let sample_time_s = self.sample_time_s?;
-        Some(std::f64::consts::PI / sample_time_s)
-    }
-
-    /// Returns the delay of a response, output delay plus input delay \[s\].
-    pub fn delay_s(&self, output: usize, input: usize) -> f64 {
-        channel_delay(self.output_delays_s.as_deref(), output)
-            + channel_delay(self.input_delays_s.as_deref(), input)
-    }
-
-    /// Describes the timing: "discrete time, T = 0.01 s, input delays 0.02, 0 s"; empty if it is
-    /// plain.
-    pub fn words(&self) -> String {
-        let mut parts = Vec::new();
-        if let Some(sample_time_s) = self.sample_time_s {
-            parts.push(format!("discrete time, T = {} s", number(sample_time_s)));
-        }
-        if let Some(delays_s) = &self.input_delays_s {
-            parts.push(format!("input delays {} s", list(delays_s)));
-        }
-        if let Some(delays_s) = &self.output_delays_s {
-            parts.push(format!("output delays {} s", list(delays_s)));
-        }
-        parts.join(", ")
-    }
-
-    /// Checks the timing of a model with `outputs` and `inputs`. Removes delays that are all zero,
-    /// so that the model compares equal to one without delays.
-    pub(super) fn checked(self, outputs: usize, inputs: usize) -> Result<Self, TimingError> {
-        if let Some(value) = self.sample_time_s
-            && (!value.is_finite() || value <= 0.0)
-        {
-            return Err(TimingError::SampleTime(value));
-        }
-        Ok(Self {
-            sample_time_s: self.sample_time_s,
-            input_delays_s: checked_delays("input_delays_s", self.input_delays_s, inputs)?,
-            output_delays_s: checked_delays("output_delays_s", self.output_delays_s, outputs)?,
-        })
-    }
-}
-
-/// Returns a channel delay \[s\]; zero without delays.
-fn channel_delay(delays_s: Option<&[f64]>, channel: usize) -> f64 {
-    let delay_s = delays_s.and_then(|delays_s| delays_s.get(channel));
-    delay_s.copied().unwrap_or_default()
-}
-
-/// Lists numbers: "0.02, 0".
-fn list(values: &[f64]) -> String {
-    let numbers: Vec<String> = values.iter().map(|value| number(*value)).collect();
-    numbers.join(", ")
-}
-
-/// Checks the delays of the inputs or outputs; `None` if all are zero.
-fn checked_delays(
-    list: &'static str,
-    delays: Option<Vec<f64>>,
-    expected: usize,
-) -> Result<Option<Vec<f64>>, TimingError> {
-    let Some(delays) = delays else {
-        return Ok(None);
-    };
-    if delays.len() != expected {
-        return Err(TimingError::Count {
-            list,
-            expected,
-            found: delays.len(),
-        });
-    }
-    if let Some(index) = delays
-        .iter()
-        .position(|delay| !(0.0..=GREATEST_CHANNEL_DELAY_S).contains(delay))
-    {
-        return Err(TimingError::Delay {
-            list,
-            entry: index + 1,
-            value: delays[index],
-        });
-    }
-    if delays.iter().all(|delay| *delay == 0.0) {
-        return Ok(None);
-    }
-    Ok(Some(delays))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -335,50 +202,5 @@ mod tests {
         )
         .unwrap();
         assert_eq!((model.order(), model.inputs(), model.outputs()), (0, 2, 1));
-    }
-}
-
-#[cfg(test)]
-mod timing_tests {
-    use super::*;
-
-    fn timing(sample_time_s: Option<f64>, input_delays_s: &[f64]) -> Timing {
-        Timing {
-            sample_time_s,
-            input_delays_s: Some(input_delays_s.to_vec()),
-            output_delays_s: None,
-        }
-    }
-
-    #[test]
-    fn zero_delays_are_removed() {
-        assert!(timing(None, &[0.0, 0.0]).checked(1, 2).unwrap().is_plain());
-        let delayed = timing(None, &[0.0, 0.02]).checked(1, 2).unwrap();
-        assert_eq!((delayed.delay_s(0, 0), delayed.delay_s(0, 1)), (0.0, 0.02));
-    }
-
-    #[test]
-    fn invalid_sample_times_and_delays_are_named() {
-        let error = |timing: Timing| timing.checked(1, 2).unwrap_err().to_string();
-        assert!(error(timing(Some(0.0), &[])).contains("omit it for continuous time"));
-        assert!(error(timing(Some(f64::INFINITY), &[0.0; 2])).contains("sample_time_s"));
-        assert_eq!(
-            error(timing(None, &[0.0])),
-            "input_delays_s: expected 2 delays, one for each channel, found 1"
-        );
-        assert_eq!(
-            error(timing(None, &[0.0, -0.1])),
-            "input_delays_s, entry 2: expected a delay from 0 to 60 s, found -0.1"
-        );
-        assert!(error(timing(None, &[f64::NAN, 61.0])).contains("entry 1"));
-    }
-
-    #[test]
-    fn a_timing_is_described() {
-        assert_eq!(
-            timing(Some(0.01), &[0.02, 0.0]).words(),
-            "discrete time, T = 0.01 s, input delays 0.02, 0 s"
-        );
-        assert_eq!(Timing::default().words(), "");
     }
 }

@@ -1,19 +1,33 @@
-//! Patterns for the names of folders, files and variables.
+//! Patterns for the names of folders, files and variables. The patterns used by default are in
+//! `standard_patterns.rs`.
 
 use std::ops::Range;
-use std::sync::LazyLock;
 
 use regex::{Regex, RegexBuilder};
 
-use super::name_facts::{NameFacts, RowRole};
+use super::name_facts::NameFacts;
+use super::row_role::RowRole;
 use crate::message_text::{quoted, sanitized, shortened};
 
+/// Maximum length of a pattern \[bytes\].
 const LONGEST_PATTERN: usize = 1000;
 /// Maximum memory of a compiled pattern \[bytes\].
 const MOST_MEMORY: usize = 1 << 20;
 
 /// Permitted group names, apart from trim offsets.
-const GROUPS: &str = "condition airspeed_kt altitude altitude_ft weight mass_kg method name nominal perturbed identified";
+const GROUPS: [&str; 11] = [
+    "condition",
+    "airspeed_kt",
+    "altitude",
+    "altitude_ft",
+    "weight",
+    "mass_kg",
+    "method",
+    "name",
+    "nominal",
+    "perturbed",
+    "identified",
+];
 /// Prefix of group names for trim offsets.
 const OFFSET: &str = "by_";
 
@@ -40,10 +54,11 @@ pub enum PatternError {
         reason: String,
     },
     #[error(
-        "{}: unknown group {}; known groups are condition, airspeed_kt, altitude, altitude_ft, weight, mass_kg, method, name, nominal, \
-         perturbed, identified, or by_ and a coordinate such as roll_deg",
+        "{}: unknown group {}; known groups are {}, and by_ followed by a coordinate, as in \
+        by_roll_deg",
         quoted(pattern),
-        quoted(group)
+        quoted(group),
+        GROUPS.join(", ")
     )]
     Group { pattern: String, group: String },
 }
@@ -98,6 +113,12 @@ impl NamePattern {
     }
 }
 
+impl PartialEq for NamePattern {
+    fn eq(&self, other: &Self) -> bool {
+        self.as_str() == other.as_str()
+    }
+}
+
 /// Reads a name with several patterns; earlier patterns take precedence.
 pub fn read_name(name: &str, patterns: &[NamePattern]) -> NameFacts {
     let mut facts = NameFacts::default();
@@ -114,7 +135,7 @@ fn last_line(message: &str) -> String {
 }
 
 fn is_known_group(name: &str) -> bool {
-    name.starts_with(OFFSET) || GROUPS.split(' ').any(|group| group == name)
+    name.starts_with(OFFSET) || GROUPS.contains(&name)
 }
 
 /// Returns the parts of a name that look like a trim offset ("dPHI+5") but are matched by no
@@ -203,172 +224,5 @@ fn parse_offset(text: &str) -> Option<f64> {
         Some(sign * value)
     } else {
         None
-    }
-}
-
-impl PartialEq for NamePattern {
-    fn eq(&self, other: &Self) -> bool {
-        self.as_str() == other.as_str()
-    }
-}
-
-/// Returns the patterns for common names: `c03_045kt_high/roll+5`, `cond 3/V-10kt`,
-/// `120kt_low_heavy/flight`.
-pub fn standard_patterns() -> &'static [NamePattern] {
-    &STANDARD
-}
-
-/// Standard patterns, compiled once because every record needs them.
-static STANDARD: LazyLock<Vec<NamePattern>> = LazyLock::new(|| {
-    let texts = [
-        r"(?:^|[/_ #.-])(?:c|cond|condition|fc|case|point)[_ -]?0*(?<condition>\d+)(?:[/_ .#-]|$)".to_owned(),
-        r"(?:^|[/_ ])v?0*(?<airspeed_kt>\d+(?:\.\d+)?)[_ ]?(?:kt|kts|ktas|kcas|kias|knots)(?:[/_ .#-]|$)".to_owned(),
-        r"-(?<airspeed_kt>\d{3})[_ ]?(?:kt|kts|ktas|kcas|kias|knots)(?:[/_ .#-]|$)".to_owned(),
-        r"(?:^|[/_ -])(?<altitude_ft>\d{3,5})[_ ]?ft(?:[/_ .#-]|$)".to_owned(),
-        r"(?:^|[/_ -])(?<mass_kg>\d{3,6})[_ ]?kg(?:[/_ .#-]|$)".to_owned(),
-        r"(?:^|[/_ -])(?<weight>light|heavy)(?:[/_ .#-]|$)".to_owned(),
-        r"(?:^|[/_ -])(?<weight>low|high)[_ ]?(?:w|weight|gw|mass)(?:[/_ .#-]|$)".to_owned(),
-        r"(?:^|[/_ -])(?<altitude>low|high)[_ ]?(?:alt|altitude)?[/_ -](?<weight>low|high)(?:[/_ .#-]|$)".to_owned(),
-        r"(?:^|[/_ -])(?<altitude>low|high)[_ ]?(?:alt|altitude)?(?:[/_ .#-]|$)".to_owned(),
-        offset_pattern("roll|phi|bank", "roll_deg"),
-        offset_pattern("v|speed|airspeed|tas|ias", "airspeed_kt"),
-        offset_pattern("roc|climb|rateofclimb|hdot", "rate_of_climb_fpm"),
-        offset_pattern("pitch|theta", "pitch_deg"),
-        offset_pattern("beta|slip|sideslip", "sideslip_deg"),
-        r"(?:^|[/_ #.-])(?<nominal>nominal|nom|trim|baseline)(?:[/_ .#(-]|$)".to_owned(),
-        r"(?:^|[/_ #.-])(?<identified>identified|ident|id|sysid|sid|(?:ct-?)?pbsid|n4sid|cifer|flight|flt|measured|frf)\d*(?:[/_ .#(-]|$)"
-            .to_owned(),
-        r"(?:^|[/_ #.-])(?<perturbed>perturbed|pert)\d*(?:[/_ .#(-]|$)".to_owned(),
-    ];
-    // `.ok()`: a test counts the compiled patterns, so that an invalid pattern is not dropped
-    // unnoticed.
-    texts
-        .iter()
-        .filter_map(|text| NamePattern::new(text).ok())
-        .collect()
-});
-
-/// Returns the pattern for a trim offset: one of `words`, a sign and a number.
-fn offset_pattern(words: &str, coordinate: &str) -> String {
-    const SIGNED: &str = r"(?:[+-]|p|m|plus|minus)[_ ]?\d+(?:\.\d+)?";
-    format!(r"(?:^|[/_#, -])(?:d|delta_?)?(?:{words})[_ ]?(?<by_{coordinate}>{SIGNED})")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn read(name: &str) -> NameFacts {
-        read_name(name, standard_patterns())
-    }
-
-    #[test]
-    fn names_give_condition_airspeed_altitude_and_perturbation() {
-        assert_eq!(standard_patterns().len(), 17);
-        let facts = read("c03_045kt_high/roll+5");
-        assert_eq!(
-            (
-                facts.condition,
-                facts.airspeed_kt,
-                facts.altitude.as_deref()
-            ),
-            (Some(3), Some(45.0), Some("high"))
-        );
-        assert_eq!(
-            facts.perturbation.into_iter().collect::<Vec<_>>(),
-            [("roll_deg".to_owned(), 5.0)]
-        );
-        let offsets: Vec<f64> = read("dV+5_dROC+150_dPHI-5")
-            .perturbation
-            .into_values()
-            .collect();
-        assert_eq!(
-            offsets,
-            [5.0, 150.0, -5.0],
-            "airspeed_kt, rate_of_climb_fpm, roll_deg"
-        );
-        let facts = read("fc-12/120kt_low_heavy/V-10kt roc+150fpm");
-        assert_eq!(
-            (facts.condition, facts.airspeed_kt, facts.weight.as_deref()),
-            (Some(12), Some(120.0), Some("heavy"))
-        );
-        let offsets: Vec<f64> = facts.perturbation.values().copied().collect();
-        assert_eq!(offsets, [-10.0, 150.0], "airspeed_kt, rate_of_climb_fpm");
-    }
-
-    #[test]
-    fn unread_trim_offsets_are_reported() {
-        let unread = |name: &str| unread_offsets(name, standard_patterns());
-        let facts = read("c3/dV+5_dROC+150_dPHI+5");
-        assert_eq!(
-            facts.perturbation.into_values().collect::<Vec<_>>(),
-            [5.0, 150.0, 5.0]
-        );
-        assert!(
-            unread("dV+5_dROC+150_dPHI+5").is_empty() && unread("V-10kt roc+150fpm").is_empty()
-        );
-        assert_eq!(unread("dV+5_flap-10"), ["flap-10"]);
-    }
-
-    #[test]
-    fn the_first_low_or_high_is_the_altitude_and_the_second_the_weight() {
-        let facts = read("60kt_low_high/nominal");
-        assert_eq!(
-            (
-                facts.altitude.as_deref(),
-                facts.weight.as_deref(),
-                facts.role
-            ),
-            (Some("low"), Some("high"), Some(RowRole::Nominal))
-        );
-        let facts = read("V090kt_2000ft_6600kg/CT-PBSID 2");
-        assert_eq!(
-            (facts.airspeed_kt, facts.altitude_ft, facts.mass_kg),
-            (Some(90.0), Some(2000.0), Some(6600.0))
-        );
-        assert_eq!(read("x/flight_1").role, Some(RowRole::Identified));
-        let facts = read("study#study.c3.identified(2)");
-        assert_eq!(
-            (facts.condition, facts.role),
-            (Some(3), Some(RowRole::Identified)),
-            "fields of a struct"
-        );
-    }
-
-    #[test]
-    fn an_airspeed_offset_is_not_an_airspeed() {
-        for name in ["V+10kt", "a/V-10kt", "c1/v_m10kt"] {
-            let facts = read(name);
-            assert_eq!(facts.airspeed_kt, None, "{name}");
-            assert_eq!(
-                facts.perturbation.get("airspeed_kt").map(|by| by.abs()),
-                Some(10.0),
-                "{name}"
-            );
-        }
-    }
-
-    #[test]
-    fn earlier_patterns_take_precedence() {
-        let mut patterns = vec![NamePattern::new("case(?<condition>\\d)").unwrap()];
-        patterns.extend_from_slice(standard_patterns());
-        assert_eq!(read_name("case7/c03", &patterns).condition, Some(7));
-        let unknown = NamePattern::new("(?<speed>\\d+)").unwrap_err();
-        let group = "speed".to_owned();
-        let pattern = "(?<speed>\\d+)".to_owned();
-        assert_eq!(unknown, PatternError::Group { pattern, group });
-        // The message must be a single line, whatever the text contains.
-        for wrong in [
-            "(".to_owned(),
-            "(?<cond\u{7f}ition>a)".to_owned(),
-            "(th".repeat(40_000),
-            format!("(?<{}>a)", "g".repeat(900)),
-        ] {
-            let message = NamePattern::new(&wrong).unwrap_err().to_string();
-            assert!(
-                message.len() < 500 && !message.contains(char::is_control),
-                "{message:?}"
-            );
-        }
     }
 }

@@ -1,94 +1,12 @@
 //! Output and input of a response, read from the name of its file or variable: `frf_q_delta_lon`,
-//! `roll_rate per lat_cyclic run 2`.
+//! `roll_rate per lat_cyclic run 2`. The channels in the name are found in `named_channel.rs`.
 
-use std::collections::BTreeSet;
-use std::ops::Range;
+pub use super::named_channel::KnownChannels;
 
-use super::channel_alias::{canonical_name, is_known_input, is_known_output, same_channel};
-use super::channel_rule::ChannelRule;
-use super::signed_name::SignedName;
+use super::channel_alias::same_channel;
+use super::named_channel::{NamedChannel, Word, named_channels, split_words};
 use crate::dataset::channel::ChannelSide;
 use crate::units::physical_unit::{Dimension, PhysicalUnit};
-
-/// Maximum number of words in a channel name.
-const LONGEST_NAME: usize = 4;
-/// Maximum number of words that are read; further words are ignored.
-const MOST_WORDS: usize = 64;
-
-/// Words in file names that do not name a channel. Numbers and units are also ignored.
-const FILLERS: [&str; 44] = [
-    "frf",
-    "fr",
-    "tf",
-    "frd",
-    "resp",
-    "response",
-    "bode",
-    "h",
-    "g",
-    "per",
-    "to",
-    "from",
-    "over",
-    "by",
-    "due",
-    "of",
-    "vs",
-    "in",
-    "out",
-    "input",
-    "output",
-    "axis",
-    "run",
-    "rec",
-    "record",
-    "test",
-    "flight",
-    "flt",
-    "sweep",
-    "doublet",
-    "hover",
-    "cruise",
-    "meas",
-    "measured",
-    "id",
-    "ident",
-    "identified",
-    "cond",
-    "case",
-    "and",
-    "at",
-    "data",
-    "stick",
-    "file",
-];
-
-/// Words that change the meaning of an adjacent channel name: "q dot" is not q.
-const MODIFIERS: [&str; 23] = [
-    "dot",
-    "ddot",
-    "deriv",
-    "derivative",
-    "diff",
-    "rate",
-    "accel",
-    "acceleration",
-    "int",
-    "integral",
-    "cmd",
-    "command",
-    "commanded",
-    "ref",
-    "reference",
-    "des",
-    "desired",
-    "demand",
-    "err",
-    "error",
-    "bias",
-    "sum",
-    "delta",
-];
 
 /// Output and input named in a text, in its spelling; `None` if the text does not name them.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -117,99 +35,6 @@ pub enum ResponseNameError {
     },
 }
 
-/// Channels that can be recognised in a text.
-#[derive(Clone, Copy, Debug)]
-pub enum KnownChannels<'r> {
-    /// Dataset channels, by their names and aliases.
-    Dataset {
-        inputs: &'r [ChannelRule],
-        outputs: &'r [ChannelRule],
-    },
-    /// All channels in the alias table, whether or not the dataset has them.
-    Field,
-}
-
-/// Canonical names of the channels that can be recognised.
-enum KnownNames {
-    Dataset {
-        inputs: BTreeSet<String>,
-        outputs: BTreeSet<String>,
-    },
-    Field,
-}
-
-impl KnownNames {
-    fn new(known: KnownChannels<'_>) -> Self {
-        match known {
-            KnownChannels::Dataset { inputs, outputs } => Self::Dataset {
-                inputs: canonical_names(inputs),
-                outputs: canonical_names(outputs),
-            },
-            KnownChannels::Field => Self::Field,
-        }
-    }
-
-    /// Returns whether an input, an output or both are called `name`.
-    fn sides(&self, name: &str) -> Sides {
-        match self {
-            Self::Dataset { inputs, outputs } => {
-                let name = canonical_name(name);
-                Sides {
-                    output: outputs.contains(&name),
-                    input: inputs.contains(&name),
-                }
-            }
-            Self::Field => Sides {
-                output: is_known_output(name),
-                input: is_known_input(name),
-            },
-        }
-    }
-}
-
-/// Returns the canonical names of channels and their aliases, without sign marks.
-fn canonical_names(rules: &[ChannelRule]) -> BTreeSet<String> {
-    let mut names = BTreeSet::new();
-    for rule in rules {
-        for name in std::iter::once(&rule.name).chain(&rule.aliases) {
-            names.insert(canonical_name(&SignedName::parse(name).name));
-        }
-    }
-    names
-}
-
-/// Whether an output, and whether an input, has a given name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Sides {
-    output: bool,
-    input: bool,
-}
-
-impl Sides {
-    fn are_both(self) -> bool {
-        self.output && self.input
-    }
-
-    fn has(self, side: ChannelSide) -> bool {
-        side.of(self.input, self.output)
-    }
-}
-
-/// A channel named by consecutive words of a text.
-struct NamedChannel<'t> {
-    /// Indices of the words.
-    words: Range<usize>,
-    /// The words in the spelling of the text.
-    text: &'t str,
-    sides: Sides,
-}
-
-/// A word and the index of its first byte in the text.
-struct Word<'t> {
-    start: usize,
-    text: &'t str,
-}
-
 impl ResponseName {
     /// Finds the channels named in a text.
     ///
@@ -225,8 +50,8 @@ impl ResponseName {
     /// The text names several outputs or inputs, or a word may change the meaning of a channel
     /// name.
     pub fn find(text: &str, known: KnownChannels<'_>) -> Result<Self, ResponseNameError> {
-        let words = words_of(text);
-        let named = named_channels(text, &words, &KnownNames::new(known));
+        let words = split_words(text);
+        let named = named_channels(text, &words, known);
         reject_modifiers(&words, &named)?;
         if let [first, second] = named.as_slice()
             && first.sides.are_both()
@@ -315,74 +140,9 @@ fn only_channel(
         return Ok(Some((*first).to_owned()));
     }
     Err(ResponseNameError::Several {
-        side: side.of("input", "output"),
+        side: side.pick("input", "output"),
         found: names.join(", "),
     })
-}
-
-/// Splits a text into words, which consist of letters and digits.
-fn words_of(text: &str) -> Vec<Word<'_>> {
-    let mut words = Vec::new();
-    let mut start = None;
-    for (place, letter) in text.char_indices().chain([(text.len(), ' ')]) {
-        let is_inside = place < text.len() && letter.is_alphanumeric();
-        match (start, is_inside) {
-            (None, true) => start = Some(place),
-            (Some(from), false) => {
-                words.push(Word {
-                    start: from,
-                    text: &text[from..place],
-                });
-                start = None;
-            }
-            _ => {}
-        }
-    }
-    words.truncate(MOST_WORDS);
-    words
-}
-
-/// Finds the known channels in a text from left to right; of several at the same word, the longest.
-fn named_channels<'t>(
-    text: &'t str,
-    words: &[Word<'t>],
-    known: &KnownNames,
-) -> Vec<NamedChannel<'t>> {
-    let mut named = Vec::new();
-    let mut first = 0;
-    while first < words.len() {
-        match longest_channel(text, words, first, known) {
-            Some(channel) => {
-                first = channel.words.end;
-                named.push(channel);
-            }
-            None => first += 1,
-        }
-    }
-    named
-}
-
-/// Returns the longest known channel name that begins at word `first`.
-fn longest_channel<'t>(
-    text: &'t str,
-    words: &[Word<'t>],
-    first: usize,
-    known: &KnownNames,
-) -> Option<NamedChannel<'t>> {
-    let longest = (words.len() - first).min(LONGEST_NAME);
-    for count in (1..=longest).rev() {
-        let last = &words[first + count - 1];
-        let name = &text[words[first].start..last.start + last.text.len()];
-        let sides = known.sides(name);
-        if sides.output || sides.input {
-            return Some(NamedChannel {
-                words: first..first + count,
-                text: name,
-                sides,
-            });
-        }
-    }
-    None
 }
 
 /// Returns whether a word is a number, a unit with or without a number, or a filler: "run2",
@@ -390,7 +150,7 @@ fn longest_channel<'t>(
 fn is_filler(word: &str) -> bool {
     let word = word.to_lowercase();
     let plain = word.trim_matches(|letter: char| letter.is_ascii_digit());
-    let is_unit = PhysicalUnit::of(plain).is_some_and(|unit| {
+    let is_unit = PhysicalUnit::parse(plain).is_some_and(|unit| {
         matches!(
             unit.dimension,
             Dimension::Speed | Dimension::Length | Dimension::Level | Dimension::Frequency
@@ -400,9 +160,85 @@ fn is_filler(word: &str) -> bool {
     plain.is_empty() || is_number || is_unit || FILLERS.contains(&plain)
 }
 
+/// Words in file names that do not name a channel. Numbers and units are also ignored.
+const FILLERS: [&str; 44] = [
+    "frf",
+    "fr",
+    "tf",
+    "frd",
+    "resp",
+    "response",
+    "bode",
+    "h",
+    "g",
+    "per",
+    "to",
+    "from",
+    "over",
+    "by",
+    "due",
+    "of",
+    "vs",
+    "in",
+    "out",
+    "input",
+    "output",
+    "axis",
+    "run",
+    "rec",
+    "record",
+    "test",
+    "flight",
+    "flt",
+    "sweep",
+    "doublet",
+    "hover",
+    "cruise",
+    "meas",
+    "measured",
+    "id",
+    "ident",
+    "identified",
+    "cond",
+    "case",
+    "and",
+    "at",
+    "data",
+    "stick",
+    "file",
+];
+
+/// Words that change the meaning of an adjacent channel name: "q dot" is not q.
+const MODIFIERS: [&str; 23] = [
+    "dot",
+    "ddot",
+    "deriv",
+    "derivative",
+    "diff",
+    "rate",
+    "accel",
+    "acceleration",
+    "int",
+    "integral",
+    "cmd",
+    "command",
+    "commanded",
+    "ref",
+    "reference",
+    "des",
+    "desired",
+    "demand",
+    "err",
+    "error",
+    "bias",
+    "sum",
+    "delta",
+];
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::names::ChannelRule;
 
     fn rules(names: &[&str]) -> Vec<ChannelRule> {
         names.iter().map(|name| ChannelRule::named(*name)).collect()
@@ -498,7 +334,7 @@ mod tests {
             (name.output.as_deref(), name.input.as_deref()),
             (Some("pitch"), Some("roll"))
         );
-        let name = ResponseName::find("mag roll_rate xb", KnownChannels::Field).unwrap();
+        let name = ResponseName::find("mag roll_rate xb", KnownChannels::AliasTable).unwrap();
         assert_eq!(
             (name.output.as_deref(), name.input.as_deref()),
             (Some("roll_rate"), Some("xb"))

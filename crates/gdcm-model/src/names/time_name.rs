@@ -16,12 +16,12 @@ pub const SAMPLE_TIME_NAMES: [&str; 7] = [
 /// Ranks a name by how likely it denotes the time of the samples: 0 is the most likely, `None` if
 /// it does not denote a time. A trailing time unit does not change the rank: `time_s`, `t [ms]`.
 pub fn time_name_rank(name: &str) -> Option<u8> {
-    let lower: Vec<String> = name
+    let lower_case: Vec<String> = name
         .split(|letter: char| !letter.is_alphanumeric())
         .filter(|word| !word.is_empty())
         .map(str::to_lowercase)
         .collect();
-    let mut words: Vec<&str> = lower.iter().map(String::as_str).collect();
+    let mut words: Vec<&str> = lower_case.iter().map(String::as_str).collect();
     if words.len() > 1 && words.last().is_some_and(|word| is_time_unit(word)) {
         words.pop();
     }
@@ -35,7 +35,7 @@ pub fn time_name_rank(name: &str) -> Option<u8> {
 }
 
 fn is_time_unit(word: &str) -> bool {
-    PhysicalUnit::of(word).is_some_and(|unit| unit.dimension == Dimension::Time)
+    PhysicalUnit::parse(word).is_some_and(|unit| unit.dimension == Dimension::Time)
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ use crate::dataset::{Pair, PairTable, StateSpace};
 /// Without such a chain the response is zero at every frequency (a structural zero). Its computed
 /// values are rounding errors, and their ratios are meaningless (M6).
 pub fn connected(model: &StateSpace) -> PairTable<bool> {
+    // `reached[input][state]`.
     let reached: Vec<Vec<bool>> = (0..model.inputs())
         .map(|input| reached_states(model, input))
         .collect();
@@ -48,18 +49,19 @@ fn reached_states(model: &StateSpace, input: usize) -> Vec<bool> {
     spread(model.a(), b.iter().map(|b| *b != 0.0).collect())
 }
 
-/// Marks all states that can be reached from the marked states through the columns of `a`.
+/// Marks all states that can be reached from the marked states through the columns of `a`: a
+/// nonzero entry (i, j) leads from state j to state i.
 fn spread(a: &DMatrix<f64>, mut reached: Vec<bool>) -> Vec<bool> {
     let mut open: Vec<usize> = (0..reached.len()).filter(|&state| reached[state]).collect();
-    let mut left = reached.len() - open.len();
+    let mut unreached = reached.len() - open.len();
     while let Some(from) = open.pop() {
-        if left == 0 {
+        if unreached == 0 {
             break;
         }
         for (to, a) in a.column(from).iter().enumerate() {
             if *a != 0.0 && !reached[to] {
                 reached[to] = true;
-                left -= 1;
+                unreached -= 1;
                 open.push(to);
             }
         }

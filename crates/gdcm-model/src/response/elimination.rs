@@ -1,10 +1,15 @@
 //! Frequency response of a state-space model: its states are eliminated from the system matrix.
 //!
+//! The model is `dx/dt = A x + B u`, `y = C x + D u` with `n` states, and H its response at a
+//! frequency. Step 1 is in `hessenberg_form.rs`, which explains the matrices; the other steps are
+//! in `eliminate_group`.
+//!
 //! ```text
-//! 1  balance A; scale A and B to order 1; Householder reflections make A Hessenberg and B's first column b e_1; transpose
-//!    and reverse the states. Each frequency s = j omega / alpha then uses the same matrices:
-//!        [ G - s I  K  ]      G: zero below its first subdiagonal h_k, real
+//! 1  scale the model (A by 1 / alpha), transform and transpose it, once for all frequencies s = j omega / alpha:
+//!        [ G - s I  K  ]      G (n x n) from A', K from C', L from B'; ' denotes the transpose
 //!        [ L        D' ]      H' = D' - L (G - s I)^-1 K
+//!    G is real, and zero below its subdiagonal entries h_k, k = 1 ... n - 1;
+//!    the first row of L is zero except for its last entry
 //! 2  u <- first row of [G - s I, K], the active row; w <- each row of [L D'] but the first
 //! 3  for k = 1 ... n - 1, with the next row r = [G - s I, K]_(k+1) / h_k, which is real but for -s / h_k:
 //! 4     if |u_k| > tau |h_k| in any of eight neighbouring frequencies, then in those with |u_k| > |h_k| interchange:
@@ -12,6 +17,10 @@
 //! 5     else: w <- w - w_k r;   u <- u - u_k r
 //! 6  the last column: w <- w - (w_n / u_n) u, and the first row of [L D'] likewise; D' is now H'
 //! ```
+//!
+//! If the model has fewer outputs than inputs, its dual (A', C', B', D') takes its place, whose
+//! response is H'. A negligible h_k is replaced by zero, which forces the interchange of step 4
+//! (see `subdiagonal.rs`).
 //!
 //! Each frequency occupies a lane of a vector register. Hessenberg form: Laub, IEEE Trans.
 //! Automatic Control 26(2), 1981; tau is the pivot threshold of Duff, Erisman & Reid, "Direct
@@ -39,7 +48,8 @@ use crate::dataset::{PairTable, StateSpace};
 ///
 /// Backward error: below 1e-10 relative to the largest entry in the balanced A, in practice about
 /// 1e-13. The relative error in the response grows as `j omega` approaches a pole; at a pole, where
-/// elimination meets a zero pivot, the values are not finite. Entries beyond [`super::large_entry::LargeEntry`]'s limit may overflow.
+/// elimination meets a zero pivot, the values are not finite. Entries beyond
+/// [`super::large_entry::LARGEST_ENTRY`] may overflow.
 ///
 /// Uses only the matrices, as continuous-time ones; for a model with
 /// [`crate::dataset::state_space::Timing`] see [`super::prepared_model::PreparedModel`].
@@ -70,7 +80,7 @@ pub(super) struct Elimination<'a> {
 const GROUP: usize = 8;
 
 /// Maximum `|s| / alpha`: beyond it, its square could overflow.
-const LARGEST: f64 = 1e150;
+const LARGEST_SHIFT: f64 = 1e150;
 
 impl WithSimd for Elimination<'_> {
     type Output = FrequencyResponse;
@@ -78,12 +88,9 @@ impl WithSimd for Elimination<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> FrequencyResponse {
         let form = self.form;
-        let [outputs, inputs] = if form.dual {
-            [form.inputs, form.outputs]
-        } else {
-            [form.outputs, form.inputs]
-        };
+        let [outputs, inputs] = form.model_shape();
         let mut curves = PairTable::from_fn(outputs, inputs, |_| Vec::with_capacity(self.s.len()));
+        // The rows of a group: a register holds `S::F64_LANES` of its frequencies.
         let mut vectors: Vec<ComplexRows<S>> = Vec::new();
         for _ in 0..GROUP / S::F64_LANES {
             vectors.push(ComplexRows {
@@ -119,7 +126,7 @@ impl GroupShifts {
         };
         for lane in 0..GROUP {
             let shift = group[lane.min(group.len() - 1)] * frequency_scale;
-            let is_too_large = shift.norm() > LARGEST;
+            let is_too_large = shift.norm() > LARGEST_SHIFT;
             if !is_too_large {
                 shifts.re[lane] = shift.re;
                 shifts.im[lane] = shift.im;
@@ -129,7 +136,8 @@ impl GroupShifts {
     }
 }
 
-/// Eliminates the states for a group: steps 2 to 6.
+/// Eliminates the states for a group: steps 2 to 6. `vectors` holds the rows of the group's
+/// frequencies, and afterwards their responses.
 ///
 /// The next row is real, and costs half as much as the active row. It is therefore used to clear a
 /// column unless the active row's entry is more than tau times as large in some lane. Multipliers
@@ -153,7 +161,7 @@ fn eliminate_group<S: Simd>(
             interchange |= rows.needs_interchange(simd, form, column);
         }
         for rows in &mut *vectors {
-            rows.clear(simd, form, column, interchange);
+            rows.clear_column(simd, form, column, interchange);
         }
     }
     for rows in vectors {
@@ -173,6 +181,7 @@ fn append_group<S: Simd>(
     for output in 0..form.outputs {
         for input in 0..form.inputs {
             let curve = &mut curves[form.pair(input, output)];
+            // Row `input` of [L D'], past the columns of the states.
             let place = input * form.width() + form.order + output;
             for (lane, s) in group.iter().enumerate() {
                 let value = &vectors[lane / S::F64_LANES].entries[place];
@@ -188,20 +197,21 @@ fn append_group<S: Simd>(
 
 /// The complex rows of a system matrix during elimination, for a vector of frequencies.
 ///
-/// These are the *active* row, initially the first row of `[G K]`, and all rows of `[L D']` except
-/// the first. The first row of `[L D']` is zero in G's columns except for the last, and is not
-/// needed until all other columns are clear: the active row occupies its place, so that rows and
-/// responses are numbered alike.
+/// These are the *active* row `u`, initially the first row of `[G K]`, and the rows `w`, which are
+/// all rows of `[L D']` except the first. The first row of `[L D']` is zero in G's columns except
+/// for the last, and is not needed until all other columns are clear: the active row occupies its
+/// place, so that rows and responses are numbered alike.
 struct ComplexRows<S: Simd> {
-    /// `s / alpha`.
+    /// `s / alpha`, called s in the steps.
     shift: ComplexLanes<S>,
-    /// Entries, row by row.
+    /// Entries, row by row: the active row, then the rows `w`; [`HessenbergForm::width`] entries
+    /// each.
     entries: Vec<ComplexLanes<S>>,
 }
 
 impl<S: Simd> ComplexRows<S> {
-    /// Sets the rows to their values before elimination, reusing the memory of the previous
-    /// frequencies.
+    /// Sets the rows to their values before elimination (step 2), reusing the memory of the
+    /// previous frequencies.
     #[inline(always)]
     fn start(&mut self, simd: S, form: &HessenbergForm, shift: ComplexLanes<S>) {
         self.shift = shift;
@@ -215,8 +225,9 @@ impl<S: Simd> ComplexRows<S> {
         }
     }
 
-    /// Returns whether, in any lane, the active row's entry is NaN or exceeds the pivot threshold
-    /// of the next row.
+    /// Returns whether, in any lane, the active row's entry `u_k` is NaN or exceeds the pivot
+    /// threshold `tau |h_k|` (condition of step 4). Always true for a negligible `h_k`, whose
+    /// threshold is NaN.
     #[inline(always)]
     fn needs_interchange(&self, simd: S, form: &HessenbergForm, column: usize) -> bool {
         let inverse_square_threshold =
@@ -226,10 +237,10 @@ impl<S: Simd> ComplexRows<S> {
         simd.first_true_m64s(exceeds) < S::F64_LANES
     }
 
-    /// Clears a column; with `interchange`, the active row and the next row are swapped in the
-    /// lanes where the active entry is larger.
+    /// Clears a column: step 5, or with `interchange` step 4, which swaps the active row and the
+    /// next row in the lanes where the active entry is larger.
     #[inline(always)]
-    fn clear(&mut self, simd: S, form: &HessenbergForm, column: usize, interchange: bool) {
+    fn clear_column(&mut self, simd: S, form: &HessenbergForm, column: usize, interchange: bool) {
         let next = form.next_row(column);
         let subdiagonal = &form.subdiagonals[column];
         let shift = self
@@ -262,7 +273,8 @@ impl<S: Simd> ComplexRows<S> {
         subtract_next(simd, active, multiplier, next, shift);
     }
 
-    /// Clears the last column with the active row; the first row of `[L D']` then takes its place.
+    /// Clears the last column with the active row; the first row of `[L D']` then takes its place
+    /// (step 6).
     #[inline(always)]
     fn finish(&mut self, simd: S, form: &HessenbergForm) {
         let (active, others) = self.entries.split_at_mut(form.width());
@@ -327,7 +339,11 @@ fn subtract_multiple<S: Simd>(
 /// In the other lanes the next row clears the column, and `u` and `w` times (next row / h) are
 /// subtracted. Both take two steps: subtract a *quotient* times the active row (from zero for the
 /// active row itself), then a *multiplier* times (next row / h).
+///
+/// The new active row contains the next row itself, not (next row / h). Otherwise a chain of weak
+/// couplings would enlarge the pivots by `1 / h` at each interchange, until their squares overflow.
 struct Interchange<S: Simd> {
+    /// Lanes in which the rows are interchanged.
     lanes: S::m64s,
     /// `1 / u`.
     reciprocal: ComplexLanes<S>,
@@ -354,7 +370,8 @@ impl<S: Simd> Interchange<S> {
     }
 
     /// Returns quotient and multiplier for the active row: `h / u` and `-h` in the selected lanes,
-    /// -1 and `u` in the others.
+    /// -1 and `u` in the others. For a negligible `h` they are zero and -1 in the selected lanes:
+    /// the next row, which is then stored unscaled, becomes the active row.
     #[inline(always)]
     fn active_factors(
         &self,
@@ -600,9 +617,9 @@ mod tests {
         ] {
             let model = model(order, outputs, inputs);
             let omega = wide(61);
-            let all = on_vectors(&model, &omega);
+            let results = on_vectors(&model, &omega);
             assert!(
-                all.windows(2).all(|pair| pair[0] == pair[1]),
+                results.windows(2).all(|pair| pair[0] == pair[1]),
                 "order {order}"
             );
         }
@@ -631,9 +648,9 @@ mod tests {
         let omega: Vec<f64> = (0..29)
             .map(|k| if k % 2 == 0 { 1e-4 } else { 1e4 } * (1.0 + f64::from(k)))
             .collect();
-        let mut all = on_vectors(&model, &omega);
-        all.push(on(Scalar::new(), &model, &omega));
-        for values in all {
+        let mut results = on_vectors(&model, &omega);
+        results.push(on(Scalar::new(), &model, &omega));
+        for values in results {
             for (k, omega) in omega.iter().enumerate() {
                 let expected = dense(&model, *omega);
                 let largest = expected
@@ -665,10 +682,11 @@ mod tests {
             for (a, omega) in [(DMatrix::zeros(order, order), 0.0), (turning, 2.0)] {
                 let model = StateSpace::new(a, b.clone(), c.clone(), DMatrix::zeros(3, 2)).unwrap();
                 for frequencies in [vec![omega], vec![1.0, omega, 3.0]] {
-                    let mut all = on_vectors(&model, &frequencies);
-                    all.push(on(Scalar::new(), &model, &frequencies));
+                    let mut results = on_vectors(&model, &frequencies);
+                    results.push(on(Scalar::new(), &model, &frequencies));
                     let finite = |k: usize| {
-                        all.iter()
+                        results
+                            .iter()
                             .all(|values| values.iter().all(|(_, curve)| curve[k].is_finite()))
                     };
                     assert!(
@@ -697,9 +715,9 @@ mod tests {
             DMatrix::zeros(8, 8),
         )
         .unwrap();
-        let mut all = on_vectors(&model, &[0.5, 1.0, 2.0]);
-        all.push(on(Scalar::new(), &model, &[0.5, 1.0, 2.0]));
-        for values in all {
+        let mut results = on_vectors(&model, &[0.5, 1.0, 2.0]);
+        results.push(on(Scalar::new(), &model, &[0.5, 1.0, 2.0]));
+        for values in results {
             for (pair, values) in values.iter() {
                 let lag = Complex::new(0.5, -0.5);
                 let expected = match pair.output.abs_diff(pair.input) {

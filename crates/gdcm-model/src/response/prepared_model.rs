@@ -12,10 +12,11 @@ use nalgebra::Complex;
 use pulp::Arch;
 
 use super::connection::connected;
-use super::curve_values::interpolate;
 use super::elimination::Elimination;
-use super::frequency_response::{FrequencyGrid, FrequencyResponse};
+use super::frequency_grid::FrequencyGrid;
+use super::frequency_response::FrequencyResponse;
 use super::hessenberg_form::HessenbergForm;
+use super::interpolation::interpolate;
 use super::large_entry::LargeEntry;
 use super::s_plane::SPlane;
 use crate::dataset::measured_response::MeasuredResponse;
@@ -33,6 +34,7 @@ pub struct PreparedModel {
     delays_s: Option<PairTable<f64>>,
 }
 
+/// Origin of the response values.
 #[derive(Clone, Debug)]
 enum Source {
     StateSpace(PreparedStateSpace),
@@ -47,13 +49,15 @@ enum Source {
 #[derive(Clone, Debug)]
 struct PreparedStateSpace {
     form: Box<HessenbergForm>,
+    /// Sample time T \[s\]; `None` in continuous time.
     sample_time_s: Option<f64>,
+    /// Whether the input of each response can reach its output.
     connected: PairTable<bool>,
 }
 
 impl PreparedModel {
     /// Prepares a model, at the cost of a Hessenberg reduction for a state-space model.
-    pub fn of(dynamics: &Dynamics) -> Self {
+    pub fn new(dynamics: &Dynamics) -> Self {
         match dynamics {
             Dynamics::StateSpace(model) => {
                 let source = if LargeEntry::find(model).is_some() {
@@ -103,6 +107,7 @@ impl PreparedModel {
         response
     }
 
+    /// Computes the response without the channel delays.
     fn undelayed(&self, omega: &[f64]) -> FrequencyResponse {
         match &self.source {
             Source::StateSpace(prepared) => prepared.response(omega),
@@ -118,8 +123,8 @@ impl PreparedModel {
 impl FrequencyResponse {
     /// Computes the response of a model on a single grid. For several grids, use a
     /// [`PreparedModel`].
-    pub fn of(dynamics: &Dynamics, grid: &FrequencyGrid) -> Self {
-        PreparedModel::of(dynamics).response(grid)
+    pub fn from_dynamics(dynamics: &Dynamics, grid: &FrequencyGrid) -> Self {
+        PreparedModel::new(dynamics).response(grid)
     }
 }
 
@@ -207,7 +212,7 @@ mod tests {
     }
 
     fn curve(model: StateSpace) -> Vec<Complex<f64>> {
-        PreparedModel::of(&Dynamics::StateSpace(model))
+        PreparedModel::new(&Dynamics::StateSpace(model))
             .response(&grid())
             .curve(Pair::new(0, 0))
             .to_vec()
@@ -377,7 +382,7 @@ mod discrete_form_tests {
             &[1.0, std::f64::consts::FRAC_PI_2, 2.0],
         );
         let values = response.curve(Pair::new(0, 0));
-        // The `f64` nearest to pi is not pi: next to the pole the value is about 1 / rounding
+        // `FRAC_PI_2` is not exactly pi / 2: next to the pole, the value is about 1 / rounding
         // error.
         assert!(!values[1].is_finite() || values[1].norm() > 1e15);
         for (omega, value) in [(1.0, values[0]), (2.0, values[2])] {

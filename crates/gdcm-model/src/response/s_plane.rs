@@ -40,8 +40,9 @@ impl SPlane {
         if (eigenvalue + 1.0).norm() < GONE {
             return None;
         }
-        let modulus = 0.5 * (re * (2.0 + re) + im * im).ln_1p();
-        Some(Complex::new(modulus, im.atan2(1.0 + re)) / sample_time_s)
+        // `ln |z|`, from `|z|^2 - 1`, so that no digits cancel near z = 1.
+        let log_modulus = 0.5 * (re * (2.0 + re) + im * im).ln_1p();
+        Some(Complex::new(log_modulus, im.atan2(1.0 + re)) / sample_time_s)
     }
 }
 

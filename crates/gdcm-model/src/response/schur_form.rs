@@ -8,7 +8,10 @@
 //! 3     rotate its rows so that the block becomes triangular: first column (lambda - s, r) / norm
 //! ```
 //!
-//! Golub & Van Loan, "Matrix Computations", 4th ed. 2013, 7.4 and 7.5.
+//! On request, neighbouring eigenvalues are exchanged by rotations of their rows and columns, so
+//! that chosen eigenvalues come first ([`SchurForm::order_by`]).
+//!
+//! Golub & Van Loan, "Matrix Computations", 4th ed. 2013, 7.4 to 7.6.
 
 use nalgebra::{Complex, DMatrix, DVector, Schur};
 
@@ -25,7 +28,9 @@ pub struct SchurForm {
 impl SchurForm {
     /// Computes the Schur form of a square matrix; `None` if the iteration does not converge.
     pub fn new(a: &DMatrix<f64>) -> Option<Self> {
+        // Step 1.
         let (q, t) = quasi_triangular(a)?;
+        // First rows of the 2 x 2 blocks.
         let blocks: Vec<usize> = (1..a.nrows())
             .filter(|&row| t[(row, row - 1)] != 0.0)
             .map(|row| row - 1)
@@ -59,7 +64,7 @@ impl SchurForm {
         (&self.q * self.right(at)).normalize()
     }
 
-    /// Returns the solution of `(T - t_kk) x = 0` with `x_k = 1`.
+    /// Returns the right eigenvector of T: the solution of `(T - t_kk) x = 0` with `x_k = 1`.
     pub(super) fn right(&self, k: usize) -> DVector<Complex<f64>> {
         let mut x = self.unit(k);
         for row in (0..k).rev() {
@@ -71,7 +76,7 @@ impl SchurForm {
         x
     }
 
-    /// Returns the solution of `y (T - t_kk) = 0` with `y_k = 1`.
+    /// Returns the left eigenvector of T: the solution of `y (T - t_kk) = 0` with `y_k = 1`.
     pub(super) fn left(&self, k: usize) -> DVector<Complex<f64>> {
         let mut y = self.unit(k);
         for column in k + 1..self.t.nrows() {
@@ -147,7 +152,8 @@ impl SchurForm {
         self.t[(lower, lower)] = first;
     }
 
-    /// Makes the 2 x 2 block in rows `first` and `first + 1` triangular by a rotation.
+    /// Makes the 2 x 2 block in rows `first` and `first + 1` triangular by a rotation (steps 2 and
+    /// 3).
     fn split(&mut self, first: usize, block: Block) {
         let second = first + 1;
         let size = self.t.nrows();
@@ -219,7 +225,7 @@ impl Block {
     }
 }
 
-/// Computes the real Schur form `A = Q T Q'`. The iteration can stall, since a cyclic permutation
+/// Computes the real Schur form `A = Q T Q'` (step 1); returns Q and T. The iteration can stall, since a cyclic permutation
 /// is one of its fixed points; it is then repeated for a reflection of the matrix, which has the
 /// same eigenvalues.
 fn quasi_triangular(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, DMatrix<f64>)> {

@@ -1,4 +1,5 @@
-//! Subdiagonal entries of a Hessenberg matrix, with the constants for their elimination.
+//! Subdiagonal entries of a Hessenberg matrix, with the constants for their elimination
+//! ([`super::elimination`]).
 
 /// Magnitude below which a subdiagonal entry is set to zero, which splits the model in two. Since
 /// the largest entry is near 1, the error is far below the rounding error.
@@ -23,9 +24,10 @@ pub(super) struct Subdiagonal {
     pub divisor: f64,
     /// Reciprocal of [`divisor`](Self::divisor).
     pub reciprocal: f64,
-    /// `1 / (tau h)^2`; NaN if `h` is negligible, so that comparisons with it are false.
+    /// `1 / (tau h)^2`; NaN if `h` is negligible, so that no active entry is found to be below the
+    /// threshold and the rows are interchanged.
     pub inverse_square_threshold: f64,
-    /// `h^2`; below any square if `h` is negligible.
+    /// `h^2`; -1 if `h` is negligible, so that the active entry is larger in every lane.
     pub square: f64,
 }
 
@@ -41,14 +43,12 @@ impl Subdiagonal {
                 square: -1.0,
             };
         }
-        let largest = PIVOT_THRESHOLD / order as f64 * entry;
-        let reciprocal = 1.0 / entry;
-        let inverse_square_threshold = 1.0 / (largest * largest);
+        let threshold = PIVOT_THRESHOLD / order as f64 * entry;
         Self {
             entry,
             divisor: entry,
-            reciprocal,
-            inverse_square_threshold,
+            reciprocal: 1.0 / entry,
+            inverse_square_threshold: 1.0 / (threshold * threshold),
             square: entry * entry,
         }
     }

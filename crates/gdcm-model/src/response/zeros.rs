@@ -11,17 +11,15 @@
 //! ```
 //!
 //! Emami-Naeini & Van Dooren, "Computation of zeros of linear multivariable systems", Automatica
-//! 18(4), 1982, for the single-input, single-output case.
-//!
-//! This module also reduces a model to its controllable or observable part, by reflections.
+//! 18(4), 1982, for the single-input, single-output case. Steps 1 and 2 are in
+//! `single_response.rs`.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::connection::connecting_states;
-use super::hessenberg_form::balance;
 use super::large_entry::LargeEntry;
 use super::s_plane::SPlane;
 use super::schur_form::SchurForm;
+use super::single_response::SingleResponse;
 use crate::dataset::{Dynamics, Pair, StateSpace};
 
 /// Transmission zeros of a response.
@@ -74,20 +72,24 @@ pub fn transmission_zeros(model: &StateSpace, pair: Pair) -> Result<Transmission
         return Err(ZerosError::OutsideModel { pair });
     }
     let plane = SPlane::new(model);
+    // Steps 1 and 2. The last `controllable` makes A Hessenberg again, as step 3 requires.
     let minimal = SingleResponse::new(model, plane, pair)
         .controllable()
         .transposed()
         .controllable()
         .transposed()
         .controllable();
+    // Step 3.
     let ReducedResponse {
         model: reduced,
         mut infinite,
     } = without_infinite_zeros(minimal.clone()).ok_or(ZerosError::NoResponse)?;
+    // Step 4: output feedback that keeps the output at zero.
     let closed = &reduced.a - &reduced.b * reduced.c.transpose() / reduced.d;
     let form = SchurForm::new(&closed).ok_or(ZerosError::NotConverged)?;
     let mut finite = Vec::with_capacity(closed.nrows());
     for zero in form.eigenvalues().into_iter().filter(|zero| zero.im >= 0.0) {
+        // Step 5.
         let zero = polished(&minimal, zero);
         let has_conjugate = zero.im > 0.0;
         match plane.value(zero) {
@@ -120,7 +122,9 @@ struct ReducedResponse {
 /// A feed-through is treated as zero if a zero would otherwise be farther out than 1e10 times
 /// `|A|`, or, once a zero has been removed, if it is below 1e-12 times `|c|`, its rounding error.
 fn without_infinite_zeros(mut model: SingleResponse) -> Option<ReducedResponse> {
+    /// Maximum magnitude of a zero, relative to `|A|`.
     const FARTHEST: f64 = 1e10;
+    /// Rounding error of a feed-through that was an entry of c, relative to `|c|`.
     const ROUNDING: f64 = 1e-12;
     let size = model.a.norm().max(f64::MIN_POSITIVE);
     let mut infinite = 0;
@@ -182,6 +186,7 @@ fn output(model: &SingleResponse, states: &DVector<Complex<f64>>) -> Complex<f64
 /// Refines a zero by Newton's method (step 5), at most by a relative distance of 1e-3; returns it
 /// unchanged if the response does not decrease.
 fn polished(model: &SingleResponse, zero: Complex<f64>) -> Complex<f64> {
+    /// Maximum number of Newton steps.
     const MOST_STEPS: usize = 4;
     /// Maximum relative distance between a zero and its refined value.
     const CLOSE: f64 = 1e-3;
@@ -207,104 +212,6 @@ fn polished(model: &SingleResponse, zero: Complex<f64>) -> Complex<f64> {
         }
     }
     best
-}
-
-/// A single-input, single-output model.
-#[derive(Clone, Debug)]
-pub(super) struct SingleResponse {
-    pub(super) a: DMatrix<f64>,
-    pub(super) b: DVector<f64>,
-    pub(super) c: DVector<f64>,
-    pub(super) d: f64,
-}
-
-/// Share of |A| below which an entry is regarded as a rounding error of the reflections.
-const NEGLIGIBLE: f64 = 1e-12;
-
-impl SingleResponse {
-    /// Extracts the model between an input and an output, and balances it (step 1).
-    fn new(model: &StateSpace, plane: SPlane, pair: Pair) -> Self {
-        let states = connecting_states(model, pair);
-        let mut a = plane.matrix(&model.a().select_rows(&states).select_columns(&states));
-        let mut b = model.b().columns(pair.input, 1).select_rows(&states);
-        let mut c = model.c().rows(pair.output, 1).select_columns(&states);
-        balance(&mut a, &mut b, &mut c);
-        Self {
-            a,
-            b: b.column(0).into_owned(),
-            c: c.row(0).transpose(),
-            d: model.d()[(pair.output, pair.input)],
-        }
-    }
-
-    /// Returns the model without its uncontrollable states: A is then upper Hessenberg, and b is
-    /// zero except for its first entry.
-    ///
-    /// Reflections align b with the first state, then each column of A with its subdiagonal; the
-    /// chain from the input ends at the first negligible subdiagonal entry (the staircase of Van
-    /// Dooren, IEEE Trans. Automatic Control 26(1), 1981, for one input).
-    pub(super) fn controllable(mut self) -> Self {
-        let size = self.a.nrows();
-        let negligible = NEGLIGIBLE * self.a.norm();
-        for column in 0..size {
-            let below = if column == 0 {
-                self.b.clone()
-            } else {
-                let mut below = self.a.column(column - 1).into_owned();
-                below.rows_mut(0, column).fill(0.0);
-                below
-            };
-            let coupling = below.norm();
-            if coupling == 0.0 || (column > 0 && coupling <= negligible) {
-                return self.first_states(column);
-            }
-            self.reflect(below, column);
-        }
-        self
-    }
-
-    /// Returns the transposed model, whose controllable states are the observable states of the
-    /// original.
-    pub(super) fn transposed(self) -> Self {
-        Self {
-            a: self.a.transpose(),
-            b: self.c,
-            c: self.b,
-            d: self.d,
-        }
-    }
-
-    /// Reflects the states so that the vector `axis`, which is zero before index `at`, is zero
-    /// except at that index.
-    fn reflect(&mut self, axis: DVector<f64>, at: usize) {
-        let mut normal = axis.clone();
-        normal[at] += axis.norm().copysign(axis[at]);
-        normal.normalize_mut();
-        let rows = normal.transpose() * &self.a;
-        self.a -= 2.0 * &normal * rows;
-        let columns = &self.a * &normal;
-        self.a -= 2.0 * columns * normal.transpose();
-        for vector in [&mut self.b, &mut self.c] {
-            *vector -= 2.0 * normal.dot(vector) * &normal;
-        }
-        // Set the entries that the reflection clears, apart from rounding, to exactly zero.
-        if at == 0 {
-            self.b.rows_mut(1, self.b.nrows() - 1).fill(0.0);
-        } else {
-            self.a
-                .view_mut((at + 1, at - 1), (self.a.nrows() - at - 1, 1))
-                .fill(0.0);
-        }
-    }
-
-    fn first_states(&self, count: usize) -> Self {
-        Self {
-            a: self.a.view((0, 0), (count, count)).into_owned(),
-            b: self.b.rows(0, count).into_owned(),
-            c: self.c.rows(0, count).into_owned(),
-            d: self.d,
-        }
-    }
 }
 
 #[cfg(test)]
@@ -533,60 +440,5 @@ mod tests {
                 prop_assert!(value.norm() < 1e-6 * peak, "{zero}: {} of {peak}", value.norm());
             }
         }
-    }
-}
-
-#[cfg(test)]
-mod staircase_tests {
-    use nalgebra::{dmatrix, dvector};
-
-    use super::*;
-
-    #[test]
-    fn states_that_the_input_does_not_reach_are_left_out() {
-        // Two lags of which the input drives only the sum: a single controllable state in other
-        // coordinates.
-        let a = dmatrix![-1.5, 0.5; 0.5, -1.5];
-        let model = SingleResponse {
-            a,
-            b: dvector![1.0, 1.0],
-            c: dvector![1.0, 0.0],
-            d: 0.25,
-        };
-        let reached = model.clone().controllable();
-        assert_eq!(reached.a.nrows(), 1);
-        // 0.25 + 1 / (s + 1); tolerance: the rounding of one reflection.
-        assert!(
-            (reached.a[(0, 0)] + 1.0).abs() < 1e-14
-                && (reached.b[0] * reached.c[0] - 1.0).abs() < 1e-14
-        );
-        assert_eq!(
-            model.transposed().controllable().a.nrows(),
-            2,
-            "the first state alone sees both"
-        );
-    }
-
-    #[test]
-    fn what_an_input_reaches_is_a_chain() {
-        let a = DMatrix::from_fn(6, 6, |row, column| {
-            ((1.0 + 7.3 * row as f64) * (1.0 + 2.9 * column as f64)).sin()
-        });
-        let b = DVector::from_fn(6, |row, _| 1.0 / (1.0 + row as f64));
-        let reached = SingleResponse {
-            a: a.clone(),
-            b: b.clone(),
-            c: b.clone(),
-            d: 0.0,
-        }
-        .controllable();
-        assert_eq!(reached.a.nrows(), 6);
-        assert_eq!(reached.b.iter().filter(|entry| **entry != 0.0).count(), 1);
-        let below = (0..6).flat_map(|column| (column + 2..6).map(move |row| (row, column)));
-        assert!(below.into_iter().all(|at| reached.a[at] == 0.0));
-        // c A b is invariant under changes of coordinates.
-        let before = b.dot(&(&a * &b));
-        let after = reached.c.dot(&(&reached.a * &reached.b));
-        assert!((before - after).abs() < 1e-13 * before.abs());
     }
 }

@@ -9,13 +9,18 @@ use crate::dataset::StateSpace;
 ///
 /// ```text
 ///     [A T  B T  0]   [Phi  G1  G2]
-/// exp [ 0    0   I] = [ 0   I   I ],    x[n+1] = Phi x[n] + G1 u[n] + G2 (u[n+1] - u[n]),    y = C x + D u
+/// exp [ 0    0   I] = [ 0   I   I ],    x[k+1] = Phi x[k] + G1 u[k] + G2 (u[k+1] - u[k]),    y = C x + D u
 ///     [ 0    0   0]   [ 0   0   I ]
 /// ```
+///
+/// A is n x n, B n x m; k counts samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FirstOrderHold {
+    /// `Phi`, n x n.
     phi: DMatrix<f64>,
+    /// `G1`, n x m: effect of a constant input.
     gamma: DMatrix<f64>,
+    /// `G2`, n x m: effect of the change in the input within a sample.
     gamma_slope: DMatrix<f64>,
     c: DMatrix<f64>,
     d: DMatrix<f64>,
@@ -56,27 +61,27 @@ impl FirstOrderHold {
     pub fn simulate(&self, initial: &DVector<f64>, inputs: &DMatrix<f64>) -> DMatrix<f64> {
         let mut outputs = DMatrix::zeros(inputs.nrows(), self.c.nrows());
         let mut x = initial.clone();
-        for n in 0..inputs.nrows() {
-            let u = inputs.row(n).transpose();
-            outputs.set_row(n, &(&self.c * &x + &self.d * &u).transpose());
-            if n + 1 < inputs.nrows() {
-                let next = inputs.row(n + 1).transpose();
+        for k in 0..inputs.nrows() {
+            let u = inputs.row(k).transpose();
+            outputs.set_row(k, &(&self.c * &x + &self.d * &u).transpose());
+            if k + 1 < inputs.nrows() {
+                let next = inputs.row(k + 1).transpose();
                 x = &self.phi * x + &self.gamma * &u + &self.gamma_slope * (next - &u);
             }
         }
         outputs
     }
 
-    /// Returns the outputs `C Phi^n` of the free response to each initial state, for n = 0 ...
+    /// Returns the outputs `C Phi^k` of the free response to each initial state, for k = 0 ...
     /// `samples` - 1: one column per state, and for each sample one row per output.
     #[must_use]
     pub fn free_responses(&self, samples: usize) -> DMatrix<f64> {
         let (outputs, states) = self.c.shape();
         let mut responses = DMatrix::zeros(samples * outputs, states);
         let mut response = self.c.clone();
-        for n in 0..samples {
+        for k in 0..samples {
             responses
-                .rows_mut(n * outputs, outputs)
+                .rows_mut(k * outputs, outputs)
                 .copy_from(&response);
             response = &response * &self.phi;
         }

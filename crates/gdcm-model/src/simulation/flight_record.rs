@@ -40,7 +40,7 @@ impl FlightRecord {
     pub fn channel(&self, signal: &Signal) -> DVectorView<'_, f64> {
         signal
             .role
-            .of(&self.inputs, &self.outputs)
+            .pick(&self.inputs, &self.outputs)
             .column(signal.index)
     }
 }
@@ -51,19 +51,9 @@ impl Segment {
     pub fn channel(&self, signal: &Signal) -> DVectorView<'_, f64> {
         signal
             .role
-            .of(&self.inputs, &self.outputs)
+            .pick(&self.inputs, &self.outputs)
             .column(signal.index)
     }
-}
-
-/// Subtracts its mean from each column.
-#[must_use]
-pub fn centred(mut samples: DMatrix<f64>) -> DMatrix<f64> {
-    for mut column in samples.column_iter_mut() {
-        let mean = column.mean();
-        column.add_scalar_mut(-mean);
-    }
-    samples
 }
 
 /// A channel in flight records, by index and name.
@@ -79,4 +69,14 @@ impl fmt::Display for Signal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.name)
     }
+}
+
+/// Subtracts its mean from each column.
+#[must_use]
+pub fn centred(mut samples: DMatrix<f64>) -> DMatrix<f64> {
+    for mut column in samples.column_iter_mut() {
+        let mean = column.mean();
+        column.add_scalar_mut(-mean);
+    }
+    samples
 }

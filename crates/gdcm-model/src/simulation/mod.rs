@@ -1,11 +1,17 @@
-//! Time responses: flight records, their low-pass filter, and simulation of a model against them.
+//! Time responses: flight records, their low-pass filter, and simulation of a model against them
+//! (`validation.rs`).
 
 mod first_order_hold;
 mod flight_record;
 mod low_pass;
+mod output_agreement;
 mod validation;
+mod validation_settings;
+mod window_simulation;
 
 pub use first_order_hold::FirstOrderHold;
 pub use flight_record::{FlightRecord, Segment, Signal, centred};
 pub use low_pass::LowPass;
-pub use validation::{Validation, ValidationError, ValidationSettings, ValidationWindow, validate};
+pub use output_agreement::ValidationWindow;
+pub use validation::{Validation, ValidationError, validate};
+pub use validation_settings::ValidationSettings;

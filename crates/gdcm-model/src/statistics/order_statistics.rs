@@ -62,8 +62,9 @@ pub fn mean(values: &[f64]) -> f64 {
 /// type 7 of Hyndman & Fan, "Sample quantiles in statistical packages", The American Statistician
 /// 50(4), 1996, the default of numpy.
 ///
-/// `h = q (n - 1)`, `x = x_[h] + (h - [h]) (x_[h]+1 - x_[h])`. NaN for no values. The values must
-/// be finite; their order changes.
+/// Of n sorted values, `x_0` to `x_(n-1)`: `h = q (n - 1)`, `k = floor(h)`,
+/// `x = x_k + (h - k) (x_(k+1) - x_k)`. NaN for no values. The values must be finite; their order
+/// changes.
 pub fn quantile(values: &mut [f64], q: f64) -> f64 {
     if values.is_empty() {
         return f64::NAN;

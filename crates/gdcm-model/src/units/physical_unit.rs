@@ -49,6 +49,7 @@ struct UnitRow {
     spellings: &'static [&'static str],
 }
 
+/// Creates a row of [`UNITS`].
 const fn unit(dimension: Dimension, size: f64, spellings: &'static [&'static str]) -> UnitRow {
     UnitRow {
         dimension,
@@ -59,7 +60,10 @@ const fn unit(dimension: Dimension, size: f64, spellings: &'static [&'static str
 
 /// All supported units. `rps` is not supported: it may mean radians or revolutions per second.
 const UNITS: &[UnitRow] = {
-    use Dimension::*;
+    use Dimension::{
+        Acceleration, Angle, AngularAcceleration, AngularRate, Force, Frequency, Length, Level,
+        Part, Speed, Time,
+    };
     &[
         unit(Angle, 1.0, &["rad", "radian"]),
         unit(Angle, 1e-3, &["mrad"]),
@@ -120,7 +124,7 @@ const UNITS: &[UnitRow] = {
 impl PhysicalUnit {
     /// Parses a unit in any common spelling: "deg/s", "°/sec", "dps", "ft/s^2", "g", "% of stick",
     /// "msec"; `None` for an unknown unit.
-    pub fn of(text: &str) -> Option<Self> {
+    pub fn parse(text: &str) -> Option<Self> {
         // Try the text as it is first: most units are spelt as in the table, and many are parsed
         // for each column of each record, so that it pays to avoid the folding.
         let row = find_unit(text).or_else(|| find_unit(&folded_unit(text)))?;
@@ -132,6 +136,7 @@ impl PhysicalUnit {
     }
 }
 
+/// Returns the row with this spelling; `None` if there is none.
 fn find_unit(spelling: &str) -> Option<&'static UnitRow> {
     UNITS.iter().find(|row| row.spellings.contains(&spelling))
 }
@@ -188,8 +193,8 @@ pub fn conversion_factor(from: &str, to: &str) -> Option<f64> {
     if from.trim() == to.trim() {
         return Some(1.0);
     }
-    let from = PhysicalUnit::of(from)?;
-    let to = PhysicalUnit::of(to)?;
+    let from = PhysicalUnit::parse(from)?;
+    let to = PhysicalUnit::parse(to)?;
     if from.dimension != to.dimension {
         return None;
     }
@@ -228,7 +233,7 @@ mod tests {
             .collect();
         for (place, name) in names.iter().enumerate() {
             assert!(!names[..place].contains(name), "duplicate {name}");
-            assert!(PhysicalUnit::of(name).is_some(), "{name}");
+            assert!(PhysicalUnit::parse(name).is_some(), "{name}");
         }
         for (text, name) in [
             ("secs", "s"),
@@ -238,7 +243,7 @@ mod tests {
             ("Hertz", "Hz"),
         ] {
             assert_eq!(
-                PhysicalUnit::of(text).map(|unit| unit.name),
+                PhysicalUnit::parse(text).map(|unit| unit.name),
                 Some(name),
                 "{text}"
             );

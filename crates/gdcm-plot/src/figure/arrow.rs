@@ -13,7 +13,7 @@ const LEAST_SPAN: f64 = 1e-3;
 /// positive even for a single point.
 pub(super) fn spans(points: &[[f64; 2]]) -> [f64; 2] {
     [0, 1].map(|axis| {
-        let range = Range::of(points.iter().map(|point| point[axis]));
+        let range = Range::spanning(points.iter().map(|point| point[axis]));
         let range = range.unwrap_or(Range::new(0.0, 0.0));
         range
             .width()

@@ -2,15 +2,14 @@
 
 use gdcm_method::fidelity::CostAverage;
 use gdcm_method::schedule::CostChange;
-use gdcm_model::dataset::{ConditionId, Dataset, Pair};
-use gdcm_model::units::signed;
+use gdcm_model::dataset::{Dataset, Pair};
 use gdcm_study::results::analysis::Analysis;
 use gdcm_study::results::assessment_table::{
     AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable,
 };
 use gdcm_words::assessment::not_assessed_text;
-use gdcm_words::table::Table;
 
+pub use super::change_table::{ChangeColumn, ChangeTable};
 pub use super::evidence::evidence_figure;
 
 use super::axis::Axis;
@@ -55,7 +54,7 @@ const PARTS: [Part; 3] = [
 
 /// Plots ΔJ and its parts over the conditions, for each pair; negative values are improvements.
 pub fn assessment_figure(analysis: &Analysis, pairs: &[Pair], choice: AssessmentChoice) -> Figure {
-    let table = AssessmentTable::of(analysis, choice);
+    let table = AssessmentTable::assess(analysis, choice);
     let dataset = &analysis.study.dataset;
     let mut plots = Vec::new();
     for &pair in pairs {
@@ -134,30 +133,6 @@ fn left_out_note(x: f64) -> Note {
         },
         text: "left out".to_owned(),
     }
-}
-
-/// Tabulates the signed ΔJ, or a `part` of ΔJ, of each pair in each condition.
-pub fn change_table(
-    title: impl Into<String>,
-    (dataset, found): (&Dataset, &AssessmentTable),
-    pairs: &[Pair],
-    conditions: &[(ConditionId, String)],
-    part: fn(CostChange) -> f64,
-) -> Table {
-    let mut columns = vec!["response".to_owned()];
-    columns.extend(conditions.iter().map(|(_, heading)| heading.clone()));
-    let mut table = Table::new(title, columns);
-    for &pair in pairs {
-        let mut cells = vec![dataset.pair_name(pair)];
-        for (id, _) in conditions {
-            cells.push(match found.change(*id, pair) {
-                Some(change) => signed(part(change), 1),
-                None => "–".to_owned(),
-            });
-        }
-        table.row(cells);
-    }
-    table
 }
 
 /// Returns `the median` or `the mean`.

@@ -106,11 +106,12 @@ impl Axis {
         let shown = values
             .chain(self.including.iter().copied())
             .filter(|value| self.can_show(*value));
-        let range = Range::of(shown).unwrap_or(EMPTY);
+        let range = Range::spanning(shown).unwrap_or(EMPTY);
         match self.scale {
             Scale::Logarithmic if range.min < range.max => range,
             Scale::Logarithmic => Range::new(range.min / 2.0, range.max * 2.0),
             Scale::Linear | Scale::Degrees => {
+                // By default, equal values are shown in a range of a thousandth of their size.
                 let least = if self.least > 0.0 {
                     self.least
                 } else {

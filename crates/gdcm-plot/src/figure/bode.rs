@@ -25,16 +25,16 @@ use super::marks::{Band, Note, Place, Rule};
 use super::muad::muad_about;
 use super::reference_line::ReferenceLine;
 use super::responses::{
-    AirspeedCache, BodeBand, ResponseCache, airspeed_curves, fitted_values, uncertainty_bands,
+    AirspeedCache, AirspeedResponse, BodeBand, ResponseCache, fitted_values, uncertainty_bands,
 };
 use super::role::Role;
 
 /// Background of the band of comparison.
-const BAND: Color = Color::of(Hue::Accent).tint(8);
+const BAND: Color = Color::new(Hue::Accent).tint(8);
 /// Background of the frequencies above the band at which a model with leads is invalid.
-const INVALID: Color = Color::of(Hue::Warning).tint(10);
+const INVALID: Color = Color::new(Hue::Warning).tint(10);
 /// Line at a frequency at which a bandwidth is read.
-const CROSSING: Stroke = Stroke::dashed(Color::of(Hue::Text), 0.8, Dash::Short);
+const CROSSING: Stroke = Stroke::dashed(Color::new(Hue::Text), 0.8, Dash::Short);
 /// Height of the magnitude panel; the phase panel has height 1.
 const MAGNITUDE_WEIGHT: f64 = 1.35;
 /// Margin above and below the curves, relative to their height.
@@ -150,8 +150,11 @@ impl ResponsePlot<'_> {
             .filter(|curve| !curve.hidden)
             .cloned()
             .collect();
-        let top = self.invalid_up_to().unwrap_or(self.band.max());
-        let range = fitted_values(&visible, pane, (self.band.min(), top))?;
+        let shown = Range {
+            min: self.band.min(),
+            max: self.invalid_up_to().unwrap_or(self.band.max()),
+        };
+        let range = fitted_values(&visible, pane, shown)?;
         Some(range.with_margin(MARGIN, least))
     }
 
@@ -205,7 +208,7 @@ pub fn airspeeds_figure(
     let dataset = &analysis.study.dataset;
     let settings = &analysis.study.settings;
     let grid = (display_band(settings.band), CURVE_POINTS);
-    let job = AcrossJob::of(dataset, Some(analysis), role, grid);
+    let job = AcrossJob::for_role(dataset, Some(analysis), role, grid);
     let across = job.run(&mut (), &Unobserved).ok()?;
     if across.responses.is_empty() {
         return None;
@@ -226,10 +229,15 @@ pub fn airspeeds_figure(
         _ => format!("Every condition, {}", role.name()),
     };
     let figure = side_by_side(dataset, pairs, title, |pair| {
-        let sources = (&**dataset, Some(analysis));
-        let curves = airspeed_curves(sources, role, pair, &across, &mut AirspeedCache::default());
+        let response = AirspeedResponse {
+            dataset,
+            analysis: Some(analysis),
+            role,
+            pair,
+            responses: &across,
+        };
         let contents = ResponsePlot {
-            curves: &curves,
+            curves: &response.curves(&mut AirspeedCache::default()),
             bands: &[],
             references: &[],
             ratio_unit: "",

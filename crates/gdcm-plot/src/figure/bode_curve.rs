@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use gdcm_model::dataset::ModelId;
 
+use super::range::Range;
 use super::role::Role;
 
 /// Identity of a curve; unique within a response.
@@ -123,17 +124,19 @@ impl BodeCurve {
             .map(|(log_omega, value)| [*log_omega, *value])
     }
 
-    /// Returns the points of [`Self::points_on`] between `low` and `high` in `log10 omega`, and the
-    /// nearest point beyond either end.
+    /// Returns the points of [`Self::points_on`] in a range of `log10 omega`, and the nearest point
+    /// beyond either end.
     pub fn points_between<'a>(
         &'a self,
         axis: &'a mut LogFrequencies,
         pane: Pane,
-        (low, high): (f64, f64),
+        range: Range,
     ) -> impl Iterator<Item = [f64; 2]> + 'a {
         let log_omega = axis.logarithms(&self.omega);
-        let from = log_omega.partition_point(|at| *at < low).saturating_sub(1);
-        let count = log_omega[from..].partition_point(|at| *at <= high) + 1;
+        let from = log_omega
+            .partition_point(|at| *at < range.min)
+            .saturating_sub(1);
+        let count = log_omega[from..].partition_point(|at| *at <= range.max) + 1;
         log_omega
             .iter()
             .zip(self.values(pane))
@@ -219,7 +222,7 @@ mod tests {
             (4.5, 9.0, vec![4.0, 5.0]),
             (7.0, 9.0, vec![5.0]),
         ] {
-            let points = curve.points_between(&mut axis, Pane::Magnitude, (low, high));
+            let points = curve.points_between(&mut axis, Pane::Magnitude, Range::new(low, high));
             let found: Vec<f64> = points.map(|[x, _]| x).collect();
             assert_eq!(found, expected, "{low} {high}");
         }

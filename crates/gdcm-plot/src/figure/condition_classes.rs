@@ -21,7 +21,7 @@ pub struct Classes {
 
 impl Classes {
     /// Collects and sorts the classes that occur in a dataset.
-    pub fn of(dataset: &Dataset) -> Self {
+    pub fn from_dataset(dataset: &Dataset) -> Self {
         let mut altitudes = BTreeSet::new();
         let mut weights = BTreeSet::new();
         for condition in dataset.conditions() {

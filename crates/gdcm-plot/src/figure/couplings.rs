@@ -1,4 +1,6 @@
-//! Effect of couplings on the loop `I - K H` that they close, and on the poles (M16.4).
+//! Effect of couplings on the loop `I - K H` that they close, and on the poles (M16.4). H is the
+//! response of the physics representative, K the feedback from outputs to inputs; near a singular
+//! `I - K H` the closed loop rings.
 
 use nalgebra::Complex;
 
@@ -14,12 +16,14 @@ use super::figure::{Figure, Panel, Plot};
 use super::marks::{Band, Curve, DotShape, Dots, Mark, Rule};
 use super::role::Role;
 
-const OTHERS: Stroke = Stroke::solid(Color::of(Hue::Perturbed).tint(60), 0.7);
-const SHOWN: Stroke = Stroke::solid(Color::of(Hue::Corrected), 1.6);
+/// Loop curves of the condition in focus and of the other conditions.
+const OTHERS: Stroke = Stroke::solid(Color::new(Hue::Perturbed).tint(60), 0.7);
+const SHOWN: Stroke = Stroke::solid(Color::new(Hue::Corrected), 1.6);
 /// Arrow from a pole to its new position.
-const SHIFT: Stroke = Stroke::solid(Color::of(Hue::Corrected), 1.0);
-const RINGING: Stroke = Stroke::dashed(Color::of(Hue::Warning), 1.0, Dash::Short);
-const BAND: Color = Color::of(Hue::Accent).tint(12);
+const SHIFT: Stroke = Stroke::solid(Color::new(Hue::Corrected), 1.0);
+/// Line at the singular value below which the loop is close to ringing.
+const RINGING: Stroke = Stroke::dashed(Color::new(Hue::Warning), 1.0, Dash::Short);
+const BAND: Color = Color::new(Hue::Accent).tint(12);
 pub(super) const AXIS: Stroke = Stroke::solid(Color::DIM, 0.6);
 /// Maximum magnitude of the displayed poles, relative to the upper end of the band.
 const SHOWN_POLES: f64 = 1.5;

@@ -40,6 +40,7 @@ pub fn damping_grid([real, imaginary]: [Range; 2]) -> impl Iterator<Item = Guide
         reach = reach.max(end.abs());
     }
     let mut guides = labelled_rays(real, imaginary, reach);
+    // At most four arcs up to the farthest end; corners of the plot may lie farther out.
     let step = step_above(reach / 4.0);
     for k in 1..=ARCS {
         let radius = step * f64::from(k);
@@ -51,7 +52,7 @@ pub fn damping_grid([real, imaginary]: [Range; 2]) -> impl Iterator<Item = Guide
     guides.into_iter()
 }
 
-/// Returns rays of length `reach` \[rad/s\], labelled where they leave the displayed ranges; a
+/// Returns rays that extend `2 reach` \[rad/s\] to the left, labelled where they leave the displayed ranges; a
 /// label too close to the previous label is omitted.
 fn labelled_rays(real: Range, imaginary: Range, reach: f64) -> Vec<Guide> {
     let mut last_label: Option<[f64; 2]> = None;

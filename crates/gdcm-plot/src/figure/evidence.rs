@@ -17,7 +17,7 @@ const BAR: f64 = 0.56;
 /// Offset between dots at the same axis position.
 const APART: f64 = 0.24;
 /// Confidence interval of the unexplained part.
-const INTERVAL: Stroke = Stroke::solid(Color::of(Hue::Nominal).tint(50), 2.4);
+const INTERVAL: Stroke = Stroke::solid(Color::new(Hue::Nominal).tint(50), 2.4);
 /// Interval ends are shown up to this multiple of the largest scatter.
 const MOST_SEEN: f64 = 4.0;
 /// Range of the variance axis \[%\]: the shares end at 100, and the ratios are written above.
@@ -111,7 +111,7 @@ fn axis() -> Axis {
 fn shares_panel(scatter: &PairScatter) -> Panel {
     let mut stack = STACK.map(|share| Bars {
         name: share.name.to_owned(),
-        color: Color::of(share.hue),
+        color: Color::new(share.hue),
         width: BAR,
         bars: Vec::new(),
         feet: Vec::new(),
@@ -155,9 +155,9 @@ fn note(x: f64, y: f64, text: String, upright: bool) -> Note {
 /// unexplained part with its interval at the confidence level `level`.
 fn deviations_panel(scatter: &PairScatter, level: f64) -> Panel {
     let mut total = empty_dots("scatter", DotShape::Circle, Color::INK);
-    let mut expected = empty_dots("expected", DotShape::Diamond, Color::of(Hue::Perturbed));
+    let mut expected = empty_dots("expected", DotShape::Diamond, Color::new(Hue::Perturbed));
     expected.filled = false;
-    let mut unexplained = empty_dots("unexplained", DotShape::Square, Color::of(Hue::Nominal));
+    let mut unexplained = empty_dots("unexplained", DotShape::Square, Color::new(Hue::Nominal));
     let mut ends = Vec::new();
     let mut most = 0.0;
     for PlacedSplit { x, split } in placed_splits(scatter) {

@@ -16,9 +16,9 @@ use super::responses::BodeBand;
 use super::role::Role;
 
 /// Background of the frequencies at which a pilot would notice the remaining mismatch (MUAD).
-const NOTICED: Color = Color::of(Hue::Warning).tint(20);
+const NOTICED: Color = Color::new(Hue::Warning).tint(20);
 /// Confidence band about an identified model.
-const UNCERTAIN: Color = Color::of(Hue::Identified).tint(22);
+const UNCERTAIN: Color = Color::new(Hue::Identified).tint(22);
 /// Ratio of frame height to width in a figure with a single plot, and in a figure with several.
 const SINGLE_ASPECT: f64 = 0.72;
 const SHARED_ASPECT: f64 = 1.9;

@@ -19,20 +19,20 @@ use super::marks::{
 use super::role::Role;
 
 /// Line at the value without correction.
-const NULL: Stroke = Stroke::dashed(Color::DIM, 0.6, Dash::Short);
+const UNCORRECTED: Stroke = Stroke::dashed(Color::DIM, 0.6, Dash::Short);
 /// Lines of an error bar, and of its part due to identification alone.
-const BAR: Stroke = Stroke::solid(Color::of(Hue::Perturbed), 0.6);
-const INNER_BAR: Stroke = Stroke::solid(Color::of(Hue::Perturbed).tint(50), 2.4);
+const BAR: Stroke = Stroke::solid(Color::new(Hue::Perturbed), 0.6);
+const INNER_BAR: Stroke = Stroke::solid(Color::new(Hue::Perturbed).tint(50), 2.4);
 /// Maximum extension of the axis to show error bars, relative to the range of the dots.
 const BARS_EXTENSION: f64 = 0.5;
 /// Brackets between net gains at the same airspeed.
-const SIGNIFICANT_BRACKET: Stroke = Stroke::solid(Color::of(Hue::Warning), 0.7);
+const SIGNIFICANT_BRACKET: Stroke = Stroke::solid(Color::new(Hue::Warning), 0.7);
 const OTHER_BRACKET: Stroke = Stroke::solid(Color::DIM, 0.4);
 /// Names of both kinds of bracket, in the legend and in the tables.
 pub(super) const SIGNIFICANT: &str = "significant difference, × expected";
 const NOT_SIGNIFICANT: &str = "difference, not significant";
 /// Background that marks the bounds.
-const BOUNDS: Color = Color::of(Hue::Accent).tint(16);
+const BOUNDS: Color = Color::new(Hue::Accent).tint(16);
 /// Width of the background on an airspeed axis \[kt\].
 const BOUNDS_WIDTH_KT: f64 = 3.0;
 /// Width of the background on an axis of conditions.
@@ -54,7 +54,7 @@ impl GainPanel<'_> {
         let y = self.value_axis(&bars, label);
         let mut panel = Panel::new(self.horizontal_axis(), y)
             .with_all(self.bounds())
-            .with(Rule::horizontal(measure.null(), NULL));
+            .with(Rule::horizontal(measure.uncorrected(), UNCORRECTED));
         if let Some(schedule) = measure.schedule_of(self.analysis, self.across) {
             let samples = self.quantity.samples(schedule);
             let line = Role::Scheduled.stroke(false);
@@ -86,13 +86,13 @@ impl GainPanel<'_> {
     fn value_axis(&self, bars: &[Intervals], label: &str) -> Axis {
         let measure = self.quantity.measure();
         let mut axis = Axis::linear(label)
-            .including(measure.null())
+            .including(measure.uncorrected())
             .at_least(measure.least_height());
         let values = self
             .results()
             .into_iter()
-            .map(|placed| self.quantity.of(&placed.result.correction));
-        let Some(range) = Range::of(values) else {
+            .map(|placed| self.quantity.value_in(&placed.result.correction));
+        let Some(range) = Range::spanning(values) else {
             return axis;
         };
         let spare = BARS_EXTENSION * range.width();
@@ -207,15 +207,15 @@ impl GainPanel<'_> {
         Some(Bracket {
             x: found.airspeed_kt,
             ends: [
-                self.quantity.of(&first.correction),
-                self.quantity.of(&second.correction),
+                self.quantity.value_in(&first.correction),
+                self.quantity.value_in(&second.correction),
             ],
             label,
         })
     }
 
     /// Returns the confidence band and the scatter band about samples `[airspeed, value]` of the
-    /// schedule; empty without an uncertainty.
+    /// schedule; empty without an uncertainty, and for a delay, which has no bands.
     fn bands(&self, schedule: &Schedule, samples: &[[f64; 2]]) -> Vec<Envelope> {
         let Some(bands) = self.uncertainty.and_then(|found| found.bands.as_ref()) else {
             return Vec::new();
@@ -272,7 +272,7 @@ impl GainPanel<'_> {
     /// Returns a group of dots for each condition class; conditions outside the schedule have
     /// separate groups.
     fn dots(&self) -> Vec<Dots> {
-        let classes = Classes::of(&self.analysis.study.dataset);
+        let classes = Classes::from_dataset(&self.analysis.study.dataset);
         let mut groups: Vec<Dots> = Vec::new();
         for placed in self.results() {
             let name = class_words(placed.state, self.analysis.study.choice(placed.state.id));
@@ -300,7 +300,7 @@ impl GainPanel<'_> {
         };
         Dot {
             x: placed.x,
-            y: self.quantity.of(&placed.result.correction),
+            y: self.quantity.value_in(&placed.result.correction),
             label,
             id: Some(MarkId::Condition(id)),
         }
@@ -319,7 +319,7 @@ impl GainPanel<'_> {
         } else {
             Hue::Rejected
         };
-        Dots::new(name, shape, Color::of(hue))
+        Dots::new(name, shape, Color::new(hue))
             .filled(classes.is_first_weight(placed.state) && !choice.held_out)
             .key(name)
     }

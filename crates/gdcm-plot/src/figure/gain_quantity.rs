@@ -32,7 +32,7 @@ impl Measure {
     }
 
     /// Returns the value that means no correction: 1 for a gain, 0 for a delay.
-    pub fn null(self) -> f64 {
+    pub fn uncorrected(self) -> f64 {
         match self {
             Self::Gain => 1.0,
             Self::Delay => 0.0,
@@ -78,6 +78,13 @@ pub enum Across {
     Conditions,
 }
 
+/// Quantities on the vertical and the horizontal axis of a figure of channels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GainAxes {
+    pub measure: Measure,
+    pub across: Across,
+}
+
 /// A quantity defined by the correction of each condition and by the schedule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GainQuantity {
@@ -105,7 +112,7 @@ impl GainQuantity {
     }
 
     /// Returns the value of the quantity in a correction, in the unit of the measure.
-    pub fn of(self, correction: &ChannelCorrection) -> f64 {
+    pub fn value_in(self, correction: &ChannelCorrection) -> f64 {
         match self {
             Self::NetGain(pair) => correction.net_gain(pair),
             Self::Gain(channel) => correction.gain(channel),
@@ -143,7 +150,7 @@ impl GainQuantity {
         let mut samples = Vec::new();
         for sample in 0..=SAMPLES {
             let airspeed_kt = from + (to - from) * sample as f64 / SAMPLES as f64;
-            samples.push([airspeed_kt, self.of(&schedule.at(airspeed_kt))]);
+            samples.push([airspeed_kt, self.value_in(&schedule.at(airspeed_kt))]);
         }
         samples
     }

@@ -1,18 +1,16 @@
 //! Gains and delays against airspeed or over conditions (Figures 3, 4, 6 and 7).
 
-pub use super::condition_classes::Classes;
-pub use super::condition_classes::class_names;
-use super::condition_source::{schedule_words, settings_words};
-use super::figure::{Figure, Panel, Plot};
-use super::gain_panel::{GainPanel, SIGNIFICANT};
-pub use super::gain_quantity::Across;
-pub use super::gain_quantity::GainQuantity;
-pub use super::gain_quantity::Measure;
 use gdcm_method::correction::Channel;
 use gdcm_model::dataset::{Dataset, Pair};
 use gdcm_study::results::analysis::Analysis;
 use gdcm_study::results::uncertainty::Uncertainty;
 
+pub use super::condition_classes::{Classes, class_names};
+pub use super::gain_quantity::{Across, GainAxes, GainQuantity, Measure};
+
+use super::condition_source::{schedule_words, settings_words};
+use super::figure::{Figure, Panel, Plot};
+use super::gain_panel::{GainPanel, SIGNIFICANT};
 use super::gain_quantity::placed_results;
 use super::marks::{Curve, DotShape, Dots, Mark, MarkId};
 use super::role::Role;
@@ -57,8 +55,9 @@ pub fn channels_figure(
     analysis: &Analysis,
     uncertainty: Option<&Uncertainty>,
     channels: &[Channel],
-    (measure, across): (Measure, Across),
+    axes: GainAxes,
 ) -> Figure {
+    let GainAxes { measure, across } = axes;
     let (inputs, outputs) = analysis.study.dataset.names_of_channels();
     let mut plots = Vec::new();
     for &channel in channels {
@@ -152,7 +151,7 @@ fn variant_marks(quantity: GainQuantity, analysis: &Analysis, name: &str) -> Vec
         .key(&key);
     dots.size = VARIANT_DOT;
     for placed in placed_results(analysis, across) {
-        let y = quantity.of(&placed.result.correction);
+        let y = quantity.value_in(&placed.result.correction);
         dots = dots.dot(placed.x, y, "");
     }
     marks.push(Mark::Dots(dots));

@@ -42,6 +42,8 @@ const VERTICAL_GAP: f64 = 11.0;
 const HORIZONTAL_GAP: f64 = 12.0;
 /// Minimum space between neighbouring tick labels on a horizontal axis \[pt\].
 const NUMBER_SPACE: f64 = 5.0;
+/// Frames' share of the paper width, before the room beside them is known.
+const FIRST_GUESS: f64 = 0.8;
 /// Axis range used if a figure has no panels.
 const EMPTY: Range = Range { min: 0.0, max: 1.0 };
 
@@ -68,7 +70,7 @@ impl<'f> Layout<'f> {
     pub(super) fn new(figure: &'f Figure, width_pt: f64, top: f64) -> Self {
         let table = PlotTable::new(figure, width_pt, top);
         let columns = table.columns as f64;
-        let mut frame_width = 0.8 * width_pt / columns;
+        let mut frame_width = FIRST_GUESS * width_pt / columns;
         for _ in 0..2 {
             let gutters: f64 = table.gutters(frame_width).iter().sum();
             let gaps = COLUMN_GAP * (table.columns - 1) as f64 + RIGHT;
@@ -78,7 +80,8 @@ impl<'f> Layout<'f> {
     }
 }
 
-/// The plots in rows and columns.
+/// The plots in rows and columns. In its methods, `index` numbers the plots in reading order, and
+/// `panel` the panels of a plot from the top.
 struct PlotTable<'f> {
     figure: &'f Figure,
     columns: usize,

@@ -5,6 +5,7 @@ use gdcm_method::correction::lead_price::ABOVE_BAND;
 use gdcm_method::correction::{Channel, ChannelCorrection, LeadPrice};
 use gdcm_model::dataset::Pair;
 use gdcm_model::response::GainDelay;
+use gdcm_words::lead_price::{limit_text, pair_price_text};
 
 use super::axis::{Axis, Range};
 use super::condition_source::ConditionSource;
@@ -16,12 +17,12 @@ use super::role::Role;
 
 /// Number of points of a curve.
 const POINTS: usize = 240;
-const OTHERS: Stroke = Stroke::solid(Color::of(Hue::Perturbed).tint(60), 0.8);
-const OUTPUT: Stroke = Stroke::dashed(Color::of(Hue::Accent), 1.6, Dash::Long);
-const INPUT: Stroke = Stroke::dashed(Color::of(Hue::Perturbed), 1.6, Dash::DashDot);
+const OTHERS: Stroke = Stroke::solid(Color::new(Hue::Perturbed).tint(60), 0.8);
+const OUTPUT: Stroke = Stroke::dashed(Color::new(Hue::Accent), 1.6, Dash::Long);
+const INPUT: Stroke = Stroke::dashed(Color::new(Hue::Perturbed), 1.6, Dash::DashDot);
 /// Line and background at the validity limit.
-const LIMIT: Stroke = Stroke::solid(Color::of(Hue::Warning), 1.2);
-const BEYOND: Color = Color::of(Hue::Warning).tint(14);
+const LIMIT: Stroke = Stroke::solid(Color::new(Hue::Warning), 1.2);
+const BEYOND: Color = Color::new(Hue::Warning).tint(14);
 
 /// Plots gain and phase of the delay or lead in each channel, without the channel gains k, up to
 /// ten times the upper end of the band: a row of two plots for each of `pairs`. The two channels of
@@ -71,7 +72,7 @@ impl PairLeads {
         let band = source.study.settings.band;
         let (inputs, outputs) = dataset.names_of_channels();
         let pair_name = dataset.pair_name(pair);
-        let [output, input] = Channel::of(pair);
+        let [output, input] = Channel::of_pair(pair);
         let mut curves = Vec::new();
         for channel in all_channels(dataset) {
             if ![output, input].contains(&channel) {
@@ -103,7 +104,7 @@ impl PairLeads {
             pair_name,
             omega: frequencies(band.min(), ABOVE_BAND * band.max()),
             curves,
-            price: correction.leads.as_ref().and_then(LeadPrice::of),
+            price: correction.leads.as_ref().and_then(LeadPrice::new),
         }
     }
 
@@ -131,7 +132,7 @@ impl PairLeads {
     /// Returns `: ` and the cost of the leads in the response; empty without leads.
     fn price_words(&self) -> String {
         let price = self.price.as_ref();
-        match price.and_then(|price| price.pair_words(self.pair)) {
+        match price.and_then(|price| pair_price_text(price, self.pair)) {
             Some(words) => format!(": {words}"),
             None => String::new(),
         }
@@ -160,7 +161,7 @@ fn dynamics(correction: &ChannelCorrection, channels: &[Channel]) -> GainDelay {
         .sum();
     let first = channels.first();
     let second = channels.get(1);
-    GainDelay::new(1.0, delay_s).led([
+    GainDelay::new(1.0, delay_s).with_leads([
         first.and_then(|channel| correction.lead(*channel)),
         second.and_then(|channel| correction.lead(*channel)),
     ])
@@ -172,7 +173,7 @@ fn with_limit(panel: Panel, price: &LeadPrice) -> Panel {
     let ground = Band {
         range: Range::new(price.limit_rad_s, price.above_rad_s()),
         color: BEYOND,
-        key: price.limit_words(),
+        key: limit_text(price),
     };
     panel
         .over(ground)

@@ -9,11 +9,13 @@
 //! |---|---|
 //! | [`figure`], [`marks`], [`legend`] | describe a figure |
 //! | [`axis`], `range`, `ticks`, `display_units` | axes, their ticks and units |
-//! | [`role`], [`drawing`] | line styles and colours by meaning |
+//! | [`role`], `color`, `stroke` | line styles and colours by meaning |
+//! | [`drawing`], `area` | shapes and texts on paper |
 //! | [`bode`], [`error`], [`gains`], [`assessment`], [`poles`], [`leads`], [`requirements`] | a figure for each view |
 //! | [`condition_source`], [`responses`] | curves for a condition, from models and corrections |
+//! | `airspeed_response`, `uncertainty_band`, `reference_line`, `error_references` | curves over all conditions, bands and lines about them |
 //! | [`layout`], [`letters`], [`label_places`] | places for panels, letters and labels |
-//! | [`paint`], `paint_axes`, `paint_marks`, `paint_dots`, `paint_words` | shapes at their places |
+//! | [`paint`], `paint_axes`, `paint_marks`, `paint_dots`, `dot_style`, `paint_words` | shapes at their places |
 //! | [`thinning`], [`tables`] | omission of invisible points; values of a figure |
 //!
 //! Every view in the window has a function here that describes its figure, and the command `gdcm
@@ -35,32 +37,27 @@
 //! assert_eq!(figure.drawing(ColumnWidth::Single).size[0].round(), 238.0);
 //! ```
 
-use std::sync::Arc;
-
-use gdcm_method::correction::Channel;
-use gdcm_model::dataset::{ModelId, Pair};
-use gdcm_model::progress::Unobserved;
-use gdcm_study::jobs::curve_jobs::{AcrossRole, ConditionModes};
-use gdcm_study::results::analysis::Analysis;
-use gdcm_study::results::assessment_table::AssessmentChoice;
-use gdcm_study::results::condition_answers::{RecordHistory, TestAnswers};
-use gdcm_study::results::couplings_assessment::CouplingsAssessment;
-use gdcm_study::results::requirements::Requirements;
-
+mod airspeed_response;
+mod area;
 mod arrow;
 pub mod assessment;
 pub mod axis;
 pub mod bode;
 mod bode_curve;
 mod bode_options;
+mod change_table;
 mod coherence;
+mod color;
 mod condition_classes;
 pub mod condition_source;
 mod couplings;
 mod damping_grid;
 mod display_units;
+mod dot_style;
 pub mod drawing;
 pub mod error;
+mod error_cache;
+mod error_references;
 mod evidence;
 #[expect(
     clippy::module_inception,
@@ -91,10 +88,12 @@ mod reference_line;
 pub mod requirements;
 pub mod responses;
 pub mod role;
+mod stroke;
 pub mod tables;
 pub mod thinning;
 mod ticks;
 mod time_histories;
+mod uncertainty_band;
 
 pub use axis::Range;
 pub use condition_source::ConditionSource;
@@ -105,12 +104,25 @@ pub use gains::all_channels;
 pub use marks::{Mark, MarkId};
 pub use role::Role;
 
+use std::sync::Arc;
+
+use gdcm_method::correction::Channel;
+use gdcm_model::dataset::{ModelId, Pair};
+use gdcm_model::progress::Unobserved;
+use gdcm_study::jobs::curve_jobs::{AcrossRole, ConditionModes};
+use gdcm_study::results::analysis::Analysis;
+use gdcm_study::results::assessment_table::AssessmentChoice;
+use gdcm_study::results::couplings_assessment::CouplingsAssessment;
+use gdcm_study::results::record_history::RecordHistory;
+use gdcm_study::results::requirements::Requirements;
+use gdcm_study::results::test_input_responses::TestAnswers;
+
 use assessment::{assessment_figure, evidence_figure, usual_choice};
 use bode::{BodeOptions, airspeeds_figure, bode_figure, overview_figure};
 use error::error_figure;
-use gains::{Across, Measure, channels_figure, net_gain_figure};
+use gains::{Across, GainAxes, Measure, channels_figure, net_gain_figure};
 use leads::leads_figure;
-use poles::{couplings_figure, poles_figure, zeros_of_model};
+use poles::{PoleContents, couplings_figure, poles_figure, zeros_of_model};
 use requirements::{record_history_figure, requirements_figure, test_answers_figure};
 
 /// Kinds of figure.
@@ -279,13 +291,16 @@ impl FigureRequest {
             analysis,
             analysis.uncertainty.as_deref(),
             &self.channels,
-            (self.measure, self.across),
+            GainAxes {
+                measure: self.measure,
+                across: self.across,
+            },
         ))
     }
 
     /// Computes and plots modes and zeros of all models.
     fn poles_figure(&self, source: &ConditionSource<'_>) -> Option<Figure> {
-        let modes = ConditionModes::of(&source.curves.condition, &Unobserved).ok()?;
+        let modes = ConditionModes::compute(&source.curves.condition, &Unobserved).ok()?;
         let zeros = |id: &ModelId| match self.bode.zeros_of {
             Some(pair) => zeros_of_model(source, pair, id),
             None => Vec::new(),
@@ -294,7 +309,12 @@ impl FigureRequest {
             Some(analysis) => analysis.pole_shifts(),
             None => Vec::new(),
         };
-        Some(poles_figure(source, &modes, &self.bode, (&zeros, &shifts)))
+        let contents = PoleContents {
+            modes: &modes,
+            zeros_of: &zeros,
+            shifts: &shifts,
+        };
+        Some(poles_figure(source, contents, &self.bode))
     }
 
     /// Plots model responses over time if requested, otherwise bandwidths.

@@ -3,7 +3,7 @@
 //!
 //! The envelopes are defined for the ratio of model to reference.
 
-use gdcm_method::fidelity::{Muad, leaves};
+use gdcm_method::fidelity::{Muad, ranges_outside};
 use gdcm_model::response::wrap;
 use gdcm_model::units::s_to_ms;
 
@@ -16,6 +16,9 @@ use super::role::Role;
 /// Indices of the lower and the upper envelope in [`Muad`].
 const LOWER: usize = 0;
 const UPPER: usize = 1;
+/// Labels of an envelope that limits the unnoticeable deviations from below, and from above.
+const ABOVE: &str = "unnoticeable above (MUAD)";
+const BELOW: &str = "unnoticeable below (MUAD)";
 
 /// Returns the envelopes about the identified representative in `drawn`, whether its curve is
 /// hidden or not: a pilot does not notice a deviation from the identified response that stays
@@ -31,10 +34,7 @@ pub fn muad_about(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<ReferenceLi
         return Vec::new();
     }
     let mut lines = Vec::new();
-    for (end, label) in [
-        (LOWER, "unnoticeable above (MUAD)"),
-        (UPPER, "unnoticeable below (MUAD)"),
-    ] {
+    for (end, label) in [(LOWER, ABOVE), (UPPER, BELOW)] {
         let mut magnitude = Vec::new();
         let mut phase = Vec::new();
         for (k, &omega) in curve.omega.iter().enumerate() {
@@ -53,10 +53,7 @@ pub fn muad_about(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<ReferenceLi
 /// phase errors are drawn as model minus reference.
 pub(super) fn muad_among_errors(omega: &[f64], unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
     let mut lines = Vec::new();
-    for (end, label) in [
-        (LOWER, "unnoticeable below (MUAD)"),
-        (UPPER, "unnoticeable above (MUAD)"),
-    ] {
+    for (end, magnitude_label, phase_label) in [(LOWER, BELOW, ABOVE), (UPPER, ABOVE, BELOW)] {
         let mut magnitude = Vec::new();
         let mut phase = Vec::new();
         for &omega in omega {
@@ -69,8 +66,8 @@ pub(super) fn muad_among_errors(omega: &[f64], unit: PhaseErrorUnit) -> Vec<Refe
             };
             phase.push([omega, error]);
         }
-        lines.push(envelope(Pane::Magnitude, label, magnitude));
-        lines.push(envelope(Pane::Phase, label, phase));
+        lines.push(envelope(Pane::Magnitude, magnitude_label, magnitude));
+        lines.push(envelope(Pane::Phase, phase_label, phase));
     }
     lines
 }
@@ -108,7 +105,7 @@ pub fn noticed(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<(f64, f64)> {
         mismatch_db.push(-error_db);
         principal_deg.push(wrap(radians).to_degrees());
     }
-    leaves(&omega, &mismatch_db, &principal_deg)
+    ranges_outside(&omega, &mismatch_db, &principal_deg)
 }
 
 #[cfg(test)]

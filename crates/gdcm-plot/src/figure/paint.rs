@@ -1,7 +1,7 @@
 //! Paints a whole figure on paper, or a single panel on any canvas: shapes and texts at their
 //! positions.
 
-pub use super::paint_dots::dot_shapes;
+pub use super::dot_style::DotStyle;
 
 use super::axis::Range;
 use super::drawing::{Anchor, Area, Color, Drawing, PT_PER_MM, Shape, Stroke, Text};
@@ -12,7 +12,7 @@ use super::legend::{Entry, Sample};
 use super::letters::{HALF_HEIGHT, width, wrapped};
 use super::marks::Mark;
 use super::paint_axes::{grid, horizontal_axis, vertical_axis};
-use super::paint_dots::{DotStyle, dots_and_labels};
+use super::paint_dots::dots_and_labels;
 use super::paint_marks::{envelope_areas, grounds, mark_lines};
 use super::paint_words::{mark_words, rule_label};
 use super::placed::{Placed, Side};
@@ -180,10 +180,11 @@ fn sample_shapes(sample: Sample, [start, y]: [f64; 2], sample_width: f64) -> Vec
 }
 
 /// Shapes of a painted panel.
-struct PaintedPanel {
-    shapes: Vec<Shape>,
+#[derive(Clone, Debug)]
+pub struct PaintedPanel {
+    pub shapes: Vec<Shape>,
     /// Number of labels omitted for lack of room.
-    labels_left_out: usize,
+    pub labels_left_out: usize,
 }
 
 /// Paints a panel with its frame, axes and title.
@@ -235,10 +236,9 @@ fn paint_over_lines(placed: &Placed<'_>, mut shapes: Vec<Shape>) -> PaintedPanel
 }
 
 impl Panel {
-    /// Paints the marks in `frame` \[pt\] with these x and y ranges and this font size \[pt\]; also
-    /// returns the number of labels omitted for lack of room. Intended for a canvas that draws
-    /// frame, axes and grid itself and shades areas with edges.
-    pub fn shapes(&self, frame: Area, [x, y]: [Range; 2], letters_pt: f64) -> (Vec<Shape>, usize) {
+    /// Paints the marks in `frame` \[pt\] with these x and y ranges and this font size \[pt\].
+    /// Intended for a canvas that draws frame, axes and grid itself and shades areas with edges.
+    pub fn shapes(&self, frame: Area, [x, y]: [Range; 2], letters_pt: f64) -> PaintedPanel {
         let placed = Placed {
             panel: self,
             title: "",
@@ -260,7 +260,6 @@ impl Panel {
             area: frame,
             shapes: clipped,
         }];
-        let painted = paint_over_lines(&placed, lines);
-        (painted.shapes, painted.labels_left_out)
+        paint_over_lines(&placed, lines)
     }
 }

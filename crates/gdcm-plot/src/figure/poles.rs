@@ -36,31 +36,43 @@ const MARGINS: [f64; 2] = [0.06, 0.08];
 /// Minimum width and height of the plot of all poles \[rad/s\].
 const LEAST: f64 = 1.0;
 
-/// Function that returns the zeros of a model in the selected response.
+/// Function that returns the zeros of a model.
 type ZerosOf<'a> = &'a dyn Fn(&ModelId) -> Vec<Complex<f64>>;
 
+/// Computed contents of the pole figure.
+#[derive(Clone, Copy)]
+pub struct PoleContents<'a> {
+    pub modes: &'a ConditionModes,
+    /// Returns the zeros of a model in the response [`BodeOptions::zeros_of`]; called only if such
+    /// a response is selected.
+    pub zeros_of: ZerosOf<'a>,
+    /// Pole shifts of the physics representative due to couplings.
+    pub shifts: &'a [PoleShift],
+}
+
 /// Plots the poles of every model of a condition, in the whole s-plane and in the region of the
-/// slow modes; × marks physics models, + identified models. `zeros_of` returns the zeros of a model
-/// in the response that the options select, if any; `shifts` are the pole shifts of the physics
-/// representative due to couplings.
+/// slow modes; × marks physics models, + identified models. Zeros are drawn if the options select a
+/// response.
 pub fn poles_figure(
     source: &ConditionSource<'_>,
-    modes: &ConditionModes,
+    contents: PoleContents<'_>,
     options: &BodeOptions,
-    (zeros_of, shifts): (ZerosOf<'_>, &[PoleShift]),
 ) -> Figure {
     let shown = shown_models(source, options);
-    let poles: Vec<Dots> = shown.iter().map(|model| pole_dots(model, modes)).collect();
+    let poles: Vec<Dots> = shown
+        .iter()
+        .map(|model| pole_dots(model, contents.modes))
+        .collect();
     let whole = whole_plane(&poles);
     let mut marks: Vec<Mark> = poles.into_iter().map(Mark::from).collect();
     if let Some(pair) = options.zeros_of {
         let pair_name = source.dataset().pair_name(pair);
         for model in shown.iter().filter(|model| has_zeros(model.role)) {
-            marks.push(zero_dots(model, &pair_name, zeros_of).into());
+            marks.push(zero_dots(model, &pair_name, contents.zeros_of).into());
         }
     }
-    if !shifts.is_empty() {
-        marks.extend(pole_shift_marks(shifts));
+    if !contents.shifts.is_empty() {
+        marks.extend(pole_shift_marks(contents.shifts));
     }
     Figure::new(format!("Poles · {}", source.condition_words()))
         .caption(format!(
@@ -89,8 +101,8 @@ fn plane_plot(title: &str, [real, imaginary]: [Range; 2], marks: Vec<Mark>) -> P
 fn whole_plane(poles: &[Dots]) -> [Range; 2] {
     let dots: Vec<&Dot> = poles.iter().flat_map(|group| &group.dots).collect();
     let empty = Range::new(-1.0, 1.0);
-    let real = Range::of(dots.iter().map(|dot| dot.x)).unwrap_or(empty);
-    let imaginary = Range::of(dots.iter().map(|dot| dot.y)).unwrap_or(empty);
+    let real = Range::spanning(dots.iter().map(|dot| dot.x)).unwrap_or(empty);
+    let imaginary = Range::spanning(dots.iter().map(|dot| dot.y)).unwrap_or(empty);
     let reach = imaginary.max.abs().max(imaginary.min.abs());
     [
         real.including(0.0).with_margin(MARGINS[0], LEAST),

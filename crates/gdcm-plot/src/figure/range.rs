@@ -23,7 +23,7 @@ impl Range {
     }
 
     /// Returns the smallest range that contains every finite value; `None` if no value is finite.
-    pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
+    pub fn spanning(values: impl IntoIterator<Item = f64>) -> Option<Self> {
         let mut range = Self {
             min: f64::INFINITY,
             max: f64::NEG_INFINITY,
@@ -128,10 +128,10 @@ mod tests {
     #[test]
     fn values_that_are_not_finite_do_not_count() {
         assert_eq!(
-            Range::of([f64::NAN, 2.0, f64::NEG_INFINITY, -1.0]),
+            Range::spanning([f64::NAN, 2.0, f64::NEG_INFINITY, -1.0]),
             Some(Range::new(-1.0, 2.0))
         );
-        assert_eq!(Range::of([f64::NAN]), None);
+        assert_eq!(Range::spanning([f64::NAN]), None);
     }
 
     #[test]

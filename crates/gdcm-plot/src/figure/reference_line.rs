@@ -66,9 +66,9 @@ impl ReferenceKind {
     pub fn line(self) -> Stroke {
         match self {
             Self::Delta => Stroke::dashed(Color::INK, 0.9, Dash::Dotted),
-            Self::Bound => Stroke::dashed(Color::of(Hue::Warning), 1.0, Dash::DashDot),
+            Self::Bound => Stroke::dashed(Color::new(Hue::Warning), 1.0, Dash::DashDot),
             Self::Quantile => Stroke::dashed(Color::DIM, 0.9, Dash::Short),
-            Self::Envelope => Stroke::solid(Color::of(Hue::Good), 1.0),
+            Self::Envelope => Stroke::solid(Color::new(Hue::Good), 1.0),
         }
     }
 

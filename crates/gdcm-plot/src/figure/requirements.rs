@@ -20,7 +20,7 @@ use super::marks::{Curve, Dot, DotShape, Dots, Envelope, Intervals, Mark, MarkId
 /// Arrow from the physics model to the corrected model of a condition.
 const ARROW: Stroke = Stroke::solid(Color::DIM.tint(70), 0.7);
 const INTERVAL: Stroke = Stroke::solid(Color::DIM, 0.7);
-const LEVEL: Stroke = Stroke::dashed(Color::of(Hue::Warning), 1.0, Dash::Short);
+const LEVEL: Stroke = Stroke::dashed(Color::new(Hue::Warning), 1.0, Dash::Short);
 /// Upper end of shaded areas \[ms\], above every drawn phase delay.
 const BEYOND_MS: f64 = 1e4;
 /// Strength \[%\] of the widest shaded area, by which each narrower area is stronger, and the
@@ -28,7 +28,7 @@ const BEYOND_MS: f64 = 1e4;
 const BEYOND_TINT: usize = 12;
 const MOST_BEYOND_TINT: usize = 48;
 /// Strength \[%\] of a dot whose bandwidth or phase delay depends on the model above the band.
-const RESTS_TINT: u8 = 45;
+const DEPENDENT_TINT: u8 = 45;
 
 /// Names of bandwidth and phase delay in a finding.
 const BANDWIDTH: &str = "omega_bw_rad_s";
@@ -109,7 +109,7 @@ fn area_beyond(boundary: &LevelBoundary, tint: u8) -> Envelope {
     edge.extend(&boundary.points);
     Envelope {
         name: format!("beyond {}", boundary.name),
-        color: Color::of(Hue::Warning).tint(tint),
+        color: Color::new(Hue::Warning).tint(tint),
         edge: None,
         points: edge
             .into_iter()
@@ -157,8 +157,8 @@ impl<'a> PairFindings<'a> {
         marks.extend(self.delay_intervals().map(Mark::from));
         marks.extend(self.bandwidth_intervals().into_iter().map(Mark::from));
         for role in RequirementRole::ALL {
-            for rests_beyond_band in [false, true] {
-                let dots = self.dots(role, rests_beyond_band);
+            for depends_beyond_band in [false, true] {
+                let dots = self.dots(role, depends_beyond_band);
                 if !dots.dots.is_empty() {
                     marks.push(dots.into());
                 }
@@ -222,18 +222,18 @@ impl<'a> PairFindings<'a> {
         lines
     }
 
-    /// Draws the models in a role: either the models whose bandwidth or phase delay depends on the
-    /// model above the band, or the others.
-    fn dots(&self, role: RequirementRole, rests_beyond_band: bool) -> Dots {
+    /// Draws the models in a role: with `depends_beyond_band`, those whose bandwidth or phase delay
+    /// depends on the model above the band, otherwise the others.
+    fn dots(&self, role: RequirementRole, depends_beyond_band: bool) -> Dots {
         let (shape, color) = dot_style(role);
-        let mut dots = if rests_beyond_band {
-            Dots::new(role.name(), shape, color.tint(RESTS_TINT)).filled(false)
+        let mut dots = if depends_beyond_band {
+            Dots::new(role.name(), shape, color.tint(DEPENDENT_TINT)).filled(false)
         } else {
             Dots::new(role.name(), shape, color).key(role.name())
         };
         for finding in self.with_role(role) {
-            let rests = finding.rests_above(BANDWIDTH) || finding.rests_above(PHASE_DELAY);
-            if rests == rests_beyond_band
+            let depends = finding.rests_above(BANDWIDTH) || finding.rests_above(PHASE_DELAY);
+            if depends == depends_beyond_band
                 && let Some([x, y]) = bandwidth_place(finding)
             {
                 // To avoid clutter, only the dot of the corrected model shows the condition's
@@ -257,10 +257,10 @@ impl<'a> PairFindings<'a> {
 
 fn dot_style(role: RequirementRole) -> (DotShape, Color) {
     match role {
-        RequirementRole::Physics => (DotShape::Circle, Color::of(Hue::Perturbed)),
-        RequirementRole::Corrected => (DotShape::Square, Color::of(Hue::Corrected)),
-        RequirementRole::Scheduled => (DotShape::Triangle, Color::of(Hue::Corrected)),
-        RequirementRole::Identified => (DotShape::Diamond, Color::of(Hue::Identified)),
+        RequirementRole::Physics => (DotShape::Circle, Color::new(Hue::Perturbed)),
+        RequirementRole::Corrected => (DotShape::Square, Color::new(Hue::Corrected)),
+        RequirementRole::Scheduled => (DotShape::Triangle, Color::new(Hue::Corrected)),
+        RequirementRole::Identified => (DotShape::Diamond, Color::new(Hue::Identified)),
     }
 }
 

@@ -1,28 +1,22 @@
-//! Curves of a response, for every model of a condition or for one model in every condition, and
-//! the uncertainty bands about them.
+//! Curves of a response for every model of a condition, and the range that fits them. Cached from
+//! one frame of the window to the next.
 
 use std::sync::Arc;
 
-use gdcm_model::dataset::model::ModelBands;
-use gdcm_model::dataset::{
-    Band as BandOfComparison, BundleKind, ConditionId, Dataset, ModelId, Pair,
-};
-use gdcm_model::response::frequency_response::{ResponseShape, wrapped_deg};
-use gdcm_model::response::{FrequencyResponse, GainDelay};
+use gdcm_model::dataset::{Band as BandOfComparison, BundleKind, ConditionId, Pair};
+use gdcm_model::response::FrequencyResponse;
+use gdcm_model::response::response_shape::{ResponseShape, wrapped_deg};
 use gdcm_model::units::signed;
-use gdcm_study::jobs::curve_jobs::AcrossCurves;
 use gdcm_study::stages::condition_curves::{ConditionCurves, display_band};
-use gdcm_study::{AcrossRole, Analysis};
-use gdcm_sysid::diagnostics::bands::TWO_SIDED_95;
 
+pub use super::airspeed_response::{AirspeedCache, AirspeedResponse};
 pub use super::bode_curve::{BodeCurve, LogFrequencies, Pane};
 pub use super::reference_line::{Level, ReferenceKind, ReferenceLine};
+pub use super::uncertainty_band::{BodeBand, uncertainty_bands};
 
 use super::axis::{PhaseUnit, Range};
-use super::bode_curve::CurveId;
 use super::bode_options::BodeOptions;
 use super::condition_source::ConditionSource;
-use super::role::Role;
 
 /// Maximum extension of a fitted range at either end for values outside the band, relative to the
 /// range within the band.
@@ -180,7 +174,7 @@ impl ResponseCache {
         self.identified = self
             .aligned_shapes(&source, BundleKind::Identified)
             .into_iter()
-            .map(|shape| shape.first(points))
+            .map(|shape| shape.first_points(points))
             .collect();
         self.omega = curves.grid.omega().into();
         self.source = Some(source);
@@ -212,200 +206,35 @@ impl ResponseCache {
     }
 }
 
-/// Uncertainty band about a curve.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct BodeBand {
-    /// Frequencies \[rad/s\], ascending.
-    pub omega: Vec<f64>,
-    /// Lower and upper magnitude \[dB\].
-    pub magnitude_db: Vec<[f64; 2]>,
-    /// Lower and upper phase \[deg\].
-    pub phase_deg: Vec<[f64; 2]>,
-}
-
-/// Returns the 95 % band of every identified model among `curves` that is visible, kept, and has an
-/// uncertainty.
-pub fn uncertainty_bands(dataset: &Dataset, pair: Pair, curves: &[BodeCurve]) -> Vec<BodeBand> {
-    let mut bands = Vec::new();
-    for curve in curves {
-        if let CurveId::Model(id) = &curve.id
-            && id.bundle == BundleKind::Identified
-            && !curve.rejected
-            && !curve.hidden
-            && let Some(model) = dataset.model(id)
-            && let Some(deviations) = &model.bands
-        {
-            bands.push(band_about(curve, deviations, pair));
-        }
-    }
-    bands
-}
-
-/// Returns the band about a curve, at the frequencies within the grid of the deviations.
-fn band_about(curve: &BodeCurve, deviations: &ModelBands, pair: Pair) -> BodeBand {
-    let sd_db = &deviations.sd_db()[pair];
-    let sd_deg = &deviations.sd_deg()[pair];
-    let mut band = BodeBand::default();
-    for (index, omega) in curve.omega.iter().enumerate() {
-        let Some(place) = GridPlace::find(deviations.omega(), *omega) else {
-            continue;
-        };
-        let db = curve.magnitude_db[index];
-        let half_db = TWO_SIDED_95 * place.interpolate(sd_db);
-        let deg = curve.phase_deg[index];
-        let half_deg = TWO_SIDED_95 * place.interpolate(sd_deg);
-        band.omega.push(*omega);
-        band.magnitude_db.push([db - half_db, db + half_db]);
-        band.phase_deg.push([deg - half_deg, deg + half_deg]);
-    }
-    band
-}
-
-/// Position of a frequency between two neighbouring grid points.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct GridPlace {
-    /// Index of the lower neighbour.
-    lower: usize,
-    /// Distance from the lower neighbour in `log omega`, as a fraction of the grid interval.
-    part: f64,
-}
-
-impl GridPlace {
-    /// Finds `omega` in a grid of ascending frequencies; `None` outside the grid.
-    fn find(grid: &[f64], omega: f64) -> Option<Self> {
-        let upper = grid.partition_point(|at| *at <= omega);
-        let lower = upper.checked_sub(1)?;
-        match grid.get(upper) {
-            Some(next) => Some(Self {
-                lower,
-                part: (omega / grid[lower]).ln() / (next / grid[lower]).ln(),
-            }),
-            // The last frequency of the grid counts as the end of the last interval.
-            None if grid[lower] == omega && lower > 0 => Some(Self {
-                lower: lower - 1,
-                part: 1.0,
-            }),
-            None => None,
-        }
-    }
-
-    /// Interpolates linearly between values given on the grid.
-    fn interpolate(self, values: &[f64]) -> f64 {
-        let low = values[self.lower];
-        low + self.part * (values[self.lower + 1] - low)
-    }
-}
-
-/// Shape of a response of a model, in one of the conditions.
-#[derive(Debug)]
-struct ModelShape {
-    id: ModelId,
-    shape: ResponseShape,
-}
-
-/// Data from which the shapes of a response in several conditions are computed.
-#[derive(Debug)]
-struct AirspeedSource {
-    curves: Arc<AcrossCurves>,
-    pair: Pair,
-}
-
-/// Shapes of a response of one model in each condition, kept until their source changes.
-#[derive(Debug, Default)]
-pub struct AirspeedCache {
-    source: Option<AirspeedSource>,
-    omega: Arc<[f64]>,
-    shapes: Vec<ModelShape>,
-}
-
-impl AirspeedCache {
-    /// Computes the shapes of a response; phases are aligned with the first model.
-    fn refresh(&mut self, curves: &Arc<AcrossCurves>, pair: Pair) {
-        if let Some(known) = &self.source
-            && Arc::ptr_eq(&known.curves, curves)
-            && known.pair == pair
-        {
-            return;
-        }
-        self.shapes.clear();
-        for (id, response) in &curves.responses {
-            let mut shape = ResponseShape::new(response.curve(pair));
-            if let Some(first) = self.shapes.first() {
-                shape = shape.phase_aligned(&first.shape, usize::MAX);
-            }
-            self.shapes.push(ModelShape {
-                id: id.clone(),
-                shape,
-            });
-        }
-        self.omega = curves.grid.omega().into();
-        self.source = Some(AirspeedSource {
-            curves: Arc::clone(curves),
-            pair,
-        });
-    }
-}
-
-/// Returns a response in each condition, coloured by airspeed; `role` selects the model and its
-/// correction. Conditions without the model or the correction are skipped.
-pub fn airspeed_curves(
-    (dataset, analysis): (&Dataset, Option<&Analysis>),
-    role: AcrossRole,
-    pair: Pair,
-    curves: &Arc<AcrossCurves>,
-    cache: &mut AirspeedCache,
-) -> Vec<BodeCurve> {
-    cache.refresh(curves, pair);
-    let mut drawn = Vec::new();
-    for ModelShape { id, shape } in &cache.shapes {
-        let Some(condition) = dataset.condition(id.condition) else {
-            continue;
-        };
-        let Some(correction) = role.correction(id.condition, pair, analysis) else {
-            continue;
-        };
-        let shape = if correction == GainDelay::NONE {
-            shape.clone()
-        } else {
-            shape.corrected(&cache.omega, correction)
-        };
-        let state = condition.flight_state();
-        let (slowest_kt, fastest_kt) = dataset.airspeed_range_kt();
-        let color_role = Role::of_airspeed(state.airspeed_kt, slowest_kt, fastest_kt);
-        let curve = BodeCurve {
-            label: format!("condition {} · {:.0} kt", id.condition, state.airspeed_kt),
-            detail: format!("{} · {}", state.name, id.name),
-            ..BodeCurve::new(CurveId::Model(id.clone()), color_role)
-        };
-        drawn.push(curve.with(&cache.omega, &shape.magnitude_db, &shape.phase_deg));
-    }
-    drawn
-}
-
-/// Returns a range that contains all values within the frequency band \[rad/s\]. It is extended to
-/// values outside the band, by at most 40 % of its height at either end. If no value lies in the
-/// band, all values are fitted; `None` without finite values.
-pub fn fitted_values(curves: &[BodeCurve], pane: Pane, (min, max): (f64, f64)) -> Option<Range> {
-    let mut all = Vec::new();
+/// Returns a range that contains all values within the frequency band `band` \[rad/s\]. It is
+/// extended to values outside the band, by at most 40 % of its height at either end. If no value
+/// lies in the band, all values are fitted; `None` without finite values.
+pub fn fitted_values(curves: &[BodeCurve], pane: Pane, band: Range) -> Option<Range> {
+    let mut everywhere = Vec::new();
     let mut inside = Vec::new();
     for curve in curves {
         for (omega, value) in curve.omega.iter().zip(curve.values(pane)) {
-            all.push(*value);
-            if (min..=max).contains(omega) {
+            everywhere.push(*value);
+            if band.contains(*omega) {
                 inside.push(*value);
             }
         }
     }
-    let all = Range::of(all)?;
-    let Some(inside) = Range::of(inside) else {
-        return Some(all);
+    let everywhere = Range::spanning(everywhere)?;
+    let Some(inside) = Range::spanning(inside) else {
+        return Some(everywhere);
     };
     let room = inside.with_margin(OUTSIDE_PART, 0.0);
-    Some(Range::new(all.min.max(room.min), all.max.min(room.max)))
+    Some(Range::new(
+        everywhere.min.max(room.min),
+        everywhere.max.min(room.max),
+    ))
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::bode_curve::CurveId;
+    use super::super::role::Role;
     use super::*;
 
     #[test]
@@ -426,30 +255,11 @@ mod tests {
         assert!(up[0] == 260.0 && up[1].is_nan());
     }
 
-    #[test]
-    fn a_frequency_lies_between_two_by_its_logarithm_and_nowhere_outside() {
-        let grid = [1.0, 10.0, 100.0];
-        let exact = GridPlace {
-            lower: 1,
-            part: 0.0,
-        };
-        assert_eq!(GridPlace::find(&grid, 10.0), Some(exact));
-        let between = GridPlace::find(&grid, 10f64.powf(1.5)).unwrap();
-        assert!(between.lower == 1 && (between.part - 0.5).abs() < 1e-12);
-        let last = GridPlace {
-            lower: 1,
-            part: 1.0,
-        };
-        assert_eq!(GridPlace::find(&grid, 100.0), Some(last));
-        assert_eq!(GridPlace::find(&grid, 0.9), None);
-        assert_eq!(GridPlace::find(&grid, 101.0), None);
-    }
-
     fn fitted(magnitude_db: &[f64]) -> Option<Range> {
         let omega = vec![0.3, 0.5, 1.0, 10.0, 20.0].into();
         let curve = BodeCurve::new(CurveId::Corrected, Role::Perturbed);
         let curve = curve.with(&omega, &magnitude_db.into(), &magnitude_db.into());
-        fitted_values(&[curve], Pane::Magnitude, (0.5, 12.0))
+        fitted_values(&[curve], Pane::Magnitude, Range::new(0.5, 12.0))
     }
 
     #[test]

@@ -115,10 +115,10 @@ impl Role {
     /// Returns the line style in the window. Dashes and widths distinguish the roles without
     /// colour. A rejected nominal model stays red, but dotted.
     pub fn line(self, rejected: bool) -> Stroke {
-        let nominal = Color::of(Hue::Nominal);
-        let perturbed = Color::of(Hue::Perturbed);
-        let identified = Color::of(Hue::Identified);
-        let corrected = Color::of(Hue::Corrected);
+        let nominal = Color::new(Hue::Nominal);
+        let perturbed = Color::new(Hue::Perturbed);
+        let identified = Color::new(Hue::Identified);
+        let corrected = Color::new(Hue::Corrected);
         match self.shown(rejected) {
             Self::Nominal if rejected => Stroke::dashed(nominal, 1.3, Dash::Dotted),
             Self::Nominal => Stroke::dashed(nominal, 1.8, Dash::DashDot),
@@ -132,8 +132,8 @@ impl Role {
             Self::WithoutLeads => Stroke::dashed(corrected, 1.4, Dash::ShortDashDot),
             Self::Coupled => Stroke::dashed(perturbed, 2.0, Dash::ShortDashDot),
             Self::Variant => Stroke::dashed(corrected, 1.8, Dash::Dotted),
-            Self::Rejected => Stroke::dashed(Color::of(Hue::Rejected), 1.0, Dash::Dotted),
-            Self::OfAirspeed(step) => Stroke::solid(Color::of(Hue::OfAirspeed(step)), 1.8),
+            Self::Rejected => Stroke::dashed(Color::new(Hue::Rejected), 1.0, Dash::Dotted),
+            Self::OfAirspeed(step) => Stroke::solid(Color::new(Hue::OfAirspeed(step)), 1.8),
         }
     }
 
@@ -191,7 +191,7 @@ mod tests {
         let stroke = Role::Nominal.stroke(true);
         assert_eq!(
             (stroke.color, stroke.dash),
-            (Color::of(Hue::Nominal), Dash::Dotted)
+            (Color::new(Hue::Nominal), Dash::Dotted)
         );
         assert_eq!(Role::Nominal.key(true), "nominal (rejected)");
         assert_eq!(Role::Perturbed.key(true), "rejected");

@@ -1,12 +1,14 @@
 //! Models over time: their responses to a test input, and to a flight record with its tolerance
 //! corridors (M17.2).
 
-use gdcm_method::requirements::tolerance::ToleranceCheck;
+use gdcm_method::requirements::tolerance_check::ToleranceCheck;
 use gdcm_method::requirements::{RecordCheck, TestInputShape};
 use gdcm_model::dataset::Dataset;
 use gdcm_model::units::number;
-use gdcm_study::results::condition_answers::{QuantityHistory, RecordHistory, TestAnswers};
+use gdcm_study::results::record_history::{QuantityHistory, RecordHistory};
 use gdcm_study::results::requirement_role::RequirementRole;
+use gdcm_study::results::test_input_responses::TestAnswers;
+use gdcm_words::missing_results::{no_test_answer_text, not_in_history_text};
 
 use super::axis::Axis;
 use super::drawing::{Color, Hue, Stroke};
@@ -14,10 +16,10 @@ use super::figure::{Figure, Panel, Plot};
 use super::marks::{Curve, Envelope, Mark};
 use super::role::Role;
 
-const INPUT: Stroke = Stroke::solid(Color::of(Hue::Text), 1.2);
+const INPUT: Stroke = Stroke::solid(Color::new(Hue::Text), 1.2);
 /// Styles of the flight data and of the corridor about them.
-const FLOWN: Stroke = Stroke::solid(Color::of(Hue::Text), 1.0);
-const CORRIDOR: Color = Color::of(Hue::Text).tint(14);
+const FLOWN: Stroke = Stroke::solid(Color::new(Hue::Text), 1.0);
+const CORRIDOR: Color = Color::new(Hue::Text).tint(14);
 /// Height of the panel with the difference from flight; the panel with the record has height 1.
 const DIFFERENCE_WEIGHT: f64 = 0.55;
 /// Additional width of a curve where it is outside the corridor \[pt\].
@@ -55,6 +57,7 @@ pub fn test_answers_figure(answers: &TestAnswers, dataset: &Dataset) -> Figure {
     let mut caption = "Linear models, starting at rest; no flight data.".to_owned();
     for (role, answer) in &answers.models {
         if let Err(why) = answer {
+            let why = no_test_answer_text(why);
             caption.push_str(&format!(" No {} model: {why}.", role.name()));
         }
     }
@@ -116,7 +119,7 @@ pub fn record_history_figure(history: &RecordHistory, dataset: &Dataset, input: 
     let missing: String = history
         .missing
         .iter()
-        .map(|why| format!(" {why}."))
+        .map(|why| format!(" {}.", not_in_history_text(why)))
         .collect();
     let caption = format!(
         "Windows of at most 10 s, each starting from an estimated state; attitudes are integrals \

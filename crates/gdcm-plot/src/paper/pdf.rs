@@ -229,6 +229,7 @@ fn parts(color: Color) -> [f32; 3] {
 
 /// Units per em in a PDF font.
 const UNITS: f64 = 1000.0;
+/// Letters are numbered by the file itself, not by a character collection.
 const IDENTITY: SystemInfo<'static> = SystemInfo {
     registry: Str(b"Adobe"),
     ordering: Str(b"Identity"),
@@ -276,12 +277,17 @@ impl UsedLetters {
     }
 }
 
-/// PDF objects of a font.
+/// PDF objects of a font: the composite font that texts select, and the objects to which it refers.
 struct FontObjects {
+    /// The composite font.
     font: Ref,
+    /// Its only descendant, with the widths of the letters.
     descendant: Ref,
+    /// Metrics of the descendant.
     descriptor: Ref,
+    /// Map from letter numbers to characters.
     characters: Ref,
+    /// Outlines of the used letters.
     file: Ref,
 }
 

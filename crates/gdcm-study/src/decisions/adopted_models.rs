@@ -50,7 +50,7 @@ pub struct AdoptedModels {
 
 impl AdoptedModels {
     /// Returns the chosen models of an identification from `records`, the recommended model first.
-    pub fn of(
+    pub fn from_identification(
         found: &Identification,
         offered: OfferedModels,
         records: Vec<ConditionRecord>,

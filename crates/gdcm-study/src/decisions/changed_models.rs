@@ -1,6 +1,8 @@
 //! Models of a study that differ from those in the file of its dataset: adopted models, and
 //! channels with reversed sign. The dataset of the study contains these changes, so that no other
 //! code needs to apply them.
+//!
+//! In names, "taken" models are adopted models, and "turned" channels have a reversed sign.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -47,14 +49,14 @@ impl Study {
     pub(crate) fn set_sign(
         &mut self,
         channel: Channel,
-        of: Option<SignRole>,
+        role: Option<SignRole>,
     ) -> Result<(), EditRefusal> {
-        if !Channel::all_of(&self.dataset).any(|known| known == channel) {
+        if !Channel::of_dataset(&self.dataset).any(|known| known == channel) {
             return Err(EditRefusal::NoChannel { channel });
         }
         let mut signs = self.signs.clone();
         signs.remove(&channel);
-        signs.extend(of.map(|of| (channel, of)));
+        signs.extend(role.map(|role| (channel, role)));
         self.rebuild(self.taken.clone(), signs)
     }
 
@@ -95,9 +97,7 @@ impl Study {
             choice.identified.retain(|name| is_present(*id, name));
         }
     }
-}
 
-impl Study {
     /// Returns the channels with reversed sign, by name.
     pub fn turned_channels(&self) -> Vec<TurnedChannel> {
         self.signs

@@ -25,6 +25,13 @@ impl BundleChoice {
         self.rejected.remove(name);
         self.reasons.remove(name);
     }
+
+    /// Drops the decisions about models for whose name `is_there` is false.
+    pub(crate) fn retain(&mut self, is_there: impl Fn(&str) -> bool) {
+        self.rejected.retain(|name| is_there(name));
+        self.reasons.retain(|name, _| is_there(name));
+        self.pinned = self.pinned.take().filter(|name| is_there(name));
+    }
 }
 
 /// The engineer's choices in a condition.
@@ -88,14 +95,5 @@ impl ConditionChoice {
     /// Returns the choices in a bundle, for changes.
     pub fn bundle_mut(&mut self, kind: BundleKind) -> &mut BundleChoice {
         kind.pick(&mut self.physics, &mut self.identified)
-    }
-}
-
-impl BundleChoice {
-    /// Drops the decisions about models for whose name `is_there` is false.
-    pub(crate) fn retain(&mut self, is_there: impl Fn(&str) -> bool) {
-        self.rejected.retain(|name| is_there(name));
-        self.reasons.retain(|name, _| is_there(name));
-        self.pinned = self.pinned.take().filter(|name| is_there(name));
     }
 }

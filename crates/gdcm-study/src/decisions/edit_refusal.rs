@@ -1,7 +1,7 @@
 //! Refusals of decisions.
 
 use gdcm_method::correction::Channel;
-use gdcm_model::dataset::dataset::BandError;
+use gdcm_model::dataset::band::BandError;
 use gdcm_model::dataset::{ConditionId, ModelId, Pair};
 use gdcm_model::units::number;
 

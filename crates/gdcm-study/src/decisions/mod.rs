@@ -4,7 +4,7 @@
 pub mod adopted_models;
 pub mod changed_models;
 pub mod choices;
-pub mod differences;
+pub mod dataset_differences;
 pub mod edit;
 pub mod edit_refusal;
 pub mod history;

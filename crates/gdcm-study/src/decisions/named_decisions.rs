@@ -8,7 +8,7 @@ use gdcm_model::dataset::{BundleKind, ConditionId, Dataset, ModelId, PairTable};
 
 use super::adopted_models::AdoptedModels;
 use super::choices::{BundleChoice, ConditionChoice};
-use super::differences::{Difference, Inventory};
+use super::dataset_differences::{Difference, Inventory, NotApplied};
 use super::edit::Edit;
 use super::requirement_settings::RequirementSettings;
 use super::settings::{ResponseNames, Settings};
@@ -32,11 +32,11 @@ pub struct Decisions {
 
 impl Decisions {
     /// Collects the decisions of a study, with channels, conditions and models by name.
-    pub fn of(study: &Study) -> Self {
+    pub fn from_study(study: &Study) -> Self {
         let mut variants = Vec::new();
         for variant in &study.variants {
             if let Some(study) = study.of_variant(&variant.name) {
-                variants.push((variant.name.clone(), Self::of(&study)));
+                variants.push((variant.name.clone(), Self::from_study(&study)));
             }
         }
         Self {
@@ -82,17 +82,15 @@ struct CarriedDecisions {
 }
 
 impl CarriedDecisions {
-    fn refuse(&mut self, decision: String, why: &str) {
-        self.not_applied.push(Difference::NotApplied {
-            decision,
-            why: why.to_owned(),
-        });
+    fn refuse(&mut self, decision: String, why: NotApplied) {
+        self.not_applied
+            .push(Difference::NotApplied { decision, why });
     }
 
     /// Applies an edit, or adds it to `not_applied` with the reason for its refusal.
     fn apply(&mut self, edit: &Edit) {
         if let Err(refusal) = self.study.apply(edit) {
-            self.refuse(edit.label(&self.study), &refusal.to_string());
+            self.refuse(edit.label(&self.study), NotApplied::Refused(refusal));
         }
     }
 
@@ -101,7 +99,7 @@ impl CarriedDecisions {
     fn take_requirements(&mut self, requirements: &Arc<RequirementSettings>) {
         self.study.requirements = Arc::clone(requirements);
         for decision in requirements.without_channel(&self.study.dataset) {
-            self.refuse(decision, "kept in the study for use with another dataset");
+            self.refuse(decision, NotApplied::KeptForAnotherDataset);
         }
     }
 
@@ -115,10 +113,7 @@ impl CarriedDecisions {
         for (output, input) in &names.0 {
             match self.study.dataset.find_pair(output, input) {
                 Some(pair) => table[pair] = true,
-                None => self.refuse(
-                    format!("{verb} {input} → {output}"),
-                    "the dataset has no such response",
-                ),
+                None => self.refuse(format!("{verb} {input} → {output}"), NotApplied::NoResponse),
             }
         }
         table
@@ -132,7 +127,7 @@ impl CarriedDecisions {
             }),
             None => self.refuse(
                 format!("reverse the sign of {}", turned.channel),
-                "the dataset has no such channel",
+                NotApplied::NoChannel,
             ),
         }
     }
@@ -198,8 +193,8 @@ impl Study {
     /// Returns this study for a changed version of its dataset, with every decision that still
     /// applies; and all differences.
     pub fn reconciled(&self, dataset: Arc<Dataset>) -> (Study, Vec<Difference>) {
-        let mut differences = Inventory::of(self.file_dataset()).differences(&dataset);
-        let (study, not_applied) = Decisions::of(self).applied_to(dataset);
+        let mut differences = Inventory::from_dataset(self.file_dataset()).differences(&dataset);
+        let (study, not_applied) = Decisions::from_study(self).applied_to(dataset);
         differences.extend(not_applied);
         (study, differences)
     }

@@ -1,12 +1,12 @@
-//! Table of the settings, with name, key in files, command-line option, allowed values and window
-//! control. It is used by undo, comparison of decisions, refusals, the report, the command line and
-//! the window.
+//! Table of the settings, with name, key in files, command-line option, allowed values and place of
+//! the window control. It is used by undo, comparison of decisions, refusals, the report, the
+//! command line and the window. The crate of words holds the captions and help texts.
 
 use gdcm_method::correction::delta::GainSource;
 use gdcm_method::correction::{GainBounds, GainObjective};
 use gdcm_method::fidelity::CostAverage;
 use gdcm_method::schedule::{DelayScheduling, ScheduleKind, ScheduledQuantity, SecondVariable};
-use gdcm_model::dataset::dataset::{GREATEST_OMEGA, LEAST_OMEGA};
+use gdcm_model::dataset::band::{GREATEST_OMEGA, LEAST_OMEGA};
 use gdcm_model::dataset::{Band, limits};
 use gdcm_model::response::LeadOrder;
 
@@ -17,691 +17,642 @@ use super::settings::{
 };
 use super::study::Study;
 
-/// Returns a row with name, key, option, help and kind, and defaults for the rest.
-const fn row([name, key, option]: [&'static str; 3], help: &'static str, kind: Kind) -> Setting {
-    let control = Control {
-        place: Place::Elsewhere,
-        caption: "",
-        label: name,
-        step: 0.01,
-        digits: Digits::Significant,
-        applies: |_| true,
-    };
-    Setting {
-        name,
-        key,
-        option,
-        bare: None,
-        help,
-        unit: Unit {
-            file: "",
-            shown: "",
-            scale: 1.0,
-        },
-        kind,
-        control,
-    }
-}
+/// Control of a setting outside the settings panel, always applicable.
+const DEFAULT_CONTROL: Control = Control {
+    place: Place::Elsewhere,
+    step: 0.01,
+    digits: Digits::Significant,
+    applies: |_| true,
+};
 
-impl Setting {
-    const fn unit(self, file: &'static str, shown: &'static str, scale: f64) -> Self {
-        Self {
-            unit: Unit { file, shown, scale },
-            ..self
-        }
-    }
-
-    /// Sets the value of the option when it is given without an argument.
-    const fn bare(self, word: &'static str) -> Self {
-        Self {
-            bare: Some(word),
-            ..self
-        }
-    }
-
-    /// Sets the place, caption and accessible name of the control.
-    const fn at(self, place: Place, caption: &'static str, label: &'static str) -> Self {
-        Self {
-            control: Control {
-                place,
-                caption,
-                label,
-                ..self.control
-            },
-            ..self
-        }
-    }
-
-    /// Sets the step for dragging, and the decimals, of the control.
-    const fn digits(self, step: f64, digits: Digits) -> Self {
-        Self {
-            control: Control {
-                step,
-                digits,
-                ..self.control
-            },
-            ..self
-        }
-    }
-
-    const fn where_it(self, applies: fn(&Study) -> bool) -> Self {
-        Self {
-            control: Control {
-                applies,
-                ..self.control
-            },
-            ..self
-        }
-    }
-}
-
-const fn real(range: [f64; 2], get: fn(&Settings) -> f64, set: fn(&mut Settings, f64)) -> Kind {
-    Kind::Number {
-        range,
-        whole: false,
-        get,
-        set,
-    }
-}
-
-const fn whole(range: [f64; 2], get: fn(&Settings) -> f64, set: fn(&mut Settings, f64)) -> Kind {
-    Kind::Number {
-        range,
-        whole: true,
-        get,
-        set,
-    }
-}
-
-const fn choice(
-    words: &'static [[&'static str; 3]],
-    get: fn(&Settings) -> usize,
-    set: fn(&mut Settings, usize),
-) -> Kind {
-    Kind::Choice { words, get, set }
-}
+/// Fields that most settings share; every setting has its own name, key, option and kind.
+const DEFAULT: Setting = Setting {
+    name: "",
+    key: "",
+    option: "",
+    bare: None,
+    unit: Unit {
+        file: "",
+        shown: "",
+        scale: 1.0,
+    },
+    kind: Kind::Flag {
+        words: ["", ""],
+        get: |_| false,
+        set: |_, _| {},
+    },
+    control: DEFAULT_CONTROL,
+};
 
 /// Regularisation weight for the output gains, eq. (7); beyond its range the optimum is constant.
-pub static ALPHA_GAIN: Setting = row(
-    ["α of the gains", "alpha_gain", "--alpha"],
-    "Weight that keeps the output gains, eq. (7), near 1; 0 is the limit α → 0",
-    real(
-        [0.0, 1e6],
-        |of| of.alpha_gain,
-        |of, alpha| of.alpha_gain = alpha,
-    ),
-)
-.at(Place::Slider, "α gains", "α gains");
+pub static ALPHA_GAIN: Setting = Setting {
+    name: "α of the gains",
+    key: "alpha_gain",
+    option: "--alpha",
+    kind: Kind::Number {
+        range: [0.0, 1e6],
+        whole: false,
+        get: |settings| settings.alpha_gain,
+        set: |settings, alpha| settings.alpha_gain = alpha,
+    },
+    control: Control {
+        place: Place::Slider,
+        ..DEFAULT_CONTROL
+    },
+    ..DEFAULT
+};
 
 /// Regularisation weight for the output delays, eq. (11), or for all signed delays (M15.4).
-pub static ALPHA_DELAY: Setting = row(
-    ["α of the delays", "alpha_delay", "--alpha-delay"],
-    "Weight that keeps the output delays, eq. (11), or all signed delays (M15) near 0; 0 is the limit α → 0",
-    real([0.0, 1e6], |of| of.alpha_delay, |of, alpha| of.alpha_delay = alpha),
-)
-.at(Place::Slider, "α delays", "α delays");
+pub static ALPHA_DELAY: Setting = Setting {
+    name: "α of the delays",
+    key: "alpha_delay",
+    option: "--alpha-delay",
+    kind: Kind::Number {
+        range: [0.0, 1e6],
+        whole: false,
+        get: |settings| settings.alpha_delay,
+        set: |settings, alpha| settings.alpha_delay = alpha,
+    },
+    control: Control {
+        place: Place::Slider,
+        ..DEFAULT_CONTROL
+    },
+    ..DEFAULT
+};
 
 /// Phase correction: none, by delays, or by signed delays that lead filters realise where negative.
-pub static PHASE: Setting = row(
-    ["phase correction", "phase", "--phase"],
-    "How the phase is corrected: not at all, by delays, or by a delay or lead filter for each \
-    channel",
-    choice(
-        &[
-            ["none", "none", "Gains only"],
-            [
-                "delay",
-                "delay",
-                "Each channel gets a delay, eq. (11) (the paper)",
-            ],
-            [
-                "lead",
-                "delay or lead",
-                "Each channel gets one signed delay; a negative delay becomes a lead filter, \
-                which acts like a faster servo (M15)",
-            ],
+pub static PHASE: Setting = Setting {
+    name: "phase correction",
+    key: "phase",
+    option: "--phase",
+    kind: Kind::Choice {
+        words: &[
+            ["none", "none"],
+            ["delay", "delay"],
+            ["lead", "delay or lead"],
         ],
-        |of| of.phase.index(),
-        |of, index| of.phase = PhaseCorrection::ALL[index],
-    ),
-)
-.at(Place::Top, "Phase", "Phase correction");
+        get: |settings| settings.phase.index(),
+        set: |settings, index| settings.phase = PhaseCorrection::ALL[index],
+    },
+    control: Control {
+        place: Place::Top,
+        ..DEFAULT_CONTROL
+    },
+    ..DEFAULT
+};
 
 /// Source of the D to which the delays are fitted: median of phase over frequency, or line over the
 /// band (M15.2).
-pub static DELAY_FROM: Setting = row(
-    ["delay estimate", "delay_from", "--delay-from"],
-    "Definition of the D to which delays are fitted: median of phase over frequency, or straight \
-    line over the band",
-    choice(
-        &[
-            [
-                "median",
-                "median",
-                "Median of Δφ/ω over the band, eq. (9) (the paper)",
-            ],
-            [
-                "band",
-                "line over the band",
-                "Least-squares line through Δφ over the band (M15.2)",
-            ],
-        ],
-        |of| of.delay_from.index(),
-        |of, index| of.delay_from = DelayFrom::ALL[index],
-    ),
-)
-.at(Place::Beside, "Delay estimate", "Delay estimate")
-.where_it(|study| study.settings.phase == PhaseCorrection::Delay);
+pub static DELAY_FROM: Setting = Setting {
+    name: "delay estimate",
+    key: "delay_from",
+    option: "--delay-from",
+    kind: Kind::Choice {
+        words: &[["median", "median"], ["band", "line over the band"]],
+        get: |settings| settings.delay_from.index(),
+        set: |settings, index| settings.delay_from = DelayFrom::ALL[index],
+    },
+    control: Control {
+        place: Place::Beside,
+        applies: |study| study.settings.phase == PhaseCorrection::Delay,
+        ..DEFAULT_CONTROL
+    },
+    ..DEFAULT
+};
 
 /// Order of the lead filters: 2 leaves the gain within the band nearly unchanged, 1 raises it
 /// (M15.3).
-pub static LEAD_ORDER: Setting = row(
-    ["order of the lead filters", "lead.order", "--lead-order"],
-    "Order of every lead filter (M15.3)",
-    choice(
-        &[
-            [
-                "2",
-                "2",
-                "Butterworth damping: leaves the gain within the band nearly unchanged",
-            ],
-            [
-                "1",
-                "1",
-                "(1 + as)/(1 + bs): the gain rises within the band",
-            ],
-        ],
-        |of| of.lead.order.index(),
-        |of, index| of.lead.order = LeadOrder::ALL[index],
-    ),
-)
-.at(Place::Line, "Lead: order", "Order of the lead filters")
-.where_it(has_leads);
+pub static LEAD_ORDER: Setting = Setting {
+    name: "order of the lead filters",
+    key: "lead.order",
+    option: "--lead-order",
+    kind: Kind::Choice {
+        words: &[["2", "2"], ["1", "1"]],
+        get: |settings| settings.lead.order.index(),
+        set: |settings, index| settings.lead.order = LeadOrder::ALL[index],
+    },
+    control: Control {
+        place: Place::Line,
+        applies: has_leads,
+        ..DEFAULT_CONTROL
+    },
+    ..DEFAULT
+};
 
 fn has_leads(study: &Study) -> bool {
     study.settings.phase == PhaseCorrection::Lead
 }
 
 /// Parameter `n` of the lead filters: their lag time constant is `1 / (n omega_B)` (M15.3).
-pub static LEAD_POLE: Setting = row(
-    ["n of the lead filters", "lead.n", "--lead-n"],
-    "Parameter of the lag of every lead filter, 1/(n ω_B), where ω_B is the top of the band; a \
-    smaller n gives less noise and permits more lead",
-    real(
-        [2.0, 10.0],
-        |of| of.lead.pole,
-        |of, pole| of.lead.pole = pole,
-    ),
-)
-.at(Place::Beside, "n", "n of the lead filters")
-.digits(0.05, Digits::Significant)
-.where_it(has_leads);
+pub static LEAD_POLE: Setting = Setting {
+    name: "n of the lead filters",
+    key: "lead.n",
+    option: "--lead-n",
+    kind: Kind::Number {
+        range: [2.0, 10.0],
+        whole: false,
+        get: |settings| settings.lead.pole,
+        set: |settings, pole| settings.lead.pole = pole,
+    },
+    control: Control {
+        place: Place::Beside,
+        step: 0.05,
+        digits: Digits::Significant,
+        applies: has_leads,
+    },
+    ..DEFAULT
+};
 
 /// Maximum gain of a lead filter at high frequency, as a factor; its range is 0 to 40 dB.
-pub static LEAD_LIMIT: Setting = row(
-    ["R_max of the lead filters", "lead.r_max", "--lead-r-max"],
-    "Maximum gain of a channel's lead filter far above the band (10 is 20 dB); it limits the lead \
-    of the channel",
-    real(
-        [1.0, 100.0],
-        |of| of.lead.limit,
-        |of, limit| of.lead.limit = limit,
-    ),
-)
-.at(Place::Beside, "R_max", "R_max of the lead filters")
-.digits(0.1, Digits::Significant)
-.where_it(has_leads);
+pub static LEAD_LIMIT: Setting = Setting {
+    name: "R_max of the lead filters",
+    key: "lead.r_max",
+    option: "--lead-r-max",
+    kind: Kind::Number {
+        range: [1.0, 100.0],
+        whole: false,
+        get: |settings| settings.lead.limit,
+        set: |settings, limit| settings.lead.limit = limit,
+    },
+    control: Control {
+        place: Place::Beside,
+        step: 0.1,
+        digits: Digits::Significant,
+        applies: has_leads,
+    },
+    ..DEFAULT
+};
 
 /// Correction of couplings and modes: none, mixing, or mixing and feedback (M16).
-pub static COUPLINGS: Setting = row(
-    ["couplings", "couplings", "--couplings"],
-    "Correction of couplings and modes, common to all conditions and applied before the channel \
-    correction: none, a mixing of the inputs, or a mixing and a feedback of outputs to inputs \
-    (M16)",
-    choice(
-        &[
-            [
-                "none",
-                "none",
-                "Only gains, delays and leads of the channels (the paper)",
-            ],
-            [
-                "mixing",
-                "mixing",
-                "Each input receives constant shares of the other inputs (M16)",
-            ],
-            [
-                "feedback",
-                "mixing and feedback",
-                "Each input receives constant shares of the other inputs and of the outputs, \
-                which also moves the modes (M16)",
-            ],
+pub static COUPLINGS: Setting = Setting {
+    name: "couplings",
+    key: "couplings",
+    option: "--couplings",
+    kind: Kind::Choice {
+        words: &[
+            ["none", "none"],
+            ["mixing", "mixing"],
+            ["feedback", "mixing and feedback"],
         ],
-        |of| of.couplings.index(),
-        |of, index| of.couplings = CouplingCorrection::ALL[index],
-    ),
-)
-.at(Place::Top, "Couplings", "Couplings");
+        get: |settings| settings.couplings.index(),
+        set: |settings, index| settings.couplings = CouplingCorrection::ALL[index],
+    },
+    control: Control {
+        place: Place::Top,
+        ..DEFAULT_CONTROL
+    },
+    ..DEFAULT
+};
 
 /// Comparison band \[rad/s\].
-pub static BAND: Setting = row(
-    ["frequency band", "band_rad_s", "--band"],
-    "Comparison band [rad/s]; in the window, its limits can also be dragged in the plot",
-    Kind::Range {
+pub static BAND: Setting = Setting {
+    name: "frequency band",
+    key: "band_rad_s",
+    option: "--band",
+    unit: Unit {
+        file: "rad/s",
+        shown: "rad/s",
+        scale: 1.0,
+    },
+    kind: Kind::Range {
         range: [LEAST_OMEGA, GREATEST_OMEGA],
         nothing: None,
-        ends: ["Band from", "Band to"],
-        get: |of| Some([of.band.min(), of.band.max()]),
-        set: |of, ends| {
-            let [min, max] = ends.unwrap_or([of.band.min(), of.band.max()]);
-            of.band = Band::new(min, max)?;
+        get: |settings| Some([settings.band.min(), settings.band.max()]),
+        set: |settings, ends| {
+            let [min, max] = ends.unwrap_or([settings.band.min(), settings.band.max()]);
+            settings.band = Band::new(min, max)?;
             Ok(())
         },
     },
-)
-.unit("rad/s", "rad/s", 1.0)
-.at(Place::Line, "Band", "Band");
+    control: Control {
+        place: Place::Line,
+        ..DEFAULT_CONTROL
+    },
+    ..DEFAULT
+};
 
 /// Number of logarithmically spaced frequencies in the band.
-pub static POINTS: Setting = row(
-    ["number of frequencies", "points", "--points"],
-    "Number of logarithmically spaced frequencies in the band",
-    whole(
-        [2.0, 5000.0],
-        |of| of.points as f64,
-        |of, points| of.points = points as usize,
-    ),
-)
-.at(Place::Line, "Points", "Frequencies in the band")
-.digits(1.0, Digits::Decimals(0));
+pub static POINTS: Setting = Setting {
+    name: "number of frequencies",
+    key: "points",
+    option: "--points",
+    kind: Kind::Number {
+        range: [2.0, 5000.0],
+        whole: true,
+        get: |settings| settings.points as f64,
+        set: |settings, points| settings.points = points as usize,
+    },
+    control: Control {
+        place: Place::Line,
+        step: 1.0,
+        digits: Digits::Decimals(0),
+        ..DEFAULT_CONTROL
+    },
+    ..DEFAULT
+};
 
 /// Quantile from which the bounds are computed, at most the median.
-pub static QUANTILE: Setting = row(
-    ["bound quantile", "quantile", "--quantile"],
-    "Bounds are this quantile, and its complement, of |H_ref|/|H_sim| and of Δφ/ω",
-    real(
-        [0.0, 0.5],
-        |of| of.quantile,
-        |of, quantile| of.quantile = quantile,
-    ),
-)
-.unit("", "%", 100.0)
-.at(Place::Beside, "bound quantile", "Bound quantile")
-.digits(0.1, Digits::Decimals(1));
+pub static QUANTILE: Setting = Setting {
+    name: "bound quantile",
+    key: "quantile",
+    option: "--quantile",
+    unit: Unit {
+        file: "",
+        shown: "%",
+        scale: 100.0,
+    },
+    kind: Kind::Number {
+        range: [0.0, 0.5],
+        whole: false,
+        get: |settings| settings.quantile,
+        set: |settings, quantile| settings.quantile = quantile,
+    },
+    control: Control {
+        place: Place::Beside,
+        step: 0.1,
+        digits: Digits::Decimals(1),
+        ..DEFAULT_CONTROL
+    },
+    ..DEFAULT
+};
 
 /// Manual gain bounds, -120 to 120 dB; no value restores the quantiles.
-pub static GAIN_BOUNDS: Setting = row(
-    ["gain bounds", "gain_bounds", "--gain-bounds"],
-    "Minimum and maximum gain of every channel, common to all conditions; auto: from the \
-    quantiles of each condition",
-    Kind::Range {
+pub static GAIN_BOUNDS: Setting = Setting {
+    name: "gain bounds",
+    key: "gain_bounds",
+    option: "--gain-bounds",
+    kind: Kind::Range {
         range: [1e-6, 1e6],
         nothing: Some(["auto", "by the quantile"]),
-        ends: ["Lower gain bound", "Upper gain bound"],
-        get: |of| of.gain_bounds.map(|bounds| [bounds.lower, bounds.upper]),
-        set: |of, ends| {
-            of.gain_bounds = ends.map(|[lower, upper]| GainBounds { lower, upper });
+        get: |settings| {
+            settings
+                .gain_bounds
+                .map(|bounds| [bounds.lower, bounds.upper])
+        },
+        set: |settings, ends| {
+            settings.gain_bounds = ends.map(|[lower, upper]| GainBounds { lower, upper });
             Ok(())
         },
     },
-)
-.at(Place::Line, "Gain bounds", "Gain bounds")
-.digits(0.002, Digits::Gain);
+    control: Control {
+        place: Place::Line,
+        step: 0.002,
+        digits: Digits::Gain,
+        ..DEFAULT_CONTROL
+    },
+    ..DEFAULT
+};
 
 /// Manual upper delay bound \[s\]; no value restores the quantile.
-pub static DELAY_UPPER: Setting = row(
-    ["upper delay bound", "delay_upper_s", "--delay-bound"],
-    "Maximum delay of every channel, common to all conditions; auto: from the quantiles of each \
-    condition",
-    Kind::Optional {
+pub static DELAY_UPPER: Setting = Setting {
+    name: "upper delay bound",
+    key: "delay_upper_s",
+    option: "--delay-bound",
+    unit: Unit {
+        file: "seconds",
+        shown: "ms",
+        scale: 1e3,
+    },
+    kind: Kind::Optional {
         range: [0.0, 1e3],
         nothing: ["auto", "by the quantile"],
         on: None,
-        get: |of| of.delay_upper_s,
-        set: |of, upper_s| of.delay_upper_s = upper_s,
+        get: |settings| settings.delay_upper_s,
+        set: |settings, upper_s| settings.delay_upper_s = upper_s,
     },
-)
-.unit("seconds", "ms", 1e3)
-.at(Place::Line, "Delay bound", "Upper delay bound")
-.digits(0.2, Digits::Decimals(1));
+    control: Control {
+        place: Place::Line,
+        step: 0.2,
+        digits: Digits::Decimals(1),
+        ..DEFAULT_CONTROL
+    },
+    ..DEFAULT
+};
 
 /// Maximum mismatch around a loop \[dB\] up to which constrained gains count as consistent.
-pub static AGREEMENT: Setting = row(
-    ["loop tolerance", "agreement_db", "--agreement"],
-    "Maximum mismatch around a loop of held gains up to which they count as consistent",
-    real(
-        [0.0, 3.0],
-        |of| of.agreement_db,
-        |of, tolerance| of.agreement_db = tolerance,
-    ),
-)
-.unit("dB", "dB", 1.0)
-.at(Place::Line, "Loop tolerance", "Loop tolerance");
+pub static AGREEMENT: Setting = Setting {
+    name: "loop tolerance",
+    key: "agreement_db",
+    option: "--agreement",
+    unit: Unit {
+        file: "dB",
+        shown: "dB",
+        scale: 1.0,
+    },
+    kind: Kind::Number {
+        range: [0.0, 3.0],
+        whole: false,
+        get: |settings| settings.agreement_db,
+        set: |settings, tolerance| settings.agreement_db = tolerance,
+    },
+    control: Control {
+        place: Place::Line,
+        ..DEFAULT_CONTROL
+    },
+    ..DEFAULT
+};
 
 /// Average over frequency in J: median or mean.
-pub static COST_AVERAGE: Setting = row(
-    ["average in J", "cost_average", "--cost-average"],
-    "How squared errors are averaged over frequency in J",
-    choice(
-        &[
-            [
-                "median",
-                "J median",
-                "J uses the median over frequency (the paper)",
-            ],
-            [
-                "mean",
-                "J mean",
-                "J uses the mean over frequency (Tischler)",
-            ],
-        ],
-        |of| of.cost_average.index(),
-        |of, index| of.cost_average = CostAverage::ALL[index],
-    ),
-)
-.at(Place::Line, "Method", "Average in J");
+pub static COST_AVERAGE: Setting = Setting {
+    name: "average in J",
+    key: "cost_average",
+    option: "--cost-average",
+    kind: Kind::Choice {
+        words: &[["median", "J median"], ["mean", "J mean"]],
+        get: |settings| settings.cost_average.index(),
+        set: |settings, index| settings.cost_average = CostAverage::ALL[index],
+    },
+    control: Control {
+        place: Place::Line,
+        ..DEFAULT_CONTROL
+    },
+    ..DEFAULT
+};
 
 /// Gain objective: squared errors of the ratios, eq. (7), or squared errors in dB.
-pub static GAIN_OBJECTIVE: Setting = row(
-    [
-        "objective of the gains",
-        "gain_objective",
-        "--gain-objective",
-    ],
-    "Objective that the gains minimise",
-    choice(
-        &[
-            [
-                "ratio",
-                "ratio",
-                "Gains minimise squared errors of the ratios, eq. (7)",
-            ],
-            [
-                "dB",
-                "dB",
-                "Gains minimise squared errors in dB: a factor and its inverse count alike",
-            ],
-        ],
-        |of| of.gain_objective.index(),
-        |of, index| of.gain_objective = GainObjective::ALL[index],
-    ),
-)
-.at(Place::Beside, "", "Objective of the gains");
+pub static GAIN_OBJECTIVE: Setting = Setting {
+    name: "objective of the gains",
+    key: "gain_objective",
+    option: "--gain-objective",
+    kind: Kind::Choice {
+        words: &[["ratio", "ratio"], ["dB", "dB"]],
+        get: |settings| settings.gain_objective.index(),
+        set: |settings, index| settings.gain_objective = GainObjective::ALL[index],
+    },
+    control: Control {
+        place: Place::Beside,
+        ..DEFAULT_CONTROL
+    },
+    ..DEFAULT
+};
 
 /// Models from which G is computed: the two representatives, or all pairs of kept models.
-pub static GAIN_SOURCE: Setting = row(
-    ["source of G", "gain_from", "--gain-from"],
-    "Source of G: the two representatives, or the mean over all pairs of kept models",
-    choice(
-        &[
-            [
-                "representatives",
-                "representatives",
-                "G of the two representatives (the paper)",
-            ],
-            [
-                "mean",
-                "mean of pairs",
-                "G is the mean of ln G over all pairs of kept models",
-            ],
+pub static GAIN_SOURCE: Setting = Setting {
+    name: "source of G",
+    key: "gain_from",
+    option: "--gain-from",
+    kind: Kind::Choice {
+        words: &[
+            ["representatives", "representatives"],
+            ["mean", "mean of pairs"],
         ],
-        |of| of.gain_source.index(),
-        |of, index| of.gain_source = GainSource::ALL[index],
-    ),
-)
-.at(Place::Line, "G from", "Source of G");
+        get: |settings| settings.gain_source.index(),
+        set: |settings, index| settings.gain_source = GainSource::ALL[index],
+    },
+    control: Control {
+        place: Place::Line,
+        ..DEFAULT_CONTROL
+    },
+    ..DEFAULT
+};
 
 /// Confidence level of all error bars, intervals and tests.
-pub static LEVEL: Setting = row(
-    ["confidence level", "error_bars.level", "--level"],
-    "Level of every error bar, interval and test",
-    real(
-        [0.5, 0.999],
-        |of| of.uncertainty.level,
-        |of, level| of.uncertainty.level = level,
-    ),
-)
-.unit("", "%", 100.0)
-.at(Place::Line, "Confidence level", "Confidence level")
-.digits(0.5, Digits::Decimals(1));
+pub static LEVEL: Setting = Setting {
+    name: "confidence level",
+    key: "error_bars.level",
+    option: "--level",
+    unit: Unit {
+        file: "",
+        shown: "%",
+        scale: 100.0,
+    },
+    kind: Kind::Number {
+        range: [0.5, 0.999],
+        whole: false,
+        get: |settings| settings.uncertainty.level,
+        set: |settings, level| settings.uncertainty.level = level,
+    },
+    control: Control {
+        place: Place::Line,
+        step: 0.5,
+        digits: Digits::Decimals(1),
+        ..DEFAULT_CONTROL
+    },
+    ..DEFAULT
+};
 
 /// Maximum degrees of freedom that the identification part of a condition's error bar borrows from
 /// the other conditions.
-pub static POOLING: Setting = row(
-    [
-        "pooling (degrees of freedom borrowed)",
-        "error_bars.prior_degrees",
-        "--pooling",
-    ],
-    "Maximum degrees of freedom that the identification part of a condition's error bar borrows \
-    from the other conditions; 0 uses the condition's own data only",
-    real(
-        [0.0, 100.0],
-        |of| of.uncertainty.prior_degrees,
-        |of, degrees| of.uncertainty.prior_degrees = degrees,
-    ),
-)
-.at(
-    Place::Beside,
-    "pooling",
-    "Pooling (degrees of freedom borrowed)",
-)
-.digits(0.1, Digits::Significant);
+pub static POOLING: Setting = Setting {
+    name: "pooling (degrees of freedom borrowed)",
+    key: "error_bars.prior_degrees",
+    option: "--pooling",
+    kind: Kind::Number {
+        range: [0.0, 100.0],
+        whole: false,
+        get: |settings| settings.uncertainty.prior_degrees,
+        set: |settings, degrees| settings.uncertainty.prior_degrees = degrees,
+    },
+    control: Control {
+        place: Place::Beside,
+        step: 0.1,
+        digits: Digits::Significant,
+        ..DEFAULT_CONTROL
+    },
+    ..DEFAULT
+};
 
 /// Minimum coherence of the frequencies that count in J, G and D.
-pub static COHERENCE: Setting = row(
-    ["coherence threshold", "coherence_threshold", "--coherence"],
-    "Minimum coherence γ² of the frequencies of measured responses that count: off, on (0.6), or \
-    a value; off: every frequency counts alike",
-    Kind::Optional {
+pub static COHERENCE: Setting = Setting {
+    name: "coherence threshold",
+    key: "coherence_threshold",
+    option: "--coherence",
+    kind: Kind::Optional {
         range: [0.0, 1.0],
         nothing: ["off", "not used"],
         on: Some(DEFAULT_COHERENCE),
-        get: |of| of.coherence_threshold,
-        set: |of, least| of.coherence_threshold = least,
+        get: |settings| settings.coherence_threshold,
+        set: |settings, least| settings.coherence_threshold = least,
     },
-)
-.at(Place::Line, "Coherence", "Least coherence")
-.where_it(|study| study.settings.coherence_threshold.is_some() || study.dataset.has_coherence());
+    control: Control {
+        place: Place::Line,
+        applies: |study| {
+            study.settings.coherence_threshold.is_some() || study.dataset.has_coherence()
+        },
+        ..DEFAULT_CONTROL
+    },
+    ..DEFAULT
+};
 
 /// Number of averages assumed for measured responses that do not state it.
-pub static AVERAGES: Setting = row(
-    [
-        "averages of measured responses",
-        "error_bars.averages",
-        "--averages",
-    ],
-    "Number of independent averages of measured responses whose files do not state it",
-    Kind::Optional {
+pub static AVERAGES: Setting = Setting {
+    name: "averages of measured responses",
+    key: "error_bars.averages",
+    option: "--averages",
+    kind: Kind::Optional {
         range: limits::AVERAGES,
         nothing: ["auto", "as stated in the files"],
         on: None,
-        get: |of| of.uncertainty.averages,
-        set: |of, averages| of.uncertainty.averages = averages,
+        get: |settings| settings.uncertainty.averages,
+        set: |settings, averages| settings.uncertainty.averages = averages,
     },
-);
+    ..DEFAULT
+};
 
 /// Window length assumed for measured responses that do not state it \[s\].
-pub static WINDOW: Setting = row(
-    [
-        "windows of measured responses",
-        "error_bars.window_s",
-        "--averaging-window",
-    ],
-    "Length of the windows of measured responses whose files do not state it",
-    Kind::Optional {
+pub static WINDOW: Setting = Setting {
+    name: "windows of measured responses",
+    key: "error_bars.window_s",
+    option: "--averaging-window",
+    unit: Unit {
+        file: "seconds",
+        shown: "s",
+        scale: 1.0,
+    },
+    kind: Kind::Optional {
         range: limits::WINDOW_S,
         nothing: ["auto", "as stated in the files"],
         on: None,
-        get: |of| of.uncertainty.window_s,
-        set: |of, window_s| of.uncertainty.window_s = window_s,
+        get: |settings| settings.uncertainty.window_s,
+        set: |settings, window_s| settings.uncertainty.window_s = window_s,
     },
-)
-.unit("seconds", "s", 1.0);
+    ..DEFAULT
+};
 
 /// Whether windows are assumed to overlap by half for measured responses that do not state it.
-pub static HALF_OVERLAP: Setting = row(
-    [
-        "windows overlap",
-        "error_bars.half_overlap",
-        "--half-overlap",
-    ],
-    "Assumes that the windows of measured responses overlap by half, if their files do not state \
-    it",
-    Kind::Flag {
+pub static HALF_OVERLAP: Setting = Setting {
+    name: "windows overlap",
+    key: "error_bars.half_overlap",
+    option: "--half-overlap",
+    kind: Kind::Flag {
         words: ["not", "by half"],
-        get: |of| of.uncertainty.half_overlap,
-        set: |of, overlap| of.uncertainty.half_overlap = overlap,
+        get: |settings| settings.uncertainty.half_overlap,
+        set: |settings, overlap| settings.uncertainty.half_overlap = overlap,
     },
-);
+    ..DEFAULT
+};
 
 /// Form of the schedule in airspeed: a polynomial of degree 0 to 3, or a lookup table.
-pub static SCHEDULE: Setting = row(
-    ["schedule", "schedule.kind", "--degree"],
-    "Degree of the schedule's polynomial in airspeed, 0 to 3, or a lookup table",
-    choice(
-        &[
-            ["0", "constant", "Polynomial of degree 0 in airspeed"],
-            ["1", "degree 1", "Polynomial of degree 1 in airspeed"],
-            ["2", "degree 2", "Polynomial of degree 2 in airspeed"],
-            ["3", "degree 3", "Polynomial of degree 3 in airspeed"],
-            [
-                "table",
-                "table",
-                "Mean of each cluster of airspeeds, with linear interpolation between them",
-            ],
+pub static SCHEDULE: Setting = Setting {
+    name: "schedule",
+    key: "schedule.kind",
+    option: "--degree",
+    kind: Kind::Choice {
+        words: &[
+            ["0", "constant"],
+            ["1", "degree 1"],
+            ["2", "degree 2"],
+            ["3", "degree 3"],
+            ["table", "table"],
         ],
-        |of| of.schedule.kind.index(),
-        |of, index| of.schedule.kind = ScheduleKind::ALL[index],
-    ),
-)
-.at(Place::Top, "Schedule", "Schedule");
+        get: |settings| settings.schedule.kind.index(),
+        set: |settings, index| settings.schedule.kind = ScheduleKind::ALL[index],
+    },
+    control: Control {
+        place: Place::Top,
+        ..DEFAULT_CONTROL
+    },
+    ..DEFAULT
+};
 
 /// Scheduled quantity: `ln k`, or the gain itself.
-pub static SCHEDULED_QUANTITY: Setting = row(
-    ["scheduled quantity", "schedule.of", "--schedule-of"],
-    "Quantity regressed on airspeed: ln k, or the gain k itself",
-    choice(
-        &[
-            [
-                "ln-k",
-                "of ln k",
-                "Regresses ln k: the product of two scheduled gains is the schedule of their \
-                product",
-            ],
-            ["k", "of k", "Regresses the gain k itself"],
-        ],
-        |of| of.schedule.quantity.index(),
-        |of, index| of.schedule.quantity = ScheduledQuantity::ALL[index],
-    ),
-)
-.at(Place::Beside, "", "Scheduled quantity");
+pub static SCHEDULED_QUANTITY: Setting = Setting {
+    name: "scheduled quantity",
+    key: "schedule.of",
+    option: "--schedule-of",
+    kind: Kind::Choice {
+        words: &[["ln-k", "of ln k"], ["k", "of k"]],
+        get: |settings| settings.schedule.quantity.index(),
+        set: |settings, index| settings.schedule.quantity = ScheduledQuantity::ALL[index],
+    },
+    control: Control {
+        place: Place::Beside,
+        ..DEFAULT_CONTROL
+    },
+    ..DEFAULT
+};
 
 /// Whether the schedule has delays too: never, always, or automatically (M11).
-pub static SCHEDULE_DELAYS: Setting = row(
-    ["delays over airspeed", "schedule_delays", "--schedule-delays"],
-    "Schedule the delays of the channels too, clamped to their bounds (M11); without a value: always",
-    choice(
-        &[
-            [
-                "automatic",
-                "delays automatic",
-                "Delays are scheduled with the gains if a held response has a net delay above 0.5 \
-                ms in a scheduled condition",
-            ],
-            ["always", "delays too", "Delays are scheduled with the gains"],
-            ["never", "no delays", "Gains only (the paper)"],
+pub static SCHEDULE_DELAYS: Setting = Setting {
+    name: "delays over airspeed",
+    key: "schedule_delays",
+    option: "--schedule-delays",
+    bare: Some("always"),
+    kind: Kind::Choice {
+        words: &[
+            ["automatic", "delays automatic"],
+            ["always", "delays too"],
+            ["never", "no delays"],
         ],
-        |of| of.schedule_delays.index(),
-        |of, index| of.set_delay_scheduling(DelayScheduling::ALL[index]),
-    ),
-)
-.bare("always")
-.at(Place::Line, "Over airspeed", "Schedule of delays")
-.where_it(|study| !has_leads(study));
+        get: |settings| settings.schedule_delays.index(),
+        set: |settings, index| settings.set_delay_scheduling(DelayScheduling::ALL[index]),
+    },
+    control: Control {
+        place: Place::Line,
+        applies: |study| !has_leads(study),
+        ..DEFAULT_CONTROL
+    },
+    ..DEFAULT
+};
 
 /// Degree of the polynomials for the signed delays.
-pub static TAU_DEGREE: Setting = row(
-    [
-        "degree of the signed delays",
-        "schedule.tau_degree",
-        "--tau-degree",
-    ],
-    "Degree of the polynomial of signed delays in airspeed; 0 assumes that lags of servos and \
-    sensors do not depend on airspeed (M15.5)",
-    choice(
-        &[
-            [
-                "0",
-                "τ constant",
-                "One signed delay for all airspeeds: lags of servos and sensors do not depend on \
-                airspeed (M15.5)",
-            ],
-            ["1", "τ degree 1", "Polynomial of degree 1 in airspeed"],
-            ["2", "τ degree 2", "Polynomial of degree 2 in airspeed"],
-            ["3", "τ degree 3", "Polynomial of degree 3 in airspeed"],
+pub static TAU_DEGREE: Setting = Setting {
+    name: "degree of the signed delays",
+    key: "schedule.tau_degree",
+    option: "--tau-degree",
+    kind: Kind::Choice {
+        words: &[
+            ["0", "τ constant"],
+            ["1", "τ degree 1"],
+            ["2", "τ degree 2"],
+            ["3", "τ degree 3"],
         ],
-        |of| of.schedule.tau_degree,
-        |of, degree| of.schedule.tau_degree = degree,
-    ),
-)
-.at(
-    Place::Line,
-    "Over airspeed",
-    "Schedule of the signed delays",
-)
-.where_it(has_leads);
+        get: |settings| settings.schedule.tau_degree,
+        set: |settings, degree| settings.schedule.tau_degree = degree,
+    },
+    control: Control {
+        place: Place::Line,
+        applies: has_leads,
+        ..DEFAULT_CONTROL
+    },
+    ..DEFAULT
+};
 
 /// Maximum difference between consecutive airspeeds that count as equal \[kt\].
-pub static AIRSPEED_TOLERANCE: Setting = row(
-    [
-        "airspeed tolerance",
-        "schedule.airspeed_tolerance_kt",
-        "--airspeed-tolerance",
-    ],
-    "Maximum difference between consecutive airspeeds that count as one, for the lookup \
-    table and for the permitted degree",
-    real(
-        [0.0, 100.0],
-        |of| of.schedule.airspeed_tolerance_kt,
-        |of, tolerance_kt| of.schedule.airspeed_tolerance_kt = tolerance_kt,
-    ),
-)
-.unit("kt", "kt", 1.0)
-.at(Place::Line, "One airspeed", "Airspeed tolerance")
-.digits(0.1, Digits::Decimals(1));
+pub static AIRSPEED_TOLERANCE: Setting = Setting {
+    name: "airspeed tolerance",
+    key: "schedule.airspeed_tolerance_kt",
+    option: "--airspeed-tolerance",
+    unit: Unit {
+        file: "kt",
+        shown: "kt",
+        scale: 1.0,
+    },
+    kind: Kind::Number {
+        range: [0.0, 100.0],
+        whole: false,
+        get: |settings| settings.schedule.airspeed_tolerance_kt,
+        set: |settings, tolerance_kt| settings.schedule.airspeed_tolerance_kt = tolerance_kt,
+    },
+    control: Control {
+        place: Place::Line,
+        step: 0.1,
+        digits: Digits::Decimals(1),
+        ..DEFAULT_CONTROL
+    },
+    ..DEFAULT
+};
 
 /// Scheduling variable besides airspeed: none, altitude or mass.
-pub static SECOND_VARIABLE: Setting = row(
-    [
-        "second variable",
-        "schedule.second_variable",
-        "--second-variable",
-    ],
-    "Schedule gains with a second variable in addition to airspeed",
-    choice(
-        &[
-            ["none", "airspeed only", "Airspeed only, as in the paper"],
-            [
-                "altitude",
-                "and altitude",
-                "Recommended only if the Evidence view shows that it is needed",
-            ],
-            [
-                "mass",
-                "and mass",
-                "Recommended only if the Evidence view shows that it is needed",
-            ],
+pub static SECOND_VARIABLE: Setting = Setting {
+    name: "second variable",
+    key: "schedule.second_variable",
+    option: "--second-variable",
+    kind: Kind::Choice {
+        words: &[
+            ["none", "airspeed only"],
+            ["altitude", "and altitude"],
+            ["mass", "and mass"],
         ],
-        |of| of.schedule.second.index(),
-        |of, index| of.schedule.second = <Option<SecondVariable>>::ALL[index],
-    ),
-)
-.at(
-    Place::Line,
-    "Scheduled over",
-    "Second variable of the schedule",
-);
+        get: |settings| settings.schedule.second.index(),
+        set: |settings, index| settings.schedule.second = <Option<SecondVariable>>::ALL[index],
+    },
+    control: Control {
+        place: Place::Line,
+        ..DEFAULT_CONTROL
+    },
+    ..DEFAULT
+};
 
 /// Every setting except the constrained and ignored responses, in display order.
 pub static SETTINGS: [&Setting; 29] = [

@@ -1,5 +1,5 @@
-//! Rows of the settings table, and operations on them: setting, checking, formatting and parsing a
-//! value.
+//! The type [`Setting`], a row of the settings table, and operations on it: setting, checking,
+//! formatting and parsing a value. The table itself is in `setting.rs`.
 
 use gdcm_method::correction::delta::GainSource;
 use gdcm_method::correction::{GainBounds, GainObjective};
@@ -25,8 +25,6 @@ pub struct Setting {
     pub option: &'static str,
     /// Value of the option without an argument; `None` where an argument is required.
     pub bare: Option<&'static str>,
-    /// Description in one sentence.
-    pub help: &'static str,
     pub unit: Unit,
     /// Type and range of the value.
     pub kind: Kind,
@@ -70,7 +68,6 @@ pub enum Kind {
         /// The words for no value: on the command line, and in a sentence; `None` where a value is
         /// required.
         nothing: Option<[&'static str; 2]>,
-        ends: [&'static str; 2],
         get: fn(&Settings) -> Option<[f64; 2]>,
         set: fn(&mut Settings, Option<[f64; 2]>) -> Result<(), EditRefusal>,
     },
@@ -81,8 +78,8 @@ pub enum Kind {
         set: fn(&mut Settings, bool),
     },
     Choice {
-        /// For each choice: word on the command line, label in the window, meaning.
-        words: &'static [[&'static str; 3]],
+        /// For each choice: word on the command line, and word in a sentence and in the window.
+        words: &'static [[&'static str; 2]],
         get: fn(&Settings) -> usize,
         set: fn(&mut Settings, usize),
     },
@@ -92,8 +89,6 @@ pub enum Kind {
 #[derive(Clone, Copy, Debug)]
 pub struct Control {
     pub place: Place,
-    pub caption: &'static str,
-    pub label: &'static str,
     /// Change in the displayed value for each point of dragging.
     pub step: f64,
     pub digits: Digits,
@@ -397,8 +392,8 @@ impl Setting {
     ///
     /// # Errors
     /// The expected values and the text found.
-    pub fn read(&self, said: &[&str]) -> Result<Value, String> {
-        match (self.kind, said) {
+    pub fn read(&self, arguments: &[&str]) -> Result<Value, String> {
+        match (self.kind, arguments) {
             (Kind::Flag { .. }, _) => Ok(Value::Flag(true)),
             (Kind::Number { range, whole, .. }, [text]) => {
                 let number = if whole {
@@ -421,7 +416,7 @@ impl Setting {
             _ => Err(format!(
                 "expected {}, found {}",
                 self.syntax(),
-                said.join(" ")
+                arguments.join(" ")
             )),
         }
     }
@@ -462,7 +457,7 @@ fn read_optional(text: &str, nothing: &str, on: Option<f64>) -> Result<Value, St
     })
 }
 
-fn read_choice(text: &str, words: &[[&str; 3]]) -> Result<Value, String> {
+fn read_choice(text: &str, words: &[[&str; 2]]) -> Result<Value, String> {
     let words = option_words(words);
     if let Some(index) = words.iter().position(|word| *word == text) {
         return Ok(Value::Choice(index));
@@ -473,6 +468,6 @@ fn read_choice(text: &str, words: &[[&str; 3]]) -> Result<Value, String> {
 }
 
 /// Returns the words of the choices on the command line.
-fn option_words<'a>(words: &[[&'a str; 3]]) -> Vec<&'a str> {
-    words.iter().map(|[option, ..]| *option).collect()
+fn option_words<'a>(words: &[[&'a str; 2]]) -> Vec<&'a str> {
+    words.iter().map(|[option, _]| *option).collect()
 }

@@ -6,7 +6,7 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use gdcm_method::correction::delta::GainSource;
-use gdcm_method::correction::leads::LeadSettings;
+use gdcm_method::correction::lead_design::LeadSettings;
 use gdcm_method::correction::{GainBounds, GainObjective};
 use gdcm_method::couplings::CouplingKind;
 use gdcm_method::fidelity::CostAverage;
@@ -114,7 +114,7 @@ impl TryFrom<Vec<(String, String)>> for ResponseNames {
 /// All settings that change a result, common to all conditions of a study. `R` is the type of a set
 /// of responses: a table over the dataset, or names in files. A setting that an older file does not
 /// contain has the default of its field, which may differ from its value in a new study
-/// ([`Settings::of`]).
+/// ([`Settings::for_dataset`]).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Settings<R = PairTable<bool>> {
     #[serde(rename = "band_rad_s")]
@@ -233,7 +233,7 @@ impl<R> Settings<R> {
 
 impl Settings {
     /// Returns the settings of a new study of `dataset`.
-    pub fn of(dataset: &Dataset) -> Self {
+    pub fn for_dataset(dataset: &Dataset) -> Self {
         let none = PairTable::filled(dataset.outputs().len(), dataset.inputs().len(), false);
         Self {
             band: dataset.band(),

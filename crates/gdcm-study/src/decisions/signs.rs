@@ -1,4 +1,5 @@
-//! Channels with reversed sign, and datasets with the reversal applied.
+//! Channels with reversed sign, and datasets with the reversal applied. In names, "turned" means with
+//! reversed sign.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -142,7 +143,7 @@ impl BundleSigns<'_> {
 
     /// Returns the product of the signs of the two channels of a response.
     fn pair_sign(&self, pair: Pair) -> f64 {
-        let [output, input] = Channel::of(pair);
+        let [output, input] = Channel::of_pair(pair);
         self.sign(output) * self.sign(input)
     }
 

@@ -55,7 +55,7 @@ impl PartialEq for Study {
 impl Study {
     /// Creates a study of `dataset` without any decision: default settings, no rejections.
     pub fn new(dataset: Arc<Dataset>) -> Self {
-        let settings = Settings::of(&dataset);
+        let settings = Settings::for_dataset(&dataset);
         let choices = dataset
             .ids()
             .map(|id| (id, ConditionChoice::default()))
@@ -98,7 +98,7 @@ impl Study {
 
     /// Returns the names of the rejected models of a condition in file order, physics bundle first.
     pub fn rejected_names(&self, condition: ConditionId) -> Vec<&str> {
-        let of = |kind| {
+        let rejected_in_bundle = |kind| {
             let rejected = &self.choice(condition).bundle(kind).rejected;
             let models = self
                 .dataset
@@ -109,7 +109,10 @@ impl Study {
                 .map(|model| model.name.as_str())
                 .filter(|name| rejected.contains(*name))
         };
-        BundleKind::BOTH.into_iter().flat_map(of).collect()
+        BundleKind::BOTH
+            .into_iter()
+            .flat_map(rejected_in_bundle)
+            .collect()
     }
 }
 

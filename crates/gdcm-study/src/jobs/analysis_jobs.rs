@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use gdcm_method::correction::problem::ProblemError;
-use gdcm_method::correction::sensitivity::{Toggle, toggles};
+use gdcm_method::correction::toggles::{Toggle, toggles};
 use gdcm_method::correction::{Problem, ProofBudget, Solution};
 use gdcm_model::dataset::Pair;
 use gdcm_model::progress::{Cancelled, Progress};
@@ -17,7 +17,7 @@ use crate::results::assessment_table::{AssessmentChoice, AssessmentTable};
 use crate::results::couplings_assessment::AssessedCouplings;
 use crate::results::uncertainty::Uncertainty;
 use crate::shared::Shared;
-use crate::stages::coupling_costs::with_couplings;
+use crate::stages::couplings_assessment::with_couplings;
 use crate::stages::engine::Engine;
 use crate::stages::optima::solved;
 
@@ -144,7 +144,7 @@ pub struct UncertaintyJob {
 }
 
 impl Job for UncertaintyJob {
-    /// An engine that keeps responses and substitutions from one analysis to the next.
+    /// An engine that keeps responses and swaps from one analysis to the next.
     type Tools = Engine;
     type Output = Arc<Uncertainty>;
 

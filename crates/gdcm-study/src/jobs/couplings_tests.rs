@@ -7,10 +7,11 @@ use nalgebra::DMatrix;
 use serde_json::Value;
 
 use gdcm_method::correction::{Channels, Pade};
-use gdcm_method::couplings::coupling_effects::{cyclic_inputs, feedback_shares, mixing_shares};
-use gdcm_method::couplings::fit::{CouplingFit, left_out_fits};
+use gdcm_method::couplings::coupling_shares::{cyclic_inputs, feedback_shares, mixing_shares};
+use gdcm_method::couplings::fit::CouplingFit;
+use gdcm_method::couplings::jackknife::left_out_fits;
 use gdcm_method::couplings::problem::{
-    CouplingOptions, mean_delays_s, response_deviation, without_channels,
+    CouplingOptions, mean_delays_s, response_deviation, without_delays_and_leads,
 };
 use gdcm_method::couplings::*;
 use gdcm_method::schedule::CostChange;
@@ -92,7 +93,7 @@ impl Example {
         let delays_s = self.mean_delays_s();
         let condition = |result: &ConditionAnalysis| {
             let of = |kind| representative(result, kind);
-            let response = |kind| FrequencyResponse::of(&of(kind).dynamics, &grid);
+            let response = |kind| FrequencyResponse::from_dynamics(&of(kind).dynamics, &grid);
             let leads = result.correction.leads.as_ref().unwrap();
             let flight = response(BundleKind::Identified);
             let bands = of(BundleKind::Identified).bands.as_ref();
@@ -100,7 +101,12 @@ impl Example {
                 id: result.condition.id(),
                 airspeed_kt: result.condition.flight_state().airspeed_kt,
                 physics: Arc::new(response(BundleKind::Physics)),
-                flight: without_channels(&flight, grid.omega(), &delays_s, Some(&leads.design)),
+                flight: without_delays_and_leads(
+                    &flight,
+                    grid.omega(),
+                    &delays_s,
+                    Some(&leads.design),
+                ),
                 usable: result
                     .comparison
                     .representative
@@ -151,9 +157,9 @@ impl Example {
     fn least_margin(&self, matrices: &CouplingMatrices, (low, high): (f64, f64)) -> LoopMargin {
         let grid = FrequencyGrid::logarithmic(Band::beyond(low, high).unwrap(), 60);
         let margin = |model: &Model| {
-            let singular =
-                matrices.least_singular_values(&FrequencyResponse::of(&model.dynamics, &grid));
-            LoopMargin::of(&singular, grid.omega()).unwrap()
+            let singular = matrices
+                .least_singular_values(&FrequencyResponse::from_dynamics(&model.dynamics, &grid));
+            LoopMargin::find(&singular, grid.omega()).unwrap()
         };
         let models =
             results(&self.analysis).map(|result| representative(result, BundleKind::Physics));
@@ -292,7 +298,7 @@ fn the_example_agrees(fit: &CouplingFit, name: &str) {
         correction: AssessedCorrection::Scheduled,
         average: analysis.study.settings.cost_average,
     };
-    let table = AssessmentTable::of(&analysis, choice);
+    let table = AssessmentTable::assess(&analysis, choice);
     let change = |id: ConditionId| PairTable::from_fn(6, 4, |pair| table.change(id, pair));
     let scheduled = mean_costs(analysis.conditions.keys().map(|&id| change(id)));
     assert_close(
@@ -368,7 +374,7 @@ fn the_bars_of_the_example_tell_its_largest_entries_from_nothing() {
     let fits = left_out_fits(&problem, &Sequential, &Unobserved).unwrap();
     assert_eq!(fits.len(), 11);
     let airspeed_kt = FEEDBACK.matrices.airspeeds().mean_kt;
-    let bars = CouplingBars::of(&fits, airspeed_kt, 0.9).unwrap();
+    let bars = CouplingBars::from_fits(&fits, airspeed_kt, 0.9).unwrap();
     let mixing = FEEDBACK.matrices.normalised_mixing(airspeed_kt);
     let is_told = |to: usize, from: usize| mixing[(to, from)].abs() > bars.mixing[(to, from)];
     let (inputs, _) = EXAMPLE.dataset.names_of_channels();
@@ -447,7 +453,7 @@ pub(crate) fn own_and_scheduled(analysis: &Analysis) -> [[f64; 2]; 2] {
         correction: AssessedCorrection::Scheduled,
         average: analysis.study.settings.cost_average,
     };
-    let table = AssessmentTable::of(analysis, choice);
+    let table = AssessmentTable::assess(analysis, choice);
     let change = |id: ConditionId| PairTable::from_fn(6, 4, |pair| table.change(id, pair));
     [
         own,
@@ -597,7 +603,7 @@ fn couplings_that_cannot_be_fitted_are_refused_in_words_and_leave_the_models_as_
     assert!(
         refusal
             .to_string()
-            .starts_with("no coupling fit: none of the 0 conditions"),
+            .starts_with("no coupling fit: none of the conditions (0)"),
         "{refusal}"
     );
     let result = analysis.condition(ConditionId(1)).unwrap();

@@ -7,7 +7,7 @@ use gdcm_model::dataset::{
     Band, BundleKind, Condition, ConditionId, Dataset, Model, ModelId, Pair,
 };
 use gdcm_model::progress::{Cancelled, Progress};
-use gdcm_model::response::eigenvalues::{ModesError, modes_of};
+use gdcm_model::response::mode::{ModesError, modes_of};
 use gdcm_model::response::{FrequencyGrid, FrequencyResponse, GainDelay, Mode, PreparedModel};
 
 use super::job::Job;
@@ -49,7 +49,7 @@ impl Job for ModesJob {
     type Output = Arc<ConditionModes>;
 
     fn run(&self, (): &mut (), progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
-        ConditionModes::of(&self.condition, progress).map(Arc::new)
+        ConditionModes::compute(&self.condition, progress).map(Arc::new)
     }
 }
 
@@ -74,7 +74,7 @@ pub struct AcrossCurves {
 
 impl AcrossJob {
     /// Returns the job for a role's model in every condition that has one.
-    pub fn of(
+    pub fn for_role(
         dataset: &Arc<Dataset>,
         analysis: Option<&Analysis>,
         role: AcrossRole,
@@ -108,7 +108,7 @@ impl Job for AcrossJob {
         let responses = in_turn(&self.models, progress, |id| {
             let condition = self.dataset.condition(id.condition)?;
             let model = condition.model(id.bundle, &id.name)?;
-            let mut response = PreparedModel::of(&model.dynamics).response(&grid);
+            let mut response = PreparedModel::new(&model.dynamics).response(&grid);
             if let Some(fitted) = &self.couplings {
                 let airspeed_kt = condition.flight_state().airspeed_kt;
                 response = fitted.matrices().response(&response, airspeed_kt);
@@ -201,7 +201,7 @@ impl ConditionModes {
     ///
     /// # Errors
     /// [`Cancelled`] between two models, where `progress` requests it.
-    pub fn of(condition: &Arc<Condition>, progress: &dyn Progress) -> Result<Self, Cancelled> {
+    pub fn compute(condition: &Arc<Condition>, progress: &dyn Progress) -> Result<Self, Cancelled> {
         let models: Vec<&Model> = BundleKind::BOTH
             .into_iter()
             .flat_map(|kind| condition.bundle(kind))

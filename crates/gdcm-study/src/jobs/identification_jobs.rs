@@ -6,11 +6,14 @@ use std::time::Instant;
 use gdcm_model::dataset::{ConditionId, StateSpace};
 use gdcm_model::executor::Executor;
 use gdcm_model::progress::{Cancelled, Progress};
-use gdcm_model::simulation::{FlightRecord, Validation, ValidationSettings, validate};
+use gdcm_model::simulation::{
+    FlightRecord, Validation, ValidationError, ValidationSettings, validate,
+};
 use gdcm_sysid::identification::identify::identify;
 use gdcm_sysid::identification::{Identification, IdentificationError, Options, Preparation};
 use gdcm_sysid::records::LaidOutRecord;
 use gdcm_sysid::spectra::preparation::segments_of;
+use gdcm_sysid::spectra::preparation_settings::PreparationError;
 
 use super::job::Job;
 use crate::shared::Shared;
@@ -41,7 +44,7 @@ impl IdentificationRequest {
     ///
     /// # Errors
     /// No record is used, or all are held out.
-    pub fn of<'r>(
+    pub fn from_used<'r>(
         records: impl Iterator<Item = &'r LaidOutRecord>,
         preparation: Preparation,
         band: [f64; 2],
@@ -191,11 +194,27 @@ pub struct SimulationJob {
     pub model: StateSpace,
 }
 
+/// Why a model is not simulated with a record.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SimulationFailure {
+    NotPrepared(PreparationError),
+    NotSimulated(ValidationError),
+}
+
+impl SimulationFailure {
+    /// Returns the stable code, for programs and tests.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NotPrepared(_) => "record-not-prepared",
+            Self::NotSimulated(_) => "not-simulated",
+        }
+    }
+}
+
 impl Job for SimulationJob {
     /// Executor of the pieces of work.
     type Tools = Box<dyn Executor>;
-    /// The error is the reason in words.
-    type Output = Result<Arc<Validation>, String>;
+    type Output = Result<Arc<Validation>, SimulationFailure>;
 
     fn run(
         &self,
@@ -207,11 +226,11 @@ impl Job for SimulationJob {
             return Err(Cancelled);
         }
         let found = segments
-            .map_err(|error| error.to_string())
+            .map_err(SimulationFailure::NotPrepared)
             .and_then(|segments| {
                 let settings = ValidationSettings::unfiltered();
                 validate(&self.model, &segments, &settings, executor.as_ref())
-                    .map_err(|error| error.to_string())
+                    .map_err(SimulationFailure::NotSimulated)
             });
         Ok(found.map(Arc::new))
     }

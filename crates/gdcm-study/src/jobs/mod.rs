@@ -2,8 +2,6 @@
 
 pub mod analysis_jobs;
 #[cfg(test)]
-mod condition_answers_tests;
-#[cfg(test)]
 mod coupling_costs_tests;
 #[cfg(test)]
 pub(crate) mod couplings_tests;
@@ -11,5 +9,7 @@ pub mod curve_jobs;
 pub mod identification_jobs;
 pub mod job;
 pub mod requirement_jobs;
+#[cfg(test)]
+mod test_input_responses_tests;
 #[cfg(test)]
 mod time_histories_tests;

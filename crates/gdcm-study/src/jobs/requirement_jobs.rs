@@ -11,13 +11,13 @@ use gdcm_sysid::identification::Preparation;
 use super::job::Job;
 use crate::decisions::requirement_settings::RequirementSettings;
 use crate::execution::Execution;
-use crate::results::analysis::Analysis;
-use crate::results::condition_answers::{ComparedRecord, RecordHistory, TestAnswers};
+use crate::results::analysis::{Analysis, NoResult};
+use crate::results::record_history::{ComparedRecord, NoRecordHistory, RecordHistory};
+use crate::results::record_simulations::time_histories_of;
 use crate::results::required_modes::KnownPoles;
 use crate::results::requirements::{Requirements, requirements_of};
-use crate::results::time_histories::{
-    HistoryRecord, HistoryRecords, TimeHistories, time_histories_of,
-};
+use crate::results::test_input_responses::TestAnswers;
+use crate::results::time_histories::{HistoryRecord, HistoryRecords, TimeHistories};
 use crate::results::uncertainty::Uncertainty;
 use crate::shared::Shared;
 
@@ -93,8 +93,7 @@ pub struct RecordHistoryJob {
 impl Job for RecordHistoryJob {
     /// Executor of the pieces of work.
     type Tools = Box<dyn Executor>;
-    /// The error is the reason in words.
-    type Output = Result<Arc<RecordHistory>, String>;
+    type Output = Result<Arc<RecordHistory>, NoRecordHistory>;
 
     fn run(
         &self,
@@ -128,8 +127,7 @@ pub struct TestAnswersJob {
 impl Job for TestAnswersJob {
     /// Executor of the pieces of work.
     type Tools = Box<dyn Executor>;
-    /// The error is the reason in words.
-    type Output = Result<Arc<TestAnswers>, String>;
+    type Output = Result<Arc<TestAnswers>, NoResult>;
 
     fn run(
         &self,

@@ -18,11 +18,11 @@ use super::job::Job;
 use super::requirement_jobs::TimeHistoriesJob;
 use crate::execution::Execution;
 use crate::results::analysis::Analysis;
+use crate::results::missing_finding::MissingReason;
 use crate::results::record_comparison::{Trend, common_windows};
+use crate::results::record_simulations::time_histories_of;
 use crate::results::requirement_role::RequirementRole;
-use crate::results::time_histories::{
-    HistoryRecord, HistoryRecords, TimeHistories, time_histories_of,
-};
+use crate::results::time_histories::{HistoryRecord, HistoryRecords, TimeHistories};
 
 const CONDITION: ConditionId = ConditionId(3);
 const SAMPLE_TIME_S: f64 = 0.02;
@@ -156,7 +156,7 @@ fn shares_of_a_condition_are_those_of_its_records_by_their_samples() {
 #[test]
 fn what_is_not_compared_is_said() {
     let analysis = &EXAMPLE.analysis;
-    let words = |found: &TimeHistories| {
+    let reasons = |found: &TimeHistories| {
         found
             .missing
             .iter()
@@ -166,22 +166,22 @@ fn what_is_not_compared_is_said() {
     let table = ToleranceTable::default();
     let none = time_histories_of(analysis, &[], &table, &Execution::sequential()).unwrap();
     assert_eq!(
-        (words(&none), none.records.len()),
-        (vec!["no flight record was given".to_owned()], 0)
+        (reasons(&none), none.records.len()),
+        (vec![MissingReason::NoRecord], 0)
     );
 
     let short = flown(analysis, RequirementRole::Identified, 50);
     let found = histories(analysis, short, &table);
     assert!(found.records.is_empty());
-    assert!(
-        words(&found)
-            .iter()
-            .any(|why| why.starts_with("record \"sweep\": ") && why.contains("less than 2.0 s"))
-    );
+    assert!(reasons(&found).iter().any(|why| matches!(
+        why,
+        MissingReason::RecordNotPrepared { record, why }
+            if record == "sweep" && why.to_string().contains("less than 2.0 s")
+    )));
     let others = found
         .missing
         .iter()
-        .filter(|of| of.why == "no flight record of this condition was given")
+        .filter(|of| of.why == MissingReason::NoRecordOfCondition)
         .count();
     assert_eq!(others, analysis.conditions.len() - 1);
 
@@ -196,9 +196,11 @@ fn what_is_not_compared_is_said() {
         flown(analysis, RequirementRole::Identified, 600),
         &other,
     );
-    assert!(
-        words(&found).contains(&"\"thrust\" is not compared: there is no output \"T\"".to_owned())
-    );
+    assert!(reasons(&found).iter().any(|why| matches!(
+        why,
+        MissingReason::ToleranceNotApplied(why)
+            if why.to_string() == "\"thrust\" is not compared: there is no output \"T\""
+    )));
     assert!(
         found.records.iter().all(|of| of.tolerances.len() == 1),
         "the rest is compared"
@@ -212,12 +214,15 @@ fn a_record_that_is_not_finite_is_refused_with_its_name() {
     flight.outputs.column_mut(1).fill(f64::NAN);
     let found = histories(analysis, flight, &ToleranceTable::default());
     assert!(found.records.is_empty());
-    assert!(
-        found
-            .missing
-            .iter()
-            .any(|of| of.condition == Some(CONDITION) && of.why.contains("\"sweep\""))
-    );
+    assert!(found.missing.iter().any(|of| {
+        of.condition == Some(CONDITION)
+            && matches!(
+                &of.why,
+                MissingReason::RecordNotPrepared { record, .. }
+                | MissingReason::NotCompared { record, .. }
+                    if record == "sweep"
+            )
+    }));
 }
 
 #[test]
@@ -229,8 +234,8 @@ fn a_corrected_model_answers_with_the_couplings_of_the_study() {
     let model = analysis
         .role_model(result, RequirementRole::Corrected)
         .unwrap();
-    let answered = FrequencyResponse::of(&Dynamics::StateSpace(model), &grid);
-    let plain = FrequencyResponse::of(&physics.dynamics, &grid);
+    let answered = FrequencyResponse::from_dynamics(&Dynamics::StateSpace(model), &grid);
+    let plain = FrequencyResponse::from_dynamics(&physics.dynamics, &grid);
     let coupled = result.coupled_response(&plain);
     let pair = Pair::new(1, 0);
     let correction = result.correction.on(pair).unwrap();
@@ -246,7 +251,7 @@ fn a_corrected_model_answers_with_the_couplings_of_the_study() {
     let as_it_is = analysis
         .role_model(result, RequirementRole::Physics)
         .unwrap();
-    let as_it_is = FrequencyResponse::of(&Dynamics::StateSpace(as_it_is), &grid);
+    let as_it_is = FrequencyResponse::from_dynamics(&Dynamics::StateSpace(as_it_is), &grid);
     assert!(
         (as_it_is.curve(pair)[0] - plain.curve(pair)[0]).norm()
             < 1e-12 * plain.curve(pair)[0].norm()

@@ -7,7 +7,7 @@ use gdcm_method::correction::problem::ProblemError;
 use gdcm_method::correction::{ChannelCorrection, GainBounds, Problem, Solution};
 use gdcm_method::couplings::problem::CouplingError;
 use gdcm_method::fidelity::Discontinuity;
-use gdcm_method::fidelity::distance::Representative;
+use gdcm_method::fidelity::representative::Representative;
 use gdcm_method::schedule::{CostChange, Schedule, ScheduleError};
 use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Model, Pair, PairTable};
@@ -17,7 +17,8 @@ use super::comparison::{BundleMetrics, Comparison};
 use super::convention_doubt::ConventionDoubt;
 use super::couplings_assessment::CouplingsAssessment;
 use super::fitted_couplings::{CoupledCondition, FittedCouplings};
-use super::lead_compensation::{LeadCompensated, LeadOffer};
+use super::lead_compensation::LeadCompensated;
+use super::lead_offer::LeadOffer;
 use super::uncertainty::Uncertainty;
 use crate::decisions::requirement_settings::RequirementSettings;
 use crate::decisions::study::Study;
@@ -81,11 +82,12 @@ impl Analysis {
         self.conditions.get(&id)?.as_ref().ok()
     }
 
-    /// Returns a condition's result, or the reason in words why there is none.
-    pub(crate) fn result(&self, id: ConditionId) -> Result<&ConditionAnalysis, String> {
+    /// Returns a condition's result, or why there is none.
+    pub(crate) fn result(&self, id: ConditionId) -> Result<&ConditionAnalysis, NoResult> {
         match self.conditions.get(&id) {
-            Some(outcome) => outcome.as_ref().map_err(ToString::to_string),
-            None => Err("it was not analysed".to_owned()),
+            Some(Ok(result)) => Ok(result),
+            Some(Err(failure)) => Err(NoResult::Failed(failure.clone())),
+            None => Err(NoResult::NotAnalysed),
         }
     }
 
@@ -104,16 +106,13 @@ impl Analysis {
     /// Returns the couplings that the study requests; `None` where it requests none.
     ///
     /// # Errors
-    /// The reason, naming the channels, why the requested couplings are unavailable: an export
-    /// without them would not match the request.
-    pub fn asked_couplings(&self) -> Result<Option<&Arc<FittedCouplings>>, String> {
+    /// [`CouplingError`] if the requested couplings are unavailable: an export without them would
+    /// not match the request.
+    pub fn asked_couplings(&self) -> Result<Option<&Arc<FittedCouplings>>, &CouplingError> {
         match &self.couplings {
             None => Ok(None),
             Some(Ok(fitted)) => Ok(Some(fitted)),
-            Some(Err(error)) => {
-                let (inputs, _) = self.study.dataset.names_of_channels();
-                Err(error.words(&inputs))
-            }
+            Some(Err(error)) => Err(error),
         }
     }
 }
@@ -254,6 +253,23 @@ impl ConditionAnalysis {
     pub fn discontinuity_ratio(&self, name: &str) -> Option<f64> {
         let ratios = &self.figures.discontinuity.as_ref().ok()?.ratios;
         ratios[self.condition.position(BundleKind::Physics, name)?]
+    }
+}
+
+/// Why an analysis contains no result of a condition.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NoResult {
+    NotAnalysed,
+    Failed(ConditionFailure),
+}
+
+impl NoResult {
+    /// Returns the stable code, for programs and tests.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NotAnalysed => "not-analysed",
+            Self::Failed(failure) => failure.code(),
+        }
     }
 }
 

@@ -43,7 +43,7 @@ impl AssessedCorrection {
     ///
     /// # Errors
     /// [`ScheduleError`] where the requested schedule does not exist.
-    pub fn of(
+    pub fn correction(
         self,
         analysis: &Analysis,
         result: &ConditionAnalysis,
@@ -162,7 +162,7 @@ impl AssessmentTable {
 
     /// Assesses all conditions of an analysis. The stored mismatches are used: each response costs
     /// only two averages over frequency.
-    pub fn of(analysis: &Analysis, choice: AssessmentChoice) -> Self {
+    pub fn assess(analysis: &Analysis, choice: AssessmentChoice) -> Self {
         let mut table = Self::new(choice);
         for id in analysis.study.dataset.ids() {
             table.add(analysis, id);
@@ -238,7 +238,7 @@ pub fn assessed(
     };
     let correction = choice
         .correction
-        .of(analysis, result)
+        .correction(analysis, result)
         .map_err(NotAssessed::NoSchedule)?;
     let (model, models) = if is_nominal {
         (nominal.as_str(), &result.comparison.nominal)

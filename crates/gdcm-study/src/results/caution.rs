@@ -3,7 +3,7 @@
 use std::fmt;
 
 use gdcm_method::correction::delta::LARGEST_GAIN_DB;
-use gdcm_method::fidelity::distance::DiscontinuityError;
+use gdcm_method::fidelity::discontinuity::DiscontinuityError;
 use gdcm_model::dataset::{BundleKind, Condition, Dynamics, Pair};
 use gdcm_model::response::PolarResponse;
 use gdcm_model::response::large_entry::LargeEntry;

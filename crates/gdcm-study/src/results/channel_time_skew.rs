@@ -20,7 +20,7 @@
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::{Band, BundleKind, Condition, Dataset, Dynamics, Pair};
-use gdcm_model::response::curve_values::unwrap;
+use gdcm_model::response::phase_unwrapping::unwrap;
 use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
 use gdcm_model::simulation::Signal;
 use gdcm_model::statistics::median;
@@ -39,6 +39,8 @@ const STANDS_OUT: f64 = 2.5;
 const SD_OVER_MEDIAN: f64 = 1.4826;
 /// Maximum share of the squared phase that a delay may leave unexplained.
 const MOST_LEFT: f64 = 0.2;
+/// Minimum squared phase that a suspect explains, relative to the best suspect.
+const LEAST_OF_BEST: f64 = 0.5;
 
 /// A channel that appears to be logged late, or early, in all records.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,14 +69,15 @@ impl ChannelTimeSkew {
             .iter()
             .map(|suspect| suspect.explained)
             .fold(0.0, f64::max);
-        suspects.retain(|suspect| suspect.explained >= 0.5 * most);
+        suspects.retain(|suspect| suspect.explained >= LEAST_OF_BEST * most);
         suspects
             .into_iter()
             .min_by(|a, b| a.common_s.abs().total_cmp(&b.common_s.abs()))
             .map(|suspect| suspect.channel)
     }
 
-    /// Works as [`ChannelTimeSkew::find`], with the nominal physics model of a condition.
+    /// Like [`ChannelTimeSkew::find`], with the nominal physics model of a condition; `None` also if
+    /// that model is missing.
     pub fn of_condition(
         measured: &ResponseEstimate,
         band: [f64; 2],
@@ -197,7 +200,7 @@ fn response_lags(
     if !is_same_grid {
         return None;
     }
-    let physics = FrequencyResponse::of(physics, &grid);
+    let physics = FrequencyResponse::from_dynamics(physics, &grid);
     let (outputs, inputs) = first.response.shape();
     let mut lags = Vec::new();
     for output in 0..outputs {

@@ -3,7 +3,9 @@
 //! bounds.
 
 use gdcm_method::correction::delta::Delta;
-use gdcm_method::fidelity::distance::{BundleDistance, DiscontinuityError, Representative};
+use gdcm_method::fidelity::discontinuity::DiscontinuityError;
+use gdcm_method::fidelity::distance::BundleDistance;
+use gdcm_method::fidelity::representative::Representative;
 use gdcm_method::fidelity::{Cost, Discontinuity, Mismatch};
 use gdcm_model::dataset::{BundleKind, PairTable};
 

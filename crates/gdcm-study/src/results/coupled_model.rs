@@ -1,5 +1,12 @@
 //! Physics models with the couplings of an analysis: the only source of coupled models for exports
-//! (M16.3).
+//! (M16.3 in `docs/method.md`).
+//!
+//! ```text
+//! H~ = (I - H K)^-1 H M~       H   response of a physics model, outputs x inputs
+//!                              M~  mixing of the inputs at the airspeed of the condition
+//!                              K   feedback of outputs to inputs, the same at every airspeed
+//! M_O H~ M_I                   M_O, M_I  corrections of the output and the input channels
+//! ```
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -36,7 +43,7 @@ impl ConditionAnalysis {
     }
 
     /// Returns the pole shifts of the physics representative due to the couplings; empty without
-    /// couplings, and where the model has no poles.
+    /// couplings, and where the model has no poles or they cannot be computed.
     #[must_use]
     pub fn pole_shifts(&self) -> Vec<PoleShift> {
         let representative = self.representative_model(BundleKind::Physics).state_space();

@@ -8,7 +8,7 @@ use nalgebra::{Complex, DMatrix};
 use serde::Serialize;
 
 use gdcm_method::couplings::problem::CouplingError;
-use gdcm_method::couplings::{CouplingBars, LeftOutFit, LoopMargin, PoleShift};
+use gdcm_method::couplings::{CouplingBars, LeftOutFit, LoopMargin, PoleShift, PoleShiftError};
 use gdcm_model::dataset::{Band, ConditionId, Pair, PairTable};
 
 use super::fitted_couplings::FittedCouplings;
@@ -35,7 +35,7 @@ pub struct ConditionCouplings {
     /// True airspeed \[kt\].
     pub airspeed_kt: f64,
     /// Poles of the physics representative before and after, or why they are unavailable.
-    pub poles: Result<Vec<PoleShift>, String>,
+    pub poles: Result<Vec<PoleShift>, NoPoles>,
     /// Minimum singular value of `I - K H` at each frequency in [`CouplingsAssessment::omega`].
     pub singular_values: Vec<f64>,
     /// Minimum singular value over the range from the lower end of the band to ten times its upper
@@ -45,9 +45,34 @@ pub struct ConditionCouplings {
     pub above_band_db: PairTable<Option<f64>>,
     /// J on-axis and off-axis when the condition is left out; `None` if it is not used in the fit.
     pub left_out: Option<CouplingCost>,
-    /// Names of the other kept physics models with matrices for which the feedback loop cannot be
-    /// closed, each with the reason.
-    pub refused: Vec<(String, String)>,
+    /// The other kept physics models with matrices for which the feedback loop cannot be closed.
+    pub refused: Vec<RefusedModel>,
+}
+
+/// Why the poles of a physics model without and with couplings are unavailable.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NoPoles {
+    /// The model is a measured response.
+    Measured,
+    /// The coupled model or its eigenvalues are unavailable.
+    Failed(PoleShiftError),
+}
+
+impl NoPoles {
+    /// Returns the stable code, for programs and tests.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Measured => "model-measured",
+            Self::Failed(_) => "poles-failed",
+        }
+    }
+}
+
+/// A physics model to which the couplings cannot be applied.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RefusedModel {
+    pub model: String,
+    pub why: NoPoles,
 }
 
 /// A pole with a positive real part in a kept physics model, absent without the couplings.
@@ -96,7 +121,7 @@ impl CouplingsAssessment {
     }
 
     fn bars(&self, airspeed_kt: f64) -> Option<CouplingBars> {
-        CouplingBars::of(&self.left_out_fits, airspeed_kt, self.level).ok()
+        CouplingBars::from_fits(&self.left_out_fits, airspeed_kt, self.level).ok()
     }
 
     /// Returns `M~`, m x m, at an airspeed, with its error bars.

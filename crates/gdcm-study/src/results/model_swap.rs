@@ -3,7 +3,8 @@
 
 use std::sync::Arc;
 
-use gdcm_method::uncertainty::spread::{ConditionSpread, Figures};
+use gdcm_method::uncertainty::scalar::Figures;
+use gdcm_method::uncertainty::spread::ConditionSpread;
 use gdcm_model::dataset::BundleKind;
 
 /// A model that replaces the representative of its bundle, with the resulting gains and delays.
@@ -18,8 +19,8 @@ pub struct ModelSwap {
 
 /// Results of a condition after every swap of a representative.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ConditionSubstitutions {
+pub struct ConditionSwaps {
     /// Spread of the gains and delays over the swaps.
     pub spread: ConditionSpread,
-    pub substitutions: Vec<ModelSwap>,
+    pub swaps: Vec<ModelSwap>,
 }

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use gdcm_method::requirements::tolerance::{ChannelTolerance, ToleranceError};
+use gdcm_method::requirements::tolerance_check::{ChannelTolerance, ToleranceError};
 use gdcm_method::requirements::{Tolerance, ToleranceTable};
 use gdcm_model::dataset::{Channel, Dataset, Pair, PairTable, StateSpace};
 use gdcm_model::simulation::{Segment, ValidationSettings};

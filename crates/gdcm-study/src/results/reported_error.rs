@@ -1,10 +1,11 @@
 //! Standard errors of the identified representative, from its coherence or its standard deviations
 //! (M13.2).
 
-use gdcm_method::uncertainty::spread::{CoherenceError, ReportedUncertainty};
+use gdcm_method::uncertainty::coherence_error::CoherenceError;
+use gdcm_method::uncertainty::condition_bars::ReportedUncertainty;
 use gdcm_method::uncertainty::{IdentificationSource, Scalar, VarianceComponent};
 use gdcm_model::dataset::{BundleKind, Dynamics, Pair, PairTable};
-use gdcm_model::response::curve_values::coherence_at;
+use gdcm_model::response::interpolation::coherence_at;
 use gdcm_model::statistics::median;
 
 use super::analysis::{Analysis, ConditionAnalysis};

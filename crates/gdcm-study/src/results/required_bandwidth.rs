@@ -1,33 +1,16 @@
-//! Bandwidth and phase delay of a condition's models, with intervals (M17.1).
-//!
-//! ```text
-//! physics     each other kept physics model instead of the representative, uncorrected   (M13.1)
-//! corrected   each swap of a physics or identified model, with the resulting correction  (M13.1)
-//! identified  standard deviations of the response in the model, to first order           (M14)
-//! ```
+//! Findings on bandwidth and phase delay (M17.1), in the format of the export; they are computed by
+//! `condition_bandwidths::bandwidth_findings`.
 
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
-use gdcm_method::correction::leads::ChannelLeads;
-use gdcm_method::correction::{Channel, ChannelCorrection, Pade};
-use gdcm_method::requirements::attitude_response::{
-    AttitudeResponse, AttitudeResponseError, ResponseAt, SampledModel, search_frequencies,
-};
-use gdcm_method::requirements::bandwidth::{
-    AboveBand, Bandwidth, BandwidthSettings, Metric, NoMetric, PairBand, substitution_bar,
-};
-use gdcm_method::requirements::{AttitudeOutput, BandwidthRule};
-use gdcm_method::uncertainty::spread::Figures;
-use gdcm_method::uncertainty::{Scalar, student_quantile};
-use gdcm_model::dataset::model::ModelBands;
-use gdcm_model::dataset::{Band, BundleKind, ConditionId, Dynamics, Pair};
-use gdcm_model::response::GainDelay;
+use gdcm_method::requirements::BandwidthRule;
+use gdcm_method::requirements::attitude_response::AttitudeResponseError;
+use gdcm_method::requirements::bandwidth::{Bandwidth, Metric, NoMetric};
+use gdcm_method::uncertainty::student_quantile;
+use gdcm_model::dataset::{ConditionId, Pair};
 
-use super::asked_condition::AskedCondition;
-use super::model_swap::ModelSwap;
 use super::requirement_role::RequirementRole;
 
 /// A model's bandwidth and phase delay in a response.
@@ -77,25 +60,70 @@ pub struct BandwidthFinding {
     pub reversed_phase_deg: Option<f64>,
     /// Reasons for absent values by the name of the metric; "interval" for all intervals.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    pub absent: BTreeMap<&'static str, String>,
+    pub absent: BTreeMap<&'static str, NoBandwidth>,
+}
+
+/// Why a bandwidth, a phase delay or an interval is missing.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NoBandwidth {
+    NetGainNotPositive,
+    /// The physics model has no matrices to which couplings can be applied.
+    NotCoupled,
+    NoAttitudeResponse(AttitudeResponseError),
+    NoMetric(NoMetric),
+    /// No interval: the bundles contain no other model from which to compute a spread.
+    NoOtherModel,
+    /// No interval: the schedule is not refitted for each swap of models.
+    ScheduleNotRefitted,
+    /// No interval: the standard deviations of the identified model do not extend to this frequency.
+    DeviationsTooNarrow,
+    /// No interval: the measured response has no standard deviations.
+    MeasuredWithoutDeviations,
+    /// No interval: the identified model has no standard deviations.
+    ModelWithoutDeviations,
+}
+
+impl NoBandwidth {
+    /// Returns the stable code, for programs and tests.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NetGainNotPositive => "net-gain-not-positive",
+            Self::NotCoupled => "not-coupled",
+            Self::NoAttitudeResponse(_) => "no-attitude-response",
+            Self::NoMetric(_) => "no-metric",
+            Self::NoOtherModel => "no-other-model",
+            Self::ScheduleNotRefitted => "schedule-not-refitted",
+            Self::DeviationsTooNarrow => "deviations-too-narrow",
+            Self::MeasuredWithoutDeviations => "measured-without-deviations",
+            Self::ModelWithoutDeviations => "model-without-deviations",
+        }
+    }
+}
+
+/// Writes the code, which the export replaces by a sentence.
+impl Serialize for NoBandwidth {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.code())
+    }
 }
 
 /// Names of the metrics that [`metrics`] returns.
-const METRICS: [&str; 5] = [
+pub(super) const METRICS: [&str; 5] = [
     "omega_bw_rad_s",
     "omega_phase_rad_s",
     "omega_gain_rad_s",
     "omega_180_rad_s",
     "phase_delay_s",
 ];
+
 /// Name of the maximum deviation of the phase from a straight line.
 const DEPARTURE: &str = "phase_departure_deg";
 
 /// Values of a response's metrics, in the order of [`METRICS`].
-type MetricValues = [Option<f64>; 5];
+pub(super) type MetricValues = [Option<f64>; 5];
 
 /// Returns the metrics of a response, in the order of [`METRICS`].
-fn metrics(bandwidth: &Bandwidth) -> [Result<Metric, NoMetric>; 5] {
+pub(super) fn metrics(bandwidth: &Bandwidth) -> [Result<Metric, NoMetric>; 5] {
     [
         bandwidth.omega_bw,
         bandwidth.omega_phase,
@@ -106,7 +134,7 @@ fn metrics(bandwidth: &Bandwidth) -> [Result<Metric, NoMetric>; 5] {
 }
 
 /// Returns the values of a response's metrics, in the order of [`METRICS`].
-fn metric_values(bandwidth: &Bandwidth) -> MetricValues {
+pub(super) fn metric_values(bandwidth: &Bandwidth) -> MetricValues {
     metrics(bandwidth).map(|metric| Some(metric.ok()?.value))
 }
 
@@ -130,7 +158,7 @@ impl BandwidthFinding {
     }
 
     /// Stores the metrics of a response.
-    fn store(&mut self, bandwidth: &Bandwidth) {
+    pub(super) fn store(&mut self, bandwidth: &Bandwidth) {
         let [omega_bw, omega_phase, omega_gain, omega_180, phase_delay] = metric_values(bandwidth);
         self.omega_bw_rad_s = omega_bw;
         self.omega_phase_rad_s = omega_phase;
@@ -156,18 +184,18 @@ impl BandwidthFinding {
                     }
                 }
                 Err(why) => {
-                    self.absent.insert(name, why.to_string());
+                    self.absent.insert(name, NoBandwidth::NoMetric(why));
                 }
             }
         }
         if let Err(why) = bandwidth.phase_delay_s {
-            self.absent.insert(DEPARTURE, why.to_string());
+            self.absent.insert(DEPARTURE, NoBandwidth::NoMetric(why));
         }
     }
 
     /// Adds intervals from standard deviations, by the normal distribution; the lower end is at
     /// least zero.
-    fn add_deviation_intervals(&mut self, bandwidth: &Bandwidth, level: f64) {
+    pub(super) fn add_deviation_intervals(&mut self, bandwidth: &Bandwidth, level: f64) {
         let factor = student_quantile(level, f64::INFINITY);
         for (name, metric) in METRICS.into_iter().zip(metrics(bandwidth)) {
             if let Ok(Metric {
@@ -182,364 +210,4 @@ impl BandwidthFinding {
             }
         }
     }
-}
-
-/// Computes the on-axis bandwidths of a condition for every role; a response without a bandwidth
-/// has the reason instead.
-pub(crate) fn bandwidth_findings(asked: &AskedCondition<'_>) -> Vec<BandwidthFinding> {
-    let models = ConditionBandwidths::new(asked);
-    let mut findings = Vec::new();
-    for pair in asked.analysis.study.dataset.measuring_pairs().marked() {
-        for role in asked.roles() {
-            findings.push(models.finding(pair, role));
-        }
-    }
-    findings
-}
-
-/// A model prepared for the evaluation of its responses.
-struct EvaluatedModel<'a> {
-    dynamics: Cow<'a, Dynamics>,
-    /// The standard deviations that the model contains, if any.
-    bands: Option<&'a ModelBands>,
-    sampled: SampledModel,
-}
-
-impl<'a> EvaluatedModel<'a> {
-    fn new(dynamics: Cow<'a, Dynamics>, bands: Option<&'a ModelBands>, band: Band) -> Self {
-        let sampled = SampledModel::of(&dynamics, band);
-        Self {
-            dynamics,
-            bands,
-            sampled,
-        }
-    }
-}
-
-/// How a model is evaluated between the grid frequencies.
-#[derive(Clone, Copy, PartialEq)]
-enum Evaluation {
-    Exact,
-    /// By interpolation, for models that only contribute to the scatter of a metric.
-    Interpolated,
-}
-
-/// A correction's effect on a response.
-#[derive(Clone, Copy)]
-struct PairCorrection {
-    multiplier: GainDelay,
-    /// Whether a lead filter is included; the corrected response then does not represent the
-    /// aircraft above the band.
-    has_leads: bool,
-}
-
-impl PairCorrection {
-    const NONE: Self = Self {
-        multiplier: GainDelay::NONE,
-        has_leads: false,
-    };
-
-    /// Returns the effect of a correction on a response; `None` where the net gain is not positive.
-    fn from_correction(correction: &ChannelCorrection, pair: Pair) -> Option<Self> {
-        let has_leads = Channel::of(pair)
-            .into_iter()
-            .any(|channel| correction.lead(channel).is_some());
-        Some(Self {
-            multiplier: correction.on(pair)?,
-            has_leads,
-        })
-    }
-
-    /// Returns the effect of the correction after a swap; `None` where a gain or delay is missing.
-    fn from_figures(figures: &Figures, pair: Pair, leads: Option<&ChannelLeads>) -> Option<Self> {
-        let gain = figures[Scalar::NetGain(pair)]?.exp();
-        let [output, input] = Channel::of(pair);
-        let taus_s = [
-            figures[Scalar::ChannelDelay(output)]?,
-            figures[Scalar::ChannelDelay(input)]?,
-        ];
-        let filters = taus_s.map(|tau_s| leads.and_then(|leads| leads.design.filter(tau_s)));
-        let delay_s = taus_s.iter().map(|tau_s| tau_s.max(0.0)).sum();
-        let has_leads = filters.iter().any(Option::is_some);
-        Some(Self {
-            multiplier: GainDelay::new(gain, delay_s).led(filters),
-            has_leads,
-        })
-    }
-}
-
-/// A response's bandwidth, and its phase \[deg\] where that indicates a reversed channel.
-struct MeasuredBandwidth {
-    bandwidth: Bandwidth,
-    reversed_phase_deg: Option<f64>,
-}
-
-/// A condition's models, prepared for bandwidths.
-struct ConditionBandwidths<'a> {
-    asked: &'a AskedCondition<'a>,
-    /// Index of the physics representative.
-    physics: usize,
-    /// The physics representative and the models that replace it in swaps.
-    plain: BTreeMap<usize, EvaluatedModel<'a>>,
-    /// The models in `plain` with the couplings, where they have matrices; empty without couplings.
-    coupled: BTreeMap<usize, EvaluatedModel<'a>>,
-    identified: EvaluatedModel<'a>,
-    swaps: &'a [ModelSwap],
-}
-
-impl<'a> ConditionBandwidths<'a> {
-    fn new(asked: &'a AskedCondition<'a>) -> Self {
-        let band = asked.analysis.study.settings.band;
-        let physics = asked.result.comparison.physics.model;
-        let swaps = swaps_of(asked);
-        let mut used = vec![physics];
-        for swap in swaps {
-            if swap.bundle == BundleKind::Physics {
-                used.push(swap.model);
-            }
-        }
-        let models = asked.result.condition.bundle(BundleKind::Physics);
-        let mut plain = BTreeMap::new();
-        let mut coupled = BTreeMap::new();
-        for index in used {
-            let dynamics = &models[index].dynamics;
-            plain.insert(
-                index,
-                EvaluatedModel::new(Cow::Borrowed(dynamics), None, band),
-            );
-            if let Some(dynamics) = coupled_dynamics(asked, index) {
-                coupled.insert(index, EvaluatedModel::new(Cow::Owned(dynamics), None, band));
-            }
-        }
-        let flight = asked.result.representative_model(BundleKind::Identified);
-        let identified = EvaluatedModel::new(
-            Cow::Borrowed(&flight.dynamics),
-            flight.bands.as_deref(),
-            band,
-        );
-        Self {
-            asked,
-            physics,
-            plain,
-            coupled,
-            identified,
-            swaps,
-        }
-    }
-
-    fn finding(&self, pair: Pair, role: RequirementRole) -> BandwidthFinding {
-        let (output, input) = self.asked.analysis.study.dataset.channel_names(pair);
-        let mut finding = BandwidthFinding {
-            condition: self.asked.id(),
-            airspeed_kt: self.asked.airspeed_kt(),
-            pair,
-            output,
-            input,
-            role,
-            model: self.asked.model_name(role),
-            ..BandwidthFinding::default()
-        };
-        match self.bandwidth(pair, role) {
-            Err(why) => {
-                for (name, _) in finding.quantities() {
-                    finding.absent.insert(name, why.clone());
-                }
-            }
-            Ok(measured) => {
-                finding.reversed_phase_deg = measured.reversed_phase_deg;
-                finding.store(&measured.bandwidth);
-                self.add_intervals(&mut finding, &measured.bandwidth);
-            }
-        }
-        finding
-    }
-
-    /// Returns a role's bandwidth, or why it has none.
-    fn bandwidth(&self, pair: Pair, role: RequirementRole) -> Result<MeasuredBandwidth, String> {
-        let correction = match self.asked.correction(role) {
-            None => PairCorrection::NONE,
-            Some(correction) => PairCorrection::from_correction(correction, pair)
-                .ok_or("the net gain is not positive")?,
-        };
-        let model = match role {
-            RequirementRole::Identified => &self.identified,
-            _ => self.physics_model(role, self.physics)?,
-        };
-        self.measure(model, pair, correction, Evaluation::Exact)
-            .map_err(|error| error.to_string())
-    }
-
-    /// Returns the physics model for a role: with the couplings, if the role has a correction.
-    fn physics_model(
-        &self,
-        role: RequirementRole,
-        index: usize,
-    ) -> Result<&EvaluatedModel<'a>, &'static str> {
-        if role == RequirementRole::Physics || self.asked.result.coupled.is_none() {
-            return Ok(&self.plain[&index]);
-        }
-        self.coupled
-            .get(&index)
-            .ok_or("the physics model has no matrices to which couplings can be applied")
-    }
-
-    /// Computes a response's bandwidth and phase delay under a correction.
-    fn measure(
-        &self,
-        model: &EvaluatedModel<'_>,
-        pair: Pair,
-        correction: PairCorrection,
-        evaluation: Evaluation,
-    ) -> Result<MeasuredBandwidth, AttitudeResponseError> {
-        let study = &self.asked.analysis.study;
-        let band = study.settings.band;
-        let channel = &study.dataset.outputs()[pair.output];
-        let output = AttitudeOutput::of(channel)?;
-        let exact = model.sampled.exact(pair, correction.multiplier);
-        let interpolated = model.sampled.interpolated(pair, correction.multiplier);
-        let attitude = match &*model.dynamics {
-            Dynamics::Measured(measured) => {
-                AttitudeResponse::new(&exact, output, measured.omega(), band)?
-            }
-            Dynamics::StateSpace(_) => {
-                let response: &ResponseAt<'_> = match evaluation {
-                    Evaluation::Exact => &exact,
-                    Evaluation::Interpolated => &interpolated,
-                };
-                // The line for the phase delay has 400 points. Only its end points are evaluated
-                // with the model; the points between them are interpolated. Crossings are evaluated
-                // with the model too.
-                AttitudeResponse::new(response, output, &search_frequencies(band), band)?
-                    .sampled_by(&interpolated)
-            }
-        };
-        let settings = BandwidthSettings {
-            command: study.requirements.command_of(&channel.name),
-            band,
-            above_band: if correction.has_leads {
-                AboveBand::Refused
-            } else {
-                AboveBand::Marked
-            },
-        };
-        let deviation = model.bands.map(|bands| PairBand { bands, pair });
-        Ok(MeasuredBandwidth {
-            bandwidth: Bandwidth::of(&attitude, &settings, deviation),
-            reversed_phase_deg: attitude.reversed_phase_deg(),
-        })
-    }
-
-    /// Adds the intervals of the metrics, or why there are none.
-    fn add_intervals(&self, finding: &mut BandwidthFinding, bandwidth: &Bandwidth) {
-        let level = self.asked.analysis.study.settings.uncertainty.level;
-        let why = match finding.role {
-            RequirementRole::Physics | RequirementRole::Corrected => {
-                self.add_swap_intervals(finding, bandwidth, level);
-                "the bundles contain no other model from which to compute a spread"
-            }
-            RequirementRole::Scheduled => "the schedule is not refitted for each swap of models",
-            RequirementRole::Identified => {
-                finding.add_deviation_intervals(bandwidth, level);
-                match (&*self.identified.dynamics, self.identified.bands) {
-                    (_, Some(_)) => {
-                        "the standard deviations of the identified model do not \
-                        extend to this frequency"
-                    }
-                    (Dynamics::Measured(_), None) => {
-                        "the measured response has no standard \
-                        deviations"
-                    }
-                    (Dynamics::StateSpace(_), None) => {
-                        "the identified model has no standard \
-                        deviations"
-                    }
-                }
-            }
-        };
-        if finding.interval.is_empty() && metrics(bandwidth).iter().any(Result::is_ok) {
-            finding.absent.insert("interval", why.to_owned());
-        }
-    }
-
-    /// Adds the intervals from swapped models.
-    fn add_swap_intervals(
-        &self,
-        finding: &mut BandwidthFinding,
-        bandwidth: &Bandwidth,
-        level: f64,
-    ) {
-        let physics = self.swapped_values(finding, BundleKind::Physics);
-        let identified = match finding.role {
-            RequirementRole::Corrected => self.swapped_values(finding, BundleKind::Identified),
-            _ => Vec::new(),
-        };
-        for (index, value) in metric_values(bandwidth).into_iter().enumerate() {
-            let Some(value) = value else { continue };
-            let of_physics: Vec<Option<f64>> = physics.iter().map(|swap| swap[index]).collect();
-            let of_identified: Vec<Option<f64>> =
-                identified.iter().map(|swap| swap[index]).collect();
-            let bar = substitution_bar(value, &of_physics, &of_identified);
-            if let Some(interval) = bar.interval(level) {
-                finding.interval.insert(METRICS[index], interval);
-            }
-            if bar.left_out > 0 {
-                finding.swaps_left_out.insert(METRICS[index], bar.left_out);
-            }
-        }
-    }
-
-    /// Computes the metrics of a response after each swap in a bundle.
-    fn swapped_values(&self, finding: &BandwidthFinding, bundle: BundleKind) -> Vec<MetricValues> {
-        let mut values = Vec::new();
-        for swap in self.swaps {
-            if swap.bundle == bundle {
-                let swapped = self.swapped(swap, finding.pair, finding.role);
-                values.push(swapped.unwrap_or_default());
-            }
-        }
-        values
-    }
-
-    /// Computes the metrics of a response after a swap; `None` where that is impossible.
-    fn swapped(&self, swap: &ModelSwap, pair: Pair, role: RequirementRole) -> Option<MetricValues> {
-        let correction = match role {
-            RequirementRole::Corrected => {
-                let leads = self.asked.result.correction.leads.as_ref();
-                PairCorrection::from_figures(swap.figures.as_deref()?, pair, leads)?
-            }
-            _ => PairCorrection::NONE,
-        };
-        let index = match swap.bundle {
-            BundleKind::Physics => swap.model,
-            BundleKind::Identified => self.physics,
-        };
-        let model = self.physics_model(role, index).ok()?;
-        let measured = self
-            .measure(model, pair, correction, Evaluation::Interpolated)
-            .ok()?;
-        Some(metric_values(&measured.bandwidth))
-    }
-}
-
-/// Returns a condition's swaps; empty without error bars.
-fn swaps_of<'a>(asked: &AskedCondition<'a>) -> &'a [ModelSwap] {
-    let Some(uncertainty) = asked.analysis.uncertainty.as_deref() else {
-        return &[];
-    };
-    match uncertainty.conditions.get(&asked.id()) {
-        Some(condition) => &condition.substitutions.substitutions,
-        None => &[],
-    }
-}
-
-/// Returns a physics model with the couplings; `None` without couplings, and where they cannot be
-/// applied to it.
-fn coupled_dynamics(asked: &AskedCondition<'_>, index: usize) -> Option<Dynamics> {
-    asked.result.coupled.as_ref()?;
-    let model = &asked.result.condition.bundle(BundleKind::Physics)[index];
-    let coupled = asked
-        .result
-        .coupled_model(model.state_space()?, Pade::default())
-        .ok()?;
-    Some(Dynamics::StateSpace(coupled.into_owned()))
 }

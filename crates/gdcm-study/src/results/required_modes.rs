@@ -12,10 +12,11 @@ use gdcm_method::requirements::mode_comparison::{
 use gdcm_method::requirements::{ModeName, ModeVerdict, NamedBy};
 use gdcm_model::dataset::{BundleKind, ConditionId, Dynamics, Model};
 use gdcm_model::response::Mode;
-use gdcm_model::response::eigenvalues::modes_of;
+use gdcm_model::response::mode::modes_of;
 use gdcm_model::response::pole_estimate::PoleEstimate;
 
 use super::asked_condition::AskedCondition;
+use super::missing_finding::NoModes;
 
 /// Poles of identified models with their uncertainty, by condition; a dataset does not store them.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -48,7 +49,28 @@ pub struct ModeNumbers {
     #[serde(flatten)]
     pub values: ModeValues,
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    pub absent: BTreeMap<&'static str, &'static str>,
+    pub absent: BTreeMap<&'static str, NoModeValue>,
+}
+
+/// Why a value of a mode is missing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum NoModeValue {
+    NotOscillating,
+    /// The mode neither decays nor grows.
+    NoDecay,
+    PoleAtZero,
+}
+
+impl NoModeValue {
+    /// Returns the stable code, for programs and tests.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::NotOscillating => "not-oscillating",
+            Self::NoDecay => "no-decay",
+            Self::PoleAtZero => "pole-at-zero",
+        }
+    }
 }
 
 impl ModeNumbers {
@@ -56,13 +78,13 @@ impl ModeNumbers {
         let values = mode.values;
         let mut absent = BTreeMap::new();
         if values.period_s.is_none() {
-            absent.insert("period_s", "it does not oscillate");
+            absent.insert("period_s", NoModeValue::NotOscillating);
         }
         if values.time_to_half_s.is_none() {
-            absent.insert("time_to_half_s", "it neither decays nor grows");
+            absent.insert("time_to_half_s", NoModeValue::NoDecay);
         }
         if values.damping_ratio.is_none() {
-            absent.insert("damping_ratio", "its pole is at zero");
+            absent.insert("damping_ratio", NoModeValue::PoleAtZero);
         }
         Self {
             model: model.to_owned(),
@@ -120,11 +142,11 @@ pub struct ModeFinding {
 /// Compares a condition's modes.
 ///
 /// # Errors
-/// The reason in words why there are no modes.
+/// [`NoModes`] where a model has no modes.
 pub(crate) fn mode_findings(
     asked: &AskedCondition<'_>,
     known: &KnownPoles,
-) -> Result<Vec<ModeFinding>, String> {
+) -> Result<Vec<ModeFinding>, NoModes> {
     let [physics, identified] =
         BundleKind::BOTH.map(|kind| asked.result.representative_model(kind));
     let physics_modes = known_modes(physics)?;
@@ -177,7 +199,10 @@ pub(crate) fn mode_findings(
 }
 
 /// Returns a physics model's modes with the study's couplings; `None` without couplings.
-fn coupled_modes(asked: &AskedCondition<'_>, physics: &Model) -> Result<Option<Vec<Mode>>, String> {
+fn coupled_modes(
+    asked: &AskedCondition<'_>,
+    physics: &Model,
+) -> Result<Option<Vec<Mode>>, NoModes> {
     let Some(matrices) = physics.state_space() else {
         return Ok(None);
     };
@@ -187,21 +212,32 @@ fn coupled_modes(asked: &AskedCondition<'_>, physics: &Model) -> Result<Option<V
     let coupled = asked
         .result
         .coupled_model(matrices, Pade::default())
-        .map_err(|error| format!("\"{}\" with couplings: {error}", physics.name))?;
-    let modes = modes_of(&Dynamics::StateSpace(coupled.into_owned()))
-        .map_err(|error| format!("\"{}\" with couplings: {error}", physics.name))?;
+        .map_err(|why| NoModes::NotCoupled {
+            model: physics.name.clone(),
+            why,
+        })?;
+    let modes = modes_of(&Dynamics::StateSpace(coupled.into_owned())).map_err(|why| {
+        NoModes::NotComputed {
+            model: physics.name.clone(),
+            is_coupled: true,
+            why,
+        }
+    })?;
     Ok(Some(modes))
 }
 
 /// Returns the modes of a model, or why they cannot be computed.
-fn known_modes(model: &Model) -> Result<Vec<Mode>, String> {
+fn known_modes(model: &Model) -> Result<Vec<Mode>, NoModes> {
     if model.state_space().is_none() {
-        return Err(format!(
-            "\"{}\" is a measured response: it has no poles",
-            model.name
-        ));
+        return Err(NoModes::Measured {
+            model: model.name.clone(),
+        });
     }
-    modes_of(&model.dynamics).map_err(|error| format!("\"{}\": {error}", model.name))
+    modes_of(&model.dynamics).map_err(|why| NoModes::NotComputed {
+        model: model.name.clone(),
+        is_coupled: false,
+        why,
+    })
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use serde::Serialize;
 use gdcm_method::correction::Pade;
 use gdcm_method::correction::corrected_model::CorrectedModelError;
 use gdcm_method::couplings::CoupledModelError;
-use gdcm_method::couplings::coupling_matrices::without_delays;
+use gdcm_method::couplings::coupled_model::without_delays;
 use gdcm_method::schedule::ScheduleError;
 use gdcm_model::dataset::{BundleKind, Model, StateSpace};
 
@@ -88,8 +88,10 @@ impl Analysis {
     ) -> Result<StateSpace, RoleModelError> {
         let correction = match role {
             RequirementRole::Physics | RequirementRole::Identified => None,
-            RequirementRole::Corrected => Some(AssessedCorrection::Own.of(self, result)?),
-            RequirementRole::Scheduled => Some(AssessedCorrection::Scheduled.of(self, result)?),
+            RequirementRole::Corrected => Some(AssessedCorrection::Own.correction(self, result)?),
+            RequirementRole::Scheduled => {
+                Some(AssessedCorrection::Scheduled.correction(self, result)?)
+            }
         };
         let model = continuous(result.representative_model(role.bundle()))?;
         let pade = Pade::default();

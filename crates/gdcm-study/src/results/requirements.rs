@@ -1,74 +1,51 @@
 //! Qualification requirements on every condition's models (M17) that need no flight records:
 //! bandwidth and phase delay, modes, summary costs.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
-use serde::Serialize;
+use serde::ser::SerializeStruct;
+use serde::{Serialize, Serializer};
 
-use gdcm_method::requirements::summary::{Summary, SummarySource};
 use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::progress::Cancelled;
-use gdcm_model::response::GainDelay;
 
 use super::analysis::Analysis;
 use super::asked_condition::AskedCondition;
 use super::assessment_table::AssessedCorrection;
-use super::required_bandwidth::{BandwidthFinding, bandwidth_findings};
+use super::condition_bandwidths::bandwidth_findings;
+use super::missing_finding::{MissingFinding, MissingReason};
+use super::required_bandwidth::BandwidthFinding;
 use super::required_modes::{KnownPoles, ModeFinding, mode_findings};
+use super::required_summary::{SummaryFinding, summary_finding};
 use super::requirement_role::RequirementRole;
 use crate::execution::Execution;
 
-/// Summary costs of a physics model against the identified representative (M17.4).
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SummaryFinding {
+/// A response of a condition whose phase at the lowest frequency of the band suggests a reversed
+/// channel in the models of these roles.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ReversedPhase {
     pub condition: ConditionId,
-    /// True airspeed of the condition \[kt\].
-    pub airspeed_kt: f64,
-    pub role: RequirementRole,
-    pub model: String,
-    /// Mean J over the on-axis responses.
-    pub mean_j_on_axis: Option<f64>,
-    /// Mean J over all responses.
-    pub mean_j_all: Option<f64>,
-    /// Mean share of the band, in `ln omega`, inside the MUAD envelopes, over the on-axis
-    /// responses: 0 to 1.
-    pub muad_share_on_axis: Option<f64>,
-    /// Mean share of the band inside the MUAD envelopes over all responses: 0 to 1.
-    pub muad_share_all: Option<f64>,
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    pub absent: BTreeMap<&'static str, String>,
+    pub pair: Pair,
+    pub roles: Vec<RequirementRole>,
 }
 
-impl SummaryFinding {
-    /// Returns the values with their names.
-    pub fn quantities(&self) -> [(&'static str, Option<f64>); 4] {
-        [
-            ("mean_j_on_axis", self.mean_j_on_axis),
-            ("mean_j_all", self.mean_j_all),
-            ("muad_share_on_axis", self.muad_share_on_axis),
-            ("muad_share_all", self.muad_share_all),
-        ]
+impl ReversedPhase {
+    /// Stable code, for programs and tests.
+    pub const CODE: &'static str = "reversed-phase";
+}
+
+/// Writes the condition, and the code as the text, which the export replaces by a sentence.
+impl Serialize for ReversedPhase {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut caution = serializer.serialize_struct("ReversedPhase", 2)?;
+        caution.serialize_field("condition", &self.condition)?;
+        caution.serialize_field("text", Self::CODE)?;
+        caution.end()
     }
 }
 
-/// A missing result, in one condition or in all.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct MissingFinding {
-    /// The condition; `None` for all conditions.
-    pub condition: Option<ConditionId>,
-    /// Missing item: "all", "scheduled" or "modes".
-    pub what: &'static str,
-    pub why: String,
-}
-
-/// A caution about the results of a condition.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct RequirementCaution {
-    pub condition: ConditionId,
-    pub text: String,
-}
-
-/// Qualification requirements on every condition's models, in the export's format.
+/// Qualification requirements on every condition's models, in the export's format, with codes where
+/// the export writes sentences.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Requirements {
     /// Comparison band \[rad/s\].
@@ -83,18 +60,18 @@ pub struct Requirements {
     /// The summary costs of every condition and role.
     pub summary: Vec<SummaryFinding>,
     pub missing: Vec<MissingFinding>,
-    pub cautions: Vec<RequirementCaution>,
+    pub cautions: Vec<ReversedPhase>,
 }
 
 impl Requirements {
     /// Returns why a condition has no modes to compare; `None` where it has modes.
-    pub fn no_modes(&self, condition: ConditionId) -> Option<&str> {
+    pub fn no_modes(&self, condition: ConditionId) -> Option<&MissingReason> {
         self.missing
             .iter()
             .find(|missing| {
                 missing.condition == Some(condition) && matches!(missing.what, "modes" | "all")
             })
-            .map(|missing| missing.why.as_str())
+            .map(|missing| &missing.why)
     }
 
     /// Returns the bandwidth of a response of a condition's model.
@@ -139,7 +116,7 @@ pub fn requirements_of(
         requirements.missing.push(MissingFinding {
             condition: None,
             what: "scheduled",
-            why: error.to_string(),
+            why: MissingReason::NoSchedule(*error),
         });
     }
     for condition in found {
@@ -165,7 +142,7 @@ fn condition_requirements(
             found.missing.push(MissingFinding {
                 condition: Some(id),
                 what: "all",
-                why,
+                why: MissingReason::NoResult(why),
             });
             return found;
         }
@@ -173,7 +150,9 @@ fn condition_requirements(
     let asked = AskedCondition {
         analysis,
         result,
-        scheduled: AssessedCorrection::Scheduled.of(analysis, result).ok(),
+        scheduled: AssessedCorrection::Scheduled
+            .correction(analysis, result)
+            .ok(),
     };
     found.bandwidth = bandwidth_findings(&asked);
     match mode_findings(&asked, known) {
@@ -181,7 +160,7 @@ fn condition_requirements(
         Err(why) => found.missing.push(MissingFinding {
             condition: Some(id),
             what: "modes",
-            why,
+            why: MissingReason::NoModes(why),
         }),
     }
     for role in asked.roles() {
@@ -189,86 +168,25 @@ fn condition_requirements(
             found.summary.push(summary_finding(&asked, role));
         }
     }
-    found.cautions = reversed_phases(analysis, &found.bandwidth);
+    found.cautions = reversed_phases(&found.bandwidth);
     found
 }
 
-/// Computes the summary costs of the model in a role against the identified representative.
-fn summary_finding(asked: &AskedCondition<'_>, role: RequirementRole) -> SummaryFinding {
-    let study = &asked.analysis.study;
-    let correction = asked.correction(role);
-    let multiplier = |pair: Pair| match correction {
-        Some(correction) => correction.on(pair),
-        None => Some(GainDelay::NONE),
-    };
-    let summary = Summary::of(&SummarySource {
-        mismatch: &asked.result.comparison.representative.mismatch,
-        correction: &multiplier,
-        on_axis: &study.dataset.measuring_pairs(),
-        omega: &asked.analysis.omega,
-        average: study.settings.cost_average,
-        validation: None,
-        outputs: study.dataset.outputs(),
-    });
-    let mut finding = SummaryFinding {
-        condition: asked.id(),
-        airspeed_kt: asked.airspeed_kt(),
-        role,
-        model: asked.model_name(role),
-        mean_j_on_axis: summary.cost.on_axis,
-        mean_j_all: summary.cost.all,
-        muad_share_on_axis: summary.muad.on_axis,
-        muad_share_all: summary.muad.all,
-        absent: BTreeMap::new(),
-    };
-    for (name, value) in finding.quantities() {
-        if value.is_none() {
-            let why = if name.ends_with("on_axis") {
-                "no on-axis response of the two models can be compared"
-            } else {
-                "no response of the two models can be compared"
-            };
-            finding.absent.insert(name, why.to_owned());
-        }
-    }
-    finding
-}
-
-/// A response whose phase indicates a reversed channel, with the affected models.
-struct ReversedPhase<'a> {
-    pair: Pair,
-    condition: ConditionId,
-    roles: Vec<&'a str>,
-}
-
 /// Returns a caution for each response whose phase indicates a reversed channel.
-fn reversed_phases(analysis: &Analysis, findings: &[BandwidthFinding]) -> Vec<RequirementCaution> {
-    let mut reversed: Vec<ReversedPhase<'_>> = Vec::new();
+fn reversed_phases(findings: &[BandwidthFinding]) -> Vec<ReversedPhase> {
+    let mut reversed: Vec<ReversedPhase> = Vec::new();
     for finding in findings {
         if finding.reversed_phase_deg.is_none() {
             continue;
         }
-        let role = finding.role.name();
         match reversed.iter_mut().find(|known| known.pair == finding.pair) {
-            Some(known) => known.roles.push(role),
+            Some(known) => known.roles.push(finding.role),
             None => reversed.push(ReversedPhase {
-                pair: finding.pair,
                 condition: finding.condition,
-                roles: vec![role],
+                pair: finding.pair,
+                roles: vec![finding.role],
             }),
         }
     }
     reversed
-        .into_iter()
-        .map(|phase| RequirementCaution {
-            condition: phase.condition,
-            text: format!(
-                "{} ({}): the phase of the attitude at the lowest frequency of the band lies \
-                within 45 deg of +90 deg, which suggests that the stick or the output has the \
-                opposite sign; the bandwidth is then wrong",
-                analysis.study.dataset.pair_name(phase.pair),
-                phase.roles.join(", ")
-            ),
-        })
-        .collect()
 }

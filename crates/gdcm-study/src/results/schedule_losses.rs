@@ -31,7 +31,7 @@ impl Analysis {
     /// Returns the channels with a delay in these conditions' own corrections.
     pub fn delayed_channels(&self, conditions: &[ConditionId]) -> Vec<DelayedChannel> {
         let mut found = Vec::new();
-        for channel in Channel::all_of(&self.study.dataset) {
+        for channel in Channel::of_dataset(&self.study.dataset) {
             let mut delays = Vec::new();
             for &condition in conditions {
                 let Some(result) = self.condition(condition) else {

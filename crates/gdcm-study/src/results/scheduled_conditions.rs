@@ -1,10 +1,9 @@
 //! Conditions in the schedule, and alternative schedules: without a condition, in other forms
 //! (M11).
 
-use gdcm_method::schedule::form_comparison::{
-    FormComparison, LeadDegreeFit, compare_forms, compare_lead_degrees,
-};
-use gdcm_method::schedule::settings::NOTABLE_DELAY_S;
+use gdcm_method::schedule::delay_scheduling::NOTABLE_DELAY_S;
+use gdcm_method::schedule::form_comparison::{FormComparison, compare_forms};
+use gdcm_method::schedule::lead_degree_comparison::{LeadDegreeFit, compare_lead_degrees};
 use gdcm_method::schedule::{
     DelayScheduling, Schedule, ScheduleError, ScheduleSettings, ScheduledPoint,
 };
@@ -17,10 +16,8 @@ impl Analysis {
     /// Returns the conditions in the schedule, in the dataset's order: the chosen conditions with a
     /// result.
     pub fn scheduled(&self) -> Vec<ConditionId> {
-        self.study
-            .dataset
-            .ids()
-            .filter(|id| self.study.choice(*id).is_in_schedule() && self.condition(*id).is_some())
+        in_schedule(&self.study, &self.conditions)
+            .map(|result| result.condition.id())
             .collect()
     }
 
@@ -34,7 +31,7 @@ impl Analysis {
             choice.scheduled = false;
         }
         let settings = schedule_settings(&others, &self.conditions);
-        Schedule::of(&scheduled_points(&others, &self.conditions), settings)
+        Schedule::fit(&scheduled_points(&others, &self.conditions), settings)
     }
 
     /// Compares the forms of the schedule; lists are in the order of [`Analysis::scheduled`] (M11).
@@ -59,7 +56,7 @@ impl Analysis {
     }
 }
 
-/// Returns the scheduled conditions with a result, in the dataset's order.
+/// Returns airspeed and correction of each scheduled condition, to which the schedule is fitted.
 pub(crate) fn scheduled_points<'a>(
     study: &Study,
     outcomes: &'a Outcomes,
@@ -100,7 +97,8 @@ fn has_notable_delay(result: &ConditionAnalysis) -> bool {
         .any(|pair| result.correction.net_delay_s(pair) > NOTABLE_DELAY_S)
 }
 
-/// Returns the scheduled conditions' results, in file order.
+/// Returns the results of the scheduled conditions, in the order of the dataset. Every list of this
+/// file is derived from it.
 pub(crate) fn in_schedule<'a>(
     study: &Study,
     outcomes: &'a Outcomes,

@@ -4,14 +4,14 @@
 use std::collections::BTreeMap;
 
 use gdcm_method::schedule::{Schedule, SecondVariable};
-use gdcm_method::uncertainty::least_squares::{SecondVariableEffect, SecondVariableError};
-use gdcm_method::uncertainty::spread::ScalarTable;
+use gdcm_method::uncertainty::scalar::ScalarTable;
+use gdcm_method::uncertainty::second_variable_effect::{SecondVariableEffect, SecondVariableError};
 use gdcm_method::uncertainty::{
     BandWidths, Bar, Difference, Scalar, ScheduleBand, VarianceDecomposition,
 };
 use gdcm_model::dataset::{ConditionId, Pair, PairTable};
 
-use super::model_swap::ConditionSubstitutions;
+use super::model_swap::ConditionSwaps;
 
 /// Maximum difference between airspeeds that count as equal \[kt\] (M13.4).
 pub(crate) const EQUAL_AIRSPEED_KT: f64 = 1.0;
@@ -73,7 +73,7 @@ pub struct ConditionUncertainty {
     /// representatives: the mismatch that remains after a gain correction.
     pub left_in_band: PairTable<Option<f64>>,
     /// Swaps from which the error bars are computed.
-    pub substitutions: ConditionSubstitutions,
+    pub swaps: ConditionSwaps,
 }
 
 /// Scatter components of an on-axis net gain (M13.5).

@@ -1,11 +1,11 @@
 //! Distances within each bundle, and discontinuity ratios of the physics bundle (M5).
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use gdcm_method::fidelity::absolute_deviations::FitError;
+use gdcm_method::fidelity::discontinuity::{DiscontinuityError, PerturbedModel};
 use gdcm_method::fidelity::distance::{
-    BundleDistance, ComparedModel, DiscontinuityError, MeasuredPairs, distances_from,
+    BundleDistance, ComparedModel, MeasuredPairs, distances_from,
 };
 use gdcm_method::fidelity::{CoherenceWeights, Discontinuity};
 use gdcm_model::dataset::{BundleKind, Condition, PairTable};
@@ -48,14 +48,16 @@ impl BundleMetrics {
         };
         let physics = distances(BundleKind::Physics)?;
         let identified = distances(BundleKind::Identified)?;
-        let perturbations: Vec<(&str, Option<&BTreeMap<String, f64>>)> = condition
+        let models: Vec<PerturbedModel<'_>> = condition
             .bundle(BundleKind::Physics)
             .iter()
-            .map(|model| (model.name.as_str(), model.perturbation()))
+            .map(|model| PerturbedModel {
+                name: &model.name,
+                perturbation: model.perturbation(),
+            })
             .collect();
-        let discontinuity = Discontinuity::fit(&physics, &perturbations, &|| {
-            execution.progress().cancelled()
-        });
+        let discontinuity =
+            Discontinuity::fit(&physics, &models, &|| execution.progress().cancelled());
         if discontinuity == Err(DiscontinuityError::Fit(FitError::Cancelled)) {
             return Err(Cancelled);
         }
@@ -67,7 +69,8 @@ impl BundleMetrics {
     }
 }
 
-/// Responses of the models of a bundle in polar form, and the responses in which they are compared.
+/// Frequency responses of a bundle's models in polar form, and the output-input pairs in which the
+/// models are compared.
 pub(crate) struct MeasuredBundle {
     polar: Vec<PolarResponse>,
     pub(crate) measured: MeasuredPairs,
@@ -120,6 +123,7 @@ fn bundle_distance(
     let rows = execution.each(compared.len(), 1, |index| {
         distances_from(index, &compared, &measured.compared)
     })?;
+    // Models set aside have no row of distances, but count as a step too.
     execution.step(polar.len() - compared.len());
     Ok(BundleDistance::from_rows(rows, measured))
 }

@@ -68,7 +68,7 @@ impl ComparedModel {
             Some(_) => None,
             None => Some(Absence::classify(response.curve(pair))),
         });
-        let nothing = polar.numerically_nothing();
+        let nothing = polar.numerically_zero();
         polar.clear(&nothing);
         let coherence = match kind {
             BundleKind::Identified => grid.coherence,

@@ -11,6 +11,14 @@ use crate::decisions::settings::{PhaseCorrection, Settings};
 use crate::results::analysis::ConditionAnalysis;
 use crate::results::fitted_couplings::FittedCouplings;
 
+/// Number of frequencies of drawn curves.
+pub const CURVE_POINTS: usize = 500;
+/// Factor by which the drawn band extends beyond the comparison band at either end.
+const DISPLAY_MARGIN: f64 = 1.7;
+/// Maximum number of stored coupled responses: the previous and the present representative, for a
+/// result and for a variant.
+const KEPT: usize = 4;
+
 /// A condition's responses on a grid for drawing.
 #[derive(Debug)]
 pub struct ConditionCurves {
@@ -57,9 +65,6 @@ impl ConditionCurves {
         result: &ConditionAnalysis,
         model: usize,
     ) -> Arc<FrequencyResponse> {
-        /// Maximum number of stored responses: the previous and the present representative, for a
-        /// result and for a variant.
-        const KEPT: usize = 4;
         let Some(coupled) = &result.coupled else {
             return Arc::clone(&self.physics[model]);
         };
@@ -87,13 +92,9 @@ impl ConditionCurves {
     }
 }
 
-/// Number of frequencies of drawn curves.
-pub const CURVE_POINTS: usize = 500;
-
 /// Returns the band drawn around a comparison band: it extends by the factor 1.7 on either side.
 pub fn display_band(band: Band) -> Band {
-    const MARGIN: f64 = 1.7;
-    Band::beyond(band.min() / MARGIN, band.max() * MARGIN).unwrap_or(band)
+    Band::beyond(band.min() / DISPLAY_MARGIN, band.max() * DISPLAY_MARGIN).unwrap_or(band)
 }
 
 /// Returns the band of the curves of a condition: [`display_band`], extended to ten times the upper

@@ -1,27 +1,23 @@
-//! A condition's frequency responses, each cached by its inputs.
+//! Frequency responses of a condition's models.
+//!
+//! ```text
+//! KnownModels           responses of every model in use, by its content
+//!   ConditionModels     the models of a condition, each with its cached responses
+//!     ConditionResponses  their responses on one grid, in file order
+//!       CoupledResponses  the responses of the physics models with couplings, computed on first use
+//! ```
 
-use std::collections::HashMap;
-use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
+use std::sync::{Arc, OnceLock};
 
 use gdcm_model::dataset::model::ContentHash;
-use gdcm_model::dataset::{Band, BundleKind, Condition, Model};
+use gdcm_model::dataset::{BundleKind, Condition, Model};
 use gdcm_model::progress::Cancelled;
-use gdcm_model::response::{FrequencyGrid, FrequencyResponse, PreparedModel};
+use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
 
-use crate::execution::{Execution, Memo};
+use super::known_models::{GridKey, KnownModels, ModelResponses, Purpose};
+use super::memo::Memo;
+use crate::execution::Execution;
 use crate::results::fitted_couplings::FittedCouplings;
-
-/// Band and number of frequencies, on which a response depends besides the dynamics of its model.
-pub type GridKey = (Band, usize);
-
-/// Purpose of a response. The last response for each purpose is cached.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Purpose {
-    /// Comparing models, in the comparison band.
-    Comparison,
-    /// Drawing, in a wider band.
-    Drawing,
-}
 
 /// A condition's responses on a grid.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,7 +79,7 @@ impl ConditionResponses {
     }
 
     /// Computes the responses of every model in the band.
-    pub fn of(
+    pub fn compute(
         condition: &Arc<Condition>,
         key: GridKey,
         execution: &Execution<'_>,
@@ -96,69 +92,6 @@ impl ConditionResponses {
     /// Returns the responses of the models of a bundle, in file order.
     pub fn bundle(&self, kind: BundleKind) -> &[Arc<FrequencyResponse>] {
         kind.pick(&self.physics, &self.identified)
-    }
-}
-
-/// Last responses of a model, and the model prepared for their computation.
-#[derive(Debug, Default)]
-struct ModelResponses {
-    prepared: OnceLock<PreparedModel>,
-    /// The last response for each [`Purpose`].
-    last: [Mutex<Memo<GridKey, Arc<FrequencyResponse>>>; 2],
-}
-
-impl ModelResponses {
-    /// Locks the cache; a panic under the lock cannot leave it incomplete.
-    fn last(&self, purpose: Purpose) -> MutexGuard<'_, Memo<GridKey, Arc<FrequencyResponse>>> {
-        self.last[purpose as usize]
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn response(
-        &self,
-        model: &Model,
-        purpose: Purpose,
-        key: GridKey,
-        grid: &FrequencyGrid,
-    ) -> Arc<FrequencyResponse> {
-        let prepared = self
-            .prepared
-            .get_or_init(|| PreparedModel::of(&model.dynamics));
-        self.last(purpose)
-            .get(key, |_| Arc::new(prepared.response(grid)))
-    }
-}
-
-/// Responses of the models in use, keyed by the content of the model: a model keeps its responses
-/// when it is renamed or moved to another condition. Engines that share them
-/// ([`Engine::sharing`](super::engine::Engine::sharing)) compute and store each response only once.
-#[derive(Clone, Debug, Default)]
-pub struct KnownModels {
-    by_content: Arc<Mutex<HashMap<ContentHash, Weak<ModelResponses>>>>,
-}
-
-impl KnownModels {
-    fn by_content(&self) -> MutexGuard<'_, HashMap<ContentHash, Weak<ModelResponses>>> {
-        self.by_content
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// Removes the models that no condition uses any longer.
-    pub(crate) fn forget_unused(&self) {
-        self.by_content()
-            .retain(|_, responses| responses.strong_count() > 0);
-    }
-
-    fn responses_of(&self, content: ContentHash) -> Arc<ModelResponses> {
-        let mut by_content = self.by_content();
-        let known = by_content.entry(content).or_default();
-        known.upgrade().unwrap_or_else(|| {
-            let made = Arc::new(ModelResponses::default());
-            *known = Arc::downgrade(&made);
-            made
-        })
     }
 }
 

@@ -17,26 +17,25 @@ use gdcm_method::schedule::assessment::assess;
 use gdcm_model::dataset::{BundleKind, Condition, PairTable};
 use gdcm_model::progress::Cancelled;
 
-use super::comparison::ComparisonInput;
-use super::condition_responses::{
-    ConditionModels, ConditionResponses, CoupledResponses, GridKey, Purpose,
-};
+use super::comparison_input::ComparisonInput;
+use super::condition_responses::{ConditionModels, ConditionResponses, CoupledResponses};
 use super::coupling_fit::CouplingSource;
+use super::known_models::{GridKey, Purpose};
+use super::memo::Memo;
 use super::model_swaps::{SwapInput, SwapMemo, SwapOptimum};
 use super::optima::{NoOptima, Optima, SolveInput, SolvedProblems};
 use super::run::Run;
 use crate::decisions::choices::ConditionChoice;
 use crate::decisions::settings::Settings;
-use crate::execution::Memo;
 use crate::results::analysis::{ConditionAnalysis, ConditionFailure};
 use crate::results::caution::Caution;
 use crate::results::comparison::{BundleMetrics, Comparison};
 use crate::results::fitted_couplings::{CoupledCondition, FittedCouplings};
-use crate::results::model_swap::ConditionSubstitutions;
+use crate::results::model_swap::ConditionSwaps;
 
 /// Proof budget for the gains after a swap: the work limit of the interactive analysis, without a
 /// search for other minima.
-pub(crate) const SUBSTITUTION_PROOF: ProofBudget = ProofBudget {
+pub(crate) const SWAP_PROOF: ProofBudget = ProofBudget {
     work: 1_000_000,
     listing: 0,
     bytes: 64_000_000,
@@ -265,7 +264,7 @@ impl ConditionStages {
         run: Run<'_>,
         analysis: &ConditionAnalysis,
         couplings: Option<&Arc<FittedCouplings>>,
-    ) -> Result<ConditionSubstitutions, Cancelled> {
+    ) -> Result<ConditionSwaps, Cancelled> {
         let responses =
             self.models
                 .responses(Purpose::Comparison, run.grid_key(), run.grid, run.execution)?;

@@ -1,4 +1,19 @@
 //! Search for apparent sign and unit differences between the two bundles.
+//!
+//! ```text
+//! phi  phase difference of a response between identified and physics model
+//! W    weight of a frequency, as in J (M4a)
+//! G    ratio of their gains (M6)
+//!
+//! sign  the weighted majority of frequencies has |phi| within 20 deg of half a turn. Attributed to
+//!       the channel of the response with the larger share of responses with
+//!       sum W cos phi < 0
+//! unit  |ln G| > ln 5. Attributed to the channel of the response with the nearer median of ln G;
+//!       all such responses of the channel agree within a factor of 2 of their median
+//! ```
+//!
+//! Every response with a difference counts once, for its output or for its input; the output is
+//! chosen where both are equally likely.
 
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
@@ -40,7 +55,7 @@ impl Sample<'_> {
     fn of_channel(&self, channel: Channel) -> impl Iterator<Item = (Pair, &Mismatch)> {
         self.mismatch
             .iter()
-            .filter(move |(pair, _)| channel.is_of(*pair))
+            .filter(move |(pair, _)| channel.belongs_to(*pair))
             .filter_map(|(pair, mismatch)| Some((pair, mismatch.as_ref()?)))
     }
 
@@ -86,7 +101,7 @@ impl Sample<'_> {
 
 /// Returns a response's other channel.
 fn other_channel(channel: Channel, pair: Pair) -> Channel {
-    let [output, input] = Channel::of(pair);
+    let [output, input] = Channel::of_pair(pair);
     if channel == output { input } else { output }
 }
 
@@ -141,7 +156,8 @@ pub(crate) fn convention_doubts(
             gains: delta_gains(mismatch),
         })
         .collect();
-    let channels: Vec<Channel> = Channel::all(measuring.inputs(), measuring.outputs()).collect();
+    let channels: Vec<Channel> =
+        Channel::inputs_then_outputs(measuring.inputs(), measuring.outputs()).collect();
     let mut doubts = Vec::new();
     for channel in &channels {
         doubts.extend(sign_doubt(&samples, measuring, *channel));
@@ -258,7 +274,7 @@ pub fn doubts_of_models(
     let mut mismatches = Vec::new();
     for condition in study.dataset.conditions() {
         let key = (settings.band, settings.points);
-        let responses = ConditionResponses::of(condition, key, execution)?;
+        let responses = ConditionResponses::compute(condition, key, execution)?;
         let rejected = &study.choice(condition.id()).identified.rejected;
         let kept = condition
             .bundle(BundleKind::Identified)

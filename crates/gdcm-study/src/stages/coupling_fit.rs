@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use gdcm_method::correction::Channels;
-use gdcm_method::correction::leads::{LeadDesign, LeadSettings};
+use gdcm_method::correction::lead_design::{LeadDesign, LeadSettings};
 use gdcm_method::couplings::problem::{
     CouplingError, CouplingOptions, coherence_deviation, mean_delays_s, response_deviation,
-    without_channels,
+    without_delays_and_leads,
 };
 use gdcm_method::couplings::{CouplingCondition, CouplingKind, CouplingProblem, fit_couplings};
 use gdcm_method::fidelity::CoherenceWeights;
@@ -14,10 +14,10 @@ use gdcm_model::dataset::model::{ContentHash, ModelBands};
 use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dynamics, Model, PairTable};
 use gdcm_model::executor::Executor;
 use gdcm_model::progress::{Cancelled, Progress};
-use gdcm_model::response::curve_values::coherence_at;
+use gdcm_model::response::interpolation::coherence_at;
 use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
 
-use super::condition_responses::GridKey;
+use super::known_models::GridKey;
 use crate::decisions::settings::PhaseCorrection;
 use crate::decisions::study::Study;
 use crate::results::comparison::Comparison;
@@ -145,7 +145,7 @@ impl CouplingFitKey {
             let dynamics = &source.identified().dynamics;
             let flight = match &self.delays_s {
                 Some(delays_s) => {
-                    without_channels(&source.flight, &omega, delays_s, design.as_ref())
+                    without_delays_and_leads(&source.flight, &omega, delays_s, design.as_ref())
                 }
                 None => (*source.flight).clone(),
             };

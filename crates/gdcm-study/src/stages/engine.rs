@@ -12,24 +12,27 @@ use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_model::response::FrequencyGrid;
 
 use super::condition_curves::ConditionCurves;
-use super::condition_responses::{ConditionModels, GridKey, KnownModels, Purpose};
-use super::condition_stages::{ConditionStages, SUBSTITUTION_PROOF, model_count};
+use super::condition_responses::ConditionModels;
+use super::condition_stages::{ConditionStages, SWAP_PROOF, model_count};
 use super::convention_check::convention_doubts;
 use super::coupling_fit::{CouplingFitKey, CouplingOutcome, CouplingSource};
+use super::known_models::{GridKey, KnownModels, Purpose};
+use super::memo::Memo;
 use super::run::Run;
-use super::schedule_cautions::signed_delays_apart;
+use super::signed_delay_cautions::signed_delays_apart;
 use crate::decisions::study::Study;
-use crate::execution::{Execution, Memo};
+use crate::execution::Execution;
 use crate::results::analysis::{Analysis, ConditionAnalysis, ConditionFailure, Outcomes};
 use crate::results::assessment_table::{AssessmentChoice, assessed};
 use crate::results::comparison::Mismatches;
 use crate::results::convention_doubt::ConventionDoubt;
 use crate::results::fitted_couplings::FittedCouplings;
+use crate::results::record_simulations::time_histories_of;
 use crate::results::required_modes::KnownPoles;
 use crate::results::requirements::{Requirements, requirements_of};
 use crate::results::schedule_losses::schedule_cost_cautions;
 use crate::results::scheduled_conditions::{schedule_settings, scheduled_points};
-use crate::results::time_histories::{HistoryRecords, TimeHistories, time_histories_of};
+use crate::results::time_histories::{HistoryRecords, TimeHistories};
 use crate::results::uncertainty::Uncertainty;
 
 /// Computes analyses and caches the last result of each stage, keyed by the numerical content of
@@ -136,6 +139,16 @@ impl Engine {
 
     /// Works as [`Engine::analyze`], but computes the result of one condition first and passes it
     /// on before the analysis of the other conditions starts.
+    ///
+    /// ```text
+    /// 1  models of the dataset, with the responses that are already known
+    /// 2  couplings, where requested, fitted to all conditions
+    /// 3  each condition: distances, representatives, G and D, gains and delays
+    /// 4  apparent sign and unit differences
+    /// 5  schedule, with cautions about signed delays
+    /// 6  assessment of each condition under the schedule
+    /// 7  cautions about conditions for which the schedule costs much more than their optimum
+    /// ```
     pub fn analyze_first(
         &mut self,
         study: &Study,
@@ -156,7 +169,7 @@ impl Engine {
         let mut conditions = analyze_conditions(run, &mut self.conditions, fitted, first)?;
         let doubts = add_doubts(study, &mut conditions);
         let settings = schedule_settings(study, &conditions);
-        let schedule = Schedule::of(&scheduled_points(study, &conditions), settings);
+        let schedule = Schedule::fit(&scheduled_points(study, &conditions), settings);
         let apart = signed_delays_apart(study, &conditions);
         let mut analysis = Analysis {
             study: study.clone(),
@@ -208,7 +221,7 @@ impl Engine {
         let run = Run {
             study,
             grid: &grid,
-            proofs: SUBSTITUTION_PROOF,
+            proofs: SWAP_PROOF,
             execution: &execution,
         };
         let couplings = analysis.fitted_couplings();

@@ -13,8 +13,8 @@ use std::sync::Arc;
 
 use gdcm_method::schedule::airspeeds::airspeed_indicators;
 use gdcm_method::schedule::{Schedule, ScheduledQuantity, SecondVariable};
-use gdcm_method::uncertainty::least_squares::SecondVariableError;
-use gdcm_method::uncertainty::spread::{BarSource, bars};
+use gdcm_method::uncertainty::condition_bars::{BarSource, bars};
+use gdcm_method::uncertainty::second_variable_effect::SecondVariableError;
 use gdcm_method::uncertainty::{
     Bar, Design, Difference, Scalar, ScheduleBand, SecondVariableDesign, VarianceDecomposition,
     holm,
@@ -25,7 +25,7 @@ use gdcm_model::statistics::quantile;
 
 use super::model_swaps::representative_figures;
 use crate::results::analysis::{Analysis, ConditionAnalysis};
-use crate::results::model_swap::ConditionSubstitutions;
+use crate::results::model_swap::ConditionSwaps;
 use crate::results::reported_error::{LN_DB, ReportedErrors};
 use crate::results::uncertainty::{
     AirspeedDifference, ConditionUncertainty, EQUAL_AIRSPEED_KT, PairScatter, ScheduleBands,
@@ -37,14 +37,11 @@ const MOST_DIFFERENCES: usize = 20_000;
 
 impl Uncertainty {
     /// Computes the uncertainty from the swaps of the conditions.
-    pub(crate) fn new(
-        analysis: &Analysis,
-        substitutions: &[(ConditionId, ConditionSubstitutions)],
-    ) -> Self {
+    pub(crate) fn new(analysis: &Analysis, swaps: &[(ConditionId, ConditionSwaps)]) -> Self {
         let study = &analysis.study;
         let level = study.settings.uncertainty.level;
         let pairs: Vec<Pair> = study.dataset.measuring_pairs().marked().collect();
-        let conditions = condition_bars(analysis, substitutions);
+        let conditions = condition_bars(analysis, swaps);
         let (differences, too_many_differences) =
             match airspeed_differences(&study.dataset, &conditions, &pairs) {
                 Ok(differences) => (differences, None),
@@ -66,25 +63,25 @@ impl Uncertainty {
 /// Computes the error bars in every condition with swaps.
 fn condition_bars(
     analysis: &Analysis,
-    substitutions: &[(ConditionId, ConditionSubstitutions)],
+    swaps: &[(ConditionId, ConditionSwaps)],
 ) -> BTreeMap<ConditionId, ConditionUncertainty> {
-    let mut analysed: Vec<(&ConditionAnalysis, &ConditionSubstitutions)> = Vec::new();
-    for (id, substitutions) in substitutions {
+    let mut analysed: Vec<(&ConditionAnalysis, &ConditionSwaps)> = Vec::new();
+    for (id, swaps) in swaps {
         if let Some(result) = analysis.condition(*id) {
-            analysed.push((result, substitutions));
+            analysed.push((result, swaps));
         }
     }
     let sources: Vec<BarSource<'_>> = analysed
         .iter()
-        .map(|(result, substitutions)| bar_source(analysis, result, substitutions))
+        .map(|(result, swaps)| bar_source(analysis, result, swaps))
         .collect();
     let bars = bars(&sources, analysis.study.settings.uncertainty.prior_degrees);
     let mut conditions = BTreeMap::new();
-    for ((result, substitutions), bars) in analysed.into_iter().zip(bars) {
+    for ((result, swaps), bars) in analysed.into_iter().zip(bars) {
         let condition = ConditionUncertainty {
             bars,
             left_in_band: left_in_band(result),
-            substitutions: substitutions.clone(),
+            swaps: swaps.clone(),
         };
         conditions.insert(result.condition.id(), condition);
     }
@@ -96,15 +93,15 @@ fn condition_bars(
 fn bar_source<'a>(
     analysis: &Analysis,
     result: &ConditionAnalysis,
-    substitutions: &'a ConditionSubstitutions,
+    swaps: &'a ConditionSwaps,
 ) -> BarSource<'a> {
     let figures = representative_figures(result);
     let reported = ReportedErrors::new(analysis, result);
-    let told = figures.map(|scalar, _| reported.of_scalar(result, scalar));
+    let reported = figures.map(|scalar, _| reported.of_scalar(result, scalar));
     BarSource {
         figures,
-        spread: &substitutions.spread,
-        reported: told,
+        spread: &swaps.spread,
+        reported,
         delay_bounds_s: [
             result.delay_problem.bounds.lower,
             result.delay_problem.bounds.upper,
@@ -179,7 +176,7 @@ impl<'a> ScheduleEvidence<'a> {
             .map(|&pair| {
                 let bars = self.bars(Scalar::NetGain(pair));
                 let decomposition = |design: &Option<Design>| {
-                    VarianceDecomposition::of(design.as_ref()?, bars.as_ref()?)
+                    VarianceDecomposition::new(design.as_ref()?, bars.as_ref()?)
                 };
                 PairScatter {
                     pair,
@@ -204,9 +201,9 @@ impl<'a> ScheduleEvidence<'a> {
             }
             let decomposition = self
                 .bars(scalar)
-                .and_then(|bars| VarianceDecomposition::of(&design, &bars));
+                .and_then(|bars| VarianceDecomposition::new(&design, &bars));
             if let Some(decomposition) = decomposition {
-                bands.push((scalar, ScheduleBand::of(&design, &decomposition, level)));
+                bands.push((scalar, ScheduleBand::new(&design, &decomposition, level)));
             }
         }
         Some(ScheduleBands { bands })
@@ -222,7 +219,7 @@ impl<'a> ScheduleEvidence<'a> {
             let values = variable
                 .values(&self.states)
                 .ok_or(SecondVariableError::NotVaried)?;
-            SecondVariableDesign::of(&rows, &values)
+            SecondVariableDesign::new(&rows, &values)
         });
         let mut tests = Vec::new();
         for &pair in pairs {
@@ -302,7 +299,7 @@ fn airspeed_differences(
                         pair,
                         conditions: [first.id(), second.id()],
                         airspeed_kt: 0.5 * (a_kt + b_kt),
-                        difference: Difference::of(&a, &b),
+                        difference: Difference::between(&a, &b),
                         p_holm: None,
                     });
                 }

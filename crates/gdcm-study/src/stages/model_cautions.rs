@@ -24,9 +24,9 @@ pub(crate) struct BundleCautions<'a> {
 }
 
 impl BundleCautions<'_> {
-    /// Returns the cautions about the kept models: models set aside, models with responses that are
-    /// not finite, measured models with missing responses, and channels assigned by position.
-    pub(crate) fn all(&self) -> Vec<Caution> {
+    /// Returns the cautions about the models that are not rejected: models set aside because they
+    /// lack responses, models with responses that are not finite, measured models with missing responses, and channels assigned by position.
+    pub(crate) fn find(&self) -> Vec<Caution> {
         let mut cautions = Vec::new();
         for index in 0..self.condition.bundle(self.kind).len() {
             self.add_of_model(index, &mut cautions);
@@ -122,7 +122,7 @@ pub fn cautions_of_models(
         let id = condition.id();
         let choice = study.choice(id);
         let responses =
-            ConditionResponses::of(condition, (band, study.settings.points), execution)?;
+            ConditionResponses::compute(condition, (band, study.settings.points), execution)?;
         for kind in BundleKind::BOTH {
             let bundle = MeasuredBundle::new(responses.bundle(kind), &measuring, execution)?;
             let cautions = BundleCautions {
@@ -133,7 +133,7 @@ pub fn cautions_of_models(
                 measured: &bundle.measured,
                 band_top: band.max(),
             };
-            for caution in cautions.all() {
+            for caution in cautions.find() {
                 found.push((id, caution));
             }
         }

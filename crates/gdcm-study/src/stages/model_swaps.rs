@@ -1,4 +1,14 @@
 //! Swaps: another model of the bundle replaces a representative (M13.1).
+//!
+//! ```text
+//! 1  replacing models: the other kept models of each bundle, copies counted once
+//! 2  for each replacement that is not cached: mismatch of the new pair on the phase branch of the
+//!    representatives, its G and D, and the optimal correction
+//! 3  base: the results of the representatives, to which the results of the swaps are compared
+//! 4  spread of the results over the swaps of each bundle
+//! ```
+//!
+//! "Figures" are the gains, as logarithms, and the delays \[s\] of a pair of models.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -6,7 +16,8 @@ use std::sync::Arc;
 use gdcm_method::correction::ChannelCorrection;
 use gdcm_method::correction::delta::{Delta, GainSource};
 use gdcm_method::uncertainty::Scalar;
-use gdcm_method::uncertainty::spread::{ConditionSpread, Figures, ScalarTable};
+use gdcm_method::uncertainty::scalar::{Figures, ScalarTable};
+use gdcm_method::uncertainty::spread::ConditionSpread;
 use gdcm_model::dataset::{BundleKind, PairTable};
 use gdcm_model::progress::Cancelled;
 
@@ -17,7 +28,7 @@ use crate::decisions::settings::Settings;
 use crate::results::analysis::ConditionAnalysis;
 use crate::results::comparison::Mismatches;
 use crate::results::fitted_couplings::FittedCouplings;
-use crate::results::model_swap::{ConditionSubstitutions, ModelSwap};
+use crate::results::model_swap::{ConditionSwaps, ModelSwap};
 
 /// A physics and an identified model by their indices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -185,31 +196,31 @@ impl SwapMemo {
         &mut self,
         input: &SwapInput<'_>,
         optimum: impl Fn(&Mismatches, Delta) -> Result<Option<SwapOptimum>, Cancelled> + Sync,
-    ) -> Result<ConditionSubstitutions, Cancelled> {
+    ) -> Result<ConditionSwaps, Cancelled> {
         let key = input.key();
         if self.key.as_ref() != Some(&key) {
             self.kept.clear();
             self.key = Some(key);
         }
-        let mut swaps = Vec::new();
+        let mut replacements = Vec::new();
         for kind in BundleKind::BOTH {
             for model in input.others(kind) {
-                swaps.push((kind, model));
+                replacements.push((kind, model));
             }
         }
         let representatives = input.representatives();
         // With the mean over all pairs, the values of the pair of representatives differ from the
         // values of the analysis: this pair is computed too, as the reference of the changes.
         let is_mean = input.run.study.settings.gain_source == GainSource::MeanOfPairs;
-        let mut wanted: Vec<ModelPair> = swaps
+        let mut wanted: Vec<ModelPair> = replacements
             .iter()
             .map(|(kind, model)| representatives.with(*kind, *model))
             .collect();
         if is_mean {
             wanted.push(representatives);
         }
-        self.compute_missing(input, wanted, swaps.len(), optimum)?;
-        let substitutions: Vec<ModelSwap> = swaps
+        self.compute_missing(input, wanted, replacements.len(), optimum)?;
+        let swaps: Vec<ModelSwap> = replacements
             .into_iter()
             .map(|(bundle, model)| ModelSwap {
                 bundle,
@@ -222,15 +233,12 @@ impl SwapMemo {
             (true, Some(base)) => Figures::clone(&base),
             (true, None) => representative_figures(input.analysis).map(|_, _| None),
         };
-        let spread = ConditionSpread::of(
+        let spread = ConditionSpread::new(
             &base,
-            &bundle_figures(&substitutions, BundleKind::Physics),
-            &bundle_figures(&substitutions, BundleKind::Identified),
+            &bundle_figures(&swaps, BundleKind::Physics),
+            &bundle_figures(&swaps, BundleKind::Identified),
         );
-        Ok(ConditionSubstitutions {
-            spread,
-            substitutions,
-        })
+        Ok(ConditionSwaps { spread, swaps })
     }
 
     /// Computes the results of the pairs that are not cached; `swaps` is the number of pairs that

@@ -8,8 +8,10 @@
 
 use std::sync::Arc;
 
-use gdcm_method::correction::delta::{Delta, delay_upper_s, gain_bounds};
-use gdcm_method::correction::leads::{ChannelLeads, LeadDesign};
+use gdcm_method::correction::channel_bounds::{delay_upper_s, gain_bounds};
+use gdcm_method::correction::channel_leads::ChannelLeads;
+use gdcm_method::correction::delta::Delta;
+use gdcm_method::correction::lead_design::LeadDesign;
 use gdcm_method::correction::problem::{DELAY_AGREEMENT_S, ProblemError};
 use gdcm_method::correction::solve::solve;
 use gdcm_method::correction::{
@@ -19,12 +21,13 @@ use gdcm_method::schedule::CostChange;
 use gdcm_model::dataset::PairTable;
 use gdcm_model::progress::{Cancelled, Progress};
 
+use super::memo::Memo;
 use super::run::Run;
 use crate::decisions::settings::{DelayFrom, PhaseCorrection, Settings};
-use crate::execution::Memo;
 use crate::results::analysis::ConditionFailure;
 use crate::results::comparison::Mismatches;
-use crate::results::lead_compensation::{LeadCompensated, LeadOffer};
+use crate::results::lead_compensation::LeadCompensated;
+use crate::results::lead_offer::LeadOffer;
 
 /// Solution of a problem, or why there is none.
 pub(crate) type Solved = Result<Arc<Solution>, ProblemError>;

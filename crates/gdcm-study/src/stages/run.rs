@@ -4,7 +4,7 @@ use gdcm_method::correction::ProofBudget;
 use gdcm_model::response::FrequencyGrid;
 
 use super::compared_model::ComparisonGrid;
-use super::condition_responses::GridKey;
+use super::known_models::GridKey;
 use crate::decisions::study::Study;
 use crate::execution::Execution;
 

@@ -218,7 +218,7 @@ mod tests {
 
     use gdcm_model::executor::Sequential;
     use gdcm_model::progress::{Shares, Unobserved};
-    use gdcm_model::response::frequency_response::log_spaced;
+    use gdcm_model::response::frequency_grid::log_spaced;
     use gdcm_model::simulation::FlightRecord;
 
     use super::*;

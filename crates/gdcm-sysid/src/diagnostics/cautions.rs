@@ -7,9 +7,9 @@ use gdcm_model::simulation::{Signal, ValidationError};
 use super::feedback::FeedbackLevel;
 use super::record_fault::{ContradictingRecord, RecordFault};
 use crate::spectra::caution_note::CautionNote;
-use crate::spectra::gaps::listed;
 use crate::spectra::record_cautions::RecordCaution;
 use crate::spectra::response_estimate::TRUSTED_COHERENCE;
+use crate::spectra::signal_names::listed;
 
 /// Recommended minimum record length, in periods at the lower band end (M14.12).
 const BETTER_PERIODS: f64 = 5.0;

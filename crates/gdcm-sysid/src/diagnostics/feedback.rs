@@ -20,7 +20,7 @@
 use nalgebra::{Complex, DMatrix, DVector};
 
 use gdcm_model::executor::{Executor, each};
-use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::response::frequency_grid::log_spaced;
 use gdcm_model::simulation::Segment;
 use gdcm_model::statistics::median;
 

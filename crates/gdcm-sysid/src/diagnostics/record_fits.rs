@@ -6,7 +6,7 @@ use crate::likelihood::blocks::BlockModel;
 use crate::likelihood::cost::{Likelihood, SegmentCost};
 use crate::likelihood::covariance::ParameterCovariance;
 use crate::likelihood::linear_model::LinearModel;
-use crate::subspace::search_extent::parameters_of_order;
+use crate::subspace::tried_orders::parameters_of_order;
 
 /// Fit of the recommended model to a record.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,7 +5,7 @@ use nalgebra::Complex;
 use gdcm_model::dataset::Pair;
 use gdcm_model::dataset::model::ModelBands;
 use gdcm_model::progress::Shares;
-use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::response::frequency_grid::log_spaced;
 use gdcm_model::simulation::{FlightRecord, Validation, ValidationSettings, validate};
 
 use super::model_selection::Refinement;

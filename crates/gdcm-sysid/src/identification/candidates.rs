@@ -5,18 +5,18 @@ use std::collections::BTreeMap;
 use gdcm_model::dataset::StateSpace;
 use gdcm_model::executor::{Executor, each};
 use gdcm_model::progress::{Cancelled, Shares};
-use gdcm_model::response::eigenvalues::poles;
+use gdcm_model::response::mode::poles;
 use gdcm_model::simulation::Segment;
 
 use crate::likelihood::blocks::BlockModel;
 use crate::likelihood::cost::Likelihood;
 use crate::likelihood::refinement::Fit;
 use crate::subspace::ct_pbsid::{Subspace, SubspaceShape};
+use crate::subspace::data_matrix::Projections;
 use crate::subspace::fast_modes::without_fast_modes;
-use crate::subspace::laguerre::Projections;
-use crate::subspace::search_extent::SPACING;
 use crate::subspace::stabilisation::PolesOfOrder;
 use crate::subspace::triangular_factor::TriangularFactor;
+use crate::subspace::tried_orders::SPACING;
 
 /// Highest order at which poles and past windows are compared.
 const RANKING_ORDER: usize = 18;

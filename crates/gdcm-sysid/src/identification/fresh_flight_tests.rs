@@ -15,7 +15,8 @@ use gdcm_model::simulation::{FirstOrderHold, FlightRecord};
 use super::identify::identify;
 use super::real_flight_tests::{Flown, Generator, codes, known, options};
 use super::{Options, Preparation};
-use crate::spectra::preparation::{RecordUse, prepare};
+use crate::spectra::preparation::prepare;
+use crate::spectra::record_use::RecordUse;
 
 /// Records, and the options of their identification.
 struct Flights {
@@ -390,8 +391,8 @@ fn assert_identified(inputs: usize, outputs: usize) {
     let options = Options::new([1.0, 12.0], preparation);
     let found = identify(&records, &options, &Sequential, &Unobserved).unwrap();
     let grid = FrequencyGrid::logarithmic(Band::new(1.2, 10.0).unwrap(), 8);
-    let identified = PreparedModel::of(&found.refined.dynamics).response(&grid);
-    let expected = PreparedModel::of(&Dynamics::StateSpace(truth)).response(&grid);
+    let identified = PreparedModel::new(&found.refined.dynamics).response(&grid);
+    let expected = PreparedModel::new(&Dynamics::StateSpace(truth)).response(&grid);
     for output in 0..outputs {
         let strongest = (0..inputs)
             .flat_map(|input| expected.curve(Pair::new(output, input)))

@@ -21,7 +21,7 @@ use crate::likelihood::blocks::BlockModel;
 use crate::likelihood::linear_model::LinearModel;
 use crate::likelihood::models_without_record::ModelWithoutRecord;
 use crate::options::Options;
-use crate::spectra::preparation::RecordUse;
+use crate::spectra::record_use::RecordUse;
 use crate::spectra::response_estimate::ResponseEstimate;
 use crate::subspace::stabilisation::StabilisationPoint;
 

@@ -33,7 +33,7 @@ use crate::likelihood::dense_model::DenseModel;
 use crate::likelihood::descent::{COMPARABLE, DenseFit, Limits, NEARLY_CONVERGED};
 use crate::likelihood::linear_model::LinearModel;
 use crate::likelihood::refinement::Fit;
-use crate::subspace::search_extent::parameters_of_order;
+use crate::subspace::tried_orders::parameters_of_order;
 
 /// The held-out record decides between orders whose criterion exceeds the minimum by at most this
 /// share.

@@ -8,7 +8,7 @@ use gdcm_model::dataset::StateSpace;
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::executor::Executor;
 use gdcm_model::progress::Shares;
-use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::response::frequency_grid::log_spaced;
 use gdcm_model::simulation::{FlightRecord, Segment, centred};
 
 use super::candidates::SubspaceSettings;
@@ -20,14 +20,16 @@ use crate::likelihood::cost::{Likelihood, SpectralLines};
 use crate::likelihood::noise_covariance::NoiseCovariance;
 use crate::options::Options;
 use crate::spectra::cut_off::CutOff;
-use crate::spectra::instrument::Instrument;
-use crate::spectra::local_polynomial::{LocalPolynomialError, local_polynomial};
-use crate::spectra::preparation::{RecordUse, prepare};
+use crate::spectra::local_polynomial::local_polynomial;
+use crate::spectra::local_polynomial_error::LocalPolynomialError;
+use crate::spectra::preparation::prepare;
 use crate::spectra::record_cautions::RecordCaution;
+use crate::spectra::record_use::RecordUse;
+use crate::spectra::reference_response::Instrument;
 use crate::spectra::response_estimate::ResponseEstimate;
 use crate::spectra::scales::{Scales, ScalingError};
 use crate::spectra::spectrum::{LineRange, Spectrum};
-use crate::subspace::search_extent::{Extent, FIGURES_AN_UNKNOWN, parameters_of_order};
+use crate::subspace::tried_orders::{Extent, FIGURES_AN_UNKNOWN, parameters_of_order};
 
 /// Number of frequencies of the measured response.
 const MEASURED_POINTS: usize = 40;

@@ -4,10 +4,10 @@
 use nalgebra::{Complex, DMatrix};
 use serde_json::Value;
 
-use gdcm_model::dataset::channel::Pair;
+use gdcm_model::dataset::Pair;
 use gdcm_model::executor::Sequential;
 use gdcm_model::progress::{Shares, Unobserved};
-use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::response::frequency_grid::log_spaced;
 use gdcm_model::simulation::{FlightRecord, Segment};
 use gdcm_model::statistics::median;
 
@@ -23,7 +23,7 @@ use crate::diagnostics::record_contrast::RecordContrasts;
 use crate::diagnostics::record_fault::RecordFault;
 use crate::likelihood::blocks::BlockModel;
 use crate::likelihood::covariance::ParameterCovariance;
-use crate::spectra::channel_quality::Clipping;
+use crate::spectra::clipping::Clipping;
 use crate::spectra::local_polynomial::local_polynomial;
 use crate::spectra::preparation::prepare;
 use crate::spectra::response_estimate::EstimatePoint;

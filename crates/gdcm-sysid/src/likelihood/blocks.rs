@@ -388,7 +388,7 @@ fn modal_blocks(model: &StateSpace) -> Option<Vec<ModalBlock>> {
 mod tests {
     use nalgebra::dmatrix;
 
-    use gdcm_model::response::eigenvalues::poles;
+    use gdcm_model::response::mode::poles;
 
     use super::*;
     use crate::identification::known_answers_tests::response_at;

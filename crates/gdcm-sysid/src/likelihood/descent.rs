@@ -22,7 +22,7 @@ use super::dense_model::DenseModel;
 use super::dense_system::{DenseSystem, dense_system};
 use super::gram_matrix::solve_positive_definite;
 use super::linear_model::LinearModel;
-use crate::subspace::search_extent::parameters_of_order;
+use crate::subspace::tried_orders::parameters_of_order;
 
 /// Limit on the Newton decrement over `k phi` at a minimum.
 pub(crate) const CONVERGED: f64 = 0.02;

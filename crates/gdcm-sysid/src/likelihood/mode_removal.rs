@@ -137,7 +137,7 @@ mod tests {
     use nalgebra::{Complex, DVector};
 
     use gdcm_model::dataset::StateSpace;
-    use gdcm_model::response::frequency_response::log_spaced;
+    use gdcm_model::response::frequency_grid::log_spaced;
 
     use super::*;
     use crate::spectra::response_estimate::EstimatePoint;

@@ -16,7 +16,7 @@ use super::blocks::BlockModel;
 use super::cost::{Likelihood, SegmentCost};
 use super::linear_model::LinearModel;
 use super::normal_system::{NormalSystem, normal_systems};
-use crate::subspace::search_extent::parameters_of_order;
+use crate::subspace::tried_orders::parameters_of_order;
 
 /// Relative gain in cost below which the refinement ends; the comparison of orders of large models
 /// uses another limit.

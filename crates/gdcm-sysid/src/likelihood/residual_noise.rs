@@ -20,12 +20,12 @@ use std::f64::consts::PI;
 use nalgebra::{Complex, DMatrix};
 
 use gdcm_model::executor::each;
-use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::response::frequency_grid::log_spaced;
 
 use super::cost::{Likelihood, SegmentCost, SpectralLines};
 use super::linear_model::LinearModel;
 use super::noise_covariance::{NoiseCovariance, NoisePoint};
-use crate::subspace::search_extent::parameters_of_order;
+use crate::subspace::tried_orders::parameters_of_order;
 
 /// Number of frequencies.
 const POINTS: usize = 24;

@@ -4,8 +4,8 @@ use nalgebra::DMatrix;
 
 use gdcm_model::dataset::condition::{ConditionRecord, FlightState};
 use gdcm_model::dataset::dataset::DatasetHeader;
+use gdcm_model::dataset::draft_fault::DraftFault;
 use gdcm_model::dataset::model::Origin;
-use gdcm_model::dataset::unchecked_dataset::DraftFault;
 use gdcm_model::dataset::{
     Band, Channel, Condition, ConditionId, Dataset, Dynamics, Model, PairTable, StateSpace,
 };

@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 
 use gdcm_model::dataset::condition::ChannelRemedy;
 
-use super::laid_out_record::{LaidOutRecord, leave_out_copies};
+use super::laid_out_record::LaidOutRecord;
 use super::layout_problem::{LayoutCaution, LayoutProblem};
 use super::layout_proposal::TimeWish;
 use super::layout_tests::{channels, column, proposed, record};
+use super::record_copies::leave_out_copies;
 use super::record_guess::RecordGuess;
 use super::record_table::RecordColumn;
 

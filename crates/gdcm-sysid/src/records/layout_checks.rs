@@ -10,7 +10,8 @@ use super::record_channels::RecordChannels;
 use super::record_layout::{ChannelUse, ChosenColumn, RecordLayout};
 use super::record_table::{RecordTable, same_samples};
 use super::resampling::{Resampling, has_holes};
-use super::time_base::{LONGEST_STEP_S, TimeBase};
+use super::sample_step::LONGEST_STEP_S;
+use super::time_base::TimeBase;
 
 /// Maximum plausible sensor or bus delay \[s\].
 const LONGEST_DELAY_S: f64 = 10.0;
@@ -224,7 +225,7 @@ fn implausible_magnitude(
         return None;
     }
     let value = column.peak()? * used.gain().abs();
-    let dimension = PhysicalUnit::of(&rule.unit)?.dimension;
+    let dimension = PhysicalUnit::parse(&rule.unit)?.dimension;
     let most = largest_plausible(&rule.unit)?;
     if value <= most {
         return None;

@@ -3,7 +3,7 @@
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::units::{number, telling};
 
-use super::topics::TopicError;
+use super::resampling_error::ResamplingError;
 
 /// Reasons why the chosen columns cannot be used as they are.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -92,7 +92,7 @@ pub enum LayoutProblem {
     /// Neither file nor samples determine the unit.
     #[error(
         "the file does not give the unit of {channel} (column {column}), and its samples can be \
-        in {units}; choose the unit with --unit \"{channel}={unit}\" or on page Columns"
+        in {units}; choose the unit with --unit \"{channel}={unit}\" or on the Columns page"
     )]
     UnsaidUnit {
         channel: String,
@@ -164,7 +164,7 @@ pub enum LayoutProblem {
     },
     /// Topics with separate clocks cannot be combined into a record.
     #[error("{0}")]
-    Topics(TopicError),
+    Topics(ResamplingError),
 }
 
 impl LayoutProblem {

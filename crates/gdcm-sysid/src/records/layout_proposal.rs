@@ -184,7 +184,7 @@ impl Proposer<'_> {
         time: Option<usize>,
     ) -> Vec<Option<ColumnUse>> {
         let table = self.table;
-        let rules = side.of(&self.channels.inputs, &self.channels.outputs);
+        let rules = side.pick(&self.channels.inputs, &self.channels.outputs);
         let mut candidates_of_rules = Vec::with_capacity(rules.len());
         for rule in rules {
             let mut columns = candidates(table, rule, side);

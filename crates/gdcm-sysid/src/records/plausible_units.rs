@@ -38,7 +38,7 @@ const LOGGED: [&str; 21] = [
 
 /// Returns the maximum plausible value for a helicopter in this unit; `None` if there is no limit.
 pub(super) fn largest_plausible(unit: &str) -> Option<f64> {
-    let dimension = PhysicalUnit::of(unit)?.dimension;
+    let dimension = PhysicalUnit::parse(unit)?.dimension;
     let limit = LIMITS
         .into_iter()
         .find(|limit| limit.dimension == dimension)?;
@@ -56,7 +56,7 @@ pub(super) fn possible_units<'u>(column: &RecordColumn, unit: &'u str) -> Vec<&'
         return Vec::new();
     }
     let mut units = Vec::new();
-    if PhysicalUnit::of(unit).is_some() {
+    if PhysicalUnit::parse(unit).is_some() {
         units.push(unit);
     }
     for other in LOGGED {

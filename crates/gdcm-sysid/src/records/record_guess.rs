@@ -92,7 +92,7 @@ fn has_validation_word(name: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use gdcm_model::names::name_pattern::standard_patterns;
+    use gdcm_model::names::standard_patterns;
 
     use super::*;
 

@@ -7,7 +7,7 @@ use gdcm_model::dataset::condition::{ChannelRemedy, ConditionRecord};
 use gdcm_model::names::channel_rule::ChannelRule;
 
 use super::column_use::ColumnUse;
-use super::record_channels::{RecordChannels, SaidConversion};
+use super::record_channels::RecordChannels;
 use super::record_guess::RecordGuess;
 use super::record_table::RecordTable;
 use super::time_base::TimeBase;
@@ -42,8 +42,8 @@ impl RecordLayout {
     pub(super) fn uses<'r>(&self, channels: &'r RecordChannels) -> Vec<ChannelUse<'r>> {
         let mut found = Vec::new();
         for side in [ChannelSide::Input, ChannelSide::Output] {
-            let uses = side.of(&self.inputs, &self.outputs);
-            let rules = side.of(&channels.inputs, &channels.outputs);
+            let uses = side.pick(&self.inputs, &self.outputs);
+            let rules = side.pick(&channels.inputs, &channels.outputs);
             for (index, rule) in rules.iter().enumerate() {
                 let used = uses.get(index).copied().flatten();
                 found.push(ChannelUse { side, rule, used });
@@ -71,14 +71,6 @@ impl RecordLayout {
         }
     }
 
-    /// Copies each channel's remedy from `other`.
-    #[must_use]
-    pub fn with_remedies_of(mut self, other: &Self) -> Self {
-        copy_remedies(&mut self.inputs, &other.inputs);
-        copy_remedies(&mut self.outputs, &other.outputs);
-        self
-    }
-
     /// Adds remedies to channels by name, in this record only, in addition to earlier remedies.
     pub fn put_right(
         &mut self,
@@ -91,53 +83,9 @@ impl RecordLayout {
 
     /// Returns the column of a channel for editing.
     pub fn channel_mut(&mut self, role: ChannelSide, index: usize) -> Option<&mut ColumnUse> {
-        role.of(&mut self.inputs, &mut self.outputs)
+        role.pick(&mut self.inputs, &mut self.outputs)
             .get_mut(index)?
             .as_mut()
-    }
-
-    /// Applies the changes between two layouts of `from` to this layout of `table`, channel by
-    /// channel: transfers the user's edits to another record with the same column names. Remedies,
-    /// which belong to one record, are not changed.
-    #[must_use]
-    pub fn following(
-        &self,
-        table: &RecordTable,
-        [before, after]: [&Self; 2],
-        from: &RecordTable,
-    ) -> Self {
-        let mut layout = self.clone();
-        if before.time != after.time {
-            layout.time = match after.time {
-                Some(base @ TimeBase::Column { .. }) => {
-                    time_in_other(base, from, table).or(self.time)
-                }
-                other => other,
-            };
-        }
-        for side in [ChannelSide::Input, ChannelSide::Output] {
-            let uses = side.of(&mut layout.inputs, &mut layout.outputs);
-            let before = side.of(&before.inputs, &before.outputs);
-            let after = side.of(&after.inputs, &after.outputs);
-            for (index, own) in uses.iter_mut().enumerate() {
-                let earlier = before.get(index).copied().flatten();
-                let Some(edited) = after.get(index).copied().flatten() else {
-                    continue;
-                };
-                if earlier.map(ColumnUse::without_remedy) == Some(edited.without_remedy()) {
-                    continue;
-                }
-                if let Some(column) = column_in_other(edited.column, from, table) {
-                    let remedy = own.map_or(ChannelRemedy::NONE, |own| own.remedy);
-                    *own = Some(ColumnUse {
-                        column,
-                        remedy,
-                        ..edited
-                    });
-                }
-            }
-        }
-        layout
     }
 
     /// Treats the samples of every open column as values in the unit of its channel.
@@ -148,20 +96,6 @@ impl RecordLayout {
             *used = used.map(ColumnUse::in_unit_of_channel);
         }
         layout
-    }
-
-    /// Returns the layout with the same columns, by name, in another record; `None` if a column is
-    /// missing there.
-    pub fn carried_to(&self, other: &RecordTable, from: &RecordTable) -> Option<Self> {
-        let mut layout = self.clone();
-        if let Some(time) = self.time {
-            layout.time = Some(time_in_other(time, from, other)?);
-        }
-        let uses = layout.inputs.iter_mut().chain(&mut layout.outputs);
-        for used in uses.flatten() {
-            used.column = column_in_other(used.column, from, other)?;
-        }
-        Some(layout)
     }
 
     /// Creates the record's dataset entry: its location, and the information in its name.
@@ -192,45 +126,6 @@ impl RecordLayout {
     }
 }
 
-impl RecordChannels {
-    /// Gives channels without a unit the unit of their column in this layout, so that further
-    /// records are converted to it.
-    pub fn take_units(&mut self, layout: &RecordLayout, table: &RecordTable) {
-        for side in [ChannelSide::Input, ChannelSide::Output] {
-            let rules = side.of(&mut self.inputs, &mut self.outputs);
-            let uses = side.of(&layout.inputs, &layout.outputs);
-            for (rule, used) in rules.iter_mut().zip(uses) {
-                if rule.unit.is_empty() {
-                    let conversion = self.said.get(&rule.name);
-                    rule.unit = unit_of_samples(conversion, *used, table).unwrap_or_default();
-                }
-            }
-        }
-    }
-}
-
-/// Returns the unit of a channel's samples: given by the user, or else by the file; `None` if
-/// unknown, as after a user-defined factor other than ±1.
-fn unit_of_samples(
-    conversion: Option<&SaidConversion>,
-    used: Option<ColumnUse>,
-    table: &RecordTable,
-) -> Option<String> {
-    match conversion {
-        Some(SaidConversion::Unit(unit)) => Some(unit.clone()),
-        Some(SaidConversion::Factor(factor)) if factor.abs() != 1.0 => None,
-        _ => table.columns.get(used?.column)?.unit.clone(),
-    }
-}
-
-fn copy_remedies(uses: &mut [Option<ColumnUse>], others: &[Option<ColumnUse>]) {
-    for (used, other) in uses.iter_mut().zip(others) {
-        if let (Some(used), Some(other)) = (used, other) {
-            used.remedy = other.remedy;
-        }
-    }
-}
-
 fn add_remedies(
     uses: &mut [Option<ColumnUse>],
     rules: &[ChannelRule],
@@ -240,94 +135,5 @@ fn add_remedies(
         if let (Some(used), Some(remedy)) = (used, remedies.get(&rule.name)) {
             used.remedy = used.remedy.then(*remedy);
         }
-    }
-}
-
-/// Returns the time base for another record, with the column matched by name; `None` if there is no
-/// such column.
-fn time_in_other(time: TimeBase, from: &RecordTable, other: &RecordTable) -> Option<TimeBase> {
-    match time {
-        TimeBase::Column { column, seconds } => Some(TimeBase::Column {
-            column: column_in_other(column, from, other)?,
-            seconds,
-        }),
-        TimeBase::SampleTime(_) | TimeBase::Topics => Some(time),
-    }
-}
-
-/// Returns the index of a column in another record, by name; the same index if the names agree.
-fn column_in_other(column: usize, from: &RecordTable, other: &RecordTable) -> Option<usize> {
-    let name = &from.columns.get(column)?.name;
-    match other.columns.get(column) {
-        Some(same) if same.name == *name => Some(column),
-        _ => other.find(name),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::records::record_table::RecordColumn;
-
-    fn table(names: &[&str]) -> RecordTable {
-        let columns = names
-            .iter()
-            .map(|name| RecordColumn::new(*name, vec![0.0, 1.0, 2.0]))
-            .collect();
-        RecordTable::new("record", columns)
-    }
-
-    fn time(column: usize) -> Option<TimeBase> {
-        Some(TimeBase::Column {
-            column,
-            seconds: 1.0,
-        })
-    }
-
-    fn open(column: usize) -> Option<ColumnUse> {
-        Some(ColumnUse {
-            is_unit_open: true,
-            ..ColumnUse::as_it_is(column)
-        })
-    }
-
-    #[test]
-    fn an_edit_of_one_channel_follows_in_other_records_and_leaves_their_other_channels() {
-        let from = table(&["t", "P", "Q"]);
-        let other = table(&["Q", "t", "P"]);
-        let before = RecordLayout {
-            time: time(0),
-            inputs: Vec::new(),
-            outputs: vec![open(1), open(2)],
-        };
-        let mut after = before.clone();
-        after.outputs[0] = before.outputs[0].map(|used| used.in_unit("rad/s", "deg/s"));
-        let remedy = ChannelRemedy {
-            delay_s: 0.1,
-            ..ChannelRemedy::NONE
-        };
-        let own = ColumnUse {
-            remedy,
-            ..ColumnUse::as_it_is(2)
-        };
-        let layout = RecordLayout {
-            time: time(1),
-            inputs: Vec::new(),
-            outputs: vec![Some(own), open(0)],
-        };
-        let found = layout.following(&other, [&before, &after], &from);
-        let edited = found.outputs[0].unwrap();
-        assert_eq!(edited.column, 2, "by name");
-        assert!(!edited.is_unit_open);
-        assert_eq!(edited.remedy, remedy, "kept");
-        assert!((edited.factor - 180.0 / std::f64::consts::PI).abs() < 1e-12);
-        assert_eq!(found.outputs[1], layout.outputs[1]);
-        assert_eq!(found.time, layout.time);
-        let without = table(&["t", "Q"]);
-        assert_eq!(
-            before.following(&without, [&before, &after], &from),
-            before,
-            "no such column"
-        );
     }
 }

@@ -3,8 +3,6 @@
 use std::sync::Arc;
 
 use gdcm_model::dataset::channel::ChannelSide;
-use gdcm_model::dataset::condition::ConditionRecord;
-use gdcm_model::dataset::{ConditionId, Dataset};
 use gdcm_model::units::number;
 
 /// A column of samples.
@@ -85,13 +83,6 @@ impl RecordColumn {
     pub(super) fn peak(&self) -> Option<f64> {
         let (least, most) = self.range()?;
         Some(least.abs().max(most.abs()))
-    }
-
-    /// Returns whether name, unit and samples are equal; samples are compared bit for bit.
-    fn is_same(&self, other: &Self) -> bool {
-        let bits = self.values.iter().map(|value| value.to_bits());
-        let other_bits = other.values.iter().map(|value| value.to_bits());
-        self.name == other.name && self.unit == other.unit && bits.eq(other_bits)
     }
 }
 
@@ -203,49 +194,6 @@ impl RecordTable {
         self.position_ignoring_case(&format!("{matrix}_{number}"))
     }
 
-    /// Returns the dataset entry of the record, and its condition. The entry names the same
-    /// variable in a file with the same name, or the same record in an archive with another name.
-    pub fn entry_of_dataset<'d>(
-        &self,
-        dataset: &'d Dataset,
-    ) -> Option<(ConditionId, &'d ConditionRecord)> {
-        let source = &self.source;
-        for condition in dataset.conditions() {
-            for entry in condition.records() {
-                let same_file = file_name(&entry.file) == file_name(&source.file);
-                let same_name = entry.variable.is_some() && entry.name == self.name;
-                if (same_file || same_name)
-                    && entry.variable == source.variable
-                    && entry.part_s.is_none()
-                {
-                    return Some((condition.id(), entry));
-                }
-            }
-        }
-        None
-    }
-
-    /// Returns whether both are the same record: the same variable and part of a file, or equal
-    /// samples under the same name. A table with equal samples under another name is a copy
-    /// ([`leave_out_copies`](super::leave_out_copies)).
-    pub fn is_same_record(&self, other: &Self) -> bool {
-        let is_same_file = self.source.sha256 == other.source.sha256
-            && !self.source.sha256.is_empty()
-            && file_name(&self.source.file) == file_name(&other.source.file);
-        let is_same_source = is_same_file && self.source.variable == other.source.variable;
-        let is_same_content = self.name == other.name && self.has_same_columns(other);
-        self.part_s == other.part_s && (is_same_source || is_same_content)
-    }
-
-    fn has_same_columns(&self, other: &Self) -> bool {
-        self.columns.len() == other.columns.len()
-            && self
-                .columns
-                .iter()
-                .zip(&other.columns)
-                .all(|(column, other)| column.is_same(other))
-    }
-
     /// Returns the part of the record between two times \[s\] on the record's clock.
     #[must_use]
     pub fn part_of_time(&self, part_s: [f64; 2]) -> RecordTable {
@@ -277,11 +225,6 @@ impl RecordTable {
             .collect();
         shortened_list(&names)
     }
-}
-
-/// Returns the last component of a path.
-fn file_name(path: &str) -> &str {
-    path.rsplit('/').next().unwrap_or(path)
 }
 
 /// Joins names, shortened to fit a message.

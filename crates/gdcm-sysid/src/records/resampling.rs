@@ -6,11 +6,13 @@ use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::simulation::FlightRecord;
 use gdcm_model::units::telling;
 
+use super::common_clock::CommonClock;
 use super::record_channels::{RecordChannels, ResamplingWish};
 use super::record_layout::{ChannelUse, RecordLayout};
 use super::record_table::{RecordColumn, RecordTable};
-use super::time_base::median_step;
-use super::topics::{CommonClock, Topic, TopicError, is_held};
+use super::resampling_error::ResamplingError;
+use super::sample_step::median_step;
+use super::stamped_channel::{StampedChannel, is_held};
 
 /// Share of a column's samples that are followed by a missing sample, above which the table is
 /// taken to combine several clocks.
@@ -23,9 +25,9 @@ const SHARE_OF_EVEN_STEPS: f64 = 0.95;
 
 /// Chosen columns, and the clock to which they are resampled.
 pub(super) struct Resampling {
-    /// Topics of the inputs, then of the outputs.
-    topics: Vec<Topic>,
-    /// Number of leading topics that are inputs.
+    /// The inputs, then the outputs.
+    channels: Vec<StampedChannel>,
+    /// Number of leading channels that are inputs.
     inputs: usize,
     /// Names of the inputs that are held constant between their samples.
     held: Vec<String>,
@@ -62,7 +64,7 @@ impl Resampling {
         layout: &RecordLayout,
         table: &RecordTable,
         channels: &RecordChannels,
-    ) -> Option<Result<Self, TopicError>> {
+    ) -> Option<Result<Self, ResamplingError>> {
         let chosen = channel_columns(layout, table, channels)?;
         let wish = &channels.resampling;
         let has_several_clocks =
@@ -72,7 +74,7 @@ impl Resampling {
         }
         let table_time_s = layout.time?.times_s(table);
         let mut held = Vec::new();
-        let mut topics = Vec::new();
+        let mut stamped = Vec::new();
         for chosen in &chosen {
             let name = &chosen.channel.rule.name;
             let stamps = chosen.stamps(&table_time_s);
@@ -81,17 +83,17 @@ impl Resampling {
             if is_held {
                 held.push(name.clone());
             }
-            match Topic::new(name, &stamps, &values, is_held) {
-                Ok(topic) => topics.push(topic),
+            match StampedChannel::new(name, &stamps, &values, is_held) {
+                Ok(channel) => stamped.push(channel),
                 Err(error) => return Some(Err(error)),
             }
         }
-        let clock = match CommonClock::choose(&topics, wish.band_end, wish.rate_hz) {
+        let clock = match CommonClock::choose(&stamped, wish.band_end, wish.rate_hz) {
             Ok(clock) => clock,
             Err(error) => return Some(Err(error)),
         };
         Some(Ok(Self {
-            topics,
+            channels: stamped,
             inputs: layout.inputs.len(),
             held,
             clock: match table.part_s {
@@ -104,9 +106,9 @@ impl Resampling {
     /// Returns notes on the sample rates, the low-pass filter and the held inputs.
     pub(super) fn notes(&self) -> Vec<String> {
         let rates: Vec<String> = self
-            .topics
+            .channels
             .iter()
-            .map(|topic| format!("{} {} Hz", topic.name, telling(topic.rate_hz, 1)))
+            .map(|channel| format!("{} {} Hz", channel.name, telling(channel.rate_hz, 1)))
             .collect();
         let mut notes = vec![format!(
             "resampled to {} Hz; every channel is filtered by the same low-pass at {} rad/s \
@@ -124,10 +126,10 @@ impl Resampling {
         notes
     }
 
-    /// Returns the record on the common clock; NaN in the gaps of each topic.
+    /// Returns the record on the common clock; NaN in the gaps of each channel.
     pub(super) fn flight_record(&self, name: String) -> FlightRecord {
         let time_s = self.clock.times_s();
-        let (inputs, outputs) = self.topics.split_at(self.inputs);
+        let (inputs, outputs) = self.channels.split_at(self.inputs);
         FlightRecord {
             name,
             inputs: self.samples(inputs, &time_s),
@@ -136,13 +138,13 @@ impl Resampling {
         }
     }
 
-    /// Returns the low-pass filtered samples at `time_s`, one column per topic.
-    fn samples(&self, topics: &[Topic], time_s: &[f64]) -> DMatrix<f64> {
-        let values: Vec<f64> = topics
+    /// Returns the low-pass filtered samples at `time_s`, one column per channel.
+    fn samples(&self, channels: &[StampedChannel], time_s: &[f64]) -> DMatrix<f64> {
+        let values: Vec<f64> = channels
             .iter()
-            .flat_map(|topic| topic.at(time_s, self.clock.cutoff))
+            .flat_map(|channel| channel.at(time_s, self.clock.cutoff))
             .collect();
-        DMatrix::from_vec(time_s.len(), topics.len(), values)
+        DMatrix::from_vec(time_s.len(), channels.len(), values)
     }
 }
 
@@ -304,7 +306,7 @@ mod tests {
         let proposal = RecordLayout::proposed(&table, &channels, &TimeWish::default());
         assert!(proposal.layout.flight_record(&table, &channels).is_err());
         let [
-            LayoutProblem::Topics(TopicError::TooSlow {
+            LayoutProblem::Topics(ResamplingError::TooSlow {
                 topic,
                 rate_hz,
                 needed_hz,

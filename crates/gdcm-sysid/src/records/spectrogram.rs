@@ -38,10 +38,15 @@ const SHORTEST_WINDOW_S: f64 = 4.0;
 const LONGEST_WINDOW_S: f64 = 20.0;
 /// Minimum number of samples in a window.
 const FEWEST_SAMPLES: usize = 8;
+/// Number of steps from window to window in the length of a window.
+const STEPS_A_WINDOW: usize = 8;
 /// Maximum number of windows.
 const MOST_WINDOWS: usize = 400;
 /// Maximum frequency as a fraction of half the sample rate.
 const HIGHEST_OF_RATE: f64 = 0.9;
+
+/// Frequency up to which lines are computed, relative to the last row: more than half a row above it.
+const ABOVE_HIGHEST: f64 = 1.1;
 
 impl Spectrogram {
     /// Number of frequency rows.
@@ -61,7 +66,7 @@ impl Spectrogram {
             .map(|&from| windowed(&samples[from..from + windows.length], windows.step_s))
             .collect();
         let mut powers = Vec::with_capacity(segments.len());
-        for spectrum in spectra(&segments, 1.1 * rows.highest, &Sequential) {
+        for spectrum in spectra(&segments, ABOVE_HIGHEST * rows.highest, &Sequential) {
             powers.push(rows.powers(&spectrum));
         }
         let first = windows.starts[0];
@@ -108,7 +113,7 @@ impl Windows {
         if length < FEWEST_SAMPLES || length > samples {
             return None;
         }
-        let hop = (length / 8)
+        let hop = (length / STEPS_A_WINDOW)
             .max((samples - length).div_ceil(MOST_WINDOWS))
             .max(1);
         Some(Self {

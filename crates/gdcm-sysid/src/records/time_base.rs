@@ -1,10 +1,10 @@
 //! Source of a record's sample times: a stamp column, a sample time, or topics.
 
 use gdcm_model::names::time_name::time_name_rank;
-use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit};
-use gdcm_model::units::telling;
 
-use super::record_table::{RecordColumn, RecordTable};
+use super::record_table::RecordTable;
+use super::sample_step::median_step;
+use super::stamp_unit::StampUnit;
 
 /// Source of the sample times.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,14 +21,6 @@ pub enum TimeBase {
     /// Each topic's own stamps.
     Topics,
 }
-
-/// Maximum plausible time between two samples of a manoeuvre \[s\].
-pub(super) const LONGEST_STEP_S: f64 = 1.5;
-/// Minimum plausible time between two samples of a flight recorder \[s\].
-const SHORTEST_STEP_S: f64 = 5e-5;
-/// Minimum step accepted for a guessed unit \[s\].
-const SHORTEST_GUESSED_STEP_S: f64 = 2e-4;
-const SECONDS_A_DAY: f64 = 86_400.0;
 
 /// Rank of a column as the time column; the smallest rank is the most likely.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
@@ -127,102 +119,6 @@ fn finite_product(stamp: f64, seconds: f64) -> f64 {
     }
 }
 
-/// Unit of a stamp column.
-struct StampUnit {
-    name: &'static str,
-    seconds: f64,
-    /// Reason in parentheses, for a note; empty if the file gives the unit.
-    reason: String,
-}
-
-impl StampUnit {
-    /// Units shorter than a second, tried in this order until the median step is plausible.
-    const SHORT: [(&str, f64); 3] = [("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9)];
-
-    /// Determines the unit: the one in the file, else the last word in the column's name
-    /// (`time_ms`), else a unit that makes the median step plausible, else the second.
-    fn new(stamps: &RecordColumn) -> Self {
-        if let Some(unit) = stamps.unit.as_deref().and_then(Self::from_name) {
-            return unit;
-        }
-        if let Some(unit) = last_word(&stamps.name).and_then(Self::from_name) {
-            return unit;
-        }
-        let step = median_step(&stamps.values).unwrap_or(f64::NAN);
-        if step > LONGEST_STEP_S {
-            for (name, seconds) in Self::SHORT {
-                if is_plausible_step(step * seconds) {
-                    return Self::from_steps(name, seconds, step);
-                }
-            }
-            return Self::seconds(String::new());
-        }
-        if step > 0.0 && step < SHORTEST_STEP_S && is_plausible_step(step * SECONDS_A_DAY) {
-            return Self::from_steps("days", SECONDS_A_DAY, step);
-        }
-        Self::seconds(" (the file does not state the unit)".to_owned())
-    }
-
-    /// Returns the time unit with this name, in its usual spelling; `None` if the name is not a
-    /// time unit.
-    fn from_name(name: &str) -> Option<Self> {
-        let unit = PhysicalUnit::of(name)?;
-        if unit.dimension != Dimension::Time {
-            return None;
-        }
-        Some(Self {
-            name: unit.name,
-            seconds: unit.size,
-            reason: String::new(),
-        })
-    }
-
-    /// Returns a unit that was chosen because a step of `step` seconds is implausible.
-    fn from_steps(name: &'static str, seconds: f64, step: f64) -> Self {
-        let fault = if step > 1.0 { "long" } else { "short" };
-        let step = telling(step, 3);
-        Self {
-            name,
-            seconds,
-            reason: format!(" (its steps are {step}: seconds would be too {fault})"),
-        }
-    }
-
-    fn seconds(reason: String) -> Self {
-        Self {
-            name: "s",
-            seconds: 1.0,
-            reason,
-        }
-    }
-}
-
-/// Returns the last word of a name; `None` if the name is a single word.
-fn last_word(name: &str) -> Option<&str> {
-    name.rsplit(|c: char| !c.is_alphanumeric())
-        .next()
-        .filter(|word| *word != name)
-}
-
-fn is_plausible_step(step_s: f64) -> bool {
-    (SHORTEST_GUESSED_STEP_S..=LONGEST_STEP_S).contains(&step_s)
-}
-
-/// Returns the median step between consecutive stamps; `None` without finite steps.
-pub fn median_step(stamps: &[f64]) -> Option<f64> {
-    let mut steps: Vec<f64> = stamps
-        .windows(2)
-        .map(|pair| pair[1] - pair[0])
-        .filter(|step| step.is_finite())
-        .collect();
-    if steps.is_empty() {
-        return None;
-    }
-    let middle = steps.len() / 2;
-    let (_, median, _) = steps.select_nth_unstable_by(middle, f64::total_cmp);
-    Some(*median)
-}
-
 /// Whether more than half of the finite steps are positive.
 fn mostly_rises(stamps: &[f64]) -> bool {
     let mut rising = 0;
@@ -240,6 +136,7 @@ fn mostly_rises(stamps: &[f64]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::records::record_table::RecordColumn;
 
     fn table_with(name: &str, unit: Option<&str>, stamps: Vec<f64>) -> RecordTable {
         let constant = RecordColumn::new("time constant", vec![1.0; stamps.len()]);

@@ -2,26 +2,40 @@
 //!
 //! | stage | files |
 //! |---|---|
-//! | records to segments (M14.1) | [`preparation`], [`preparation_settings`], `clock`, `track`, [`gaps`] |
-//! | doubts about channels (M14.18) | `channel_quality`, [`record_cautions`], [`caution_note`] |
+//! | records to segments (M14.1) | [`preparation`], [`preparation_settings`], `record_clock` |
+//! | samples that count, and gaps (M14.1) | `valid_samples`, `frozen_outputs`, `gap_search`, [`gap`] |
+//! | use of each record | [`record_use`] |
+//! | doubts about channels (M14.18) | [`record_cautions`], [`caution_note`], `clipping`, `stairs`, `coarse_steps` |
+//! | helpers of these | `finite_samples`, `value_range`, `signal_names` |
 //! | low-pass and scales (M14.1) | [`cut_off`], [`scales`] |
 //! | spectra (M14.2) | [`spectrum`] |
-//! | measured response (M14.2) | [`local_polynomial`], [`response_estimate`], `interpolation` |
-//! | response through a reference (M14.15) | `instrument` |
+//! | measured response (M14.2) | [`local_polynomial`], `polynomial_window`, `polynomial_regression`, [`response_estimate`], `interpolation` |
+//! | response through a reference (M14.15) | `reference_response` |
 
 pub mod caution_note;
-pub(crate) mod channel_quality;
-mod clock;
+pub(crate) mod clipping;
+mod coarse_steps;
 pub mod cut_off;
+mod finite_samples;
+mod frozen_outputs;
+pub mod gap;
 pub mod gap_hat;
-pub mod gaps;
-pub(crate) mod instrument;
+mod gap_search;
 pub(crate) mod interpolation;
 pub mod local_polynomial;
+pub mod local_polynomial_error;
+mod polynomial_regression;
+mod polynomial_window;
 pub mod preparation;
 pub mod preparation_settings;
 pub mod record_cautions;
+mod record_clock;
+pub mod record_use;
+pub(crate) mod reference_response;
 pub mod response_estimate;
 pub mod scales;
+pub(crate) mod signal_names;
 pub mod spectrum;
-mod track;
+mod stairs;
+mod valid_samples;
+mod value_range;

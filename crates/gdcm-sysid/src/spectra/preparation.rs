@@ -6,67 +6,19 @@ use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::executor::{Executor, each};
 use gdcm_model::simulation::{FlightRecord, Segment, Signal};
 
-use super::clock::Clock;
-use super::gaps::{Cause, Gap, Treatment};
+use super::gap::{Cause, Gap, Treatment};
+use super::gap_search::record_gaps;
 use super::preparation_settings::{Preparation, PreparationError};
 use super::record_cautions::{RecordCaution, channel_cautions, inputs_at_limit, stuck_caution};
-use super::track::{Track, Tracks, read_row};
+use super::record_clock::Clock;
+use super::record_use::RecordUse;
+use super::valid_samples::{ValidSamples, read_row, valid_samples};
 
-/// The parts of a record that are used, and its gaps.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RecordUse {
-    /// Record name.
-    pub record: String,
-    /// Median sample time \[s\], 0 for fewer than two stamps.
-    pub sample_time_s: f64,
-    /// Time between the first and the last stamp \[s\].
-    pub logged_s: f64,
-    /// Total segment length \[s\].
-    pub used_s: f64,
-    /// Gaps, sorted by their start.
-    pub gaps: Vec<Gap>,
-    /// Inputs at their limit, each with its share of samples there \[%\]. They need no caution: a
-    /// saturated actuator position is a valid input.
-    pub inputs_at_limit: Vec<(Signal, f64)>,
-}
-
-impl RecordUse {
-    /// Returns sentences about the record that are not cautions: the inputs at their limit.
-    pub fn facts(&self) -> impl Iterator<Item = String> {
-        self.inputs_at_limit.iter().map(|(signal, percent)| {
-            format!(
-                "{}: {signal} is at its limit for {percent:.1} % of the record and is used as \
-                logged",
-                self.record
-            )
-        })
-    }
-
-    /// Returns the first and the last time \[s\] of each part that remains after the gaps are cut
-    /// out.
-    pub fn spans(&self, record: &FlightRecord) -> Vec<[f64; 2]> {
-        let mut stamps = record
-            .time_s
-            .iter()
-            .copied()
-            .filter(|time| time.is_finite());
-        let Some(first) = stamps.next() else {
-            return Vec::new();
-        };
-        let last = stamps.next_back().unwrap_or(first);
-        let mut spans = Vec::new();
-        let mut start = first;
-        for gap in &self.gaps {
-            if gap.treatment == Treatment::CutOut {
-                spans.push([start, gap.start_s]);
-                start = gap.end_s;
-            }
-        }
-        spans.push([start, last]);
-        spans.retain(|[start, end]| start < end);
-        spans
-    }
-}
+/// Maximum range of a constant channel, relative to its maximum modulus: interpolation between equal
+/// samples may differ in the last digits.
+const CONSTANT: f64 = 1e-12;
+/// Relative tolerance of the minimum segment length, so that 500 times 0.02 s count as 10 s.
+const LENGTH_ROUNDING: f64 = 1e-9;
 
 /// Flight records cut into gap-free segments on a uniform time grid.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,8 +37,9 @@ pub struct Prepared {
 /// 1  dt = median stamp difference; stamps more than 20 % off the multiples of dt are
 ///    an error unless allowed
 /// 2  for each channel the samples that count: finite, not frozen; fresh if the sensor is slow
+///    (valid_samples, frozen_outputs); between them, the gaps (gap_search)
 /// 3  value of a channel at t: the straight line at t + shift between two samples that are at most
-///    (bridge + 1.5) dt apart
+///    (bridge + 1.5) dt apart, for fresh samples (bridge + 1.5) times the sensor's sample time
 /// 4  segments = runs of the grid t_0 + k dt where every channel has a value, for at least 10 s
 /// ```
 ///
@@ -174,8 +127,7 @@ pub fn segments_of(
 fn is_constant(segments: &[Segment], signal: &Signal) -> bool {
     segments.iter().all(|segment| {
         let samples = segment.channel(signal);
-        // Interpolation between equal samples may differ in the last digits.
-        samples.max() - samples.min() <= 1e-12 * samples.amax()
+        samples.max() - samples.min() <= CONSTANT * samples.amax()
     })
 }
 
@@ -187,6 +139,7 @@ struct PreparedRecord {
     longest_s: f64,
 }
 
+/// Cuts a record into segments (steps 1 to 4); `number` is its index among the records.
 fn prepare_record(
     number: usize,
     record: &FlightRecord,
@@ -196,18 +149,17 @@ fn prepare_record(
     let clock = Clock::new(record, preparation.longest_bridge)?;
     let mut cautions = Vec::new();
     cautions.extend(check_jitter(record, &clock, preparation.resample)?);
-    let Tracks { tracks, mut gaps } = Tracks::new(record, &clock, preparation);
-    gaps.extend(clock.gaps());
+    let channels = valid_samples(record, &clock, preparation);
+    let mut gaps = record_gaps(&clock, &channels);
 
     let mut segments = Vec::new();
     let mut longest_s = 0.0_f64;
-    for run in runs(&clock, &tracks) {
+    for run in runs(&clock, &channels) {
         let start_s = clock.start_s + clock.sample_time_s * run.first;
-        let samples = run.rows.len() / tracks.len();
+        let samples = run.rows.len() / channels.len();
         let length_s = clock.sample_time_s * samples as f64;
         longest_s = longest_s.max(length_s);
-        // A small tolerance, so that 500 times 0.02 s count as 10 s.
-        if length_s >= preparation.least_segment_s * (1.0 - 1e-9) {
+        if length_s >= preparation.least_segment_s * (1.0 - LENGTH_ROUNDING) {
             segments.push(run.into_segment(number, start_s, clock.sample_time_s, preparation));
         } else {
             gaps.push(Gap {
@@ -273,8 +225,8 @@ fn check_jitter(
 /// Returns an error for a record whose channels or lengths do not match.
 fn check_shape(record: &FlightRecord, preparation: &Preparation) -> Result<(), PreparationError> {
     for role in [ChannelSide::Input, ChannelSide::Output] {
-        let found = role.of(&record.inputs, &record.outputs).ncols();
-        let named = role.of(&preparation.inputs, &preparation.outputs).len();
+        let found = role.pick(&record.inputs, &record.outputs).ncols();
+        let named = role.pick(&preparation.inputs, &preparation.outputs).len();
         if found != named {
             return Err(PreparationError::ChannelsDiffer {
                 record: record.name.clone(),
@@ -302,7 +254,7 @@ fn check_shape(record: &FlightRecord, preparation: &Preparation) -> Result<(), P
 struct Run {
     /// First grid index, an integer value.
     first: f64,
-    /// Samples row by row: inputs, then outputs.
+    /// Samples row by row: sample `n` of channel `c` at `n channels + c`, inputs first.
     rows: Vec<f64>,
 }
 
@@ -329,10 +281,10 @@ impl Run {
 }
 
 /// Finds the runs of a record on the grid `k dt`, relative to its first stamp.
-fn runs(clock: &Clock, tracks: &[Track]) -> Vec<Run> {
+fn runs(clock: &Clock, channels: &[ValidSamples]) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
-    let mut readers: Vec<_> = tracks.iter().map(Track::reader).collect();
-    let mut row = vec![0.0; tracks.len()];
+    let mut readers: Vec<_> = channels.iter().map(ValidSamples::reader).collect();
+    let mut row = vec![0.0; channels.len()];
     for stretch in clock.grid() {
         let mut is_open = false;
         for k in (0..stretch.points).map(|point| stretch.first + point as f64) {

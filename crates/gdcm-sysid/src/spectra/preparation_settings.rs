@@ -3,7 +3,7 @@
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::simulation::Signal;
 
-use super::gaps::names;
+use super::signal_names::names;
 
 /// Maximum plausible delay or hold of a channel \[s\].
 const LONGEST_SHIFT_S: f64 = 10.0;
@@ -113,7 +113,7 @@ impl Preparation {
         &self,
         role: ChannelSide,
     ) -> impl Iterator<Item = (Signal, &ChannelPreparation)> {
-        let channels = role.of(&self.inputs, &self.outputs).iter().enumerate();
+        let channels = role.pick(&self.inputs, &self.outputs).iter().enumerate();
         channels.map(move |(index, channel)| {
             let signal = Signal {
                 role,
@@ -128,7 +128,7 @@ impl Preparation {
     pub fn channel(&self, signal: &Signal) -> Option<&ChannelPreparation> {
         signal
             .role
-            .of(&self.inputs, &self.outputs)
+            .pick(&self.inputs, &self.outputs)
             .get(signal.index)
     }
 
@@ -136,14 +136,14 @@ impl Preparation {
     pub fn channel_mut(&mut self, signal: &Signal) -> Option<&mut ChannelPreparation> {
         signal
             .role
-            .of(&mut self.inputs, &mut self.outputs)
+            .pick(&mut self.inputs, &mut self.outputs)
             .get_mut(signal.index)
     }
 
     /// Returns an error for invalid settings.
     pub(crate) fn check(&self) -> Result<(), PreparationError> {
         for role in [ChannelSide::Input, ChannelSide::Output] {
-            if role.of(&self.inputs, &self.outputs).is_empty() {
+            if role.pick(&self.inputs, &self.outputs).is_empty() {
                 return Err(PreparationError::NoChannels(role));
             }
         }

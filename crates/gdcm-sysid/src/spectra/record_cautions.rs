@@ -8,11 +8,13 @@ use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::simulation::{FlightRecord, Segment, Signal, centred};
 
 use super::caution_note::CautionNote;
-use super::channel_quality::{
-    COARSE, Clipping, Stairs, coarseness, finite_samples, finite_values, is_coarse,
-};
-use super::gaps::{Cause, Gap, names};
+use super::clipping::Clipping;
+use super::coarse_steps::{COARSE, coarseness, is_coarse};
+use super::finite_samples::{finite_samples, finite_values};
+use super::gap::{Cause, Gap};
 use super::preparation_settings::{ChannelPreparation, Hold, Preparation};
+use super::signal_names::names;
+use super::stairs::Stairs;
 
 /// Correlation above which two inputs count as always moved together.
 const TOGETHER: f64 = 0.99;

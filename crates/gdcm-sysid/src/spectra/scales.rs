@@ -85,7 +85,7 @@ fn divide_columns(samples: &mut DMatrix<f64>, scales: &[f64]) {
 
 /// Returns the inputs or the outputs of a segment.
 fn samples_of_side(segment: &Segment, role: ChannelSide) -> &DMatrix<f64> {
-    role.of(&segment.inputs, &segment.outputs)
+    role.pick(&segment.inputs, &segment.outputs)
 }
 
 /// Computes the rms of each channel about its mean in each segment, over all segments.

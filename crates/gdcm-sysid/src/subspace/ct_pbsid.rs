@@ -1,6 +1,10 @@
 //! CT-PBSID: models of all orders from the triangular factor of the data matrix (M14.3).
 //!
 //! ```text
+//! z_k = [u~_k; y~_k]: k-th Laguerre projections of the inputs u and the outputs y (`data_matrix`)
+//! p past window, q channels, n order, R triangular factor of the data matrix [z_0 ... z_p]
+//! Gamma K: map from the past to the future (observability times controllability matrix)
+//!
 //! Z0 = [z_0 ... z_{p-1}], Z1 = [z_1 ... z_p], U = u~_p, Y = y~_p, columns of R
 //! 1  Theta = argmin |[Z0 U] Theta - Y|^2 + ridge |Theta|^2     predictor with an exogenous input
 //! 2  Gamma K: block row i = Theta' columns 1 to (p - i) q, placed from column i q
@@ -16,7 +20,7 @@ use nalgebra::{DMatrix, DMatrixView};
 
 use gdcm_model::dataset::StateSpace;
 
-use super::laguerre::continuous;
+use super::continuous_model::continuous;
 use super::triangular_factor::{TriangularFactor, least_squares, ridge_solution};
 
 /// Dimensions of a data matrix and of its map to the future.
@@ -154,7 +158,7 @@ mod tests {
     use crate::identification::known_answers_tests::{
         answers, matrix, number, numbers, response, response_at,
     };
-    use crate::subspace::laguerre::Projections;
+    use crate::subspace::data_matrix::Projections;
 
     #[test]
     fn a_system_without_noise_comes_back() {

@@ -1,4 +1,11 @@
 //! Removal of the modes far above the band; their static gain is kept.
+//!
+//! ```text
+//! 1  Q = [Q1 Q2] orthonormal, Q1 spans the slow modes:   Q' A Q = [A1 A12; 0 A2]
+//! 2  A1 X - X A2 = -A12:  the states x1 - X x2 and x2 are decoupled
+//! 3  B1 = Q1' B - X Q2' B,  B2 = Q2' B,   C1 = C Q1,  C2 = C (Q1 X + Q2)
+//! 4  slow part (A1, B1, C1),   D - C2 A2^-1 B2: the fast part at omega = 0
+//! ```
 
 use nalgebra::{Complex, DMatrix, DVector, Dyn, SymmetricEigen};
 

@@ -7,6 +7,7 @@ use gdcm_model::units::{s_to_ms, six_digits};
 
 use super::{Context, Derivation};
 use crate::leads::servo_words;
+use crate::solution_details::proof_text;
 
 /// An objective as an equation, with the units of its value.
 struct Objective {
@@ -53,7 +54,7 @@ impl Objective {
 /// Derives the net gain `k_o k_i` of a response.
 pub(super) fn net_gain(context: &Context<'_>, pair: Pair) -> Derivation {
     let result = context.result;
-    let [output, input] = Channel::of(pair);
+    let [output, input] = Channel::of_pair(pair);
     let value = result.correction.net_gain(pair);
     let step = format!(
         "k_{} k_{} = {} · {} = {}",
@@ -69,7 +70,7 @@ pub(super) fn net_gain(context: &Context<'_>, pair: Pair) -> Derivation {
         equation: "k_o k_i".to_owned(),
         with_numbers: vec![step],
         rests_on: vec![constraint_words(context, pair, &result.gains, delta)],
-        section: "M11, eq. (12)",
+        section: "M10, eq. (12)",
         value,
     }
 }
@@ -77,7 +78,7 @@ pub(super) fn net_gain(context: &Context<'_>, pair: Pair) -> Derivation {
 /// Derives the net delay `τ_o + τ_i` \[ms\] of a response.
 pub(super) fn net_delay(context: &Context<'_>, pair: Pair) -> Derivation {
     let result = context.result;
-    let [output, input] = Channel::of(pair);
+    let [output, input] = Channel::of_pair(pair);
     let value = s_to_ms(result.correction.net_delay_s(pair));
     let step = format!(
         "τ_{} + τ_{} = {} + {} = {} ms",
@@ -217,10 +218,11 @@ impl Optimum<'_> {
         let mut steps = Vec::new();
         for (pair, target) in self.solution.targets.iter() {
             let Some(target) = target else { continue };
-            if !channel.is_of(pair) {
+            if !channel.belongs_to(pair) {
                 continue;
             }
-            let [output, input] = Channel::of(pair).map(|channel| self.context.channel(channel));
+            let [output, input] =
+                Channel::of_pair(pair).map(|channel| self.context.channel(channel));
             let sum = if is_gain {
                 format!("k_{output} k_{input}")
             } else {
@@ -261,7 +263,7 @@ impl Optimum<'_> {
             "{defined} responses fitted, α = {}",
             six_digits(self.problem.alpha)
         ));
-        rests_on.push(self.solution.proof.outcome.words());
+        rests_on.push(proof_text(self.solution.proof.outcome));
         rests_on
     }
 

@@ -201,7 +201,7 @@ fn cost_steps(symbol: &str, cost: Cost, average: CostAverage) -> [String; 3] {
 
 /// Describes the net gain and the net delay of a correction.
 fn correction_words(context: &Context<'_>, pair: Pair, correction: &ChannelCorrection) -> String {
-    let [output, input] = Channel::of(pair).map(|channel| context.channel(channel));
+    let [output, input] = Channel::of_pair(pair).map(|channel| context.channel(channel));
     format!(
         "k_{output} k_{input} = {}, τ_{output} + τ_{input} = {} ms",
         five_digits(correction.net_gain(pair)),
@@ -256,7 +256,7 @@ pub(super) fn change(
     let change = assessed.changes.get(pair)?.as_ref()?;
     let correction = choice
         .correction
-        .of(context.analysis, context.result)
+        .correction(context.analysis, context.result)
         .ok()?;
     let mut with_numbers = vec![format!(
         "{} ({})",

@@ -9,6 +9,7 @@ use gdcm_study::results::reported_error::{reports_error, takes_reported_error};
 use gdcm_study::{Analysis, ConditionAnalysis};
 
 use super::explain_target::ExplainTarget;
+use crate::uncertainty::bar_remark_texts;
 
 /// Remark on unconstrained net gains and on channel values, used if the identified models come with
 /// standard errors.
@@ -32,7 +33,7 @@ fn lines_of(analysis: &Analysis, target: &ExplainTarget) -> Option<Vec<String>> 
         if !takes_reported_error(result, scalar) && reports_error(analysis, result) {
             lines.push(SPREAD_ALONE.to_owned());
         }
-        for swap in &found.substitutions.substitutions {
+        for swap in &found.swaps.swaps {
             lines.push(swap_words(result, swap, scalar));
         }
     }
@@ -68,7 +69,7 @@ fn bar_lines(bar: &Bar, scalar: Scalar, level: f64) -> Vec<String> {
         part_words("trim", scalar, bar.trim),
         part_words("identification", scalar, bar.identification),
     ];
-    lines.extend(bar.remarks().into_iter().map(str::to_owned));
+    lines.extend(bar_remark_texts(bar).into_iter().map(str::to_owned));
     if bar.left_out > 0 {
         lines.push(format!(
             "{} exchanges of a model give no value of this result",

@@ -3,7 +3,7 @@ use std::collections::BTreeSet;
 use egui::vec2;
 
 use super::*;
-use crate::gui::plot::bode_event::{BodeEvent, CurveWish};
+use crate::gui::plot::bode_event::{BodeEvent, CurveAction};
 use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::widgets::palette::{self, Palette};
 
@@ -33,7 +33,7 @@ pub(super) fn harness(curves: Vec<BodeCurve>) -> Harness<'static, Model> {
                     hidden_roles: Some(&model.hidden_roles),
                     ..BodeScene::new("LON → Q", &model.curves, model.band)
                 };
-                let palette = Palette::of(ui.visuals());
+                let palette = Palette::from_visuals(ui.visuals());
                 for event in bode_ui(ui, &scene, &mut model.view, &palette) {
                     if let BodeEvent::BandDragged { min, max } = event {
                         model.band = (min, max);
@@ -79,7 +79,7 @@ pub(super) fn clicks(harness: &Harness<'_, Model>) -> Vec<BodeEvent> {
     let is_click = |event: &&BodeEvent| {
         matches!(
             event,
-            BodeEvent::Clicked(_) | BodeEvent::TakenBack(_) | BodeEvent::Isolated(_)
+            BodeEvent::Clicked(_) | BodeEvent::ClickUndone(_) | BodeEvent::Isolated(_)
         )
     };
     harness
@@ -318,7 +318,7 @@ fn a_double_click_on_a_curve_takes_its_first_click_back_and_leaves_the_view() {
         clicks(&harness),
         [
             BodeEvent::Clicked(numbered(2)),
-            BodeEvent::TakenBack(numbered(2))
+            BodeEvent::ClickUndone(numbered(2))
         ]
     );
     harness.run();
@@ -518,9 +518,9 @@ fn a_secondary_click_on_a_curve_opens_its_menu() {
     harness.run();
     harness.get_by_label("Reject model").click();
     harness.run();
-    let wished = BodeEvent::Wished(numbered(2), CurveWish::RejectOrRestore);
+    let chosen = BodeEvent::ActionChosen(numbered(2), CurveAction::RejectOrRestore);
     assert!(
-        harness.state().events.contains(&wished),
+        harness.state().events.contains(&chosen),
         "{:?}",
         harness.state().events
     );

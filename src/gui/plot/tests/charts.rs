@@ -22,7 +22,7 @@ fn harness() -> Harness<'static, Vec<PlotBounds>> {
     };
     let lines = [line(1.0), line(-1.0)];
     let draw = move |ui: &mut egui::Ui, views: &mut Vec<PlotBounds>| {
-        let palette = Palette::of(ui.visuals());
+        let palette = Palette::from_visuals(ui.visuals());
         let corner = ui.max_rect().min;
         views.clear();
         for (row, (title, points)) in TITLES.into_iter().zip(&lines).enumerate() {

@@ -22,7 +22,7 @@ struct Model {
 struct Numbers;
 
 impl FigureWords for Numbers {
-    fn plot(&self, plot: usize) -> String {
+    fn plot_name(&self, plot: usize) -> String {
         format!("plot {plot}")
     }
 }
@@ -86,7 +86,7 @@ fn harness(model: Model) -> Harness<'static, Model> {
                     &Numbers,
                 )
             };
-            let palette = Palette::of(ui.visuals());
+            let palette = Palette::from_visuals(ui.visuals());
             model
                 .events
                 .extend(figure_ui(ui, &scene, &mut model.view, &palette));

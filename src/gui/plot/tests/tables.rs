@@ -4,9 +4,8 @@ use egui_kittest::kittest::Queryable;
 use gdcm_model::dataset::Pair;
 
 use super::*;
-use crate::gui::plot::overview::{
-    OverviewCell, OverviewEvent, OverviewScene, OverviewView, overview_ui,
-};
+use crate::gui::plot::overview::overview_ui;
+use crate::gui::plot::overview_scene::{OverviewCell, OverviewEvent, OverviewScene, OverviewView};
 use crate::gui::widgets::palette;
 use crate::gui::widgets::palette::Palette;
 
@@ -44,7 +43,7 @@ fn overview_harness(curves: Vec<BodeCurve>) -> Harness<'static, Model> {
                     band: (0.5, 12.0),
                     message: None,
                 };
-                let palette = Palette::of(ui.visuals());
+                let palette = Palette::from_visuals(ui.visuals());
                 let events = overview_ui(ui, &scene, &mut model.overview, &palette);
                 model.pairs.extend(events);
             },

@@ -8,8 +8,9 @@ use gdcm_model::names::ChannelRule;
 
 use crate::gui::commands::command::Command;
 use crate::gui::state::assembling::AssemblyState;
-use crate::gui::widgets::controls::{button_ui, entry_ui, named};
+use crate::gui::widgets::controls::{button_ui, named};
 use crate::gui::widgets::palette::Palette;
+use crate::gui::widgets::text_fields::entry_ui;
 
 const SIDES: [ChannelSide; 2] = [ChannelSide::Input, ChannelSide::Output];
 

@@ -4,8 +4,9 @@ use egui::{Grid, RichText, Role, Ui};
 
 use crate::gui::commands::command::Command;
 use crate::gui::state::assembling::AssemblyState;
-use crate::gui::widgets::controls::{entry_ui, named};
+use crate::gui::widgets::controls::named;
 use crate::gui::widgets::palette::Palette;
+use crate::gui::widgets::text_fields::entry_ui;
 
 const HEADING_WIDTH: f32 = 180.0;
 /// Maximum number of displayed columns; a note gives the number of further columns.

@@ -8,8 +8,10 @@ use super::path_field::path_ui;
 use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::commands::command::Command;
 use crate::gui::state::assembling::AssemblyState;
-use crate::gui::widgets::controls::{Asks, button_ui, entry_ui, number_entry_ui};
+use crate::gui::widgets::controls::{Asks, button_ui};
+use crate::gui::widgets::number_entry::number_entry_ui;
 use crate::gui::widgets::palette::Palette;
+use crate::gui::widgets::text_fields::entry_ui;
 
 pub(super) fn dataset_bar_ui(
     ui: &mut Ui,

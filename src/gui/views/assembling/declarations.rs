@@ -1,23 +1,21 @@
-//! Channel signs, units, factors and conversions that apply to several files.
+//! Channel signs, units and factors that apply to several files.
 //!
 //! Declarations for a single model are shown with the model, those for a folder pattern only in the
 //! rules file.
 
 use std::collections::BTreeMap;
 
-use egui::{Grid, RichText, Ui};
+use egui::{Grid, Ui};
 
 use gdcm_model::assembly::declarations::{ChannelDeclarations, Signs};
-use gdcm_model::assembly::problem::ProblemKind;
-use gdcm_model::assembly::{FileScope, Rules, UnitRule};
-use gdcm_model::units::number;
+use gdcm_model::assembly::{FileScope, Rules};
 
 use super::typed_rules::{number_text, typed_factors, typed_signs, typed_units, unit_text};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::form::FormCommand;
 use crate::gui::state::assembling::AssemblyState;
-use crate::gui::widgets::controls::{entry_ui, number_entry_ui};
-use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
+use crate::gui::widgets::palette::Palette;
+use crate::gui::widgets::text_fields::entry_ui;
 
 const FIELD_WIDTH: f32 = 160.0;
 
@@ -132,7 +130,7 @@ fn declarations(rules: &Rules, scope: &FileScope) -> ChannelDeclarations {
     let declared = rules
         .declarations
         .iter()
-        .find(|declared| declared.of == *scope);
+        .find(|declared| declared.scope == *scope);
     match declared {
         Some(declared) => declared.channels.clone(),
         None => ChannelDeclarations::default(),
@@ -183,91 +181,4 @@ fn declaration_ui(
 
 fn refusal(name: &str, why: &str) -> Command {
     Command::Form(FormCommand::Refuse(format!("{name}: {why}")))
-}
-
-/// A conversion between units whose factor does not follow from the units.
-#[derive(PartialEq)]
-struct Conversion {
-    channel: String,
-    /// Unit in the files.
-    from: String,
-    /// Dataset unit; empty for declared conversions.
-    to: String,
-}
-
-impl Conversion {
-    fn is_set_by(&self, rule: &UnitRule) -> bool {
-        rule.channel == self.channel && rule.from == self.from
-    }
-}
-
-/// Shows a factor for each declared conversion, then for each conversion that is still required.
-pub(super) fn conversions_ui(
-    ui: &mut Ui,
-    assembly: &AssemblyState,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
-    let rules = assembly.assembly().rules();
-    for conversion in conversions(assembly) {
-        let rule = rules.units.iter().find(|rule| conversion.is_set_by(rule));
-        let value = match rule {
-            Some(rule) => number(rule.factor),
-            None => String::new(),
-        };
-        let Conversion { channel, from, to } = &conversion;
-        ui.horizontal(|ui| {
-            let label = format!("{channel}: 1 {from} =");
-            ui.label(RichText::new(label).size(SMALL_SIZE).color(palette.text));
-            let name = format!("Factor of {channel} from {from}");
-            if let Some(factor) = number_entry_ui(ui, &name, &value, "factor", 60.0, commands) {
-                commands.push(conversion_change(assembly, &conversion, factor));
-            }
-            ui.label(palette.small(to));
-        });
-    }
-}
-
-fn conversions(assembly: &AssemblyState) -> Vec<Conversion> {
-    let mut required = Vec::new();
-    for problem in assembly.assembly().problems() {
-        if let ProblemKind::Conversion { channel, from, to } = &problem.kind {
-            let conversion = Conversion {
-                channel: channel.clone(),
-                from: from.clone(),
-                to: to.clone(),
-            };
-            if !required.contains(&conversion) {
-                required.push(conversion);
-            }
-        }
-    }
-    let mut conversions = Vec::new();
-    for rule in &assembly.assembly().rules().units {
-        conversions.push(Conversion {
-            channel: rule.channel.clone(),
-            from: rule.from.clone(),
-            to: String::new(),
-        });
-    }
-    conversions.extend(required);
-    conversions
-}
-
-/// Returns the command that sets a conversion's factor, or removes the conversion.
-fn conversion_change(
-    assembly: &AssemblyState,
-    conversion: &Conversion,
-    factor: Option<f64>,
-) -> Command {
-    assembly.rules_change(|rules| {
-        rules.units.retain(|rule| !conversion.is_set_by(rule));
-        if let Some(factor) = factor {
-            rules.units.push(UnitRule {
-                channel: conversion.channel.clone(),
-                from: conversion.from.clone(),
-                factor,
-            });
-        }
-    })
 }

@@ -3,16 +3,19 @@
 
 mod channels;
 mod column_headings;
+mod conversions;
 mod dataset_bar;
 mod declarations;
 mod details;
 mod model_fields;
+mod model_table;
 mod path_field;
 mod preview;
+mod preview_curve;
 mod problems;
 mod rule_changes;
+mod rule_setters;
 mod source_bar;
-mod table;
 mod typed_rules;
 
 use egui::{CentralPanel, CollapsingHeader, Frame, Margin, Panel, ScrollArea, Ui};
@@ -21,13 +24,14 @@ use crate::gui::commands::command::Command;
 use crate::gui::state::assembling::AssemblyState;
 use crate::gui::widgets::palette::Palette;
 use channels::channel_table_ui;
+use conversions::conversions_ui;
 use dataset_bar::dataset_bar_ui;
-use declarations::{conversions_ui, signs_ui, units_and_factors_ui};
+use declarations::{signs_ui, units_and_factors_ui};
 use details::details_ui;
+use model_table::table_ui;
 use preview::preview_ui;
 use problems::problems_ui;
 use source_bar::source_bar_ui;
-use table::table_ui;
 
 /// Draws the view, which covers everything below the menu.
 pub fn assembling_ui(

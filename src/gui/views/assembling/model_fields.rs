@@ -7,22 +7,24 @@ use gdcm_model::assembly::{ChannelLabel, RowRule};
 use gdcm_model::names::RowRole;
 use gdcm_model::units::number;
 
-use super::typed_rules::{
-    number_text, typed_factors, typed_names, typed_signs, typed_text, typed_trim, typed_units,
-    unit_text,
-};
+use super::rule_setters::{set_condition, set_factors, set_signs, set_trim, set_units};
+use super::typed_rules::{number_text, typed_names, typed_text, unit_text};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::form::FormCommand;
 use crate::gui::state::assembling::AssemblyState;
-use crate::gui::widgets::controls::{entry_ui, named, typed_number};
+use crate::gui::widgets::controls::named;
+use crate::gui::widgets::number_entry::typed_number;
+use crate::gui::widgets::text_fields::entry_ui;
 
 const FIELD_WIDTH: f32 = 200.0;
 
-/// How the text of a field changes the rule of a model; an empty text removes the setting.
+/// How the text of a field changes the rule of a model. The first three kinds return the place in
+/// the rule that receives the parsed text; an empty text removes the setting.
 enum Effect {
     Text(fn(&mut RowRule) -> &mut Option<String>),
     Number(fn(&mut RowRule) -> &mut Option<f64>),
     Names(fn(&mut RowRule) -> &mut Option<Vec<String>>),
+    /// Parses the text and changes the rule; the error is the reason for refusing the text.
     Parsed(fn(&mut RowRule, &str) -> Result<(), String>),
 }
 
@@ -44,6 +46,7 @@ impl Field {
         }
     }
 
+    /// Changes `rule` as the text requires, or returns the reason for refusing the text.
     fn apply(&self, text: &str, rule: &mut RowRule) -> Result<(), String> {
         match self.effect {
             Effect::Text(place) => *place(rule) = typed_text(text),
@@ -241,107 +244,4 @@ fn channel_names(labels: &[ChannelLabel], rule_names: Option<&Vec<String>>) -> S
         .map(|label| label.name.as_deref().unwrap_or("?"))
         .collect::<Vec<_>>()
         .join(", ")
-}
-
-fn set_condition(rule: &mut RowRule, text: &str) -> Result<(), String> {
-    let text = text.trim();
-    rule.condition = if text.is_empty() {
-        None
-    } else {
-        let wrong = |_| format!("expected a whole number, found \"{text}\"");
-        Some(text.parse().map_err(wrong)?)
-    };
-    Ok(())
-}
-
-fn set_trim(rule: &mut RowRule, text: &str) -> Result<(), String> {
-    rule.perturbation = Some(typed_trim(text)?);
-    Ok(())
-}
-
-fn set_signs(rule: &mut RowRule, text: &str) -> Result<(), String> {
-    let signs = typed_signs(text)?;
-    rule.signs = if signs.is_empty() { None } else { Some(signs) };
-    Ok(())
-}
-
-/// Sets units and removes the factors of the same channels: a channel has either a unit or a
-/// factor.
-fn set_units(rule: &mut RowRule, text: &str) -> Result<(), String> {
-    let units = typed_units(text)?;
-    if let Some(factors) = &mut rule.factors {
-        factors.retain(|channel, _| !units.contains_key(channel));
-    }
-    rule.units = if units.is_empty() { None } else { Some(units) };
-    Ok(())
-}
-
-/// Sets factors and removes the units of the same channels: a channel has either a unit or a
-/// factor.
-fn set_factors(rule: &mut RowRule, text: &str) -> Result<(), String> {
-    let factors = typed_factors(text)?;
-    if let Some(units) = &mut rule.units {
-        units.retain(|channel, _| !factors.contains_key(channel));
-    }
-    rule.factors = if factors.is_empty() {
-        None
-    } else {
-        Some(factors)
-    };
-    Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_trim_is_parsed_and_written_in_the_same_form() {
-        let mut rule = RowRule::default();
-        set_trim(&mut rule, "roll_deg 5, airspeed_kt -10").unwrap();
-        assert_eq!(
-            number_text(&rule.perturbation.clone().unwrap()),
-            "airspeed_kt -10, roll_deg 5"
-        );
-        let error = set_trim(&mut rule, "roll").unwrap_err();
-        assert!(error.contains("roll_deg 5"), "{error}");
-    }
-
-    #[test]
-    fn a_sign_is_1_or_minus_1() {
-        let mut rule = RowRule::default();
-        set_signs(&mut rule, "NZ -1").unwrap();
-        assert_eq!(rule.signs.as_ref().unwrap()["NZ"], -1.0);
-        let error = set_signs(&mut rule, "NZ -2").unwrap_err();
-        assert!(error.contains("1 or -1"), "{error}");
-    }
-
-    #[test]
-    fn a_channel_has_a_unit_or_a_factor() {
-        let mut rule = RowRule::default();
-        set_units(&mut rule, "LON in, roll rate rad/s").unwrap();
-        assert_eq!(
-            rule.units.as_ref().map(unit_text).as_deref(),
-            Some("LON in, roll rate rad/s")
-        );
-        set_factors(&mut rule, "LON 8").unwrap();
-        assert_eq!(
-            rule.units.as_ref().map(unit_text).as_deref(),
-            Some("roll rate rad/s")
-        );
-        assert_eq!(
-            rule.factors.as_ref().map(number_text).as_deref(),
-            Some("LON 8")
-        );
-        assert!(set_units(&mut rule, "in").is_err());
-        assert!(set_factors(&mut rule, "LON 0").is_err());
-    }
-
-    #[test]
-    fn a_condition_is_a_whole_number() {
-        let mut rule = RowRule::default();
-        set_condition(&mut rule, "3").unwrap();
-        assert_eq!(rule.condition, Some(3));
-        assert!(set_condition(&mut rule, "three").is_err());
-    }
 }

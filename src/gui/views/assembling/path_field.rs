@@ -2,7 +2,7 @@
 
 use egui::Ui;
 
-use crate::gui::widgets::controls::{is_entered, text_field_ui};
+use crate::gui::widgets::text_fields::{is_entered, text_field_ui};
 
 /// Draws the field; returns whether Enter ended the editing.
 pub(super) fn path_ui(ui: &mut Ui, name: &str, path: &mut String, hint: &str) -> bool {

@@ -1,28 +1,18 @@
-//! The displayed model's response as a Bode plot.
-
-use std::sync::Arc;
+//! Preview of the displayed model: selector of its responses, and the Bode plot of one.
 
 use egui::Ui;
-use nalgebra::Complex;
 
 use gdcm_model::assembly::{ChannelLabel, FoundModel};
-use gdcm_model::dataset::{Band, BundleKind, ConditionId, Dynamics, ModelId, Pair, StateSpace};
-use gdcm_model::response::frequency_response::ResponseShape;
-use gdcm_model::response::{FrequencyGrid, PreparedModel};
 use gdcm_plot::figure::axis::FrequencyUnit;
 
+use super::preview_curve::{curve, pair};
 use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::commands::command::Command;
 use crate::gui::plot::quantity::BodeQuantity;
-use crate::gui::plot::{BodeCurve, BodeScene, CurveId, Role, bode_ui};
-use crate::gui::state::assembling::{AssemblyState, Preview};
+use crate::gui::plot::{BodeScene, bode_ui};
+use crate::gui::state::assembling::{AssemblyState, DrawnPreview, Preview};
 use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::palette::Palette;
-
-/// Number of points on the curve of a model.
-const POINTS: usize = 300;
-/// Factor by which the curve extends beyond the comparison band at either end.
-const BEYOND: f64 = 3.0;
 
 /// Shows the Bode plot of a response, and a selector of all responses of the model.
 pub(super) fn preview_ui(
@@ -39,49 +29,53 @@ pub(super) fn preview_ui(
     };
     let found = part.found.clone();
     let count = (found.inputs.len() * found.outputs.len()).max(1);
-    let place = assembly.preview.response.min(count - 1);
+    let response = assembly.preview.response.min(count - 1);
     let names: Vec<String> = (0..count)
-        .map(|place| response_name(&found, place))
+        .map(|response| response_name(&found, response))
         .collect();
-    response_choice_ui(ui, &names, place, commands);
-    update(&mut assembly.preview, &found, place, band);
-    let Some((_, _, curves)) = &assembly.preview.drawn else {
+    response_choice_ui(ui, &names, response, commands);
+    update_curves(&mut assembly.preview, &found, response, band);
+    let Some(drawn) = &assembly.preview.drawn else {
         return;
     };
     let scene = BodeScene {
         quantity: BodeQuantity::RESPONSE_OF_FOUND_MODEL,
         unit: FrequencyUnit::default(),
         message: Some("This response cannot be computed: the model is incomplete or inconsistent"),
-        ..BodeScene::new(&names[place], curves, band)
+        ..BodeScene::new(&names[response], &drawn.curves, band)
     };
     bode_ui(ui, &scene, &mut assembly.preview.view, palette);
 }
 
-fn response_choice_ui(ui: &mut Ui, names: &[String], place: usize, commands: &mut Vec<Command>) {
+fn response_choice_ui(ui: &mut Ui, names: &[String], shown: usize, commands: &mut Vec<Command>) {
     let choices: Vec<(usize, &str, &str)> = names
         .iter()
         .enumerate()
-        .map(|(place, name)| (place, name.as_str(), "Response shown"))
+        .map(|(response, name)| (response, name.as_str(), "Response shown"))
         .collect();
-    let mut chosen = place;
+    let mut chosen = shown;
     choice_ui(ui, "Response of the preview", &mut chosen, &choices);
-    if chosen != place {
+    if chosen != shown {
         commands.push(AssemblingCommand::ShowResponse(chosen).into());
     }
 }
 
 /// Recomputes the curve if another model or response has been selected.
-fn update(preview: &mut Preview, found: &FoundModel, place: usize, band: (f64, f64)) {
+fn update_curves(preview: &mut Preview, found: &FoundModel, response: usize, band: (f64, f64)) {
     let key = found.key();
     let mut is_same_model = false;
-    if let Some((drawn_key, drawn_place, _)) = &preview.drawn {
-        is_same_model = *drawn_key == key;
-        if is_same_model && *drawn_place == place {
+    if let Some(drawn) = &preview.drawn {
+        is_same_model = drawn.model == key;
+        if is_same_model && drawn.response == response {
             return;
         }
     }
-    let curves = curve(found, place, band).into_iter().collect();
-    preview.drawn = Some((key, place, curves));
+    let curves = curve(found, response, band).into_iter().collect();
+    preview.drawn = Some(DrawnPreview {
+        model: key,
+        response,
+        curves,
+    });
     // A different model may have other frequencies, so `request_fit` also fits the frequency axis.
     if is_same_model {
         preview.view.request_refit();
@@ -90,15 +84,9 @@ fn update(preview: &mut Preview, found: &FoundModel, place: usize, band: (f64, f
     }
 }
 
-/// Returns the pair at `place`: `output * inputs + input`.
-fn pair(found: &FoundModel, place: usize) -> Pair {
-    let inputs = found.inputs.len().max(1);
-    Pair::new(place / inputs, place % inputs)
-}
-
 /// Returns "LON → Q", with the channel names in the file.
-fn response_name(found: &FoundModel, place: usize) -> String {
-    let pair = pair(found, place);
+fn response_name(found: &FoundModel, response: usize) -> String {
+    let pair = pair(found, response);
     format!(
         "{} → {}",
         channel_name(&found.inputs, pair.input, "input"),
@@ -114,63 +102,4 @@ fn channel_name(labels: &[ChannelLabel], index: usize, side: &str) -> String {
         return name.clone();
     }
     format!("{side} {}", index + 1)
-}
-
-struct PairResponse {
-    /// Frequencies \[rad/s\].
-    omega: Vec<f64>,
-    values: Vec<Complex<f64>>,
-}
-
-fn curve(found: &FoundModel, place: usize, band: (f64, f64)) -> Option<BodeCurve> {
-    let PairResponse { omega, values } = match found.response() {
-        Some(_) => measured_response(found, place)?,
-        None => model_response(found, pair(found, place), band)?,
-    };
-    let shape = ResponseShape::new(&values);
-    let model = ModelId::new(ConditionId(0), BundleKind::Physics, found.key());
-    Some(BodeCurve {
-        id: CurveId::Model(model),
-        label: found.key(),
-        detail: found.words(),
-        role: Role::Representative,
-        rejected: false,
-        highlighted: false,
-        hidden: false,
-        omega: Arc::from(omega),
-        magnitude_db: shape.magnitude_db,
-        phase_deg: shape.phase_deg,
-    })
-}
-
-/// Returns a response measured in the file, in which the values of each pair are contiguous; `None`
-/// without measured responses.
-fn measured_response(found: &FoundModel, place: usize) -> Option<PairResponse> {
-    let response = found.response()?;
-    let count = response.omega.len();
-    let range = place * count..(place + 1) * count;
-    let re = response.re.values.get(range.clone())?;
-    let im = response.im.values.get(range)?;
-    let values = re.iter().zip(im).map(|(re, im)| Complex::new(*re, *im));
-    Some(PairResponse {
-        omega: response.omega.clone(),
-        values: values.collect(),
-    })
-}
-
-/// Computes the response of a state-space model over the extended band; `None` if the matrices are
-/// incomplete or inconsistent.
-fn model_response(found: &FoundModel, pair: Pair, band: (f64, f64)) -> Option<PairResponse> {
-    let [a, b, c, d] = found.draft.matrices.clone();
-    let model = StateSpace::new(a?, b?, c?, d?)
-        .ok()?
-        .timed(found.draft.timing.clone())
-        .ok()?;
-    let wide = Band::new(band.0 / BEYOND, band.1 * BEYOND).ok()?;
-    let grid = FrequencyGrid::logarithmic(wide, POINTS);
-    let response = PreparedModel::of(&Dynamics::StateSpace(model)).response(&grid);
-    Some(PairResponse {
-        omega: grid.omega().to_vec(),
-        values: response.curve(pair).to_vec(),
-    })
 }

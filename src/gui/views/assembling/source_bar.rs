@@ -18,7 +18,8 @@ pub(super) fn source_bar_ui(
     ui.horizontal_wrapped(|ui| {
         ui.label(RichText::new("Import models").strong());
         add_ui(ui, assembly, commands);
-        let (can_undo, can_redo) = assembly.steps();
+        let can_undo = assembly.can_undo();
+        let can_redo = assembly.can_redo();
         let cancel = "Discards this import and returns to the open dataset";
         for (text, is_enabled, hint, command) in [
             ("Choose folder…", true, "", AssemblingCommand::AskFolder),
@@ -71,7 +72,7 @@ fn reading_ui(
     };
     ui.label(palette.small(format!(
         "reading {} of {}: {}{values}",
-        reading.number, reading.of, reading.name
+        reading.number, reading.total, reading.name
     )));
     let stop = Button::new("Stop reading");
     button_ui(ui, stop, "", AssemblingCommand::StopReading, commands);

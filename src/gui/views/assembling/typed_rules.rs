@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use gdcm_model::assembly::declarations::Signs;
 use gdcm_model::units::number;
 
-use crate::gui::widgets::controls::typed_number;
+use crate::gui::widgets::number_entry::typed_number;
 
 /// Returns the trimmed text; `None` if it is empty.
 pub(super) fn typed_text(text: &str) -> Option<String> {

@@ -13,8 +13,8 @@ use gdcm_sysid::records::{ColumnUse, LaidOutRecord, RecordLayout};
 use super::page::Page;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::records::RecordsCommand;
-use crate::gui::widgets::choices::list_ui;
-use crate::gui::widgets::controls::number_entry_ui;
+use crate::gui::widgets::choices::DropDown;
+use crate::gui::widgets::number_entry::number_entry_ui;
 
 const FIELD_WIDTH: f32 = 90.0;
 /// Width of the fields that apply to the displayed record only \[pt\].
@@ -196,7 +196,12 @@ impl ChannelRow<'_> {
             let units = open_units
                 .into_iter()
                 .map(|unit| (unit, false, unit.to_owned()));
-            if let Some(unit) = list_ui(ui, &label, (FIELD_WIDTH, "unit?"), units)
+            let list = DropDown {
+                name: &label,
+                width: FIELD_WIDTH,
+                text: "unit?",
+            };
+            if let Some(unit) = list.ui(ui, units)
                 && let Some(column_use) = self.column_use
             {
                 commands.push(self.use_command(column_use.in_unit(unit, self.unit)));
@@ -268,7 +273,12 @@ fn column_ui(ui: &mut Ui, name: &str, row: &LaidOutRecord, chosen: Option<usize>
         Some(column) => column_text(row, column),
         None => "?".to_owned(),
     };
-    list_ui(ui, name, (150.0, &text), columns)
+    let list = DropDown {
+        name,
+        width: 150.0,
+        text: &text,
+    };
+    list.ui(ui, columns)
 }
 
 /// Returns the name of a column with its unit in the file; "?" if there is no such column.

@@ -88,9 +88,9 @@ pub fn condition_table(state: &State) -> Table {
 
 /// Returns the cells from the model order on; fewer cells before an identification.
 fn outcome_cells(state: &State, id: ConditionId, records: &ConditionRecords) -> Vec<String> {
-    if let Some(job) = state.records.running(id) {
+    if let Some(job) = state.records.job_of(id) {
         let text = if job.news().step.is_empty() {
-            "waits"
+            "waiting"
         } else {
             "running"
         };

@@ -4,7 +4,8 @@ use nalgebra::Complex;
 
 use gdcm_model::dataset::{Pair, StateSpace};
 use gdcm_model::response::evaluate;
-use gdcm_model::response::frequency_response::{ResponseShape, log_spaced};
+use gdcm_model::response::frequency_grid::log_spaced;
+use gdcm_model::response::response_shape::ResponseShape;
 use gdcm_model::units::neper_to_db;
 use gdcm_sysid::diagnostics::bands::TWO_SIDED_95;
 use gdcm_sysid::diagnostics::model_doubts::NARROW_WINDOW;
@@ -71,12 +72,14 @@ impl CurvePoint {
     }
 }
 
+/// Standard deviations of magnitude and phase.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StandardDeviation {
     db: f64,
     deg: f64,
 }
 
+/// Measured response at a frequency.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MeasuredPoint {
     pub(super) point: CurvePoint,
@@ -94,6 +97,7 @@ pub(super) struct MeasuredBand {
     pub(super) by_reference: bool,
 }
 
+/// Curves and intervals of a response, to be drawn in both halves of a Bode plot.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DrawnResponse {
     pub(super) measured: Vec<MeasuredPoint>,
@@ -118,11 +122,12 @@ impl DrawnResponse {
         }
     }
 
-    /// Returns the curves of an identification, with phases on a common branch.
+    /// Returns the curves of an identification. The phases of the models are on the branch of the
+    /// first trusted measured point, the anchor.
     pub(super) fn new(found: &Identification, measured_band: MeasuredBand, pair: Pair) -> Self {
         let points = &found.measured.points;
         let measured = measured_points(points, pair);
-        let reference = measured
+        let anchor = measured
             .iter()
             .find(|measured| measured.is_trusted)
             .map(|measured| measured.point);
@@ -144,10 +149,10 @@ impl DrawnResponse {
             }
         }
         if let Some(model) = found.refined.state_space() {
-            drawn.recommended = curve(model, band_omega, pair, reference);
+            drawn.recommended = curve(model, band_omega, pair, anchor);
         }
         if let Some(model) = found.unrefined.state_space() {
-            drawn.unrefined = model_curve(model, measured_band.band, pair, reference);
+            drawn.unrefined = model_curve(model, measured_band.band, pair, anchor);
         }
         drawn
     }
@@ -231,10 +236,10 @@ fn model_curve(
     model: &StateSpace,
     band: [f64; 2],
     pair: Pair,
-    reference: Option<CurvePoint>,
+    anchor: Option<CurvePoint>,
 ) -> Vec<CurvePoint> {
     let omega = log_spaced(band[0] / BEYOND, band[1] * BEYOND, POINTS);
-    curve(model, &omega, pair, reference)
+    curve(model, &omega, pair, anchor)
 }
 
 /// Computes the response of a model at frequencies \[rad/s\]; omits values that are not finite.
@@ -242,7 +247,7 @@ fn curve(
     model: &StateSpace,
     frequencies: &[f64],
     pair: Pair,
-    reference: Option<CurvePoint>,
+    anchor: Option<CurvePoint>,
 ) -> Vec<CurvePoint> {
     let response = evaluate(model, frequencies);
     let mut omega = Vec::new();
@@ -253,22 +258,18 @@ fn curve(
             values.push(value);
         }
     }
-    shape(omega, &values, reference)
+    shape(omega, &values, anchor)
 }
 
-/// Returns the curve with magnitude and unwrapped phase, on the branch nearest to `reference`, a
+/// Returns the curve with magnitude and unwrapped phase, on the branch nearest to `anchor`, a
 /// point of another curve.
-fn shape(
-    omega: Vec<f64>,
-    values: &[Complex<f64>],
-    reference: Option<CurvePoint>,
-) -> Vec<CurvePoint> {
+fn shape(omega: Vec<f64>, values: &[Complex<f64>], anchor: Option<CurvePoint>) -> Vec<CurvePoint> {
     let ResponseShape {
         magnitude_db,
         phase_deg,
     } = ResponseShape::new(values);
-    let shift_deg = match reference {
-        Some(reference) => branch_shift_deg(&omega, &phase_deg, reference),
+    let shift_deg = match anchor {
+        Some(anchor) => branch_shift_deg(&omega, &phase_deg, anchor),
         None => 0.0,
     };
     let mut curve = Vec::with_capacity(omega.len());
@@ -283,15 +284,15 @@ fn shape(
 }
 
 /// Returns the shift by whole turns \[deg\] that brings the phase closest to the phase of
-/// `reference`, compared at the nearest frequency.
-fn branch_shift_deg(omega: &[f64], phase_deg: &[f64], reference: CurvePoint) -> f64 {
+/// `anchor`, compared at the nearest frequency.
+fn branch_shift_deg(omega: &[f64], phase_deg: &[f64], anchor: CurvePoint) -> f64 {
     let nearest = (0..omega.len()).min_by(|a, b| {
-        let distance_a = (omega[*a] / reference.omega).ln().abs();
-        let distance_b = (omega[*b] / reference.omega).ln().abs();
+        let distance_a = (omega[*a] / anchor.omega).ln().abs();
+        let distance_b = (omega[*b] / anchor.omega).ln().abs();
         distance_a.total_cmp(&distance_b)
     });
     match nearest {
-        Some(nearest) => 360.0 * ((reference.phase_deg - phase_deg[nearest]) / 360.0).round(),
+        Some(nearest) => 360.0 * ((anchor.phase_deg - phase_deg[nearest]) / 360.0).round(),
         None => 0.0,
     }
 }

@@ -9,7 +9,8 @@ use egui::{Id, Ui};
 /// Source data of a cached value, kept alive so that its address cannot be reused.
 pub type Source = Arc<dyn Any + Send + Sync>;
 
-struct Kept<T> {
+/// Value with the sources and the hash of the key for which it was computed.
+struct CachedValue<T> {
     sources: Vec<Source>,
     key: u64,
     value: Arc<T>,
@@ -17,7 +18,7 @@ struct Kept<T> {
 
 /// Returns the result of `compute`, cached for these sources (compared by address) and `key`;
 /// recomputes it when either changes.
-pub fn kept<T: Send + Sync + 'static>(
+pub fn cached<T: Send + Sync + 'static>(
     ui: &Ui,
     name: &str,
     sources: &[Source],
@@ -28,7 +29,7 @@ pub fn kept<T: Send + Sync + 'static>(
     key.hash(&mut hasher);
     let place = Id::unique(("records page", name));
     let key = hasher.finish();
-    let known = ui.data(|data| data.get_temp::<Arc<Kept<T>>>(place));
+    let known = ui.data(|data| data.get_temp::<Arc<CachedValue<T>>>(place));
     if let Some(known) = known
         && known.key == key
         && are_same(&known.sources, sources)
@@ -36,12 +37,12 @@ pub fn kept<T: Send + Sync + 'static>(
         return Arc::clone(&known.value);
     }
     let value = Arc::new(compute());
-    let kept = Arc::new(Kept {
+    let cached = Arc::new(CachedValue {
         sources: sources.to_vec(),
         key,
         value: Arc::clone(&value),
     });
-    ui.data_mut(|data| data.insert_temp(place, kept));
+    ui.data_mut(|data| data.insert_temp(place, cached));
     value
 }
 
@@ -65,7 +66,7 @@ mod tests {
             computed = 0;
             let sources: [Source; 2] = [Arc::new(1_i64), Arc::new(1_i64)];
             for (source, key) in [(0, 1), (0, 1), (0, 2), (1, 2), (0, 2)] {
-                let value = kept(ui, "test", &[Arc::clone(&sources[source])], key, || {
+                let value = cached(ui, "test", &[Arc::clone(&sources[source])], key, || {
                     computed += 1;
                     (source, key)
                 });

@@ -11,7 +11,7 @@ use crate::gui::widgets::controls::{Asks, button_ui};
 /// Draws the commands for the displayed condition, from right to left.
 pub fn records_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let condition = state.condition().id();
-    if state.records.running(condition).is_some() {
+    if state.records.job_of(condition).is_some() {
         let stop = Button::new("Stop identifying");
         button_ui(ui, stop, "", RecordsCommand::Stop, commands);
         ui.spinner();

@@ -1,27 +1,23 @@
-//! Channels of a record over time, with the models' responses to the same inputs.
+//! Page with the channels of a record over time, and the models' responses to the same inputs.
 
 use std::sync::Arc;
 
 use egui::{Color32, Label, Rect, RichText, ScrollArea, Sense, Ui, vec2};
 
 use gdcm_model::simulation::FlightRecord;
-use gdcm_model::units::telling;
 use gdcm_sysid::records::ModeSpan;
-use gdcm_sysid::spectra::gaps::{Gap, Treatment};
 
-use super::frame_cache::kept;
+use super::frame_cache::cached;
+use super::history_spans::{gap_spans, mode_spans, part_spans};
 use super::page::Page;
+use super::record_parts::{part_ui, span_ui};
 use super::simulation::{Simulated, simulated, time_models_ui};
 use super::spectrogram::{spectrogram_choice_ui, spectrogram_ui};
-use super::typed_lists::numbers;
 use crate::gui::commands::command::Command;
-use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::plot::chart::{Chart, ChartAxis, ChartLine, ChartSpan};
 use crate::gui::plot::chart_view::chart_ui;
-use crate::gui::plot::stretch::chosen_stretch;
-use crate::gui::widgets::choices::check_ui;
-use crate::gui::widgets::controls::entry_ui;
+use crate::gui::plot::dragged_range::take_dragged_range;
 use crate::gui::widgets::palette::Palette;
 
 /// Minimum chart height \[pt\]; further charts scroll.
@@ -38,7 +34,7 @@ pub(super) fn histories_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comma
         return;
     };
     let Some(flight) = &row.flight else {
-        let text = "First assign the record's columns to channels: page Columns";
+        let text = "First assign the record's columns to channels on the Columns page";
         ui.label(RichText::new(text).color(palette.warning));
         return;
     };
@@ -52,13 +48,13 @@ pub(super) fn histories_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comma
         part_ui(ui, page, commands);
         span_ui(ui, page);
     });
-    if let Some((part_s, has_ended)) = chosen_stretch(ui, Page::time_axis()) {
+    if let Some(part_s) = take_dragged_range(ui, Page::time_axis()) {
         spans.push(ChartSpan {
-            ends: part_s,
+            ends: part_s.ends,
             color: palette.accent.gamma_multiply(0.35),
         });
-        if has_ended {
-            commands.push(RecordsCommand::AddPart(records.chosen, part_s).into());
+        if part_s.has_ended {
+            commands.push(RecordsCommand::AddPart(records.chosen, part_s.ends).into());
         }
     }
     preparation_ui(ui, page);
@@ -166,7 +162,7 @@ impl ChannelCharts<'_> {
         };
         let flight = self.flight;
         let source = Arc::clone(flight) as _;
-        let lines = kept(ui, &format!("channel {index}"), &[source], (), || {
+        let lines = cached(ui, &format!("channel {index}"), &[source], (), || {
             recorded_points(flight, index)
         });
         lines
@@ -216,82 +212,6 @@ fn recorded_points(flight: &FlightRecord, index: usize) -> Vec<Arc<[[f64; 2]]>> 
         .collect()
 }
 
-/// Draws the controls that make a typed or dragged part a separate record.
-fn part_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
-    let Page {
-        state,
-        records,
-        palette,
-    } = page;
-    ui.label(palette.small("part [s]"));
-    let text = entry_ui(ui, "Part of the record", "", "from to", 70.0);
-    if let Some(text) = text
-        && !text.trim().is_empty()
-    {
-        let row = records.rows.get(records.chosen);
-        let span_s = row.and_then(|row| row.span_s());
-        commands.push(match typed_part(&text, span_s) {
-            Some(part_s) => RecordsCommand::AddPart(records.chosen, part_s).into(),
-            None => Command::Form(FormCommand::Refuse(format!(
-                "part of the record: expected two times in s, the earlier first, as in \"12 40\", \
-                or \"+5 +34\" from the start of the record, found \"{text}\""
-            ))),
-        });
-    }
-    let hint = "Drag over a chart to use that part as a separate record, fitted or held out, \
-        instead of the whole record";
-    if let Some(chooses) = check_ui(ui, state.records.chooses_parts, "drag parts", hint) {
-        commands.push(RecordsCommand::ChooseParts(chooses).into());
-    }
-}
-
-/// Parses a typed part \[s\]: two times on the record's time axis or, with `+` before both, two
-/// times from the start of the record.
-fn typed_part(text: &str, span_s: Option<[f64; 2]>) -> Option<[f64; 2]> {
-    let [from, to] = numbers(text).ok()?[..] else {
-        return None;
-    };
-    let signs = text
-        .split_whitespace()
-        .filter(|time| time.starts_with('+'))
-        .count();
-    let start_s = match signs {
-        0 => 0.0,
-        2 => span_s?[0],
-        _ => return None,
-    };
-    let part_s = [start_s + from, start_s + to];
-    if part_s[0] < part_s[1] {
-        Some(part_s)
-    } else {
-        None
-    }
-}
-
-/// Shows the time span of the displayed record on its time axis, and counted from the start of the
-/// whole record.
-fn span_ui(ui: &mut Ui, page: Page<'_>) {
-    let Page {
-        records, palette, ..
-    } = page;
-    let Some(row) = records.rows.get(records.chosen) else {
-        return;
-    };
-    let Some(span_s) = row.span_s() else { return };
-    let whole = records
-        .rows
-        .iter()
-        .find(|other| other.table.part_s.is_none() && other.table.source == row.table.source);
-    let whole_s = whole.and_then(|whole| whole.span_s());
-    let start_s = whole_s.unwrap_or(span_s)[0];
-    let [from, to] = span_s.map(|time_s| telling(time_s, 2));
-    let [first, last] = span_s.map(|time_s| telling(time_s - start_s, 2));
-    let words = format!(
-        "{from} s to {to} s on the record's time axis, +{first} s to +{last} s from its start"
-    );
-    ui.add(Label::new(palette.small(words)).truncate());
-}
-
 /// Lists the modes of the logging system in a line.
 fn modes_ui(ui: &mut Ui, modes: &[ModeSpan], palette: &Palette) {
     if modes.is_empty() {
@@ -305,70 +225,4 @@ fn modes_ui(ui: &mut Ui, modes: &[ModeSpan], palette: &Palette) {
     let words = words.join(" · ");
     ui.add(Label::new(palette.small(&words)).truncate())
         .on_hover_text(words);
-}
-
-/// Returns the time spans of the logging system's modes, shaded lightly and darkly in turn.
-fn mode_spans(modes: &[ModeSpan], palette: &Palette) -> Vec<ChartSpan> {
-    let mut spans = Vec::new();
-    for (index, mode) in modes.iter().enumerate() {
-        let opacity = if index.is_multiple_of(2) { 0.06 } else { 0.14 };
-        spans.push(ChartSpan {
-            ends: mode.ends_s,
-            color: palette.dim_text.gamma_multiply(opacity),
-        });
-    }
-    spans
-}
-
-/// Returns the time spans of other records that are parts of the same file.
-fn part_spans(page: Page<'_>) -> Vec<ChartSpan> {
-    let Page {
-        records, palette, ..
-    } = page;
-    let Some(chosen) = records.rows.get(records.chosen) else {
-        return Vec::new();
-    };
-    let mut spans = Vec::new();
-    for (index, row) in records.rows.iter().enumerate() {
-        if index != records.chosen
-            && row.table.source == chosen.table.source
-            && let Some(ends) = row.table.part_s
-        {
-            spans.push(ChartSpan {
-                ends,
-                color: palette.identified.gamma_multiply(0.15),
-            });
-        }
-    }
-    spans
-}
-
-/// Returns the gaps in the displayed record that the identification bridged or cut out.
-fn gap_spans(page: Page<'_>) -> Vec<ChartSpan> {
-    let Page {
-        records, palette, ..
-    } = page;
-    let Some(found) = page.current_identification() else {
-        return Vec::new();
-    };
-    let record = (0..found.record_uses.len())
-        .find(|record| records.row_of_record(*record) == Some(records.chosen));
-    let Some(record) = record else {
-        return Vec::new();
-    };
-    found.record_uses[record]
-        .gaps
-        .iter()
-        .map(|gap| gap_span(gap, palette))
-        .collect()
-}
-
-fn gap_span(gap: &Gap, palette: &Palette) -> ChartSpan {
-    ChartSpan {
-        ends: [gap.start_s, gap.end_s],
-        color: match gap.treatment {
-            Treatment::Bridged => palette.accent.gamma_multiply(0.25),
-            Treatment::CutOut => palette.warning.gamma_multiply(0.35),
-        },
-    }
 }

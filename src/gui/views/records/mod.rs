@@ -2,23 +2,29 @@
 //! search settings on the left, a page about them on the right.
 
 mod autospectra;
+mod caution_remedies;
 mod columns;
 mod condition_table;
 mod drawn_response;
+mod fit_page;
 pub mod frame_cache;
 mod header;
 mod histories;
+mod history_spans;
+mod identified_poles;
+mod input_charts;
 mod offered_models;
 mod outcome;
 pub mod page;
-mod poles;
+mod record_files;
 mod record_list;
+mod record_parts;
+mod record_problems;
 mod references;
-mod remedies;
 mod response;
+mod response_legend;
 mod search_settings;
 mod simulation;
-mod source;
 mod spectrogram;
 mod typed_lists;
 
@@ -30,20 +36,20 @@ use crate::gui::commands::records::RecordsCommand;
 use crate::gui::state::records::{ConditionRecords, RecordsPage};
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::page_tab_ui;
-use crate::gui::widgets::controls::restore_panel_size;
 use crate::gui::widgets::palette::Palette;
-use autospectra::inputs_ui;
+use crate::gui::widgets::panel_layout::restore_panel_size;
 use columns::columns_ui;
 use condition_table::condition_table_ui;
+use fit_page::fit_ui;
 use histories::histories_ui;
+use identified_poles::{identified_poles_ui, stabilisation_ui};
+use input_charts::inputs_ui;
 use outcome::outcome_ui;
 use page::Page;
-use poles::{identified_poles_ui, stabilisation_ui};
+use record_files::source_ui;
 use record_list::record_list_ui;
 use response::response_ui;
 use search_settings::search_settings_ui;
-use simulation::fit_ui;
-use source::source_ui;
 
 pub use condition_table::condition_table;
 pub use header::records_header_ui;
@@ -60,6 +66,7 @@ pub fn records_view_ui(
     commands: &mut Vec<Command>,
 ) {
     let condition = state.condition().id();
+    // The page borrows the state, so the fields that widgets change are taken out of it meanwhile.
     let mut path = std::mem::take(&mut state.records.path);
     let mut sorting = state.records.sorting;
     let mut focused = state.records.advanced_field;
@@ -119,9 +126,8 @@ fn page_tabs_ui(ui: &mut Ui, displayed: RecordsPage, commands: &mut Vec<Command>
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
             for page in RecordsPage::ALL {
-                let (name, short_name, purpose) = page.words();
                 let is_displayed = page == displayed;
-                let (tab, is_clicked) = page_tab_ui(ui, is_displayed, short_name, (name, purpose));
+                let (tab, is_clicked) = page_tab_ui(ui, is_displayed, page.words());
                 if tab.gained_focus() {
                     tab.scroll_to_me(None);
                 }

@@ -11,12 +11,12 @@ use gdcm_sysid::diagnostics::model_doubts::HELD_OUT;
 use gdcm_sysid::identification::Identification;
 use gdcm_words::channel_time_skew::time_skew_text;
 
-use super::frame_cache::{Source, kept};
-use super::page::Page;
-use super::record_list::{BAD, CHI_SQUARED};
-use super::remedies::{
+use super::caution_remedies::{
     Remedy, band_remedy, caution_remedies, remove_common_delay, study_band_remedy,
 };
+use super::frame_cache::{Source, cached};
+use super::page::Page;
+use super::record_list::{BAD_FIT, CHI_SQUARED};
 use crate::gui::commands::command::Command;
 use crate::gui::widgets::controls::Asks;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
@@ -35,7 +35,7 @@ pub(super) fn outcome_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command
         )));
         remedies_ui(ui, vec![study_band_remedy()], commands);
     }
-    if let Some(job) = state.records.running(state.condition().id()) {
+    if let Some(job) = state.records.job_of(state.condition().id()) {
         progress_ui(ui, page, job);
         return;
     }
@@ -68,11 +68,11 @@ fn progress_ui(ui: &mut Ui, page: Page<'_>, job: &IdentifyJob) {
     let mut share = 0.0;
     let mut words = String::new();
     if !news.step.is_empty() {
-        let (done, total) = state.results.background.identification.unwrap_or((0, 0));
-        share = done as f32 / total.max(1) as f32;
+        let steps = state.results.background.identification.unwrap_or_default();
+        share = steps.done as f32 / steps.total.max(1) as f32;
         words = news.step;
     } else if let Some(earlier) = state.records.under_way() {
-        words = format!("Waits for condition {}", earlier.condition);
+        words = format!("Waiting for condition {}", earlier.condition);
     }
     ui.add(ProgressBar::new(share).desired_height(6.0));
     ui.label(palette.small(words));
@@ -87,7 +87,7 @@ fn summary_ui(ui: &mut Ui, found: &Identification, palette: &Palette) {
     ui.label(RichText::new(format!("CT-PBSID, refined: order {order}")).strong());
     ui.horizontal_wrapped(|ui| {
         ui.label("χ²/dof");
-        let color = limit_color(found.cost, BAD, palette);
+        let color = limit_color(found.cost, BAD_FIT, palette);
         ui.label(RichText::new(format!("{:.2}", found.cost)).color(color))
             .on_hover_text(CHI_SQUARED);
         if let Some(raw) = found.held_out_cost
@@ -159,7 +159,7 @@ fn late_channel_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
         return;
     };
     let sources: [Source; 2] = [Arc::clone(found) as _, Arc::clone(condition) as _];
-    let late = kept(ui, "late channel", &sources, (), || {
+    let late = cached(ui, "late channel", &sources, (), || {
         ChannelTimeSkew::of_condition(&found.measured, job.request.options.band, condition)
     });
     let Some(late) = *late else {

@@ -1,4 +1,5 @@
-//! Context for drawing a page.
+//! Context for drawing the record list and the pages: state, records of the displayed condition,
+//! and palette.
 
 use std::sync::Arc;
 

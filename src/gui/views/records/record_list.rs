@@ -1,15 +1,18 @@
-//! Record list: use, fit and problems.
+//! Record list: a row for each record with its use and fit; below, manoeuvre and problems of the
+//! displayed record.
 
 use egui::{Align, Checkbox, Color32, Grid, Label, Layout, RichText, Role, Sense, Ui, vec2};
 
 use gdcm_model::dataset::condition::RecordKind;
-use gdcm_sysid::records::{LaidOutRecord, LayoutProblem};
+use gdcm_sysid::records::LaidOutRecord;
 
 use super::page::Page;
+use super::record_problems::problem_texts;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::records::RecordsCommand;
-use crate::gui::widgets::choices::list_ui;
-use crate::gui::widgets::controls::{Asks, elided_among, named, named_switch};
+use crate::gui::widgets::choices::DropDown;
+use crate::gui::widgets::controls::{Asks, named, named_switch};
+use crate::gui::widgets::elision::elided_among;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 
 /// Width of all columns except the names \[pt\].
@@ -20,7 +23,7 @@ const LEAST_NAME: f32 = 60.0;
 pub(super) const CHI_SQUARED: &str =
     "Cost per degree of freedom of the recommended model; 1 if only noise remains (M14, section 6)";
 /// Limit of χ²/dof above which the fit of a record is bad (M14, section 6).
-pub(super) const BAD: f64 = 1.5;
+pub(super) const BAD_FIT: f64 = 1.5;
 
 const HEADINGS: [(&str, &str); 4] = [
     ("use", "Use the record for identification or validation"),
@@ -186,7 +189,7 @@ fn fit_cost(page: Page<'_>, index: usize) -> Option<f64> {
 
 /// Formats χ²/dof, in the warning colour if the fit is bad.
 pub(super) fn cost_text(cost: f64, palette: &Palette) -> RichText {
-    let color = if cost <= BAD {
+    let color = if cost <= BAD_FIT {
         palette.text
     } else {
         palette.warning
@@ -194,8 +197,8 @@ pub(super) fn cost_text(cost: f64, palette: &Palette) -> RichText {
     RichText::new(format!("{cost:.2}")).color(color)
 }
 
-/// Draws the selector of a record's manoeuvre or, for a part of a record, the button that removes
-/// the part.
+/// Draws the selector of a record's manoeuvre, as the end of the sentence "name: a sweep", and for
+/// a part of a record also the button that removes the part.
 fn kind_ui(
     ui: &mut Ui,
     index: usize,
@@ -207,70 +210,16 @@ fn kind_ui(
         ui.label(palette.small(format!("{}: a", row.table.name)));
         let chosen = row.guess.kind;
         let kinds = RecordKind::ALL.map(|kind| (kind, kind == chosen, kind.word().to_owned()));
-        let field = (90.0, chosen.word());
-        if let Some(kind) = list_ui(ui, "Manoeuvre of the record", field, kinds) {
+        let list = DropDown {
+            name: "Manoeuvre of the record",
+            width: 90.0,
+            text: chosen.word(),
+        };
+        if let Some(kind) = list.ui(ui, kinds) {
             commands.push(RecordsCommand::SetKind(index, kind).into());
         }
         if row.table.part_s.is_some() && ui.small_button("Remove part").clicked() {
             commands.push(RecordsCommand::RemovePart(index).into());
         }
     });
-}
-
-/// Describes problems of a record; several missing columns share one sentence, as do several
-/// unknown units.
-fn problem_texts(problems: &[LayoutProblem]) -> Vec<String> {
-    let mut missing = ChannelProblems::default();
-    let mut without_unit = ChannelProblems::default();
-    let mut others = Vec::new();
-    let mut columns = "";
-    for problem in problems {
-        match problem {
-            LayoutProblem::NoColumn { channel, found, .. } => {
-                columns = found;
-                missing.push(channel, problem);
-            }
-            LayoutProblem::UnsaidUnit { channel, .. } => without_unit.push(channel, problem),
-            _ => others.push(problem.to_string()),
-        }
-    }
-    let mut texts = Vec::new();
-    texts.extend(missing.text(|channels| {
-        format!("no column for {channels}; assign them on page Columns (columns: {columns})")
-    }));
-    texts.extend(without_unit.text(|channels| {
-        format!(
-            "the file does not give the units of {channels}, and their values allow several \
-            units; choose them on page Columns"
-        )
-    }));
-    texts.extend(others);
-    texts
-}
-
-/// Problems of the same kind, which share one sentence.
-#[derive(Default)]
-struct ChannelProblems<'a> {
-    channels: Vec<&'a str>,
-    /// Message of the first problem.
-    first: Option<String>,
-}
-
-impl<'a> ChannelProblems<'a> {
-    fn push(&mut self, channel: &'a str, problem: &LayoutProblem) {
-        self.channels.push(channel);
-        if self.first.is_none() {
-            self.first = Some(problem.to_string());
-        }
-    }
-
-    /// Returns the message of a single problem, or `shared` applied to the names of several
-    /// channels.
-    fn text(self, shared: impl FnOnce(String) -> String) -> Option<String> {
-        if self.channels.len() > 1 {
-            Some(shared(self.channels.join(", ")))
-        } else {
-            self.first
-        }
-    }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use egui::{ComboBox, PopupCloseBehavior, RichText, Role, Ui};
 
-use super::frame_cache::kept;
+use super::frame_cache::cached;
 use super::page::Page;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::records::RecordsCommand;
@@ -110,7 +110,7 @@ pub(super) fn possible_references(
     };
     let source = Arc::clone(&row.table) as _;
     let key = format!("{:?}", row.layout);
-    kept(ui, "possible references", &[source], key, || {
+    cached(ui, "possible references", &[source], key, || {
         let mut references = Vec::new();
         for (column, is_suggested) in row.possible_references() {
             references.push(PossibleReference {

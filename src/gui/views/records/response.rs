@@ -1,22 +1,23 @@
-//! The measured response with the identified models, as a Bode plot.
+//! Page with the measured response and the identified models, as a Bode plot. `drawn_response`
+//! computes the curves.
 
 use std::sync::Arc;
 
-use egui::{Color32, Id, Rect, RichText, Role, Sense, Shape, Stroke, Ui, vec2};
+use egui::{Color32, Id, Rect, RichText, Sense, Ui, vec2};
 
 use gdcm_sysid::identification::CautionNote;
 
 use super::drawn_response::{BodePart, CurvePoint, DrawnResponse, MeasuredBand};
-use super::frame_cache::kept;
+use super::frame_cache::cached;
 use super::page::Page;
+use super::response_legend::legend_ui;
 use crate::gui::plot::chart::{Chart, ChartAxis, ChartBand, ChartLine, ChartMarks, ChartSpan};
 use crate::gui::plot::chart_view::chart_ui;
-use crate::gui::widgets::controls::{named, painted_text, text_width};
-use crate::gui::widgets::palette::{Palette, small};
+use crate::gui::widgets::palette::Palette;
 
 /// Substitute band \[rad/s\] for an identification without a job.
 const UNKNOWN_BAND: [f64; 2] = [0.1, 10.0];
-/// Half-height of the marks along the curve of the recommended model.
+/// Half-height of the marks along the curve of the recommended model \[dB\] and \[deg\].
 const MARK_DB: f64 = 2.0;
 const MARK_DEG: f64 = 15.0;
 
@@ -59,12 +60,12 @@ pub(super) fn response_ui(ui: &mut Ui, page: Page<'_>) {
 fn drawn_response(ui: &Ui, page: Page<'_>) -> Option<Arc<DrawnResponse>> {
     let Page { state, records, .. } = page;
     let pair = state.display.selection.pair;
-    if let Some(job) = state.records.running(state.condition().id())
+    if let Some(job) = state.records.job_of(state.condition().id())
         && let Some(model) = job.news().first_model
     {
         let band = job.request.options.band;
         let source = Arc::clone(&model) as _;
-        return Some(kept(ui, "first model", &[source], pair, || {
+        return Some(cached(ui, "first model", &[source], pair, || {
             DrawnResponse::first_model(&model, band, pair)
         }));
     }
@@ -80,7 +81,7 @@ fn drawn_response(ui: &Ui, page: Page<'_>) -> Option<Arc<DrawnResponse>> {
         },
     };
     let source = Arc::clone(found) as _;
-    Some(kept(ui, "response", &[source], pair, || {
+    Some(cached(ui, "response", &[source], pair, || {
         DrawnResponse::new(found, measured_band, pair)
     }))
 }
@@ -244,107 +245,5 @@ fn measured_marks(
         },
         filled: is_trusted,
         crosses: false,
-    }
-}
-
-/// Length of a line sample in the legend \[pt\].
-const SAMPLE: f32 = 18.0;
-
-struct LegendEntry {
-    sample: Sample,
-    text: &'static str,
-    color: Color32,
-}
-
-fn legend_ui(ui: &mut Ui, drawn: &DrawnResponse, palette: &Palette) {
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing.x = 14.0;
-        for entry in legend_entries(drawn, palette) {
-            entry.show(ui, palette);
-        }
-        if drawn.has_cut_intervals() {
-            ui.label(palette.small("bars and bands are cut at ± 20 dB and ± 180°"));
-        }
-    });
-}
-
-fn legend_entries(drawn: &DrawnResponse, palette: &Palette) -> Vec<LegendEntry> {
-    let mut entries = vec![
-        LegendEntry {
-            sample: Sample::Line,
-            text: "CT-PBSID, refined, with its 95 % band",
-            color: palette.identified,
-        },
-        LegendEntry {
-            sample: Sample::DashedLine,
-            text: "CT-PBSID",
-            color: palette.accent,
-        },
-        LegendEntry {
-            sample: Sample::Dot,
-            text: "measured (local polynomial), ± 1.96 sd",
-            color: palette.text,
-        },
-        LegendEntry {
-            sample: Sample::Circle,
-            text: "partial coherence below 0.6, or few spectral lines",
-            color: palette.dim_text,
-        },
-    ];
-    if !drawn.unexcited.is_empty() {
-        entries.push(LegendEntry {
-            sample: Sample::Bar,
-            text: "not excited by the reference",
-            color: palette.dim_text,
-        });
-    }
-    entries
-}
-
-impl LegendEntry {
-    /// Draws the sample and the label on the same line.
-    fn show(&self, ui: &mut Ui, palette: &Palette) {
-        let words = text_width(ui, self.text, small());
-        let (rect, response) =
-            ui.allocate_exact_size(vec2(SAMPLE + 4.0 + words, 14.0), Sense::hover());
-        let sample = rect.with_max_x(rect.left() + SAMPLE);
-        self.sample.paint(ui, sample, self.color);
-        painted_text(ui, rect, SAMPLE + 4.0, self.text, small(), palette.dim_text);
-        named(response, Role::Label, self.text);
-    }
-}
-
-/// Line or point drawn before a legend label.
-#[derive(Clone, Copy)]
-enum Sample {
-    Line,
-    DashedLine,
-    Dot,
-    Circle,
-    Bar,
-}
-
-impl Sample {
-    fn paint(self, ui: &Ui, rect: Rect, color: Color32) {
-        let painter = ui.painter();
-        let ends = [rect.left_center(), rect.right_center()];
-        match self {
-            Self::Line => {
-                painter.line_segment(ends, Stroke::new(2.0, color));
-            }
-            Self::DashedLine => {
-                painter.extend(Shape::dashed_line(&ends, Stroke::new(1.2, color), 4.0, 3.0));
-            }
-            Self::Dot => {
-                painter.circle_filled(rect.center(), 3.0, color);
-            }
-            Self::Circle => {
-                painter.circle_stroke(rect.center(), 3.0, Stroke::new(1.0, color));
-            }
-            Self::Bar => {
-                let bar = rect.shrink2(vec2(0.0, 4.0));
-                painter.rect_filled(bar, 0.0, color.gamma_multiply(0.25));
-            }
-        }
     }
 }

@@ -12,8 +12,8 @@ use super::typed_lists::{list_text, numbers, typed_band, whole_numbers};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::records::RecordsCommand;
-use crate::gui::widgets::controls::entry_ui;
 use crate::gui::widgets::palette::Palette;
+use crate::gui::widgets::text_fields::entry_ui;
 
 const FIELD_WIDTH: f32 = 150.0;
 /// Name by which cautions refer to the model orders.

@@ -7,7 +7,7 @@ use egui::{ColorImage, Sense, TextureHandle, TextureOptions, Ui, vec2};
 use gdcm_model::simulation::FlightRecord;
 use gdcm_sysid::records::spectrogram::Spectrogram;
 
-use super::frame_cache::{Source, kept};
+use super::frame_cache::{Source, cached};
 use super::page::Page;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::records::RecordsCommand;
@@ -62,7 +62,7 @@ pub(super) fn spectrogram_ui(ui: &mut Ui, page: Page<'_>, flight: &Arc<FlightRec
     let highest = 2.0 * band_end;
     let key = (index, highest.to_bits(), ui.visuals().dark_mode);
     let source: Source = Arc::clone(flight) as _;
-    let painted = kept(ui, "spectrogram", &[source], key, || {
+    let painted = cached(ui, "spectrogram", &[source], key, || {
         paint(ui, flight, index, highest, palette)
     });
     let Some(painted) = &*painted else {

@@ -2,7 +2,7 @@
 
 use gdcm_model::units::number;
 
-use crate::gui::widgets::controls::typed_number;
+use crate::gui::widgets::number_entry::typed_number;
 
 /// Parses numbers separated by blanks; a comma or semicolon after a number is ignored.
 pub(super) fn numbers(text: &str) -> Result<Vec<f64>, String> {

@@ -239,7 +239,7 @@ mod tests {
             (Theme::Light, Palette::light()),
         ] {
             assert_eq!(ctx.style_of(theme).visuals.panel_fill, palette.panel);
-            assert_eq!(Palette::of(&ctx.style_of(theme).visuals), palette);
+            assert_eq!(Palette::from_visuals(&ctx.style_of(theme).visuals), palette);
         }
     }
 }

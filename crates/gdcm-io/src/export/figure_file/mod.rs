@@ -128,7 +128,7 @@ mod tests {
         assert!(
             refusal
                 .to_string()
-                .contains("\"Error of LON → Q\" shows no numbers"),
+                .contains("\"Error of LON → Q\" has no values to write"),
             "{refusal}"
         );
         assert!(!path.exists());

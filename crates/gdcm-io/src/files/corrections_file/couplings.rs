@@ -5,11 +5,13 @@ use nalgebra::{DMatrix, Scalar};
 use serde_json::{Value, json};
 
 use gdcm_method::couplings::PoleShift;
+use gdcm_study::results::coupling_remark_search::analysis_coupling_remarks;
 use gdcm_study::results::couplings_assessment::{AxisCost, CouplingCost, CouplingsAssessment};
 use gdcm_study::{Analysis, ConditionAnalysis};
-use gdcm_words::couplings::analysis_coupling_remarks;
+use gdcm_words::coupling_remark::coupling_remark_text;
 
-use super::channel_names::{rows_of, without_empty};
+use super::pair_rows::rows_of;
+use crate::json_empty_members::without_empty;
 
 /// Returns the study's mixing and feedback, in the dataset's units; null without couplings.
 pub(super) fn couplings(analysis: &Analysis) -> Value {
@@ -32,7 +34,7 @@ pub(super) fn couplings(analysis: &Analysis) -> Value {
     }
     let mut words = Vec::new();
     for remark in analysis_coupling_remarks(analysis) {
-        words.push(remark.text);
+        words.push(coupling_remark_text(&remark, &analysis.study.dataset));
     }
     let couplings = json!({
         "conditions": conditions,
@@ -58,7 +60,8 @@ pub(super) fn couplings(analysis: &Analysis) -> Value {
     )
 }
 
-/// Returns a matrix as a list of rows, one per receiving input.
+/// Returns a matrix as a list of rows, one per receiving input. [`rows_of`] calls the row index
+/// `output` and the column index `input`, whatever the matrix holds.
 fn matrix_rows<T: Scalar + Into<Value>>(matrix: &DMatrix<T>) -> Value {
     rows_of(matrix.nrows(), matrix.ncols(), |at| {
         matrix[(at.output, at.input)].clone().into()

@@ -1,12 +1,13 @@
 //! Result files: `corrections.json`, `corrections.csv`, `assessment.csv`, and their checksums.
 
-mod channel_names;
-mod channel_table;
-mod condition;
-mod condition_results;
-mod corrections;
+mod assessment_csv;
+mod condition_json;
+mod corrections_csv;
+mod corrections_json;
 mod couplings;
-mod response_table;
+mod csv_condition;
+mod labelled_analysis;
+mod pair_rows;
 mod schedule;
 mod solutions;
 mod uncertainty;
@@ -18,14 +19,13 @@ use std::path::{Path, PathBuf};
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::Analysis;
 
-use self::response_table::response_table;
+use self::assessment_csv::write_assessment_csv;
 use crate::file_error::FileError;
-use crate::json_text::write_pretty;
+use crate::json_writing::write_pretty;
 use crate::output_set::{OutputSet, make_directory};
 
-pub(crate) use self::channel_names::without_empty;
-pub(crate) use self::channel_table::channel_table;
-pub use self::corrections::corrections;
+pub(crate) use self::corrections_csv::write_corrections_csv;
+pub use self::corrections_json::corrections;
 
 const NAME: &str = "gdcm-corrections";
 const VERSION: u64 = 1;
@@ -61,8 +61,12 @@ pub fn write_results(
     outputs.add(&json, |file| {
         write_corrections(analysis, sha256, chosen, file)
     })?;
-    outputs.add(&channels, |file| channel_table(analysis, chosen, file))?;
-    outputs.add(&responses, |file| response_table(analysis, chosen, file))?;
+    outputs.add(&channels, |file| {
+        write_corrections_csv(analysis, chosen, file)
+    })?;
+    outputs.add(&responses, |file| {
+        write_assessment_csv(analysis, chosen, file)
+    })?;
     outputs.add_checksums(&checksums)?;
     outputs.persist()
 }

@@ -3,11 +3,13 @@
 use serde_json::{Value, json};
 
 use gdcm_method::schedule::{Schedule, ScheduleCaution, ScheduleKind, ScheduledQuantity};
+use gdcm_words::schedule::schedule_caution_text;
 
-use super::channel_names::{ChannelNames, without_empty};
+use super::labelled_analysis::LabelledAnalysis;
+use crate::json_empty_members::without_empty;
 
 /// Returns the object with the scheduled gains and delays over airspeed.
-pub(super) fn schedule_json(names: &ChannelNames<'_>, schedule: &Schedule) -> Value {
+pub(super) fn schedule_json(names: &LabelledAnalysis<'_>, schedule: &Schedule) -> Value {
     let airspeeds = &schedule.airspeeds;
     let gains = names.coefficients(&schedule.gains);
     let second_variable = schedule.second.as_ref().map(|term| {
@@ -23,7 +25,7 @@ pub(super) fn schedule_json(names: &ChannelNames<'_>, schedule: &Schedule) -> Va
     });
     let delays_s = schedule.delays.as_ref().map(|delays| {
         let mut coefficients = names.coefficients(&delays.taus_s);
-        coefficients["upper_s"] = delays.upper_s.figures().into();
+        coefficients["upper_s"] = delays.upper_s.parameters().into();
         coefficients
     });
     let tau_s = schedule.leads.as_ref().map(|leads| {
@@ -34,7 +36,11 @@ pub(super) fn schedule_json(names: &ChannelNames<'_>, schedule: &Schedule) -> Va
     let mut cautions = Vec::new();
     let mut caution_notes = Vec::new();
     for caution in &schedule.cautions {
-        cautions.push(caution.words(&names.inputs, &names.outputs));
+        cautions.push(schedule_caution_text(
+            caution,
+            &names.inputs,
+            &names.outputs,
+        ));
         caution_notes.push(schedule_caution(names, caution));
     }
     let members = json!({
@@ -64,7 +70,7 @@ pub(super) fn schedule_json(names: &ChannelNames<'_>, schedule: &Schedule) -> Va
 }
 
 /// Returns the correction at each distinct scheduled airspeed.
-fn schedule_table(names: &ChannelNames<'_>, schedule: &Schedule) -> Value {
+fn schedule_table(names: &LabelledAnalysis<'_>, schedule: &Schedule) -> Value {
     let mut rows = Vec::new();
     for airspeed_kt in schedule.airspeeds.clusters_kt() {
         let correction = schedule.at(airspeed_kt);
@@ -87,8 +93,8 @@ fn schedule_table(names: &ChannelNames<'_>, schedule: &Schedule) -> Value {
 
 /// Returns a caution about the schedule: its code and text; if it concerns a single condition, also
 /// the condition and the values.
-fn schedule_caution(names: &ChannelNames<'_>, caution: &ScheduleCaution) -> Value {
-    let text = caution.words(&names.inputs, &names.outputs);
+fn schedule_caution(names: &LabelledAnalysis<'_>, caution: &ScheduleCaution) -> Value {
+    let text = schedule_caution_text(caution, &names.inputs, &names.outputs);
     match caution {
         ScheduleCaution::CostsMore(cost) => json!({
             "code": caution.code(),

@@ -9,11 +9,13 @@ use gdcm_method::correction::sensitivity::{
 };
 use gdcm_method::correction::{Outcome, Problem, Quantity, Solution};
 use gdcm_study::ConditionAnalysis;
+use gdcm_words::conflict_text::{agreement_text, conflict_text, miss_text};
 
-use super::channel_names::{ChannelNames, without_empty};
+use super::labelled_analysis::LabelledAnalysis;
+use crate::json_empty_members::without_empty;
 
 /// Returns the object with the results of the gain fit.
-pub(super) fn gain_solution(names: &ChannelNames<'_>, result: &ConditionAnalysis) -> Value {
+pub(super) fn gain_solution(names: &LabelledAnalysis<'_>, result: &ConditionAnalysis) -> Value {
     let gains = &result.gains;
     let mut unmatched = Vec::new();
     for entry in &gains.unmatched {
@@ -21,7 +23,7 @@ pub(super) fn gain_solution(names: &ChannelNames<'_>, result: &ConditionAnalysis
             "target": entry.target,
             "wanted": entry.delta,
             "short_db": entry.excess,
-            "why": entry.why.words(&names.inputs, &names.outputs),
+            "why": conflict_text(&entry.why, &names.inputs, &names.outputs),
         });
         unmatched.push(names.response_entries(entry.pair, figures));
     }
@@ -38,15 +40,18 @@ pub(super) fn gain_solution(names: &ChannelNames<'_>, result: &ConditionAnalysis
 }
 
 /// Returns the object with the results of the delay fit.
-pub(super) fn delay_solution(names: &ChannelNames<'_>, result: &ConditionAnalysis) -> Value {
+pub(super) fn delay_solution(names: &LabelledAnalysis<'_>, result: &ConditionAnalysis) -> Value {
     let delays = &result.delays;
     let band_top_rad_s = names.analysis.study.settings.band.max();
     let mut unmatched = Vec::new();
     for entry in &delays.unmatched {
-        let mut why = entry.words(band_top_rad_s, &names.inputs, &names.outputs);
+        let mut why = miss_text(entry, band_top_rad_s, &names.inputs, &names.outputs);
         // `is_lone_lead`: if a single response needs lead, its own description already states this.
         if !entry.why.is_lone_lead() {
-            why = format!("{why} {}", entry.why.words(&names.inputs, &names.outputs));
+            why = format!(
+                "{why} {}",
+                conflict_text(&entry.why, &names.inputs, &names.outputs)
+            );
         }
         let figures = json!({
             "target_s": entry.target,
@@ -73,15 +78,15 @@ pub(super) fn delay_solution(names: &ChannelNames<'_>, result: &ConditionAnalysi
 
 /// Explains why gains or delays are not matched: the conflicts, the changes that would resolve
 /// them, and the cost of each constraint.
-fn explanation(names: &ChannelNames<'_>, problem: &Problem, solution: &Solution) -> Value {
+fn explanation(names: &LabelledAnalysis<'_>, problem: &Problem, solution: &Solution) -> Value {
     let mut conflicts = Vec::new();
     for conflict in &solution.conflicts {
-        let words = conflict.words(&names.inputs, &names.outputs);
+        let words = conflict_text(conflict, &names.inputs, &names.outputs);
         conflicts.push(conflict_json(names, conflict, words));
     }
     let mut agreeing = Vec::new();
     for conflict in &solution.agreeing {
-        let words = conflict.agreement_words(&names.inputs, &names.outputs);
+        let words = agreement_text(conflict, &names.inputs, &names.outputs);
         agreeing.push(conflict_json(names, conflict, words));
     }
     let remedy = solution.remedy.as_ref().map(|remedy| {
@@ -156,7 +161,7 @@ impl ConflictFigures {
     }
 }
 
-fn conflict_json(names: &ChannelNames<'_>, conflict: &Conflict, words: String) -> Value {
+fn conflict_json(names: &LabelledAnalysis<'_>, conflict: &Conflict, words: String) -> Value {
     let ConflictFigures {
         kind,
         figure,
@@ -178,8 +183,8 @@ fn conflict_json(names: &ChannelNames<'_>, conflict: &Conflict, words: String) -
     })
 }
 
-fn sensitivity_json(names: &ChannelNames<'_>, sensitivity: &Sensitivity) -> Value {
-    let (restraint, entry, channel) = match sensitivity.restraint {
+fn sensitivity_json(names: &LabelledAnalysis<'_>, sensitivity: &Sensitivity) -> Value {
+    let (restraint, entry, channel) = match sensitivity.constraint {
         ActiveConstraint::Held(pair) => ("held", Some(names.pair(pair)), None),
         ActiveConstraint::LowerBound(channel) => ("lower_bound", None, Some(channel)),
         ActiveConstraint::UpperBound(channel) => ("upper_bound", None, Some(channel)),

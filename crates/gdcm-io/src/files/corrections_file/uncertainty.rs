@@ -4,54 +4,18 @@ use serde_json::{Map, Value, json};
 
 use gdcm_method::correction::Channel;
 use gdcm_method::schedule::Schedule;
-use gdcm_method::uncertainty::spread::ScalarTable;
+use gdcm_method::uncertainty::scalar::ScalarTable;
 use gdcm_method::uncertainty::{Bar, Scalar, VarianceDecomposition};
 use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_study::Analysis;
 use gdcm_study::results::uncertainty::{
     AirspeedDifference, PairScatter, ScheduleBands, SecondVariableTest, Uncertainty,
 };
-use gdcm_words::uncertainty::{difference_text, second_variable_text};
+use gdcm_words::uncertainty::{bar_remark_texts, difference_text, second_variable_text};
 
-use super::channel_names::{ChannelNames, is_empty_value, rows_of, without_empty};
-
-/// Returns a confidence interval with its standard deviations, and the deviation within the band
-/// that a single gain cannot remove. For a gain, intervals are factors, and standard deviations
-/// refer to the natural logarithm; for a delay, all values are in seconds.
-fn bar_json(scalar: Scalar, bar: &Bar, level: f64, left_in_band: Option<f64>) -> Value {
-    let interval = bar.interval(level).map(|ends| in_units(scalar, ends));
-    let inner_interval = bar.inner_interval(level).map(|ends| in_units(scalar, ends));
-    let mut members = Map::new();
-    for (name, value) in [
-        ("interval", json!(interval)),
-        ("interval_identification", json!(inner_interval)),
-        (
-            "u_physics",
-            json!(bar.trim.map(|part| part.variance.sqrt())),
-        ),
-        (
-            "u_identification",
-            json!(bar.identification.map(|part| part.variance.sqrt())),
-        ),
-        ("degrees_of_freedom", json!(bar.degrees_of_freedom())),
-        ("left_in_band", json!(left_in_band)),
-        ("remarks", json!(bar.remarks())),
-    ] {
-        if !is_empty_value(&value) {
-            members.insert(name.to_owned(), value);
-        }
-    }
-    Value::Object(members)
-}
-
-/// Returns an interval in the file's units: factors for gains, seconds for delays.
-fn in_units(scalar: Scalar, ends: [f64; 2]) -> [f64; 2] {
-    if scalar.is_delay() {
-        ends
-    } else {
-        ends.map(f64::exp)
-    }
-}
+use super::labelled_analysis::LabelledAnalysis;
+use super::pair_rows::rows_of;
+use crate::json_empty_members::{is_empty_value, without_empty};
 
 /// Returns the confidence interval of a net gain; `None` if it was not computed.
 pub(super) fn net_gain_bar(
@@ -67,7 +31,7 @@ pub(super) fn net_gain_bar(
 }
 
 /// Returns the confidence intervals of a condition, except the intervals of net gains.
-pub(super) fn bars(names: &ChannelNames<'_>, condition: ConditionId) -> Option<Value> {
+pub(super) fn bars(names: &LabelledAnalysis<'_>, condition: ConditionId) -> Option<Value> {
     let uncertainty = names.analysis.uncertainty.as_ref()?;
     let bars = ConditionBars {
         names,
@@ -91,7 +55,7 @@ pub(super) fn bars(names: &ChannelNames<'_>, condition: ConditionId) -> Option<V
 
 /// Error bars of a condition, from which its confidence intervals at a level are written.
 struct ConditionBars<'a> {
-    names: &'a ChannelNames<'a>,
+    names: &'a LabelledAnalysis<'a>,
     bars: &'a ScalarTable<Option<Bar>>,
     level: f64,
 }
@@ -115,9 +79,47 @@ impl ConditionBars<'_> {
     }
 }
 
+/// Returns a confidence interval with its standard deviations, and the deviation within the band
+/// that a single gain cannot remove. For a gain, intervals are factors, and standard deviations
+/// refer to the natural logarithm; for a delay, all values are in seconds.
+fn bar_json(scalar: Scalar, bar: &Bar, level: f64, left_in_band: Option<f64>) -> Value {
+    let interval = bar.interval(level).map(|ends| in_units(scalar, ends));
+    let inner_interval = bar.inner_interval(level).map(|ends| in_units(scalar, ends));
+    let mut members = Map::new();
+    for (name, value) in [
+        ("interval", json!(interval)),
+        ("interval_identification", json!(inner_interval)),
+        (
+            "u_physics",
+            json!(bar.trim.map(|part| part.variance.sqrt())),
+        ),
+        (
+            "u_identification",
+            json!(bar.identification.map(|part| part.variance.sqrt())),
+        ),
+        ("degrees_of_freedom", json!(bar.degrees_of_freedom())),
+        ("left_in_band", json!(left_in_band)),
+        ("remarks", json!(bar_remark_texts(bar))),
+    ] {
+        if !is_empty_value(&value) {
+            members.insert(name.to_owned(), value);
+        }
+    }
+    Value::Object(members)
+}
+
+/// Returns an interval in the file's units: factors for gains, seconds for delays.
+fn in_units(scalar: Scalar, ends: [f64; 2]) -> [f64; 2] {
+    if scalar.is_delay() {
+        ends
+    } else {
+        ends.map(f64::exp)
+    }
+}
+
 /// Returns the conclusions from the confidence intervals of all conditions; `None` without
 /// confidence intervals.
-pub(super) fn uncertainty(names: &ChannelNames<'_>) -> Option<Value> {
+pub(super) fn uncertainty(names: &LabelledAnalysis<'_>) -> Option<Value> {
     let uncertainty = names.analysis.uncertainty.as_ref()?;
     let level = uncertainty.level;
     let mut differences = Vec::new();
@@ -183,7 +185,7 @@ fn decomposition_json(split: &VarianceDecomposition, level: f64) -> Value {
 
 /// Returns the scheduled net gains of the on-axis responses (all responses if none is on-axis),
 /// with their confidence and scatter bands, as natural logarithms.
-fn bands(names: &ChannelNames<'_>, uncertainty: &Uncertainty) -> Value {
+fn bands(names: &LabelledAnalysis<'_>, uncertainty: &Uncertainty) -> Value {
     let (Ok(schedule), Some(bands)) = (&names.analysis.schedule, &uncertainty.bands) else {
         return json!([]);
     };

@@ -1,7 +1,8 @@
 //! Dataset files, `*.json` and `*.json.gz`.
 
 mod conversion;
-mod text;
+mod json_form;
+mod model_conversion;
 
 use std::fmt;
 use std::io::BufWriter;
@@ -15,14 +16,15 @@ use gdcm_model::dataset::Dataset;
 use gdcm_model::message_text::{sanitized, sanitized_path};
 
 use self::conversion::CautionedDraft;
-use self::text::{DatasetText, FORMAT};
-use crate::file_error::{ContentError, FileError};
-use crate::json_text::write_compact;
+use self::json_form::{DatasetText, FORMAT};
+use crate::content_fault::ContentError;
+use crate::file_error::FileError;
+use crate::file_reading::Source;
+use crate::json_writing::write_compact;
 use crate::output_set::{Existing, OutputSet, make_directory};
 use crate::reading_budget::ReadingBudget;
-use crate::source::Source;
 
-pub(crate) use self::text::{LabelText, ModelText, RecordText};
+pub(crate) use self::json_form::{LabelText, ModelText, RecordText};
 
 /// The example dataset: a synthetic UH-60A-class helicopter at eleven flight conditions.
 const EXAMPLE: &[u8] = include_bytes!("../../../../../assets/example-dataset.json.gz");
@@ -55,8 +57,8 @@ impl DatasetOrigin {
         }
     }
 
-    /// Returns the path of the file; for the embedded example, a name to be used in error messages.
-    pub(crate) fn path(&self) -> PathBuf {
+    /// Returns the path by which error messages name the dataset.
+    pub(crate) fn message_path(&self) -> PathBuf {
         match self {
             DatasetOrigin::File(path) => path.clone(),
             DatasetOrigin::EmbeddedExample => PathBuf::from(self.to_string()),
@@ -111,6 +113,50 @@ pub fn load_dataset_within(
     )
 }
 
+/// Loads a dataset from bytes in memory; error messages name `origin` as the source.
+pub fn load_dataset_bytes(bytes: &[u8], origin: DatasetOrigin) -> Result<LoadedDataset, FileError> {
+    let budget = ReadingBudget::default();
+    dataset_from(
+        &Source::from_bytes(bytes, &origin.message_path(), &budget)?,
+        origin,
+        &budget,
+    )
+}
+
+/// Loads the example dataset that is part of the program.
+pub fn embedded_example() -> Result<LoadedDataset, FileError> {
+    load_dataset_bytes(EXAMPLE, DatasetOrigin::EmbeddedExample)
+}
+
+/// Loads a dataset from the text of a file or from text in memory; all other loaders call this one.
+pub(crate) fn dataset_from(
+    source: &Source<'_>,
+    origin: DatasetOrigin,
+    budget: &ReadingBudget<'_>,
+) -> Result<LoadedDataset, FileError> {
+    let path = origin.message_path();
+    let error = |fault| FileError::content_of(&path, fault, source.text());
+    // Three kinds of cautions: unknown keys, keys of other models, and strange values.
+    let (text, mut cautions) = FORMAT.decode::<DatasetText>(source.text(), &path, budget)?;
+    let CautionedDraft {
+        draft,
+        cautions: misplaced,
+    } = text.into_draft().map_err(error)?;
+    cautions.extend(misplaced);
+    let (dataset, oddities) = draft
+        .checked()
+        .map_err(|fault| error(ContentError::from(fault)))?;
+    for odd in oddities {
+        cautions.push(format!("{}{}", odd.place.before(), odd.words));
+    }
+    Ok(LoadedDataset {
+        dataset: Arc::new(dataset),
+        sha256: source.sha256.clone(),
+        origin,
+        cautions,
+    })
+}
+
 /// Returns all faults in a dataset file, each with its place; empty if the dataset can be loaded.
 ///
 /// # Errors
@@ -139,27 +185,12 @@ pub(crate) fn check_dataset_text(
     FORMAT.decode::<DatasetText>(text, path, budget).map(drop)
 }
 
-/// Loads a dataset from bytes in memory; error messages name `origin` as the source.
-pub fn load_dataset_bytes(bytes: &[u8], origin: DatasetOrigin) -> Result<LoadedDataset, FileError> {
-    let budget = ReadingBudget::default();
-    dataset_from(
-        &Source::of(bytes, &origin.path(), &budget)?,
-        origin,
-        &budget,
-    )
-}
-
-/// Loads the example dataset that is part of the program.
-pub fn embedded_example() -> Result<LoadedDataset, FileError> {
-    load_dataset_bytes(EXAMPLE, DatasetOrigin::EmbeddedExample)
-}
-
 /// Writes the example dataset, uncompressed, into a directory, which is created if missing; returns
 /// the path of the file.
 pub fn write_example(directory: &Path, existing: Existing) -> Result<PathBuf, FileError> {
-    let source = Source::of(
+    let source = Source::from_bytes(
         EXAMPLE,
-        &DatasetOrigin::EmbeddedExample.path(),
+        &DatasetOrigin::EmbeddedExample.message_path(),
         &ReadingBudget::default(),
     )?;
     let path = directory.join(EXAMPLE_NAME);
@@ -200,33 +231,5 @@ pub fn add_dataset(
         } else {
             write_compact(&text, file)
         }
-    })
-}
-
-/// Returns the dataset read from a source.
-pub(crate) fn dataset_from(
-    source: &Source<'_>,
-    origin: DatasetOrigin,
-    budget: &ReadingBudget<'_>,
-) -> Result<LoadedDataset, FileError> {
-    let path = origin.path();
-    let error = |fault| FileError::content_of(&path, fault, source.text());
-    let (text, mut cautions) = FORMAT.decode::<DatasetText>(source.text(), &path, budget)?;
-    let CautionedDraft {
-        draft,
-        cautions: misplaced,
-    } = text.into_draft().map_err(error)?;
-    cautions.extend(misplaced);
-    let (dataset, oddities) = draft
-        .checked()
-        .map_err(|fault| error(ContentError::from(fault)))?;
-    for odd in oddities {
-        cautions.push(format!("{}{}", odd.place.before(), odd.words));
-    }
-    Ok(LoadedDataset {
-        dataset: Arc::new(dataset),
-        sha256: source.sha256.clone(),
-        origin,
-        cautions,
     })
 }

@@ -7,23 +7,28 @@
 //! I, P, S, G, H, E            frames: intra, predicted, slow, GPS, GPS home, event
 //! ```
 //!
+//! Intra and predicted frames are main frames, each a sample of all fields. An intra frame is decoded
+//! by itself, a predicted frame from the two main frames before it. A slow frame gives the flight
+//! mode.
+//!
 //! A frame is accepted if another frame begins where it ends. After a damaged frame, all frames
 //! predicted from it are omitted up to the next intra frame, which leaves a gap.
 
-use std::collections::BTreeMap;
-
-use gdcm_sysid::records::RecordColumn;
+use gdcm_model::number_format::counted;
+use gdcm_sysid::records::{ModeSpan, RecordColumn};
 
 use crate::file_error::FileError;
-use crate::formats::logs::blackbox_frames::{
-    FrameFields, HeaderNumbers, PackedBytes, Predecessors,
-};
-use crate::formats::logs::meanings::{BETAFLIGHT, give_meanings};
+use crate::formats::logs::blackbox_fields::Predecessors;
+use crate::formats::logs::blackbox_frames::{FRAME_LETTERS, Frame, parse_frame};
+use crate::formats::logs::blackbox_header::Header;
+use crate::formats::logs::blackbox_integers::PackedBytes;
+use crate::formats::logs::documented_channels::{BETAFLIGHT, assign_documented_meanings};
 use crate::formats::logs::mode_spans::{mode_spans, modes_note};
 use crate::formats::recorded_columns::{Columns, MOST_RECORDS};
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
+/// Beginning of the header of a flight.
 const MARK: &[u8] = b"H Product:Blackbox";
 /// Maximum time step between main frames \[µs\]; a longer step marks damaged data.
 const LONGEST_STEP_US: i64 = 10_000_000;
@@ -31,6 +36,7 @@ const LONGEST_STEP_US: i64 = 10_000_000;
 const FEWEST_FRAMES: usize = 50;
 /// The number 1.0 in the header, as an IEEE 754 bit pattern.
 const ONE: &str = "0x3f800000";
+
 /// Column names of the controller terms; an axis index follows in square brackets.
 const TERMS: [&str; 4] = ["axisP", "axisI", "axisD", "axisF"];
 
@@ -46,11 +52,13 @@ pub(crate) const BLACKBOX: Importer = Importer {
     },
 };
 
+/// Reads all flights; flights with too few frames are omitted with a note.
 fn read_blackbox(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Columns>, VariableFault> {
     budget.work(bytes.len() as u64, "")?;
     let begins = flight_offsets(bytes);
     let count = begins.len();
     if count > MOST_RECORDS {
+        // Handled like an exhausted budget; the number of flights has no limit in steps of work.
         return Err(VariableFault::TooMuchWork {
             variable: String::new(),
             most_millions: 0,
@@ -66,21 +74,20 @@ fn read_blackbox(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Columns
             format!("flight {}", index + 1)
         };
         match Flight::read(&bytes[begin..end], &name, budget)? {
-            Some(flight) => flights.push(flight.columns(name, budget)?),
+            Some(flight) => flights.push(flight.into_columns(name, budget)?),
             None => ignored += 1,
         }
     }
     if flights.is_empty() {
         return Err(VariableFault::damaged(
             "",
-            "no flight with at least 50 frames",
+            format!("no flight with at least {FEWEST_FRAMES} frames"),
             0,
         ));
     }
     if ignored > 0 {
         flights[0].notes.push(format!(
-            "{ignored} of {count} flights in the file are omitted: they have fewer than \
-            {FEWEST_FRAMES} frames"
+            "{ignored} of {count} flights in the file omitted: fewer than {FEWEST_FRAMES} frames"
         ));
     }
     Ok(flights)
@@ -97,177 +104,15 @@ fn flight_offsets(bytes: &[u8]) -> Vec<usize> {
     offsets
 }
 
-/// Contents of the header lines before the frames.
-#[derive(Default)]
-struct Heading {
-    /// Header values by key.
-    lines: BTreeMap<String, String>,
-    /// Field descriptions by frame letter.
-    frames: BTreeMap<u8, FrameFields>,
-    numbers: HeaderNumbers,
-    /// Header length \[bytes\].
-    length: usize,
-}
-
-impl Heading {
-    fn read(bytes: &[u8]) -> Self {
-        let mut heading = Self::default();
-        heading.read_lines(bytes);
-        for kind in *b"IPSGH" {
-            let fields = heading.fields(char::from(kind));
-            heading.frames.insert(kind, fields);
-        }
-        // The header gives names and signs only for intra frames; predicted frames have the same
-        // fields.
-        let intra = heading.frames[&b'I'].clone();
-        if let Some(predicted) = heading.frames.get_mut(&b'P') {
-            predicted.names = intra.names;
-            predicted.signed = intra.signed;
-        }
-        heading.numbers = HeaderNumbers {
-            least_throttle: heading.number("minthrottle"),
-            least_motor: heading.number("motorOutput"),
-            battery: heading.number("vbatref"),
-        };
-        heading
-    }
-
-    fn read_lines(&mut self, bytes: &[u8]) {
-        while bytes[self.length..].starts_with(b"H ") {
-            let rest = &bytes[self.length..];
-            let Some(end) = rest.iter().position(|byte| *byte == b'\n') else {
-                break;
-            };
-            let line = String::from_utf8_lossy(&rest[2..end]);
-            if let Some((key, value)) = line.split_once(':') {
-                self.lines.insert(key.to_owned(), value.trim().to_owned());
-            }
-            self.length += end + 1;
-        }
-    }
-
-    /// Returns the header value of a key; empty if the key is missing.
-    fn value(&self, key: &str) -> &str {
-        self.lines.get(key).map_or("", String::as_str)
-    }
-
-    /// Returns the first number in the header value of a key; 0 if there is none.
-    fn number(&self, key: &str) -> i64 {
-        let first = self.value(key).split(',').next().unwrap_or_default();
-        first.parse().unwrap_or(0)
-    }
-
-    fn fields(&self, kind: char) -> FrameFields {
-        FrameFields {
-            names: self.field_cells(kind, "name").map(str::to_owned).collect(),
-            signed: self
-                .field_numbers(kind, "signed")
-                .iter()
-                .map(|signed| *signed == 1)
-                .collect(),
-            predictors: self.field_numbers(kind, "predictor"),
-            encodings: self.field_numbers(kind, "encoding"),
-        }
-    }
-
-    /// Returns the cells of a header line such as "Field I name".
-    fn field_cells(&self, kind: char, property: &str) -> impl Iterator<Item = &str> {
-        self.value(&format!("Field {kind} {property}"))
-            .split(',')
-            .filter(|cell| !cell.is_empty())
-    }
-
-    /// Returns the numbers in a header line such as "Field I signed"; a cell that is not a number
-    /// becomes 255.
-    fn field_numbers(&self, kind: char, property: &str) -> Vec<u8> {
-        self.field_cells(kind, property)
-            .map(|cell| cell.parse().unwrap_or(u8::MAX))
-            .collect()
-    }
-
-    /// Returns the fields of the frames with the letter `kind`; `None` if a field cannot be
-    /// decoded.
-    fn frame(&self, kind: u8) -> Option<&FrameFields> {
-        let fields = self.frames.get(&kind)?;
-        if fields.is_whole() {
-            Some(fields)
-        } else {
-            None
-        }
-    }
-
-    /// Parses a frame with the letter `kind`; returns `None` for an unknown letter, a damaged
-    /// frame, or a predicted frame without a predecessor.
-    fn parse(&self, kind: u8, bytes: &mut PackedBytes<'_>, before: &Predecessors) -> Option<Frame> {
-        if kind == b'E' {
-            return event(bytes);
-        }
-        let fields = self.frame(kind)?;
-        if kind == b'P' && before.last.is_none() {
-            return None;
-        }
-        let differences = fields.differences(bytes)?;
-        let independent = Predecessors::default();
-        Some(match kind {
-            b'G' | b'H' => Frame::Other,
-            b'S' => Frame::Slow(fields.values(differences, &independent, self.numbers)),
-            b'P' => Frame::Main(fields.values(differences, before, self.numbers)),
-            _ => Frame::Main(fields.values(differences, &independent, self.numbers)),
-        })
-    }
-}
-
-/// A decoded frame.
-enum Frame {
-    Main(Vec<i64>),
-    Slow(Vec<i64>),
-    Other,
-    End,
-}
-
-/// Parses an event frame, whose length depends on the event type.
-fn event(bytes: &mut PackedBytes<'_>) -> Option<Frame> {
-    match bytes.byte()? {
-        // Beep, disarming and inertial unit failure: one integer.
-        0 | 15 | 40 => {
-            bytes.unsigned()?;
-        }
-        // Resumed logging and change of flight mode: two integers.
-        14 | 30 => {
-            bytes.unsigned()?;
-            bytes.unsigned()?;
-        }
-        // In-flight adjustment: a float of four bytes or a packed integer.
-        13 => {
-            if bytes.byte()? & 0x80 == 0 {
-                bytes.signed()?;
-            } else {
-                for _ in 0..4 {
-                    bytes.byte()?;
-                }
-            }
-        }
-        255 => {
-            for letter in b"End of log" {
-                if bytes.byte() != Some(*letter) {
-                    return None;
-                }
-            }
-            return Some(Frame::End);
-        }
-        _ => return None,
-    }
-    Some(Frame::Other)
-}
-
 /// A flight with its decoded frames.
 struct Flight {
-    heading: Heading,
+    header: Header,
     /// Index of the field "time".
-    time: Option<usize>,
+    time_field: Option<usize>,
     /// Values from the main frames, one list for each field.
     values: Vec<Vec<f64>>,
     modes: Vec<ModeSample>,
+    /// Number of damaged frames.
     damaged: usize,
 }
 
@@ -284,9 +129,9 @@ impl Flight {
         name: &str,
         budget: &ReadingBudget<'_>,
     ) -> Result<Option<Self>, VariableFault> {
-        let heading = Heading::read(bytes);
-        budget.take(heading.length as u64, 2, name)?;
-        let mut flight = Self::begin(heading, name)?;
+        let header = Header::read(bytes);
+        budget.take(header.length as u64, 2, name)?;
+        let mut flight = Self::begin(header, name)?;
         flight.read_frames(bytes, name, budget)?;
         let frames = flight.values.first().map_or(0, Vec::len);
         if frames < FEWEST_FRAMES {
@@ -299,15 +144,15 @@ impl Flight {
     ///
     /// # Errors
     /// [`VariableFault`] if the data version or an encoding of the intra frames is not supported.
-    fn begin(heading: Heading, name: &str) -> Result<Self, VariableFault> {
-        let version = heading.value("Data version");
-        match heading.frame(b'I') {
+    fn begin(header: Header, name: &str) -> Result<Self, VariableFault> {
+        let version = header.value("Data version");
+        match header.frame_fields(b'I') {
             Some(fields) if version == "2" => Ok(Self {
-                time: fields.names.iter().position(|field| field == "time"),
+                time_field: fields.names.iter().position(|field| field == "time"),
                 values: vec![Vec::new(); fields.names.len()],
                 modes: Vec::new(),
                 damaged: 0,
-                heading,
+                header,
             }),
             _ => {
                 let version: String = version.chars().take(9).collect();
@@ -323,28 +168,30 @@ impl Flight {
         }
     }
 
+    /// Reads the frames in `bytes`, which begin with the header. At a byte that begins no valid
+    /// frame, reading continues at the next byte.
     fn read_frames(
         &mut self,
         bytes: &[u8],
         name: &str,
         budget: &ReadingBudget<'_>,
     ) -> Result<(), VariableFault> {
-        let count = self.values.len();
+        let field_count = self.values.len();
         let mut before = Predecessors::default();
-        let mut at = self.heading.length;
+        let mut at = self.header.length;
         while at < bytes.len() {
-            budget.work(count as u64, name)?;
+            budget.work(field_count as u64, name)?;
             let mut packed = PackedBytes::new(bytes, at + 1);
-            let mut frame = self.heading.parse(bytes[at], &mut packed, &before);
+            let mut frame = parse_frame(&self.header, bytes[at], &mut packed, &before);
             // A frame is damaged if no frame letter follows it.
             let next = bytes.get(packed.at);
-            if next.is_some_and(|next| !b"IPSGHE".contains(next)) {
+            if next.is_some_and(|next| !FRAME_LETTERS.contains(next)) {
                 frame = None;
             }
             match frame {
                 Some(Frame::End) => break,
                 Some(Frame::Main(values)) if self.continues(&values, &before) => {
-                    budget.take(count as u64, 8, name)?;
+                    budget.take(field_count as u64, 8, name)?;
                     for (column, value) in self.values.iter_mut().zip(&values) {
                         column.push(*value as f64);
                     }
@@ -356,11 +203,12 @@ impl Flight {
                     at = packed.at;
                 }
                 Some(Frame::Slow(values)) => {
-                    self.take_modes(&values, &before, name, budget)?;
+                    self.add_mode_sample(&values, &before, name, budget)?;
                     at = packed.at;
                 }
                 Some(Frame::Other) => at = packed.at,
                 Some(Frame::Main(_)) | None => {
+                    // Count a damaged frame once, not at each byte up to the next intra frame.
                     if before.last.is_some() {
                         self.damaged += 1;
                     }
@@ -375,7 +223,7 @@ impl Flight {
     /// Returns whether a main frame is no earlier than its predecessor and at most
     /// `LONGEST_STEP_US` later; true for frames without a time or a predecessor.
     fn continues(&self, frame: &[i64], before: &Predecessors) -> bool {
-        if let Some(time) = self.time
+        if let Some(time) = self.time_field
             && let Some(last) = &before.last
         {
             return (0..=LONGEST_STEP_US).contains(&(frame[time] - last[time]));
@@ -384,14 +232,14 @@ impl Flight {
     }
 
     /// Stores the mode flags of a slow frame with the time of the preceding main frame.
-    fn take_modes(
+    fn add_mode_sample(
         &mut self,
         slow: &[i64],
         before: &Predecessors,
         name: &str,
         budget: &ReadingBudget<'_>,
     ) -> Result<(), VariableFault> {
-        if let Some(time) = self.time
+        if let Some(time) = self.time_field
             && let Some(flags) = slow.first()
             && let Some(last) = &before.last
         {
@@ -406,10 +254,14 @@ impl Flight {
 
     /// Returns the columns of the fields, and for each axis a column with the sum of the controller
     /// terms.
-    fn columns(self, name: String, budget: &ReadingBudget<'_>) -> Result<Columns, VariableFault> {
+    fn into_columns(
+        self,
+        name: String,
+        budget: &ReadingBudget<'_>,
+    ) -> Result<Columns, VariableFault> {
         let mut notes =
             vec!["a Betaflight log; axisSum is the sum of the controller terms".to_owned()];
-        let names = &self.heading.frames[&b'I'].names;
+        let names = self.header.main_fields();
         let mut columns = Vec::new();
         for (field, values) in names.iter().zip(self.values) {
             if field == "loopIteration" {
@@ -426,8 +278,8 @@ impl Flight {
             columns.extend(sum);
         }
         // The documented unit of the rates, deg/s, requires a scale of 1.
-        if self.heading.value("gyro_scale") == ONE {
-            notes.extend(give_meanings(&mut columns, &BETAFLIGHT));
+        if self.header.value("gyro_scale") == ONE {
+            notes.extend(assign_documented_meanings(&mut columns, &BETAFLIGHT));
         } else {
             notes.push(
                 "gyro_scale is not 1: the unit of gyroADC is unknown, so no channels are proposed"
@@ -436,17 +288,11 @@ impl Flight {
         }
         if self.damaged > 0 {
             notes.push(format!(
-                "{} damaged frames: the frames up to the next intra frame are omitted",
-                self.damaged
+                "{}: the frames up to the next intra frame are omitted",
+                counted(self.damaged, "damaged frame")
             ));
         }
-        let time_s: Vec<f64> = self
-            .modes
-            .iter()
-            .map(|sample| sample.time_us * 1e-6)
-            .collect();
-        let flags = self.modes.iter().map(|sample| sample.flags);
-        let modes = mode_spans(&time_s, flags, |flags| Some(mode_name(flags).to_owned()));
+        let modes = flight_modes(&self.modes);
         notes.extend(modes_note(&modes));
         Ok(Columns {
             notes,
@@ -479,13 +325,23 @@ fn controller_sum(
     Ok(Some(RecordColumn::new(format!("axisSum[{axis}]"), sum)))
 }
 
-/// Returns the flight mode in `flightModeFlags`: angle if bit 1 (counted from 0) is set, else
-/// horizon if bit 2 is set, else acro.
+/// Returns the time spans of the flight modes.
+fn flight_modes(samples: &[ModeSample]) -> Vec<ModeSpan> {
+    let time_s: Vec<f64> = samples.iter().map(|sample| sample.time_us * 1e-6).collect();
+    let flags = samples.iter().map(|sample| sample.flags);
+    mode_spans(&time_s, flags, |flags| Some(mode_name(flags).to_owned()))
+}
+
+/// Returns the flight mode in `flightModeFlags`.
 fn mode_name(flags: f64) -> &'static str {
+    /// Bit of the mode in which the stick sets the attitude.
+    const ANGLE: u32 = 1 << 1;
+    /// Bit of the mode between angle and acro.
+    const HORIZON: u32 = 1 << 2;
     let flags = flags as u32;
-    if flags & 2 != 0 {
+    if flags & ANGLE != 0 {
         "angle"
-    } else if flags & 4 != 0 {
+    } else if flags & HORIZON != 0 {
         "horizon"
     } else {
         "acro"

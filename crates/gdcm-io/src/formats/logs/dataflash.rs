@@ -2,30 +2,40 @@
 //! (<https://ardupilot.org/dev/docs/code-overview-adding-a-new-log-message.html>).
 //!
 //! ```text
-//! each message: A3 95, type, content; FMT messages give length and fields for each type
-//! FMT           type, length with these three bytes, name, a letter for each field, field names
-//! FMTU          type, a unit letter and a multiplier letter for each field
-//! UNIT, MULT    meanings of these letters
+//! message     A3 95, type (1 byte), content; the FMT messages give the length and the fields of
+//!             each type
+//! FMT         type (1 byte), length including the header (1 byte), name (4), a letter for each
+//!             field (16), field names separated by commas (64)
+//! FMTU        type, a unit letter and a multiplier letter for each field
+//! UNIT, MULT  meanings of these letters
 //! ```
 
 use std::collections::BTreeMap;
+use std::ops::Range;
+
+use gdcm_model::number_format::counted;
 
 use crate::file_error::FileError;
 use crate::formats::logs::array;
-use crate::formats::logs::dataflash_messages::{
-    FieldKind, Layouts, MessageLayout, SampleFields, Topics,
-};
+use crate::formats::logs::dataflash_layouts::{FieldKind, Layouts, MessageLayout};
+use crate::formats::logs::dataflash_topics::{SampleFields, Topics};
 use crate::formats::recorded_columns::Columns;
-use crate::formats::strides::{NumberClass, StoredNumber};
+use crate::formats::stored_number::{NumberClass, StoredNumber};
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
+/// First bytes of each message.
 const MARK: [u8; 2] = [0xa3, 0x95];
 /// Length of a message header: two mark bytes and the type \[bytes\].
 const HEADER: usize = 3;
-/// Type and length \[bytes\] of the FMT messages, which describe the other messages.
+/// Type of the FMT messages, which describe the other messages.
 const FORMAT: u8 = 128;
+/// Length of an FMT message \[bytes\].
 const FORMAT_LENGTH: usize = 89;
+/// Positions of the texts in the content of an FMT message \[bytes\].
+const NAME: Range<usize> = 2..6;
+const LETTERS: Range<usize> = 6..22;
+const FIELD_NAMES: Range<usize> = 22..86;
 
 /// Importer of ArduPilot logs in binary form.
 pub(crate) const DATAFLASH: Importer = Importer {
@@ -44,7 +54,7 @@ fn read_dataflash(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, V
     let mut descriptions = Descriptions::new();
     let mut messages = Messages::new(bytes, budget);
     while let Some(message) = messages.next(&descriptions.lengths)? {
-        descriptions.take(message);
+        descriptions.add(message);
     }
     let skipped = messages.skipped;
 
@@ -60,16 +70,17 @@ fn read_dataflash(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, V
     while let Some(message) = messages.next(&lengths)? {
         if let Some(fields) = fields_by_type.get(&message.kind) {
             let value = |index| message.number(fields.layout, index);
-            topics.take(fields, value, budget)?;
+            topics.add(fields, value, budget)?;
         }
     }
 
     let mut notes =
         vec!["an ArduPilot log; time in seconds since the start of the autopilot".to_owned()];
     if skipped > 0 {
-        notes.push(format!("{skipped} bytes between messages are skipped"));
+        let bytes = counted(skipped, "byte");
+        notes.push(format!("{bytes} between messages skipped"));
     }
-    topics.columns(notes)
+    topics.into_columns(notes)
 }
 
 /// Message lengths including the header \[bytes\], by message type; 0 if unknown.
@@ -77,7 +88,9 @@ type Lengths = [usize; 256];
 
 #[derive(Clone, Copy)]
 struct Message<'b> {
+    /// Message type.
     kind: u8,
+    /// Bytes after the header.
     content: &'b [u8],
 }
 
@@ -87,16 +100,18 @@ impl Message<'_> {
         let field = layout.fields.get(index)?;
         match field.kind {
             FieldKind::Number { stored, factor } => {
-                Some(stored.at(self.content, field.offset)? * factor)
+                Some(stored.decode_at(self.content, field.offset)? * factor)
             }
             FieldKind::Other(_) => None,
         }
     }
 
+    /// Returns the first byte of the field with this name.
     fn byte(self, layout: &MessageLayout, name: &str) -> Option<u8> {
         self.content.get(layout.field(name)?.offset).copied()
     }
 
+    /// Returns the text in the field with this name.
     fn text(self, layout: &MessageLayout, name: &str) -> Option<String> {
         let field = layout.field(name)?;
         self.content
@@ -105,10 +120,11 @@ impl Message<'_> {
     }
 }
 
-/// Iterator over the messages in a log.
+/// Position in a log, from which its messages are read one after the other.
 struct Messages<'b, 'm> {
     bytes: &'b [u8],
     budget: &'m ReadingBudget<'m>,
+    /// Offset of the next byte.
     at: usize,
     /// Number of skipped bytes that belong to no message.
     skipped: usize,
@@ -164,9 +180,9 @@ impl Descriptions {
     }
 
     /// Stores the content of a message that describes other messages; ignores any other message.
-    fn take(&mut self, message: Message<'_>) {
+    fn add(&mut self, message: Message<'_>) {
         if message.kind == FORMAT {
-            self.take_format(message.content);
+            self.add_format(message.content);
             return;
         }
         let layouts = &mut self.layouts;
@@ -193,7 +209,7 @@ impl Descriptions {
                 let stored = StoredNumber::little_endian(NumberClass::Float, 8);
                 if let Some(letter) = message.byte(layout, "Id")
                     && let Some(field) = layout.field("Mult")
-                    && let Some(multiplier) = stored.at(message.content, field.offset)
+                    && let Some(multiplier) = stored.decode_at(message.content, field.offset)
                 {
                     layouts.multipliers.insert(char::from(letter), multiplier);
                 }
@@ -203,29 +219,30 @@ impl Descriptions {
     }
 
     /// Stores the layout and the length of a message type.
-    fn take_format(&mut self, content: &[u8]) {
+    fn add_format(&mut self, content: &[u8]) {
         let Some([kind, length]) = array::<2>(content, 0) else {
             return;
         };
         let Some(layout) = MessageLayout::parse(
-            &text_between(content, 2, 6),
-            &text_between(content, 6, 22),
-            &text_between(content, 22, 86),
+            &text_in(content, NAME),
+            &text_in(content, LETTERS),
+            &text_in(content, FIELD_NAMES),
         ) else {
             return;
         };
         let ends = layout.fields.iter().map(|field| field.end());
-        let needed = ends.max().unwrap_or(0);
+        let content_length = ends.max().unwrap_or(0);
         // A description of FMT is ignored: its length is fixed.
-        if kind != FORMAT && usize::from(length) >= needed + HEADER {
+        if kind != FORMAT && usize::from(length) >= content_length + HEADER {
             self.lengths[usize::from(kind)] = usize::from(length);
             self.layouts.by_type.insert(kind, layout);
         }
     }
 }
 
-fn text_between(content: &[u8], from: usize, to: usize) -> String {
-    printable_text(content.get(from..to).unwrap_or_default())
+/// Returns the text in a part of a message; empty if the message is shorter.
+fn text_in(content: &[u8], part: Range<usize>) -> String {
+    printable_text(content.get(part).unwrap_or_default())
 }
 
 /// Returns the printable ASCII characters up to the first other byte.

@@ -6,7 +6,8 @@
 use std::collections::BTreeMap;
 
 use crate::file_error::FileError;
-use crate::formats::logs::dataflash_messages::{Layouts, MessageLayout, SampleFields, Topics};
+use crate::formats::logs::dataflash_layouts::{Layouts, MessageLayout};
+use crate::formats::logs::dataflash_topics::{SampleFields, Topics};
 use crate::formats::recorded_columns::Columns;
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
@@ -52,9 +53,9 @@ fn read_text(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, Variab
             continue;
         };
         let cells: Vec<&str> = cells.collect();
-        topics.take(fields, |index| cells.get(index)?.parse().ok(), budget)?;
+        topics.add(fields, |index| cells.get(index)?.parse().ok(), budget)?;
     }
-    topics.columns(vec![
+    topics.into_columns(vec![
         "an ArduPilot log as text; time in seconds since the start of the autopilot".to_owned(),
     ])
 }

@@ -15,6 +15,7 @@ pub(super) fn mode_spans(
     name: impl Fn(f64) -> Option<String>,
 ) -> Vec<ModeSpan> {
     let mut spans: Vec<ModeSpan> = Vec::new();
+    // Value of the preceding sample.
     let mut last: Option<f64> = None;
     for (&time, value) in time_s.iter().zip(values) {
         // The preceding value lasts until this sample, even if the value changes here.
@@ -23,8 +24,8 @@ pub(super) fn mode_spans(
         {
             open.ends_s[1] = time;
         }
-        let begins = last != Some(value);
-        if begins
+        let value_changes = last != Some(value);
+        if value_changes
             && spans.len() < MOST_SPANS
             && let Some(name) = name(value)
         {

@@ -11,19 +11,22 @@
 //! to its last complete message.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
-use gdcm_sysid::records::ModeSpan;
+use gdcm_model::number_format::counted;
 
 use crate::file_error::FileError;
 use crate::formats::logs::array;
-use crate::formats::logs::meanings::{PX4, give_meanings};
-use crate::formats::logs::mode_spans::{mode_spans, modes_note};
-use crate::formats::logs::topics::{TopicField, TopicSamples};
-use crate::formats::logs::ulog_layouts::{Formats, Place, places_in_message};
+use crate::formats::logs::documented_channels::{PX4, assign_documented_meanings};
+use crate::formats::logs::mode_spans::modes_note;
+use crate::formats::logs::topic_samples::{TopicField, TopicSamples};
+use crate::formats::logs::ulog_layouts::{LayoutTexts, Place, places_in_message};
+use crate::formats::logs::ulog_modes::flight_modes;
 use crate::formats::recorded_columns::Columns;
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
+/// First bytes of a file.
 const MAGIC: &[u8] = b"ULog\x01\x12\x35";
 /// Length of the file header \[bytes\].
 const HEADER: usize = 16;
@@ -31,8 +34,12 @@ const HEADER: usize = 16;
 const MESSAGE_HEADER: usize = 3;
 /// Incompatibility flag for appended data, the only supported one.
 const APPENDED: u8 = 1;
-/// `ARMING_STATE_ARMED` in `VehicleStatus.msg`, PX4 1.14 to 1.16.
-const ARMED: f64 = 2.0;
+/// Position of the incompatibility flags in the content of a flags message \[bytes\].
+const INCOMPATIBILITY: Range<usize> = 8..16;
+/// Position of the offsets of appended data in the content of a flags message \[bytes\].
+const APPENDED_OFFSETS_AT: usize = 16;
+/// Number of these offsets, which have 8 bytes each; unused offsets are 0.
+const APPENDED_OFFSETS: usize = 3;
 
 /// Importer of PX4 logs.
 pub(crate) const ULOG: Importer = Importer {
@@ -53,20 +60,24 @@ struct Subscription {
     /// Positions of the fields other than the time stamp.
     places: Vec<Place>,
     /// Minimum length of the data in a message \[bytes\].
-    least: usize,
+    least_bytes: usize,
 }
 
 /// Contents of the messages read so far.
 #[derive(Default)]
 struct Messages<'b> {
-    formats: Formats<'b>,
+    layouts: LayoutTexts<'b>,
+    /// Topics by message id.
     subscriptions: BTreeMap<u16, Subscription>,
+    /// Number of dropouts of the logger.
     dropouts: usize,
+    /// Total duration of the dropouts \[ms\].
     lost_ms: u64,
     /// Number of data messages without a topic, or too short for it.
     unread: usize,
 }
 
+/// Reads a log, message by message.
 fn read_ulog(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, VariableFault> {
     if bytes.len() < HEADER {
         return Err(VariableFault::cut_off("", bytes.len()));
@@ -95,11 +106,11 @@ fn read_ulog(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, Variab
         if kind == b'B' {
             appended = appended_offsets(content)?;
         } else {
-            messages.take(kind, content, budget)?;
+            messages.add(kind, content, budget)?;
         }
         at = to;
     }
-    messages.columns(is_cut)
+    messages.into_columns(is_cut)
 }
 
 /// Reads the offsets of appended data \[bytes\] from the content of the flags message.
@@ -107,7 +118,8 @@ fn read_ulog(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, Variab
 /// # Errors
 /// [`VariableFault`] if an unknown incompatibility flag is set.
 fn appended_offsets(flags: &[u8]) -> Result<Vec<usize>, VariableFault> {
-    for (index, flag) in flags.get(8..16).unwrap_or_default().iter().enumerate() {
+    let incompatible = flags.get(INCOMPATIBILITY).unwrap_or_default();
+    for (index, flag) in incompatible.iter().enumerate() {
         let known = if index == 0 { APPENDED } else { 0 };
         if *flag & !known != 0 {
             return Err(VariableFault::unsupported(
@@ -118,8 +130,8 @@ fn appended_offsets(flags: &[u8]) -> Result<Vec<usize>, VariableFault> {
         }
     }
     let mut offsets = Vec::new();
-    for index in 0..3 {
-        let offset = array(flags, 16 + 8 * index).map_or(0, u64::from_le_bytes);
+    for index in 0..APPENDED_OFFSETS {
+        let offset = array(flags, APPENDED_OFFSETS_AT + 8 * index).map_or(0, u64::from_le_bytes);
         if offset > 0
             && let Ok(offset) = usize::try_from(offset)
         {
@@ -130,16 +142,17 @@ fn appended_offsets(flags: &[u8]) -> Result<Vec<usize>, VariableFault> {
 }
 
 impl<'b> Messages<'b> {
-    fn take(
+    /// Stores the content of a message with the type `kind`; ignores unneeded types.
+    fn add(
         &mut self,
         kind: u8,
         content: &'b [u8],
         budget: &ReadingBudget<'_>,
     ) -> Result<(), VariableFault> {
         match kind {
-            b'F' => self.take_format(content, budget)?,
+            b'F' => self.add_layout(content, budget)?,
             b'A' => self.subscribe(content, budget)?,
-            b'D' => self.take_data(content, budget)?,
+            b'D' => self.add_sample(content, budget)?,
             b'O' => {
                 self.dropouts += 1;
                 self.lost_ms += u64::from(array(content, 0).map_or(0, u16::from_le_bytes));
@@ -150,7 +163,7 @@ impl<'b> Messages<'b> {
     }
 
     /// Stores the layout of a topic; ignores a second layout with the same name.
-    fn take_format(
+    fn add_layout(
         &mut self,
         content: &'b [u8],
         budget: &ReadingBudget<'_>,
@@ -158,21 +171,22 @@ impl<'b> Messages<'b> {
         let text = std::str::from_utf8(content).unwrap_or_default();
         if let Some((name, fields)) = text.split_once(':') {
             budget.take(1, 64, name)?;
-            self.formats.entry(name).or_insert(fields);
+            self.layouts.entry(name).or_insert(fields);
         }
         Ok(())
     }
 
-    fn take_data(
+    /// Adds a data message to the samples of its topic.
+    fn add_sample(
         &mut self,
         content: &[u8],
         budget: &ReadingBudget<'_>,
     ) -> Result<(), VariableFault> {
-        let number = array(content, 0).map(u16::from_le_bytes);
+        let message_id = array(content, 0).map(u16::from_le_bytes);
         let data = content.get(2..).unwrap_or_default();
-        let topic = number.and_then(|number| self.subscriptions.get_mut(&number));
+        let topic = message_id.and_then(|id| self.subscriptions.get_mut(&id));
         if let Some(topic) = topic
-            && data.len() >= topic.least
+            && data.len() >= topic.least_bytes
             && let Some(time_us) = topic.stamp.read(data)
         {
             let values = topic
@@ -195,9 +209,9 @@ impl<'b> Messages<'b> {
         let Some([instance, low, high]) = array::<3>(content, 0) else {
             return Ok(());
         };
-        let number = u16::from_le_bytes([low, high]);
+        let message_id = u16::from_le_bytes([low, high]);
         let name = std::str::from_utf8(&content[3..]).unwrap_or_default();
-        let mut places = match places_in_message(name, &self.formats, budget) {
+        let mut places = match places_in_message(name, &self.layouts, budget) {
             Err(fault) if fault.is_of_the_budget() => return Err(fault),
             Err(_) => return Ok(()),
             Ok(places) => places,
@@ -207,7 +221,7 @@ impl<'b> Messages<'b> {
         };
         places.retain(|place| !place.is_stamp());
         let ends = places.iter().chain([&stamp]).map(Place::end);
-        let least = ends.max().unwrap_or(0);
+        let least_bytes = ends.max().unwrap_or(0);
         let name = if instance == 0 {
             name.to_owned()
         } else {
@@ -219,18 +233,20 @@ impl<'b> Messages<'b> {
             values: Vec::new(),
         });
         let samples = TopicSamples::new(name, fields.collect());
-        self.subscriptions.entry(number).or_insert(Subscription {
-            samples,
-            stamp,
-            places,
-            least,
-        });
+        self.subscriptions
+            .entry(message_id)
+            .or_insert(Subscription {
+                samples,
+                stamp,
+                places,
+                least_bytes,
+            });
         Ok(())
     }
 
     /// Returns the columns, with their documented channels and units, the flight modes, and notes.
     /// `is_cut`: the log was truncated.
-    fn columns(self, is_cut: bool) -> Result<Columns, VariableFault> {
+    fn into_columns(self, is_cut: bool) -> Result<Columns, VariableFault> {
         let topics: Vec<TopicSamples> = self
             .subscriptions
             .into_values()
@@ -239,25 +255,28 @@ impl<'b> Messages<'b> {
         let modes = flight_modes(&topics);
         let mut columns = Columns::new(
             String::new(),
-            topics.into_iter().flat_map(TopicSamples::columns).collect(),
+            topics
+                .into_iter()
+                .flat_map(TopicSamples::into_columns)
+                .collect(),
         );
         if columns.columns.is_empty() {
             return Err(VariableFault::cut_off("", HEADER));
         }
         let notes = &mut columns.notes;
         notes.push("a PX4 log; time in seconds since the start of the autopilot".to_owned());
-        notes.extend(give_meanings(&mut columns.columns, &PX4));
+        notes.extend(assign_documented_meanings(&mut columns.columns, &PX4));
         if self.dropouts > 0 {
             let lost_s = self.lost_ms as f64 * 1e-3;
             notes.push(format!(
-                "{} dropouts of the logger, {lost_s:.2} s in total, leave gaps",
-                self.dropouts
+                "{} of the logger, {lost_s:.2} s in total: the columns have gaps",
+                counted(self.dropouts, "dropout")
             ));
         }
         if self.unread > 0 {
             notes.push(format!(
-                "{} messages are omitted: they have no topic or are too short",
-                self.unread
+                "{} omitted: no topic, or too short for their topic",
+                counted(self.unread, "message")
             ));
         }
         if is_cut {
@@ -270,54 +289,6 @@ impl<'b> Messages<'b> {
         Ok(columns)
     }
 }
-
-/// Returns the spans in which the vehicle was armed, and those of the flight modes, from
-/// `vehicle_status`.
-fn flight_modes(topics: &[TopicSamples]) -> Vec<ModeSpan> {
-    let Some(status) = topics.iter().find(|topic| topic.name == "vehicle_status") else {
-        return Vec::new();
-    };
-    let mut modes = Vec::new();
-    if let Some(field) = status.field("arming_state") {
-        let states = field.values.iter().copied();
-        modes.extend(mode_spans(&status.time_s, states, |state| {
-            if state == ARMED {
-                Some("armed".to_owned())
-            } else {
-                None
-            }
-        }));
-    }
-    if let Some(field) = status.field("nav_state") {
-        let states = field.values.iter().copied();
-        modes.extend(mode_spans(&status.time_s, states, navigation_mode));
-    }
-    modes
-}
-
-fn navigation_mode(state: f64) -> Option<String> {
-    let (_, name) = NAVIGATION
-        .iter()
-        .find(|(number, _)| f64::from(*number) == state)?;
-    Some((*name).to_owned())
-}
-
-/// `NAVIGATION_STATE_…` in `VehicleStatus.msg`, PX4 1.14 to 1.16.
-const NAVIGATION: [(u8, &str); 13] = [
-    (0, "manual"),
-    (1, "altitude"),
-    (2, "position"),
-    (3, "mission"),
-    (4, "loiter"),
-    (5, "return"),
-    (10, "acro"),
-    (12, "descend"),
-    (14, "offboard"),
-    (15, "stabilized"),
-    (17, "take-off"),
-    (18, "land"),
-    (21, "orbit"),
-];
 
 #[cfg(test)]
 mod tests {
@@ -389,7 +360,8 @@ mod tests {
             columns
                 .notes
                 .iter()
-                .any(|note| note == "1 dropouts of the logger, 0.25 s in total, leave gaps")
+                .any(|note| note
+                    == "1 dropout of the logger, 0.25 s in total: the columns have gaps")
         );
         let modes: Vec<&str> = columns
             .modes

@@ -1,9 +1,10 @@
 //! Message layouts in ULog. The fields are numbers, arrays or nested layouts, which are flattened
-//! to a list of numbers.
+//! to a list of numbers: with `esc_report:float rpm` and `esc_status:uint64_t timestamp;esc_report[2]
+//! esc`, the numbers of `esc_status` are `timestamp`, `esc[0].rpm` and `esc[1].rpm`.
 
 use std::collections::BTreeMap;
 
-use crate::formats::strides::{NumberClass, StoredNumber};
+use crate::formats::stored_number::{NumberClass, StoredNumber};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Maximum message length \[bytes\]; the length field has 16 bits.
@@ -34,12 +35,12 @@ impl Place {
 
     /// Reads the number from message data; `None` if the data are too short.
     pub(super) fn read(&self, data: &[u8]) -> Option<f64> {
-        self.stored.at(data, self.offset)
+        self.stored.decode_at(data, self.offset)
     }
 }
 
 /// Layouts by message name, in the notation of the file: `uint64_t timestamp;float[3] xyz`.
-pub(super) type Formats<'b> = BTreeMap<&'b str, &'b str>;
+pub(super) type LayoutTexts<'b> = BTreeMap<&'b str, &'b str>;
 
 /// Returns the numbers in a message with this name.
 ///
@@ -47,11 +48,11 @@ pub(super) type Formats<'b> = BTreeMap<&'b str, &'b str>;
 /// [`VariableFault`] if a layout is missing, recursive, or longer than the largest message.
 pub(super) fn places_in_message(
     name: &str,
-    formats: &Formats<'_>,
+    layouts: &LayoutTexts<'_>,
     budget: &ReadingBudget<'_>,
 ) -> Result<Vec<Place>, VariableFault> {
     let mut flattening = Flattening {
-        formats,
+        layouts,
         budget,
         message: name,
         places: Vec::new(),
@@ -63,7 +64,7 @@ pub(super) fn places_in_message(
 
 /// State of flattening a layout.
 struct Flattening<'a> {
-    formats: &'a Formats<'a>,
+    layouts: &'a LayoutTexts<'a>,
     budget: &'a ReadingBudget<'a>,
     message: &'a str,
     places: Vec<Place>,
@@ -90,7 +91,7 @@ impl Flattening<'_> {
         if deeper == 0 {
             return Err(VariableFault::too_deep(self.message));
         }
-        let Some(fields) = self.formats.get(name) else {
+        let Some(fields) = self.layouts.get(name) else {
             return Err(self.damaged(format!("the layout of \"{}\" is missing", short(name))));
         };
         for field in fields.split(';').map(str::trim) {
@@ -210,14 +211,14 @@ mod tests {
 
     #[test]
     fn nested_layouts_become_a_flat_list() {
-        let formats = Formats::from([
+        let layouts = LayoutTexts::from([
             (
                 "esc",
                 "uint64_t timestamp;one[2] esc;uint8_t[3] _padding0;bool last",
             ),
             ("one", "int16_t rpm;char[4] name;float v"),
         ]);
-        let places = places_in_message("esc", &formats, &ReadingBudget::new(1 << 20)).unwrap();
+        let places = places_in_message("esc", &layouts, &ReadingBudget::new(1 << 20)).unwrap();
         let found: Vec<(&str, usize)> = places
             .iter()
             .map(|place| (place.name.as_str(), place.offset))
@@ -235,7 +236,7 @@ mod tests {
 
     #[test]
     fn circles_and_layouts_without_bytes_are_refused() {
-        let formats = Formats::from([
+        let layouts = LayoutTexts::from([
             ("a", "a x"),
             ("b", "none[60000] x"),
             ("none", ""),
@@ -243,7 +244,7 @@ mod tests {
         ]);
         for name in ["a", "b", "c", "d"] {
             assert!(
-                places_in_message(name, &formats, &ReadingBudget::new(1 << 20)).is_err(),
+                places_in_message(name, &layouts, &ReadingBudget::new(1 << 20)).is_err(),
                 "{name}"
             );
         }

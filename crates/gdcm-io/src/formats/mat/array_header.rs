@@ -1,18 +1,26 @@
-//! Header of an array: class, flags, shape and name.
+//! Header of an array: three elements that precede its contents.
+//!
+//! ```text
+//! flags   two 32-bit words; the lowest byte of the first is the number of the class
+//! shape   a 32-bit integer for each dimension; missing in opaque arrays
+//! name    of the variable; empty in nested arrays
+//! ```
 //!
 //! Source: "MAT-File Format", The MathWorks, "miMATRIX Format".
 
+use crate::formats::element_order;
 use crate::formats::mat::cursor::Cursor;
 use crate::formats::mat::element::{DataKind, Element};
 use crate::formats::mat::numbers::read_sizes;
-use crate::formats::strides;
 use crate::formats::variables::ElementKind;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
+/// Bits of the first word that hold the class number.
+const CLASS_BITS: u32 = 0xff;
 /// Flag of logical arrays.
-const LOGICAL: u32 = 0x0200;
+pub(super) const LOGICAL: u32 = 0x0200;
 /// Flag of complex arrays.
-const COMPLEX: u32 = 0x0800;
+pub(super) const COMPLEX: u32 = 0x0800;
 /// Class number of unsigned 64-bit integers.
 const UINT64: u32 = 15;
 
@@ -54,8 +62,9 @@ impl ArrayHeader {
         if flags.kind != DataKind::U32 {
             return Err(flags.data.damaged("an array without flags"));
         }
-        let bits = { flags.data }.u32()?;
-        let number = bits & 0xff;
+        let mut words = flags.data;
+        let bits = words.read_u32()?;
+        let number = bits & CLASS_BITS;
         let Some(class) = ArrayClass::from_number(number) else {
             return Err(flags
                 .data
@@ -66,8 +75,9 @@ impl ArrayHeader {
         } else {
             read_shape(contents, budget)?
         };
-        // Reject a shape whose nonzero dimensions have a product that overflows.
-        if strides::count(&shape).is_none() {
+        // Reject a shape whose nonzero dimensions have a product that overflows: no budget is so
+        // large.
+        if element_order::element_count(&shape).is_none() {
             budget.take(u64::MAX, 1, "")?;
         }
         Ok(ArrayHeader {
@@ -81,6 +91,8 @@ impl ArrayHeader {
         })
     }
 
+    /// Returns the kind of the numbers in the array; the numbers of a sparse array are floats,
+    /// unless they are logical.
     pub(super) fn element_kind(&self) -> ElementKind {
         if self.is_logical {
             return ElementKind::Logical;

@@ -67,6 +67,7 @@ pub(crate) fn text_rows(
     variable: &str,
     budget: &ReadingBudget<'_>,
 ) -> Result<TextArray, VariableFault> {
+    // The dimensions are rows, characters in a row, and pages.
     let height = shape.first().copied().unwrap_or(1);
     let length = shape.get(1).copied().unwrap_or(1);
     let pages = shape.get(2..).unwrap_or_default();
@@ -83,6 +84,7 @@ pub(crate) fn text_rows(
     for text in 0..count {
         let page = text / height;
         let row = text % height;
+        // Place of the first character of the row; the following are `height` apart.
         let first = page.saturating_mul(page_size).saturating_add(row);
         let row_codes = (0..length).filter_map(|column| {
             let place = first.saturating_add(column.saturating_mul(height));

@@ -1,4 +1,6 @@
 //! Cursor for sequential reading in the byte order of a file.
+//!
+//! A cursor is a copy: `let start = cursor;` keeps a position, to which reading can return.
 
 use crate::reading_budget::VariableFault;
 
@@ -50,6 +52,7 @@ enum Section {
 }
 
 impl<'b> Cursor<'b> {
+    /// Creates a cursor at the beginning of a file.
     pub(super) fn file(bytes: &'b [u8], order: ByteOrder) -> Self {
         Self {
             bytes,
@@ -124,14 +127,15 @@ impl<'b> Cursor<'b> {
         self.take(length.min(self.len())).map(drop)
     }
 
-    pub(super) fn u32(&mut self) -> Result<u32, VariableFault> {
+    /// Reads the next 32-bit integer.
+    pub(super) fn read_u32(&mut self) -> Result<u32, VariableFault> {
         let order = self.order;
-        let bytes = self.array()?;
+        let bytes = self.read_array()?;
         Ok(order.u32(bytes))
     }
 
     /// Reads the next `N` bytes.
-    fn array<const N: usize>(&mut self) -> Result<[u8; N], VariableFault> {
+    fn read_array<const N: usize>(&mut self) -> Result<[u8; N], VariableFault> {
         let taken = self.take(N)?;
         <[u8; N]>::try_from(taken.bytes).map_err(|_| self.too_short())
     }
@@ -141,6 +145,7 @@ impl<'b> Cursor<'b> {
         VariableFault::damaged("", what, self.offset)
     }
 
+    /// Returns the error for a section that ends too early.
     fn too_short(&self) -> VariableFault {
         match self.section {
             Section::File => VariableFault::CutOff {
@@ -160,8 +165,14 @@ mod tests {
 
     #[test]
     fn a_number_is_read_in_both_orders() {
-        assert_eq!(Cursor::file(&[1, 0, 0, 0], ByteOrder::Little).u32(), Ok(1));
-        assert_eq!(Cursor::file(&[0, 0, 0, 1], ByteOrder::Big).u32(), Ok(1));
+        assert_eq!(
+            Cursor::file(&[1, 0, 0, 0], ByteOrder::Little).read_u32(),
+            Ok(1)
+        );
+        assert_eq!(
+            Cursor::file(&[0, 0, 0, 1], ByteOrder::Big).read_u32(),
+            Ok(1)
+        );
     }
 
     #[test]
@@ -169,11 +180,11 @@ mod tests {
         let mut file = Cursor::file(&[0; 6], ByteOrder::Little);
         let mut element = file.take(3).unwrap();
         assert!(matches!(
-            element.u32(),
+            element.read_u32(),
             Err(VariableFault::Damaged { offset: 0, .. })
         ));
         assert!(matches!(
-            file.u32(),
+            file.read_u32(),
             Err(VariableFault::CutOff { offset: 3, .. })
         ));
         assert!(file.pass(9).is_ok() && file.is_empty());

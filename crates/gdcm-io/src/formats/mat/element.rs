@@ -1,10 +1,20 @@
 //! Data elements: a tag with data type and length, followed by the data.
 //!
+//! ```text
+//! element        type (32 bits), length [bytes] (32 bits), data, padding to a multiple of 8 bytes;
+//!                compressed data are not padded
+//! small element  one 32-bit word with the length (1 to 4) in its upper and the type in its lower
+//!                half, then 4 bytes that hold the data
+//! ```
+//!
 //! Source: "MAT-File Format", The MathWorks, "Data Element Format".
 
 use crate::formats::mat::cursor::{ByteOrder, Cursor};
-use crate::formats::strides::{NumberClass, StoredNumber};
+use crate::formats::stored_number::{NumberClass, StoredNumber};
 use crate::reading_budget::VariableFault;
+
+/// Length of the tag of an element that is not small \[bytes\].
+pub(super) const TAG_BYTES: usize = 8;
 
 /// Data type of an element; the values are the numbers in the tag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,7 +38,7 @@ pub(super) enum DataKind {
 
 impl DataKind {
     /// Returns the data type for the number in a tag; `None` for an unknown number.
-    fn from_number(number: u32) -> Option<Self> {
+    pub(super) fn from_number(number: u32) -> Option<Self> {
         Some(match number {
             1 => Self::I8,
             2 => Self::U8,
@@ -50,7 +60,7 @@ impl DataKind {
     }
 
     /// Returns the type of the numbers; `None` for matrices and compressed data.
-    pub(super) fn number_type(self, order: ByteOrder) -> Option<StoredNumber> {
+    fn number_type(self, order: ByteOrder) -> Option<StoredNumber> {
         let (class, size) = match self {
             Self::I8 => (NumberClass::Signed, 1),
             Self::I16 => (NumberClass::Signed, 2),
@@ -71,7 +81,7 @@ impl DataKind {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Element<'b> {
     pub(super) kind: DataKind,
-    /// Data without the padding to a multiple of eight bytes.
+    /// Data without padding.
     pub(super) data: Cursor<'b>,
     /// Whether the data are as long as the tag announces; only arrays may be shorter.
     pub(super) is_whole: bool,
@@ -81,13 +91,11 @@ impl<'b> Element<'b> {
     /// Reads the next element and skips its padding.
     pub(super) fn read(cursor: &mut Cursor<'b>) -> Result<Self, VariableFault> {
         let tag = *cursor;
-        let first = cursor.u32()?;
-        // A small element holds up to four bytes within its tag; the upper half of its first word
-        // is their number.
-        let small = first >> 16;
-        if small != 0 {
+        let first = cursor.read_u32()?;
+        let small_length = first >> 16;
+        if small_length != 0 {
             let kind = known_kind(first & 0xffff, tag)?;
-            let data = cursor.take(4)?.take(small as usize)?;
+            let data = cursor.take(4)?.take(small_length as usize)?;
             return Ok(Self {
                 kind,
                 data,
@@ -95,7 +103,7 @@ impl<'b> Element<'b> {
             });
         }
         let kind = known_kind(first, tag)?;
-        let length = cursor.u32()? as usize;
+        let length = cursor.read_u32()? as usize;
         if kind == DataKind::Matrix && length > cursor.len() {
             // GNU Octave announces a few bytes too many for some arrays: take the bytes that are
             // present.
@@ -107,6 +115,7 @@ impl<'b> Element<'b> {
         }
         let data = cursor.take(length)?;
         if kind != DataKind::Packed {
+            // The number of bytes up to the next multiple of 8: -length modulo 8.
             cursor.pass(length.wrapping_neg() % 8)?;
         }
         Ok(Self {
@@ -124,15 +133,22 @@ impl<'b> Element<'b> {
         Ok(())
     }
 
+    /// Returns the type of the numbers in the element.
+    ///
+    /// # Errors
+    /// [`VariableFault`] for an array and for compressed data.
+    pub(super) fn number_type(&self) -> Result<StoredNumber, VariableFault> {
+        self.kind
+            .number_type(self.data.order)
+            .ok_or_else(|| self.data.damaged("an array instead of numbers"))
+    }
+
     /// Returns how many numbers the element holds.
     ///
     /// # Errors
     /// [`VariableFault`] for an array, and if the data end within a number.
     pub(super) fn count(&self) -> Result<usize, VariableFault> {
-        let Some(number_type) = self.kind.number_type(self.data.order) else {
-            return Err(self.data.damaged("an array instead of numbers"));
-        };
-        let width = number_type.size();
+        let width = self.number_type()?.size();
         let length = self.data.len();
         if !length.is_multiple_of(width) {
             return Err(self
@@ -163,54 +179,6 @@ impl<'b> Element<'b> {
 fn known_kind(number: u32, tag: Cursor<'_>) -> Result<DataKind, VariableFault> {
     DataKind::from_number(number)
         .ok_or_else(|| tag.damaged(format!("an element of unknown data type {number}")))
-}
-
-/// Positions of an array that was read, from which the position of the next element is found.
-#[derive(Clone, Copy)]
-pub(super) struct ReadArray<'b> {
-    /// Position of the tag.
-    pub(super) start: Cursor<'b>,
-    pub(super) element: Element<'b>,
-    /// Part of the data that was not read.
-    pub(super) unread: Cursor<'b>,
-    /// Position after the element and its padding, according to the tag.
-    pub(super) end: Cursor<'b>,
-}
-
-impl<'b> ReadArray<'b> {
-    /// Returns the position of the next element.
-    ///
-    /// GNU Octave announces too many bytes for some strings and objects. Hence, if bytes were not
-    /// read and no array begins at the announced end, the next element begins with the unread
-    /// bytes.
-    pub(super) fn next_position(self) -> Result<Cursor<'b>, VariableFault> {
-        if self.unread.is_empty() || (self.element.is_whole && begins_array(&self.end)) {
-            return Ok(self.end);
-        }
-        let mut next = self.start;
-        let read = self.element.data.len().saturating_sub(self.unread.len());
-        next.pass(8 + read)?;
-        Ok(next)
-    }
-}
-
-/// Returns whether an array begins at the cursor, or the data end there.
-fn begins_array(cursor: &Cursor<'_>) -> bool {
-    if cursor.is_empty() {
-        return true;
-    }
-    let mut tag = *cursor;
-    let Ok(number) = tag.u32() else {
-        return false;
-    };
-    let Ok(length) = tag.u32() else {
-        return false;
-    };
-    let is_array = matches!(
-        DataKind::from_number(number),
-        Some(DataKind::Matrix | DataKind::Packed)
-    );
-    is_array && length as usize <= tag.len()
 }
 
 /// Decodes a name up to the first zero byte; bytes that are not UTF-8 are read as Latin-1, the
@@ -255,19 +223,6 @@ mod tests {
         let mut cursor = Cursor::file(&bytes, ByteOrder::Little);
         assert_eq!(Element::read(&mut cursor).unwrap().count(), Ok(5));
         assert_eq!(Element::read(&mut cursor).unwrap().data.rest(), [7]);
-    }
-
-    #[test]
-    fn an_array_begins_at_a_tag_that_fits_the_remaining_bytes() {
-        let begins = |bytes: &[u8]| begins_array(&Cursor::file(bytes, ByteOrder::Little));
-        assert!(begins(&[]) && begins(&[14, 0, 0, 0, 0, 0, 0, 0]));
-        for bytes in [
-            &[14, 0, 0, 0, 1, 0, 0, 0][..],
-            &[9, 0, 0, 0, 0, 0, 0, 0],
-            &[14, 0, 0, 0],
-        ] {
-            assert!(!begins(bytes), "{bytes:?}");
-        }
     }
 
     #[test]

@@ -77,7 +77,7 @@ impl Inflater<'_> {
         let packed = self.packed;
         let mut tag = Cursor::unpacked(&self.bytes, packed.order, packed.offset);
         tag.pass(4)?;
-        let length = u64::from(tag.u32()?);
+        let length = u64::from(tag.read_u32()?);
         if length > (packed.len() as u64).saturating_mul(MOST_EXPANSION) {
             return Err(packed.damaged(format!(
                 "{} compressed bytes that claim to expand to {length}",

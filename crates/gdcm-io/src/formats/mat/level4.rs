@@ -1,5 +1,14 @@
 //! Files of level 4: consecutive matrices of numbers or characters.
 //!
+//! ```text
+//! header   five 32-bit integers: type, rows, columns, 1 if complex (else 0), length of the name
+//! name     ended by a zero byte, which is included in its length
+//! numbers  real parts column by column, then the imaginary parts if complex
+//! ```
+//!
+//! The type is a decimal number with four digits, called M, O, P and T in the source: M is the byte
+//! order (0 little endian, 1 big endian), O is 0, P the number type, T the meaning of the numbers.
+//!
 //! Source: "MAT-File Format", The MathWorks, "Level 4 MAT-File Format".
 
 use std::collections::HashSet;
@@ -10,11 +19,11 @@ use crate::formats::mat::cursor::{ByteOrder, Cursor};
 use crate::formats::mat::element::decode_name;
 use crate::formats::mat::value_path::ValuePath;
 use crate::formats::sparse_matrix::SparseEntries;
-use crate::formats::strides::{NumberClass, StoredNumber};
+use crate::formats::stored_number::{NumberClass, StoredNumber};
 use crate::formats::variables::{Array, Value, Variable};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Header of a matrix. The source denotes the decimal digits of its first word by M, O, P and T.
+/// Header of a matrix.
 struct MatrixHeader {
     /// Number type (digit P).
     number_type: StoredNumber,
@@ -38,6 +47,7 @@ pub(super) fn begins(bytes: &[u8]) -> bool {
     MatrixHeader::read(&mut Cursor::file(bytes, ByteOrder::Little)).is_ok()
 }
 
+/// Reads the variables of a file in file order.
 pub(super) fn read(
     bytes: &[u8],
     budget: &ReadingBudget<'_>,
@@ -50,7 +60,7 @@ pub(super) fn read(
         let header = MatrixHeader::read(&mut file)?;
         let name = decode_name(file.take(header.name_length)?.rest());
         let value = header
-            .value(&mut file, budget)
+            .read_value(&mut file, budget)
             .map_err(|fault| ValuePath::start(&name).locate(fault))?;
         if !names.insert(name.clone()) {
             return Err(VariableFault::Duplicate { name });
@@ -68,18 +78,18 @@ impl MatrixHeader {
             return Err(no_matrix(start, "no matrix type"));
         };
         file.order = order;
-        let kind = file.u32()?;
+        let type_digits = file.read_u32()?;
         let mut sizes = [0; 4];
         for size in &mut sizes {
-            let number = file.u32()?;
+            let number = file.read_u32()?;
             *size =
                 i32::try_from(number).map_err(|_| no_matrix(start, "a negative size"))? as usize;
         }
         let [rows, columns, complex, name_length] = sizes;
-        let Some(number_type) = number_type(kind / 10 % 10, order) else {
+        let Some(number_type) = number_type(type_digits / 10 % 10, order) else {
             return Err(no_matrix(start, "an unknown number type"));
         };
-        let meaning = match kind % 10 {
+        let meaning = match type_digits % 10 {
             0 => Meaning::Numbers,
             1 => Meaning::Text,
             2 => Meaning::Sparse,
@@ -99,15 +109,15 @@ impl MatrixHeader {
     }
 
     /// Reads the numbers after header and name, and converts them to a value.
-    fn value(
+    fn read_value(
         &self,
         file: &mut Cursor<'_>,
         budget: &ReadingBudget<'_>,
     ) -> Result<Value, VariableFault> {
         let start = *file;
-        let re = self.numbers(file, budget)?;
+        let re = self.read_numbers(file, budget)?;
         let im = if self.is_complex {
-            Some(self.numbers(file, budget)?)
+            Some(self.read_numbers(file, budget)?)
         } else {
             None
         };
@@ -135,7 +145,8 @@ impl MatrixHeader {
         }
     }
 
-    fn numbers(
+    /// Reads the real or the imaginary parts of all elements.
+    fn read_numbers(
         &self,
         file: &mut Cursor<'_>,
         budget: &ReadingBudget<'_>,
@@ -146,9 +157,10 @@ impl MatrixHeader {
         Ok(self.number_type.decode_all(bytes.rest()))
     }
 
-    /// Splits the stored columns into row indices, column indices, real parts and, if present,
-    /// imaginary parts; the last row holds the dimensions of the matrix. Returns `None` for any
-    /// other number of columns, and for invalid dimensions or indices.
+    /// Interprets the numbers of a sparse matrix, which is stored as a full matrix with a row for
+    /// each nonzero element: its row index, its column index, its real part and, in a fourth column
+    /// if present, its imaginary part. The first two columns of the last row hold the dimensions.
+    /// Returns `None` for any other number of columns, and for invalid dimensions or indices.
     fn sparse_entries(&self, stored: &[f64]) -> Option<SparseEntries> {
         let columns: Vec<&[f64]> = stored.chunks_exact(self.rows.max(1)).collect();
         let (rows, columns, re, im) = match *columns.as_slice() {

@@ -1,16 +1,25 @@
 //! Files of levels 5 to 7: a header, followed by an element for each variable.
 //!
+//! ```text
+//! 116 bytes  description as text
+//!   8 bytes  offset of the object part in the file; blank or zero without objects
+//!   2 bytes  version; its high byte is 1
+//!   2 bytes  "MI" as a 16-bit integer: the bytes "IM" in a little-endian file, "MI" in a big-endian
+//!            file
+//! elements   an array for each variable, compressed or not; one without a name holds the objects
+//! ```
+//!
 //! Source: "MAT-File Format", The MathWorks, "Level 5 MAT-File Format".
 
 use std::collections::HashSet;
 
+use crate::formats::mat::array_contents::{ArrayReader, Objects};
+use crate::formats::mat::array_end::ReadArray;
 use crate::formats::mat::array_header::ArrayHeader;
 use crate::formats::mat::cursor::{ByteOrder, Cursor};
-use crate::formats::mat::element::{DataKind, Element, ReadArray};
+use crate::formats::mat::element::{DataKind, Element};
 use crate::formats::mat::inflate::inflate;
-use crate::formats::mat::matrix::ArrayReader;
 use crate::formats::mat::object_part::read_objects;
-use crate::formats::mat::subsystem::Subsystem;
 use crate::formats::mat::value_path::ValuePath;
 use crate::formats::variables::Variable;
 use crate::reading_budget::{ReadingBudget, VariableFault};
@@ -47,6 +56,7 @@ impl FileVersion {
     }
 }
 
+/// Reads the variables of a file, whose byte order is `order`, in file order.
 pub(super) fn read(
     bytes: &[u8],
     order: ByteOrder,
@@ -55,7 +65,7 @@ pub(super) fn read(
     let objects = objects_or_reason(bytes, order, budget)?;
     let reader = ArrayReader {
         budget,
-        objects: objects.as_ref().map_err(String::as_str),
+        objects: &objects,
     };
     let mut file = Cursor::file(bytes, order);
     file.pass(HEADER_BYTES)?;
@@ -78,21 +88,21 @@ pub(super) fn read(
     Ok(variables)
 }
 
-/// Reads the objects. If they cannot be read, returns the reason as the inner error, because the
-/// other variables remain readable; only an exhausted budget is an outer error.
+/// Reads the objects. If they cannot be read, returns the reason, because the other variables
+/// remain readable; the only error is an exhausted budget.
 fn objects_or_reason(
     bytes: &[u8],
     order: ByteOrder,
     budget: &ReadingBudget<'_>,
-) -> Result<Result<Subsystem, String>, VariableFault> {
-    let fault = match read_objects(bytes, objects_at(bytes, order), order, budget) {
-        Ok(objects) => return Ok(Ok(objects)),
+) -> Result<Objects, VariableFault> {
+    let reason = match read_objects(bytes, objects_at(bytes, order), order, budget) {
+        Ok(objects) => return Ok(Objects::Read(objects)),
         Err(fault) if fault.is_of_the_budget() => return Err(fault),
         Err(VariableFault::Damaged { what, .. }) => what,
         Err(fault) => fault.to_string(),
     };
-    Ok(Err(format!(
-        "the objects of this file cannot be read: {fault}"
+    Ok(Objects::Unread(format!(
+        "the objects of this file cannot be read: {reason}"
     )))
 }
 
@@ -142,7 +152,7 @@ fn read_named_array(
         Element::pass_all(contents)?;
         return Ok(None);
     }
-    let value = reader.value(&header, contents, &ValuePath::start(&header.name))?;
+    let value = reader.read_value(&header, contents, &ValuePath::start(&header.name))?;
     Ok(Some(Variable {
         name: header.name,
         value,

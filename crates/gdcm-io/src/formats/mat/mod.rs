@@ -3,6 +3,8 @@
 //! Source: "MAT-File Format", The MathWorks. Files at version 7.3 are HDF5 files and are read
 //! elsewhere; their objects are laid out as in `Subsystem`.
 
+mod array_contents;
+mod array_end;
 mod array_header;
 mod characters;
 mod cursor;
@@ -10,7 +12,6 @@ mod element;
 mod inflate;
 mod level4;
 mod level5;
-mod matrix;
 mod numbers;
 mod object_part;
 mod subsystem;

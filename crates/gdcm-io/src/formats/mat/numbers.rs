@@ -1,9 +1,14 @@
 //! Reading of the numbers in a data element, in any stored type.
+//!
+//! Errors get the name of the variable later, from `ValuePath::locate`; hence the empty names.
 
 use crate::formats::mat::element::{DataKind, Element};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Reads the numbers of an element; rejects any number other than `count`.
+/// Memory of a number, a size or a word \[bytes\].
+const NUMBER_BYTES: u64 = 8;
+
+/// Reads the numbers of an element, which must be `count`.
 ///
 /// MATLAB stores the numbers of an array in the smallest type that holds them, so the stored type
 /// may differ from the array's type.
@@ -18,11 +23,8 @@ pub(super) fn read_numbers(
             .data
             .damaged(format!("{found} numbers instead of {count}")));
     }
-    budget.take(count as u64, 8, "")?;
-    let Some(number_type) = element.kind.number_type(element.data.order) else {
-        return Ok(Vec::new());
-    };
-    Ok(number_type.decode_all(element.data.rest()))
+    budget.take(count as u64, NUMBER_BYTES, "")?;
+    Ok(element.number_type()?.decode_all(element.data.rest()))
 }
 
 /// Reads 32-bit integers that are sizes or indices; rejects negative values and other types.
@@ -36,8 +38,10 @@ pub(super) fn read_sizes(
             .damaged("sizes that are not stored as 32-bit integers"));
     }
     let count = element.count()?;
-    budget.take(count as u64, 8, "")?;
+    // Memory of the sizes; `read_numbers` takes that of the numbers from which they are converted.
+    budget.take(count as u64, NUMBER_BYTES, "")?;
     let mut sizes = Vec::with_capacity(count);
+    // 32-bit integers are exact as floats.
     for number in read_numbers(element, count, budget)? {
         if number < 0.0 {
             return Err(element.data.damaged("a negative size"));
@@ -55,7 +59,7 @@ pub(super) fn read_long_words(
     if element.kind != DataKind::U64 {
         return Ok(None);
     }
-    budget.take(element.count()? as u64, 8, "")?;
+    budget.take(element.count()? as u64, NUMBER_BYTES, "")?;
     let order = element.data.order;
     let (words, _) = element.data.rest().as_chunks();
     Ok(Some(words.iter().map(|&bytes| order.u64(bytes)).collect()))
@@ -86,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn too_few_numbers_are_damage_and_too_many_are_refused() {
+    fn too_few_numbers_are_damage_and_numbers_beyond_the_budget_are_refused() {
         assert!(matches!(
             read(9, &[0; 8], 2),
             Err(VariableFault::Damaged { .. })

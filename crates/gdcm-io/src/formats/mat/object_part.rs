@@ -1,20 +1,39 @@
-//! Object part of a level-5 file: an array of bytes that form a small embedded file, whose cells
-//! describe all objects.
+//! Object part of a level-5 file: all objects of MATLAB's `classdef` classes. The variables of the
+//! file contain only references to them.
 //!
-//! The format is not published by The MathWorks; this reader follows the descriptions by the
-//! MatFileHandler, matio (Python) and MAT.jl projects.
+//! The part is an array of bytes, which form a small embedded file. From the outside inwards, with
+//! the function that reads each layer:
+//!
+//! ```text
+//! array of bytes, compressed or not                                  read_objects
+//!   array header, not needed
+//!   bytes of the embedded file                                       read_byte_array
+//!     2 bytes version, 2 bytes byte order ("IM" or "MI"), 4 bytes    read_embedded_file
+//!     array: struct with a field for each class system               read_class_systems
+//!       field "MCOS": opaque array of the class "FileWrapper__"      read_wrapper
+//!         array: cell array, whose cells describe all objects        read_cells
+//! ```
+//!
+//! `subsystem/mod.rs` explains the cells. The format is not published by The MathWorks; this reader
+//! follows the descriptions by the MatFileHandler, matio (Python) and MAT.jl projects.
 
+use std::ops::Range;
+
+use crate::formats::mat::array_contents::{ArrayReader, Objects, read_field_names};
 use crate::formats::mat::array_header::{ArrayClass, ArrayHeader};
 use crate::formats::mat::cursor::{ByteOrder, Cursor};
 use crate::formats::mat::element::{DataKind, Element};
 use crate::formats::mat::inflate::inflate;
-use crate::formats::mat::matrix::{ArrayReader, read_field_names};
 use crate::formats::mat::numbers::read_long_words;
 use crate::formats::mat::subsystem::{CLASS_SYSTEM, LongWords, Subsystem};
 use crate::formats::mat::value_path::{Step, ValuePath};
 use crate::formats::variables::Value;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
+/// Length of the header of the embedded file \[bytes\].
+const EMBEDDED_HEADER_BYTES: usize = 8;
+/// Position of the byte-order mark in this header \[bytes\].
+const BYTE_ORDER_MARK: Range<usize> = 2..4;
 /// Class of the single object whose cells hold all other objects.
 const WRAPPER: &str = "FileWrapper__";
 
@@ -32,69 +51,103 @@ pub(super) fn read_objects(
     file.pass(at)?;
     let element = Element::read(&mut file)?;
     if element.kind != DataKind::Packed {
-        return read_embedded_file(element.array_contents()?, budget);
+        return read_byte_array(element.array_contents()?, budget);
     }
-    let bytes = inflate(element.data, budget)?;
-    let mut inner = Cursor::unpacked(&bytes, order, element.data.offset);
-    read_embedded_file(Element::read(&mut inner)?.array_contents()?, budget)
+    let inflated = inflate(element.data, budget)?;
+    let mut inner = Cursor::unpacked(&inflated, order, element.data.offset);
+    read_byte_array(Element::read(&mut inner)?.array_contents()?, budget)
 }
 
-/// Reads the objects from an embedded file, which is the content of a byte array. It holds a record
-/// whose field `MCOS` contains the objects of MATLAB's `classdef` classes.
-fn read_embedded_file(
-    mut array: Cursor<'_>,
+/// Reads the objects from the contents of the array of bytes.
+fn read_byte_array(
+    mut contents: Cursor<'_>,
     budget: &ReadingBudget<'_>,
 ) -> Result<Subsystem, VariableFault> {
-    ArrayHeader::read(&mut array, budget)?;
-    let data = Element::read(&mut array)?.data;
-    let order = match data.rest().get(2..4) {
+    pass_header(&mut contents, budget)?;
+    let embedded_file = Element::read(&mut contents)?.data;
+    read_embedded_file(embedded_file, budget)
+}
+
+/// Moves past the header of an array whose class, shape and name are not needed.
+fn pass_header(contents: &mut Cursor<'_>, budget: &ReadingBudget<'_>) -> Result<(), VariableFault> {
+    ArrayHeader::read(contents, budget)?;
+    Ok(())
+}
+
+/// Reads the objects from the embedded file, whose byte order may differ from that of the file.
+fn read_embedded_file(
+    file: Cursor<'_>,
+    budget: &ReadingBudget<'_>,
+) -> Result<Subsystem, VariableFault> {
+    let order = match file.rest().get(BYTE_ORDER_MARK) {
         Some(b"IM") => ByteOrder::Little,
         Some(b"MI") => ByteOrder::Big,
-        _ => return Err(data.damaged("the object part has no header")),
+        _ => return Err(file.damaged("the object part has no header")),
     };
-    let mut embedded = Cursor::unpacked(data.rest(), order, data.offset);
-    embedded.pass(8)?;
-    let mut systems = Element::read(&mut embedded)?.array_contents()?;
-    if ArrayHeader::read(&mut systems, budget)?.class != ArrayClass::Struct {
-        return Err(systems.damaged("the class systems are not in a record"));
-    }
-    for name in read_field_names(&mut systems, budget)? {
-        let system = Element::read(&mut systems)?.array_contents()?;
-        if name == CLASS_SYSTEM {
-            return read_wrapper(system, budget);
-        }
-    }
-    Err(systems.damaged("the class systems do not include MCOS"))
+    let mut contents = Cursor::unpacked(file.rest(), order, file.offset);
+    contents.pass(EMBEDDED_HEADER_BYTES)?;
+    read_class_systems(Element::read(&mut contents)?.array_contents()?, budget)
 }
 
-/// Reads the objects from the cells of a `FileWrapper__`.
-fn read_wrapper(
-    mut wrapper: Cursor<'_>,
+/// Reads the objects from a struct with a field for each class system; all systems other than
+/// `MCOS` are skipped.
+fn read_class_systems(
+    mut contents: Cursor<'_>,
     budget: &ReadingBudget<'_>,
 ) -> Result<Subsystem, VariableFault> {
-    let is_opaque = ArrayHeader::read(&mut wrapper, budget)?.class == ArrayClass::Opaque;
-    let system = Element::read(&mut wrapper)?.name()?;
-    let class = Element::read(&mut wrapper)?.name()?;
-    if !is_opaque || system != CLASS_SYSTEM || class != WRAPPER {
-        return Err(wrapper.damaged("the class system MCOS has no FileWrapper__"));
+    if ArrayHeader::read(&mut contents, budget)?.class != ArrayClass::Struct {
+        return Err(contents.damaged("the class systems are not in a record"));
     }
-    let mut contents = Element::read(&mut wrapper)?.array_contents()?;
+    // The names come first, then the values in the same order.
+    for name in read_field_names(&mut contents, budget)? {
+        let value = Element::read(&mut contents)?.array_contents()?;
+        if name == CLASS_SYSTEM {
+            return read_wrapper(value, budget);
+        }
+    }
+    Err(contents.damaged("the class systems do not include MCOS"))
+}
+
+/// Reads the objects from a `FileWrapper__`: the names of its class system and class, then its
+/// cells.
+fn read_wrapper(
+    mut contents: Cursor<'_>,
+    budget: &ReadingBudget<'_>,
+) -> Result<Subsystem, VariableFault> {
+    let is_opaque = ArrayHeader::read(&mut contents, budget)?.class == ArrayClass::Opaque;
+    let system = Element::read(&mut contents)?.name()?;
+    let class = Element::read(&mut contents)?.name()?;
+    if !is_opaque || system != CLASS_SYSTEM || class != WRAPPER {
+        return Err(contents.damaged("the class system MCOS has no FileWrapper__"));
+    }
+    read_cells(Element::read(&mut contents)?.array_contents()?, budget)
+}
+
+/// Reads the cells of a `FileWrapper__`.
+///
+/// Cells with unsigned 64-bit integers are also read without rounding: `string` objects are packed
+/// into such integers, of which a [`Value`] keeps only 53 bits.
+fn read_cells(
+    mut contents: Cursor<'_>,
+    budget: &ReadingBudget<'_>,
+) -> Result<Subsystem, VariableFault> {
     let header = ArrayHeader::read(&mut contents, budget)?;
     if header.class != ArrayClass::Cell {
         return Err(contents.damaged("the FileWrapper__ has no cells"));
     }
     let path = ValuePath::start(WRAPPER);
+    let objects = nested_objects();
     let reader = ArrayReader {
         budget,
-        objects: Err("it is nested inside another object, which is not supported"),
+        objects: &objects,
     };
     let mut cells = Vec::new();
     let mut long_words = LongWords::new();
-    for at in 0..header.count {
-        let cell = contents;
-        let value = reader.nested_value(&mut contents, &path.step(Step::Cell(at))?)?;
-        if let Some(words) = read_exact_words(cell, &value, budget)? {
-            long_words.insert(at, words);
+    for index in 0..header.count {
+        let cell_start = contents;
+        let value = reader.read_nested_value(&mut contents, &path.step(Step::Cell(index))?)?;
+        if let Some(words) = read_exact_words(cell_start, &value, budget)? {
+            long_words.insert(index, words);
         }
         budget.take(1, 2 * size_of::<Value>() as u64, "")?;
         cells.push(value);
@@ -102,17 +155,24 @@ fn read_wrapper(
     Ok(Subsystem::new(cells, budget)?.with_long_words(long_words))
 }
 
-/// Reads a cell without rounding if it holds unsigned 64-bit integers; `None` for any other cell.
-/// `value` is the cell as already read, with numbers rounded to 53 bits.
+/// Returns the objects available to the cells themselves: none, because the cells are read before
+/// the objects are known. An object in a cell therefore becomes opaque.
+fn nested_objects() -> Objects {
+    Objects::Unread("it is nested inside another object, which is not supported".to_owned())
+}
+
+/// Reads the cell that begins at `cell_start` without rounding if it holds unsigned 64-bit
+/// integers; `None` for any other cell. `value` is the same cell as already read, with numbers
+/// rounded to 53 bits.
 fn read_exact_words(
-    mut cell: Cursor<'_>,
+    mut cell_start: Cursor<'_>,
     value: &Value,
     budget: &ReadingBudget<'_>,
 ) -> Result<Option<Vec<u64>>, VariableFault> {
     if !matches!(value, Value::Array(array) if !array.is_empty()) {
         return Ok(None);
     }
-    let mut contents = Element::read(&mut cell)?.data;
+    let mut contents = Element::read(&mut cell_start)?.data;
     let header = ArrayHeader::read(&mut contents, budget)?;
     if !header.has_long_words {
         return Ok(None);

@@ -62,7 +62,7 @@ impl<'p> ValuePath<'p> {
 
     /// Adds the path to an error that does not contain a variable name.
     pub(super) fn locate(&self, fault: VariableFault) -> VariableFault {
-        fault.of(|| self.text())
+        fault.in_variable(|| self.text())
     }
 }
 

@@ -1,4 +1,8 @@
-//! Writes level-5 files for MATLAB, GNU Octave and SciPy.
+//! Writes level-5 files for MATLAB, GNU Octave and SciPy, in little-endian byte order.
+//!
+//! The layouts are drawn where they are read: the file in `level5.rs`, elements in `element.rs`,
+//! headers of arrays in `array_header.rs`, and contents of arrays in `array_contents.rs`. Functions called
+//! `…_contents` return the data of an array element: header and contents.
 //!
 //! Source: "MAT-File Format", The MathWorks, "Level 5 MAT-File Format".
 
@@ -7,6 +11,7 @@ use std::io::Write;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
+use crate::formats::mat::array_header::{COMPLEX, LOGICAL};
 use crate::formats::mat::element::DataKind;
 use crate::formats::variables::{
     Array, CellArray, ElementKind, StructArray, TextArray, Value, Variable,
@@ -19,6 +24,20 @@ const HEADER_TEXT: &str = "MATLAB 5.0 MAT-file, written by gdcm";
 const HEADER_TEXT_BYTES: usize = 116;
 /// Maximum size of a variable \[bytes\].
 const MOST_BYTES: u64 = u32::MAX as u64;
+/// Lengths to which MATLAB pads field names, including the terminating zero \[bytes\].
+const FIELD_NAME_LENGTHS: [usize; 2] = [32, 64];
+
+/// Array classes that this program writes; the values are their numbers in the flags.
+#[derive(Clone, Copy)]
+enum Class {
+    Cell = 1,
+    Struct = 2,
+    Char = 4,
+    Double = 6,
+    U8 = 9,
+    I32 = 12,
+    I64 = 14,
+}
 
 /// Writes a file with these variables.
 ///
@@ -98,6 +117,7 @@ fn append_element(bytes: &mut Vec<u8>, kind: DataKind, data: &[u8]) {
     // The cast is exact: the elements of an accepted variable are shorter than 4 GiB.
     let length = data.len() as u32;
     if (1..=4).contains(&length) && kind != DataKind::Packed {
+        // The length is in the upper half of the tag.
         bytes.extend((length << 16 | kind as u32).to_le_bytes());
         bytes.extend(data);
         bytes.resize(bytes.len() + 4 - data.len(), 0);
@@ -111,25 +131,6 @@ fn append_element(bytes: &mut Vec<u8>, kind: DataKind, data: &[u8]) {
     }
 }
 
-/// Array classes that this program writes; the values are their numbers in the flags.
-#[derive(Clone, Copy)]
-enum Class {
-    Cell = 1,
-    Struct = 2,
-    Char = 4,
-    Double = 6,
-    U8 = 9,
-    I32 = 12,
-    I64 = 14,
-}
-
-/// Flag of complex arrays.
-const COMPLEX: u32 = 0x0800;
-/// Flag of logical arrays.
-const LOGICAL: u32 = 0x0200;
-/// Lengths to which MATLAB pads field names, including the terminating zero \[bytes\].
-const FIELD_NAME_LENGTHS: [usize; 2] = [32, 64];
-
 /// Returns the contents of an array element; `name` is empty within another array.
 fn array_contents(value: &Value, name: &str) -> Vec<u8> {
     match value {
@@ -142,8 +143,8 @@ fn array_contents(value: &Value, name: &str) -> Vec<u8> {
     }
 }
 
-/// Returns the beginning of an array element: flags, shape and name.
-fn begin_contents(class: Class, flags: u32, shape: &[usize], name: &str) -> Vec<u8> {
+/// Returns the header of an array: flags, shape and name.
+fn header_bytes(class: Class, flags: u32, shape: &[usize], name: &str) -> Vec<u8> {
     let mut bytes = Vec::new();
     let words = [(class as u32 | flags).to_le_bytes(), [0; 4]];
     append_element(&mut bytes, DataKind::U32, words.as_flattened());
@@ -221,7 +222,7 @@ fn is_integer_below(number: f64, most: f64) -> bool {
 fn number_contents(array: &Array, name: &str) -> Vec<u8> {
     let form = NumberForm::for_array(array);
     let complex = if array.im.is_some() { COMPLEX } else { 0 };
-    let mut bytes = begin_contents(form.class, form.flags | complex, &array.shape, name);
+    let mut bytes = header_bytes(form.class, form.flags | complex, &array.shape, name);
     for part in std::iter::once(&array.re).chain(&array.im) {
         append_element(&mut bytes, form.kind, &encode_numbers(form.kind, part));
     }
@@ -257,9 +258,9 @@ fn text_contents(texts: &TextArray, name: &str) -> Vec<u8> {
     let &[height, 1, ref pages @ ..] = texts.shape.as_slice() else {
         return text_cell_contents(texts, name);
     };
-    let is_even = rows.iter().all(|row| row.len() == length);
+    let have_same_length = rows.iter().all(|row| row.len() == length);
     let count = height.saturating_mul(pages.iter().product());
-    if !is_even || rows.is_empty() || rows.len() != count {
+    if !have_same_length || rows.is_empty() || rows.len() != count {
         return text_cell_contents(texts, name);
     }
     // A single empty string has no rows, like `''`.
@@ -267,12 +268,13 @@ fn text_contents(texts: &TextArray, name: &str) -> Vec<u8> {
     let mut shape = vec![if is_single_empty { 0 } else { height }, length];
     shape.extend(pages);
     let mut characters: Vec<u16> = Vec::new();
+    // Column-major order: the first characters of all rows of a page, then the second, ...
     for page in rows.chunks(height.max(1)) {
         for column in 0..length {
             characters.extend(page.iter().filter_map(|row| row.get(column)));
         }
     }
-    let mut bytes = begin_contents(Class::Char, 0, &shape, name);
+    let mut bytes = header_bytes(Class::Char, 0, &shape, name);
     append_characters(&mut bytes, &characters);
     bytes
 }
@@ -306,7 +308,7 @@ fn text_cell_contents(texts: &TextArray, name: &str) -> Vec<u8> {
 }
 
 fn cell_contents(cell: &CellArray, name: &str) -> Vec<u8> {
-    let mut bytes = begin_contents(Class::Cell, 0, &cell.shape, name);
+    let mut bytes = header_bytes(Class::Cell, 0, &cell.shape, name);
     for value in &cell.values {
         append_element(&mut bytes, DataKind::Matrix, &array_contents(value, ""));
     }
@@ -314,7 +316,7 @@ fn cell_contents(cell: &CellArray, name: &str) -> Vec<u8> {
 }
 
 fn record_contents(records: &StructArray, name: &str) -> Vec<u8> {
-    let mut bytes = begin_contents(Class::Struct, 0, &records.shape, name);
+    let mut bytes = header_bytes(Class::Struct, 0, &records.shape, name);
     append_field_names(&mut bytes, records);
     let count = records
         .fields

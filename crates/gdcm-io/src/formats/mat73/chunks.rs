@@ -1,4 +1,7 @@
 //! Checks on the chunks of compressed datasets.
+//!
+//! A dataset may be stored in chunks: blocks of equal shape that cover it and are compressed one by
+//! one. An index gives the position of each chunk in the file.
 
 use hdf5_pure::{Chunk, ChunkIndex, Dataset};
 
@@ -31,13 +34,13 @@ pub(super) fn check_chunks(
     if shape.contains(&0) || shape.len() != sides.len() {
         return Err(damaged(path, "the chunks have no valid size"));
     }
-    let mut elements: u64 = 1;
+    let mut elements_per_chunk: u64 = 1;
     let mut most_chunks: u64 = 1;
-    for (&side, &chunk) in sides.iter().zip(&shape) {
-        elements = elements.saturating_mul(chunk);
-        most_chunks = most_chunks.saturating_mul((side as u64).div_ceil(chunk));
+    for (&side, &chunk_side) in sides.iter().zip(&shape) {
+        elements_per_chunk = elements_per_chunk.saturating_mul(chunk_side);
+        most_chunks = most_chunks.saturating_mul((side as u64).div_ceil(chunk_side));
     }
-    budget.take(elements, size, path)?;
+    budget.take(elements_per_chunk, size, path)?;
     budget.take(most_chunks, CHUNK, path)?;
     let index = dataset
         .chunk_index()
@@ -49,7 +52,7 @@ pub(super) fn check_chunks(
             "write it with a fixed shape",
         ));
     }
-    let longest = elements
+    let longest = elements_per_chunk
         .saturating_mul(size)
         .saturating_mul(2)
         .saturating_add(OVERHEAD);
@@ -59,7 +62,8 @@ pub(super) fn check_chunks(
     if chunks.iter().any(|chunk| chunk.storage_size > longest) {
         return Err(damaged(path, "a chunk is longer than its shape allows"));
     }
-    // Only this index stores offsets; the others compute them.
+    // Only this index stores where each chunk begins in the dataset; for the others, the library
+    // computes it.
     if index == Some(ChunkIndex::BTreeV1) {
         let is_outside = chunks.iter().any(|chunk| begins_outside(chunk, sides));
         if is_outside || chunks.len() as u64 > most_chunks {
@@ -69,10 +73,11 @@ pub(super) fn check_chunks(
     Ok(())
 }
 
+/// Returns whether the first element of a chunk is outside the dataset.
 fn begins_outside(chunk: &Chunk, sides: &[usize]) -> bool {
     chunk
         .offset
         .iter()
         .zip(sides)
-        .any(|(&offset, &side)| offset >= side as u64)
+        .any(|(&first_index, &side)| first_index >= side as u64)
 }

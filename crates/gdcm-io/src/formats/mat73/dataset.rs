@@ -2,10 +2,10 @@
 
 use hdf5_pure::{Dataset, Datatype, ReferenceType};
 
+use crate::formats::element_order::{Places, element_count, matrix_shape};
 use crate::formats::mat73::chunks::check_chunks;
 use crate::formats::mat73::library_fault::{damaged, library_fault};
 use crate::formats::mat73::number_type::NumberType;
-use crate::formats::strides::{Places, count, matrix_shape};
 use crate::formats::variables::{Array, ElementKind};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
@@ -65,7 +65,7 @@ impl Elements {
             .element_size()
             .map_err(|error| library_fault(&error, path))?;
         let sides = sides_in_memory(&file_sides).ok_or_else(|| too_many_elements(path))?;
-        let count = count(&sides).ok_or_else(|| too_many_elements(path))?;
+        let count = element_count(&sides).ok_or_else(|| too_many_elements(path))?;
         budget.take(count as u64, size, path)?;
         check_chunks(dataset, &sides, size, path, budget)?;
         let bytes = dataset
@@ -100,7 +100,7 @@ impl Elements {
         self.bytes.len().checked_div(self.size).unwrap_or(0)
     }
 
-    /// Returns the position of each element in the file, in the column-major order of an array.
+    /// Returns the place of each element in the file, in the column-major order of an array.
     pub(super) fn places(&self) -> Box<dyn Iterator<Item = usize>> {
         match (self.order, Places::row_major(&self.shape)) {
             (Order::Rows, Some(places)) => Box::new(places),
@@ -108,8 +108,8 @@ impl Elements {
         }
     }
 
-    /// Returns the bytes of the element at a position in the file.
-    pub(super) fn at(&self, place: usize) -> &[u8] {
+    /// Returns the bytes of the element at a place in the file, counted in elements.
+    pub(super) fn bytes_at(&self, place: usize) -> &[u8] {
         self.bytes
             .get(place * self.size..(place + 1) * self.size)
             .unwrap_or_default()
@@ -125,15 +125,15 @@ impl Elements {
             return Ok(None);
         };
         let is_complex = number_type.is_complex();
-        let bytes = if is_complex { 16 } else { 8 };
-        budget.take(self.count() as u64, bytes, path)?;
+        let bytes_per_element = if is_complex { 16 } else { 8 };
+        budget.take(self.count() as u64, bytes_per_element, path)?;
         let re = self
             .places()
-            .map(|place| number_type.real_part(self.at(place)))
+            .map(|place| number_type.real_part(self.bytes_at(place)))
             .collect();
         let im = if is_complex {
             self.places()
-                .map(|place| number_type.imaginary_part(self.at(place)))
+                .map(|place| number_type.imaginary_part(self.bytes_at(place)))
                 .collect()
         } else {
             None
@@ -164,7 +164,7 @@ impl Elements {
         budget.take(self.count() as u64, 8, path)?;
         let words = self
             .places()
-            .map(|place| little_endian_word(self.at(place)));
+            .map(|place| little_endian_word(self.bytes_at(place)));
         Ok(Some(words.collect()))
     }
 }
@@ -180,6 +180,7 @@ pub(super) fn is_object_reference(datatype: &Datatype) -> bool {
     )
 }
 
+/// Converts the dimensions in a file; `None` if one exceeds `usize`.
 fn sides_in_memory(sides: &[u64]) -> Option<Vec<usize>> {
     sides
         .iter()
@@ -191,6 +192,7 @@ fn too_many_elements(path: &str) -> VariableFault {
     damaged(path, "the number of elements is too large")
 }
 
+/// Decodes an integer of up to eight bytes, the lowest first.
 fn little_endian_word(bytes: &[u8]) -> u64 {
     let mut word = 0;
     for &byte in bytes.iter().rev() {

@@ -15,14 +15,18 @@
 
 mod attributes;
 mod chunks;
+mod compound_records;
 mod dataset;
+mod empty_value;
 mod library_fault;
 mod limited_source;
+mod member;
 mod number_type;
 mod object_part;
-mod objects;
+mod object_references;
 mod reader;
-mod values;
+mod sparse_group;
+mod strings;
 
 use std::sync::Arc;
 
@@ -97,7 +101,7 @@ mod tests {
     use super::*;
     use crate::formats::mat::LongWords;
     use crate::formats::mat73::object_part::{ObjectCells, read_cells};
-    use crate::formats::mat73::objects::Objects;
+    use crate::formats::mat73::object_references::Objects;
     use crate::formats::variables::{Array, CellArray, ElementKind, TextArray, Value};
 
     /// Reads all variables without resolving references to objects, which become

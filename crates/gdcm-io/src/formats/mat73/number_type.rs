@@ -2,7 +2,7 @@
 
 use hdf5_pure::{CompoundMember, Datatype, DatatypeByteOrder, EnumMember, FloatingPointLayout};
 
-use crate::formats::strides::{NumberClass, StoredNumber};
+use crate::formats::stored_number::{NumberClass, StoredNumber};
 
 /// IEEE 754 binary16, which h5py writes for NumPy's float16.
 const HALF: FloatingPointLayout = FloatingPointLayout {

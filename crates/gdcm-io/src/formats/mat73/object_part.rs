@@ -1,12 +1,13 @@
-//! Objects of MATLAB classes, stored in a separate part of the file (`#subsystem#/MCOS`), with the
-//! same cells as in files up to version 7.
+//! Objects of MATLAB classes, stored in a separate part of the file: the dataset `#subsystem#/MCOS`,
+//! whose elements are references to cells. The cells are the same as in files up to version 7, and
+//! are explained in `mat/subsystem/mod.rs`.
 
 use hdf5_pure::{Dataset, File, Object};
 
 use crate::formats::mat::{LongWords, Subsystem};
 use crate::formats::mat73::dataset::{Elements, Order};
 use crate::formats::mat73::library_fault::library_fault;
-use crate::formats::mat73::objects::Objects;
+use crate::formats::mat73::object_references::Objects;
 use crate::formats::mat73::reader::Reader;
 use crate::formats::variables::Value;
 use crate::reading_budget::{ReadingBudget, VariableFault};
@@ -46,6 +47,8 @@ fn read_subsystem(part: &Dataset, budget: &ReadingBudget<'_>) -> Result<Subsyste
     Ok(Subsystem::new(cells, budget)?.with_long_words(long_words))
 }
 
+/// Reads the cells of the object part. Cells with 64-bit integers are also read without rounding:
+/// `string` objects are packed into such integers, of which a [`Value`] keeps only 53 bits.
 pub(super) fn read_cells(
     part: &Dataset,
     budget: &ReadingBudget<'_>,

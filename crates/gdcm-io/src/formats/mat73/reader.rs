@@ -1,14 +1,29 @@
 //! Values of datasets and groups, which may contain further values.
+//!
+//! MATLAB's attributes (`attributes.rs`) and the type of the elements decide what a dataset or a
+//! group represents:
+//!
+//! ```text
+//! dataset of numbers      numbers, characters, logical values, or a reference to an object
+//! dataset of references   cell array; each reference points to a value
+//! dataset, marked empty   empty value; the elements are its dimensions
+//! group                   struct, whose members are its fields; or an old-style object
+//! group of datasets of references that have no class
+//!                         struct array; each member holds a field, with a reference per record
+//! group, marked sparse    sparse matrix
+//! ```
 
 use hdf5_pure::{Dataset, Group, Object};
 
 use crate::formats::mat73::attributes::{FOLDER_OBJECT, FUNCTION_HANDLE, MatlabAttributes, OBJECT};
+use crate::formats::mat73::compound_records::compound_records;
 use crate::formats::mat73::dataset::{Elements, Order, is_object_reference};
+use crate::formats::mat73::empty_value::empty_value;
 use crate::formats::mat73::library_fault::{damaged, library_fault};
-use crate::formats::mat73::objects::Objects;
-use crate::formats::mat73::values::{
-    SparseGroup, character_rows, compound_records, empty_value, strings,
-};
+use crate::formats::mat73::member::Member;
+use crate::formats::mat73::object_references::Objects;
+use crate::formats::mat73::sparse_group::SparseGroup;
+use crate::formats::mat73::strings::{character_rows, strings};
 use crate::formats::variables::{
     self, Array, CellArray, ElementKind, StructArray, Value, Variable,
 };
@@ -18,9 +33,9 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 const DEEPEST: usize = 64;
 /// Memory of a value without its elements while it is read: the value, and the library's data about
 /// it \[bytes\].
-const HEADER: u64 = 1024;
+const VALUE_MEMORY: u64 = 1024;
 /// Memory that the library needs for each member of a group \[bytes\].
-const MEMBER: u64 = 256;
+const MEMBER_MEMORY: u64 = 256;
 
 /// Reads values within a budget.
 ///
@@ -35,7 +50,7 @@ impl Reader<'_> {
     /// Reads the variables in the root group.
     pub(super) fn variables(&self, root: &Group) -> Result<Vec<Variable>, VariableFault> {
         let mut variables = Vec::new();
-        for (name, object) in self.members(root, "")? {
+        for Member { name, object } in self.members(root, "")? {
             // Skip the groups that hold the contents of other variables.
             if name != "#refs#" && name != "#subsystem#" {
                 let value = self.value(&object, &name, 0)?;
@@ -55,7 +70,7 @@ impl Reader<'_> {
         if depth >= DEEPEST {
             return Err(VariableFault::too_deep(path));
         }
-        self.budget.take(1, HEADER, path)?;
+        self.budget.take(1, VALUE_MEMORY, path)?;
         let value = match object {
             Object::Dataset(dataset) => self.dataset_value(dataset, path, depth),
             Object::Group(group) => self.group_value(group, path, depth),
@@ -71,6 +86,7 @@ impl Reader<'_> {
         }
     }
 
+    /// Reads a dataset. Without a MATLAB class, its elements are in row-major order.
     fn dataset_value(
         &self,
         dataset: &Dataset,
@@ -161,7 +177,7 @@ impl Reader<'_> {
             .shape()
             .map_err(|error| library_fault(&error, path))?;
         let count = sides.iter().copied().fold(1, u64::saturating_mul);
-        self.budget.take(count, HEADER, path)?;
+        self.budget.take(count, VALUE_MEMORY, path)?;
         dataset
             .dereference()
             .map_err(|error| library_fault(&error, path))
@@ -205,7 +221,7 @@ impl Reader<'_> {
     }
 
     /// Returns the datasets and groups in a group, sorted by name.
-    fn members(&self, group: &Group, path: &str) -> Result<Vec<(String, Object)>, VariableFault> {
+    fn members(&self, group: &Group, path: &str) -> Result<Vec<Member>, VariableFault> {
         let datasets = group
             .iter_datasets()
             .map_err(|error| library_fault(&error, path))?;
@@ -213,52 +229,55 @@ impl Reader<'_> {
             .iter_groups()
             .map_err(|error| library_fault(&error, path))?;
         let count = (datasets.len() + groups.len()) as u64;
-        self.budget.take(count, MEMBER, path)?;
+        self.budget.take(count, MEMBER_MEMORY, path)?;
         let mut members = Vec::new();
         for (name, dataset) in datasets {
-            members.push((name, Object::Dataset(Box::new(dataset))));
+            let object = Object::Dataset(Box::new(dataset));
+            members.push(Member { name, object });
         }
         for (name, group) in groups {
-            members.push((name, Object::Group(group)));
+            let object = Object::Group(group);
+            members.push(Member { name, object });
         }
-        members.sort_by(|(a, _), (b, _)| a.cmp(b));
-        match members.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+        members.sort_by(|a, b| a.name.cmp(&b.name));
+        match members.windows(2).find(|pair| pair[0].name == pair[1].name) {
             Some(pair) => Err(VariableFault::Duplicate {
-                name: field_path(path, &pair[0].0),
+                name: field_path(path, &pair[0].name),
             }),
             None => Ok(members),
         }
     }
 
-    /// Sorts members by the field order that MATLAB stores, if it differs from the order by name;
-    /// members that are not listed follow.
+    /// Sorts members by the stored field order; members that are not listed follow. MATLAB stores
+    /// this order only if it differs from the order by name.
     fn in_field_order(
         &self,
-        mut members: Vec<(String, Object)>,
+        mut members: Vec<Member>,
         fields: &[String],
         path: &str,
-    ) -> Result<Vec<(String, Object)>, VariableFault> {
+    ) -> Result<Vec<Member>, VariableFault> {
         let comparisons = (members.len() as u64).saturating_mul(fields.len() as u64);
         self.budget.work(comparisons, path)?;
-        members.sort_by_cached_key(|(name, _)| {
+        members.sort_by_cached_key(|member| {
             fields
                 .iter()
-                .position(|field| field == name)
+                .position(|field| *field == member.name)
                 .unwrap_or(usize::MAX)
         });
         Ok(members)
     }
 
-    /// Reads a struct with a single record, whose fields are the members.
+    /// Reads a struct with a single record, whose fields are the members. `holds_shapes`: the group
+    /// is marked by Octave as containing empty arrays.
     fn scalar_struct(
         &self,
-        members: Vec<(String, Object)>,
+        members: Vec<Member>,
         holds_shapes: bool,
         path: &str,
         depth: usize,
     ) -> Result<StructArray, VariableFault> {
         let mut fields = Vec::with_capacity(members.len());
-        for (name, object) in members {
+        for Member { name, object } in members {
             let mut value = self.value(&object, &field_path(path, &name), depth + 1)?;
             if holds_shapes {
                 restore_octave_empty(&mut value);
@@ -271,7 +290,7 @@ impl Reader<'_> {
     /// Reads a struct array. Each member is a dataset with references to the values of a field.
     fn struct_array(
         &self,
-        members: &[(String, Object)],
+        members: &[Member],
         path: &str,
         depth: usize,
     ) -> Result<StructArray, VariableFault> {
@@ -279,7 +298,7 @@ impl Reader<'_> {
             shape: Vec::new(),
             fields: Vec::with_capacity(members.len()),
         };
-        for (name, object) in members {
+        for Member { name, object } in members {
             let Object::Dataset(dataset) = object else {
                 continue;
             };
@@ -310,14 +329,14 @@ fn function_handle() -> Value {
 /// marked as cells.
 fn is_struct_array(
     attributes: &MatlabAttributes,
-    members: &[(String, Object)],
+    members: &[Member],
     path: &str,
 ) -> Result<bool, VariableFault> {
     if attributes.class.is_none() || members.is_empty() {
         return Ok(false);
     }
-    for (_, object) in members {
-        let Object::Dataset(dataset) = object else {
+    for member in members {
+        let Object::Dataset(dataset) = &member.object else {
             return Ok(false);
         };
         if MatlabAttributes::read(dataset.attrs(), path)?

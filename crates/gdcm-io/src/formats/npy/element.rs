@@ -1,8 +1,17 @@
-//! Types of array elements.
+//! Types of array elements, given in a header by `descr`.
+//!
+//! ```text
+//! type code   byte order (<, >, = or |), class letter, size: "<f8"; the size counts bytes, for U
+//!             characters
+//! record      a list of fields, each with name, type and possibly shape:
+//!             [("omega", "<f8"), ("H", "<c16", (2, 2))]
+//! ```
 
 use serde_json::Value as Json;
 
-use crate::formats::strides::{NumberClass, StoredNumber, count};
+use crate::formats::element_order::element_count;
+use crate::formats::npy::TEXT_LENGTH_AT;
+use crate::formats::stored_number::{NumberClass, StoredNumber};
 use crate::reading_budget::VariableFault;
 
 /// Type of an array element, given by `dtype.descr` of NumPy.
@@ -62,18 +71,18 @@ impl Element {
 
     /// Parses a type code: byte order, class letter and size.
     fn parse_code(code: &str) -> Result<Self, VariableFault> {
-        let (order, rest) = code.split_at_checked(1).ok_or_else(|| unknown_code(code))?;
-        let big_endian = match order {
+        let (byte_order, rest) = code.split_at_checked(1).ok_or_else(|| unknown_code(code))?;
+        let big_endian = match byte_order {
             "<" | "|" => false,
             ">" => true,
             "=" => cfg!(target_endian = "big"),
             _ => return Err(unknown_code(code)),
         };
-        let (class, size) = rest.split_at_checked(1).ok_or_else(|| unknown_code(code))?;
-        refuse_class(class, code)?;
+        let (class_letter, size) = rest.split_at_checked(1).ok_or_else(|| unknown_code(code))?;
+        refuse_class(class_letter, code)?;
         let size: u32 = size.parse().map_err(|_| unknown_code(code))?;
         let size = size as usize;
-        let number_class = match class {
+        let number_class = match class_letter {
             "b" => NumberClass::Logical,
             "i" => NumberClass::Signed,
             "u" => NumberClass::Unsigned,
@@ -93,7 +102,8 @@ impl Element {
             }
             _ => return Err(unknown_code(code)),
         };
-        let is_complex = class == "c";
+        let is_complex = class_letter == "c";
+        // The size of a complex number includes both of its parts.
         let number_size = if is_complex { size / 2 } else { size };
         let Some(number) = StoredNumber::new(number_class, number_size, big_endian) else {
             return Err(VariableFault::unsupported(
@@ -169,7 +179,7 @@ impl Field {
 
     /// Returns the offset of the byte after the field; `None` on overflow.
     fn end(&self) -> Option<usize> {
-        let length = count(&self.shape)?.checked_mul(self.element.size())?;
+        let length = element_count(&self.shape)?.checked_mul(self.element.size())?;
         self.offset.checked_add(length)
     }
 }
@@ -208,9 +218,10 @@ fn unknown_code(code: &str) -> VariableFault {
     ))
 }
 
-/// Returns the error for a header that NumPy would not write.
+/// Returns the error for a header that NumPy would not write, without the array name, which
+/// `Header::parse` adds.
 fn damaged(what: impl Into<String>) -> VariableFault {
-    VariableFault::damaged("", what, 8)
+    VariableFault::damaged("", what, TEXT_LENGTH_AT as u64)
 }
 
 #[cfg(test)]

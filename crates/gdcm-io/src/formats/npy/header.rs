@@ -1,17 +1,27 @@
 //! Header of an array file.
+//!
+//! ```text
+//! 6 bytes       signature
+//! 2 bytes       version: major, minor
+//! 2 or 4 bytes  length of the header text [bytes], little endian; 4 bytes from version 2 on
+//! header text   a Python dictionary, such as
+//!               {'descr': '<f8', 'fortran_order': False, 'shape': (3, 2), }
+//! elements
+//! ```
 
 use serde_json::{Map, Value as Json};
 
+use crate::formats::npy::TEXT_LENGTH_AT;
 use crate::formats::npy::element::{Element, parse_sides};
 use crate::formats::npy::python_literal::parse_literal;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Signature at the beginning of the file.
 pub(super) const MAGIC: &[u8; 6] = b"\x93NUMPY";
-/// Offset of the version in the file \[bytes\].
+/// Offset of the major version in the file \[bytes\].
 const VERSION_AT: usize = 6;
-/// Offset of the header length in the file \[bytes\], used as the position of errors in the header.
-const LENGTH_AT: usize = 8;
+/// Memory of the JSON text and of the parsed tree, per byte of the header text \[bytes\].
+const MEMORY_PER_BYTE: u64 = 40;
 /// Error message for a header whose keys are not the required keys.
 const MISSING_KEY: &str = "the header does not have exactly the keys descr, fortran_order and \
     shape";
@@ -20,11 +30,12 @@ const MISSING_KEY: &str = "the header does not have exactly the keys descr, fort
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Header {
     pub(super) element: Element,
+    /// Whether the elements are in column-major order (`fortran_order`), otherwise row-major.
     pub(super) column_major: bool,
     /// Shape as stored, with any number of dimensions, including none.
     pub(super) shape: Vec<usize>,
     /// Offset of the first element \[bytes\].
-    pub(super) length: usize,
+    pub(super) elements_at: usize,
 }
 
 /// Text of a header, which is a Python dictionary.
@@ -42,8 +53,7 @@ impl Header {
         budget: &ReadingBudget<'_>,
     ) -> Result<Self, VariableFault> {
         let HeaderText { text, end } = HeaderText::read(bytes, name)?;
-        // The memory of the JSON text and of the parsed tree, per byte of text.
-        budget.take(text.len() as u64, 40, name)?;
+        budget.take(text.len() as u64, MEMORY_PER_BYTE, name)?;
         let header = parse_literal(&text).map_err(|what| damaged(name, what))?;
         let entries = match header.as_object() {
             Some(entries) if entries.len() == 3 => entries,
@@ -58,17 +68,19 @@ impl Header {
         let Some(shape) = parse_sides(shape) else {
             return Err(damaged(name, "the shape is not a tuple of integers"));
         };
-        let element = Element::parse(descr).map_err(|fault| fault.of(|| name.to_owned()))?;
+        let element =
+            Element::parse(descr).map_err(|fault| fault.in_variable(|| name.to_owned()))?;
         Ok(Self {
             element,
             column_major,
             shape,
-            length: end,
+            elements_at: end,
         })
     }
 }
 
 impl HeaderText {
+    /// Reads the text of a header; `name` is the array name in errors.
     fn read(bytes: &[u8], name: &str) -> Result<Self, VariableFault> {
         if !bytes.starts_with(MAGIC) {
             return Err(VariableFault::other_bytes("a NumPy array (.npy)", bytes));
@@ -77,8 +89,8 @@ impl HeaderText {
             return Err(VariableFault::cut_off(name, bytes.len()));
         };
         let begin = match version {
-            1 => LENGTH_AT + 2,
-            2 | 3 => LENGTH_AT + 4,
+            1 => TEXT_LENGTH_AT + 2,
+            2 | 3 => TEXT_LENGTH_AT + 4,
             _ => {
                 return Err(VariableFault::unsupported(
                     name,
@@ -87,12 +99,12 @@ impl HeaderText {
                 ));
             }
         };
-        let Some(digits) = bytes.get(LENGTH_AT..begin) else {
+        let Some(length_bytes) = bytes.get(TEXT_LENGTH_AT..begin) else {
             return Err(VariableFault::cut_off(name, bytes.len()));
         };
         let mut length = 0;
-        for &digit in digits.iter().rev() {
-            length = length << 8 | usize::from(digit);
+        for &byte in length_bytes.iter().rev() {
+            length = length << 8 | usize::from(byte);
         }
         let end = begin.saturating_add(length);
         let Some(text) = bytes.get(begin..end) else {
@@ -119,7 +131,7 @@ fn required_entry<'h>(
 }
 
 fn damaged(name: &str, what: &str) -> VariableFault {
-    VariableFault::damaged(name, what, LENGTH_AT as u64)
+    VariableFault::damaged(name, what, TEXT_LENGTH_AT as u64)
 }
 
 #[cfg(test)]

@@ -10,16 +10,21 @@ mod header;
 mod python_literal;
 mod writer;
 
+use crate::formats::element_order::{Places, element_count, matrix_shape};
 use crate::formats::npy::element::{Element, Field};
 use crate::formats::npy::header::{Header, MAGIC};
-use crate::formats::strides::{Places, StoredNumber, count, matrix_shape};
+use crate::formats::stored_number::StoredNumber;
 use crate::formats::variables::{
-    Array, ElementKind, RECORD, StructArray, TextArray, Value, Variable,
+    Array, ElementKind, RECORD_MEMORY, StructArray, TextArray, Value, Variable,
 };
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 pub use crate::formats::npy::writer::write_npz;
+
+/// Offset of the length of the header text in a file \[bytes\], used as the position of errors in
+/// the header.
+const TEXT_LENGTH_AT: usize = 8;
 
 /// Importer of NumPy arrays.
 pub(crate) const NPY: Importer = Importer {
@@ -47,11 +52,12 @@ pub fn read_npy(
     budget: &ReadingBudget<'_>,
 ) -> Result<Vec<Variable>, VariableFault> {
     let header = Header::parse(bytes, name, budget)?;
-    let length = count(&header.shape).and_then(|count| count.checked_mul(header.element.size()));
+    let length =
+        element_count(&header.shape).and_then(|count| count.checked_mul(header.element.size()));
     let Some(length) = length else {
         return Err(too_many_elements(name));
     };
-    let data = &bytes[header.length..];
+    let data = &bytes[header.elements_at..];
     if data.len() < length {
         return Err(VariableFault::cut_off(name, bytes.len()));
     }
@@ -76,10 +82,14 @@ pub fn read_npy(
 }
 
 fn too_many_elements(name: &str) -> VariableFault {
-    VariableFault::damaged(name, "the number of elements in the shape is too large", 8)
+    VariableFault::damaged(
+        name,
+        "the number of elements in the shape is too large",
+        TEXT_LENGTH_AT as u64,
+    )
 }
 
-/// Array elements as stored in a file.
+/// Array elements as stored: those of the file, or those of a field within a record.
 struct StoredArray<'a> {
     element: &'a Element,
     shape: &'a [usize],
@@ -88,8 +98,8 @@ struct StoredArray<'a> {
 }
 
 impl<'a> StoredArray<'a> {
-    /// Returns the bytes of the element at a position in the file.
-    fn at(&self, place: usize) -> &'a [u8] {
+    /// Returns the bytes of the element at a place, counted in elements in stored order.
+    fn bytes_at(&self, place: usize) -> &'a [u8] {
         let size = self.element.size();
         self.data
             .get(place * size..(place + 1) * size)
@@ -104,6 +114,7 @@ struct ArrayReader<'r> {
 }
 
 impl ArrayReader<'_> {
+    /// Decodes an array, or the field of a record.
     fn value(&self, stored: &StoredArray<'_>) -> Result<Value, VariableFault> {
         let count = self.places(stored)?.len() as u64;
         let shape = matrix_shape(stored.shape);
@@ -137,7 +148,7 @@ impl ArrayReader<'_> {
             Element::Record { fields, .. } => {
                 // A header can announce any number of records without fields, or of fields without
                 // elements, which occupy no bytes in the file.
-                self.budget.take(count, RECORD, self.name)?;
+                self.budget.take(count, RECORD_MEMORY, self.name)?;
                 let mut values = Vec::new();
                 for field in fields {
                     values.push((field.name.clone(), self.field_values(stored, field)?));
@@ -150,7 +161,7 @@ impl ArrayReader<'_> {
         }
     }
 
-    /// Returns the position of each element in the file, in column-major order.
+    /// Returns the place of each element as stored, in column-major order.
     fn places(&self, stored: &StoredArray<'_>) -> Result<Places, VariableFault> {
         let places = if stored.column_major {
             Places::column_major(stored.shape)
@@ -171,7 +182,7 @@ impl ArrayReader<'_> {
         let mut numbers = Vec::with_capacity(places.len());
         for (at, place) in places.enumerate() {
             self.budget.go_on(at)?;
-            let bytes = stored.at(place).get(offset..).unwrap_or_default();
+            let bytes = stored.bytes_at(place).get(offset..).unwrap_or_default();
             numbers.push(number.decode(bytes));
         }
         Ok(numbers)
@@ -189,7 +200,7 @@ impl ArrayReader<'_> {
         let mut texts = Vec::new();
         for (at, place) in places.enumerate() {
             self.budget.go_on(at)?;
-            texts.push(decode(stored.at(place)));
+            texts.push(decode(stored.bytes_at(place)));
         }
         Ok(texts)
     }
@@ -201,16 +212,21 @@ impl ArrayReader<'_> {
         field: &Field,
     ) -> Result<Vec<Value>, VariableFault> {
         let places = self.places(records)?;
-        let size = size_of::<Value>() as u64 + RECORD;
+        let size = size_of::<Value>() as u64 + RECORD_MEMORY;
         self.budget.take(places.len() as u64, size, self.name)?;
         let mut values = Vec::new();
         for place in places {
-            values.push(self.value(&StoredArray {
-                element: &field.element,
-                shape: &field.shape,
-                column_major: false,
-                data: records.at(place).get(field.offset..).unwrap_or_default(),
-            })?);
+            values.push(
+                self.value(&StoredArray {
+                    element: &field.element,
+                    shape: &field.shape,
+                    column_major: false,
+                    data: records
+                        .bytes_at(place)
+                        .get(field.offset..)
+                        .unwrap_or_default(),
+                })?,
+            );
         }
         Ok(values)
     }

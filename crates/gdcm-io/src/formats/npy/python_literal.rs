@@ -12,6 +12,7 @@ pub(super) fn parse_literal(text: &str) -> Result<Json, &'static str> {
     let mut json = String::with_capacity(text.len());
     let mut rest = text;
     while let Some(sign) = rest.chars().next() {
+        // Number of bytes converted in this step.
         let length = match sign {
             '\'' | '"' => convert_text(rest, sign, &mut json)?,
             'T' | 'F' | 't' | 'f' | 'n' => convert_word(rest, &mut json)?,
@@ -20,6 +21,7 @@ pub(super) fn parse_literal(text: &str) -> Result<Json, &'static str> {
                 1
             }
             ')' | ']' | '}' => {
+                // Remove a trailing comma, which JSON does not allow.
                 if json.ends_with(',') {
                     json.pop();
                 }

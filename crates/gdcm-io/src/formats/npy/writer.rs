@@ -1,4 +1,4 @@
-//! Writer of archives for NumPy (".npz").
+//! Writer of archives for NumPy (".npz"); `header.rs` draws the layout of the files in them.
 
 use std::collections::HashSet;
 use std::io::Write;

@@ -2,8 +2,10 @@
 //! order.
 
 use crate::formats::octave::form::{Element, Form, NumberParts};
+
+use crate::formats::element_order::{Places, element_count};
+use crate::formats::octave::range::Range;
 use crate::formats::sparse_matrix::SparseEntries;
-use crate::formats::strides::{Places, count};
 use crate::formats::variables::{Array, CellArray, Object, StructArray, TextArray, Value};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
@@ -22,26 +24,35 @@ pub(super) struct ValueHeading {
     pub(super) type_name: String,
 }
 
-/// Reads the consecutive parts of values in one of the encodings; `variable` is the name of the
-/// value in errors.
+/// Reads the consecutive parts of values in one of the encodings, text or binary. Each method reads
+/// the part at the current position and moves past it; `variable` is the name of the value in
+/// errors.
 pub(super) trait Parts {
     fn budget(&self) -> &ReadingBudget<'_>;
     /// Reads the next name and type.
-    fn heading(&mut self, variable: &str) -> Result<ValueHeading, VariableFault>;
-    fn sides(&mut self, variable: &str) -> Result<Sides, VariableFault>;
+    fn read_heading(&mut self, variable: &str) -> Result<ValueHeading, VariableFault>;
+    /// Reads the dimensions of an array; there are at least two.
+    fn read_sides(&mut self, variable: &str) -> Result<Sides, VariableFault>;
     /// Reads `count` elements; each complex element yields two numbers.
-    fn numbers(
+    fn read_numbers(
         &mut self,
         element: Element,
         count: usize,
         variable: &str,
     ) -> Result<Vec<f64>, VariableFault>;
-    fn sparse(&mut self, element: Element, variable: &str) -> Result<SparseEntries, VariableFault>;
-    fn text(&mut self, variable: &str) -> Result<TextArray, VariableFault>;
+    /// Reads the dimensions and the nonzero elements of a sparse matrix.
+    fn read_sparse(
+        &mut self,
+        element: Element,
+        variable: &str,
+    ) -> Result<SparseEntries, VariableFault>;
+    /// Reads the dimensions and the rows of a character array.
+    fn read_text(&mut self, variable: &str) -> Result<TextArray, VariableFault>;
     /// Reads the number of fields in a struct or an object.
-    fn field_count(&mut self, form: Form, variable: &str) -> Result<usize, VariableFault>;
-    fn class(&mut self, variable: &str) -> Result<String, VariableFault>;
-    /// Returns an error at this position in the file.
+    fn read_field_count(&mut self, form: Form, variable: &str) -> Result<usize, VariableFault>;
+    /// Reads the class name of an object.
+    fn read_class(&mut self, variable: &str) -> Result<String, VariableFault>;
+    /// Returns the error `what` at the current position in the file.
     fn fault(&self, variable: &str, what: &str) -> VariableFault;
 }
 
@@ -51,7 +62,7 @@ pub(super) fn read_value(
     type_name: &str,
     variable: &str,
 ) -> Result<Value, VariableFault> {
-    Assembler { parts }.value(type_name, variable, 0)
+    Assembler { parts }.read_value(type_name, variable, 0)
 }
 
 /// Assembles values; `depth` in the methods is the nesting depth of a value.
@@ -60,7 +71,8 @@ struct Assembler<'p> {
 }
 
 impl Assembler<'_> {
-    fn value(
+    /// Reads the parts of a value in the order that its form requires.
+    fn read_value(
         &mut self,
         type_name: &str,
         variable: &str,
@@ -81,26 +93,28 @@ impl Assembler<'_> {
         };
         Ok(match form {
             Form::Scalar(element) => {
-                let numbers = self.parts.numbers(element, 1, variable)?;
+                let numbers = self.parts.read_numbers(element, 1, variable)?;
                 Value::Array(element.array(vec![1, 1], numbers))
             }
-            Form::Matrix(element) => Value::Array(self.matrix(element, variable)?),
-            Form::Diagonal(element) => Value::Array(self.diagonal(element, variable)?),
+            Form::Matrix(element) => Value::Array(self.read_matrix(element, variable)?),
+            Form::Diagonal(element) => Value::Array(self.read_diagonal(element, variable)?),
             Form::Sparse(element) => {
-                let entries = self.parts.sparse(element, variable)?;
+                let entries = self.parts.read_sparse(element, variable)?;
                 Value::Array(self.full_matrix(&entries, variable)?)
             }
-            Form::Range => Value::Array(self.range(variable)?),
-            Form::Text => Value::Text(self.parts.text(variable)?),
-            Form::Cell => Value::Cell(self.cell(variable, depth)?),
-            Form::ScalarStruct => Value::Struct(self.records(form, vec![1, 1], variable, depth)?),
+            Form::Range => Value::Array(self.read_range(variable)?),
+            Form::Text => Value::Text(self.parts.read_text(variable)?),
+            Form::Cell => Value::Cell(self.read_cell(variable, depth)?),
+            Form::ScalarStruct => {
+                Value::Struct(self.read_records(form, vec![1, 1], variable, depth)?)
+            }
             Form::StructArray => {
-                let shape = self.parts.sides(variable)?.shape;
-                Value::Struct(self.records(form, shape, variable, depth)?)
+                let shape = self.parts.read_sides(variable)?.shape;
+                Value::Struct(self.read_records(form, shape, variable, depth)?)
             }
             Form::Class => {
-                let class = self.parts.class(variable)?;
-                let records = self.records(form, vec![1, 1], variable, depth)?;
+                let class = self.parts.read_class(variable)?;
+                let records = self.read_records(form, vec![1, 1], variable, depth)?;
                 Value::Object(Object { class, records })
             }
         })
@@ -116,7 +130,7 @@ impl Assembler<'_> {
         size: u64,
         variable: &str,
     ) -> Result<usize, VariableFault> {
-        let Some(count) = count(shape) else {
+        let Some(count) = element_count(shape) else {
             return Err(self
                 .parts
                 .fault(variable, "the number of elements is too large"));
@@ -125,11 +139,12 @@ impl Assembler<'_> {
         Ok(count)
     }
 
-    fn matrix(&mut self, element: Element, variable: &str) -> Result<Array, VariableFault> {
-        let Sides { shape, by_rows } = self.parts.sides(variable)?;
+    fn read_matrix(&mut self, element: Element, variable: &str) -> Result<Array, VariableFault> {
+        let Sides { shape, by_rows } = self.parts.read_sides(variable)?;
+        // Numbers in an element: real and imaginary part alternate.
         let width = if element.is_complex { 2 } else { 1 };
         let count = self.take_elements(&shape, 16 * width as u64, variable)?;
-        let mut numbers = self.parts.numbers(element, count, variable)?;
+        let mut numbers = self.parts.read_numbers(element, count, variable)?;
         if by_rows && let Some(places) = Places::row_major(&shape) {
             numbers = places
                 .flat_map(|place| &numbers[place * width..(place + 1) * width])
@@ -139,12 +154,12 @@ impl Assembler<'_> {
         Ok(element.array(shape, numbers))
     }
 
-    fn diagonal(&mut self, element: Element, variable: &str) -> Result<Array, VariableFault> {
-        let shape = self.parts.sides(variable)?.shape;
+    fn read_diagonal(&mut self, element: Element, variable: &str) -> Result<Array, VariableFault> {
+        let shape = self.parts.read_sides(variable)?.shape;
         let rows = shape[0];
         let columns = shape[1];
         let length = rows.min(columns);
-        let numbers = self.parts.numbers(element, length, variable)?;
+        let numbers = self.parts.read_numbers(element, length, variable)?;
         let NumberParts { re, im } = element.parts(numbers);
         let entries = SparseEntries {
             shape: [rows, columns],
@@ -164,8 +179,8 @@ impl Assembler<'_> {
         })
     }
 
-    fn range(&mut self, variable: &str) -> Result<Array, VariableFault> {
-        let numbers = self.parts.numbers(Element::FLOAT, 3, variable)?;
+    fn read_range(&mut self, variable: &str) -> Result<Array, VariableFault> {
+        let numbers = self.parts.read_numbers(Element::FLOAT, 3, variable)?;
         let &[first, limit, step] = numbers.as_slice() else {
             return Err(self
                 .parts
@@ -175,21 +190,21 @@ impl Assembler<'_> {
         range.array(variable, self.parts.budget())
     }
 
-    fn cell(&mut self, variable: &str, depth: usize) -> Result<CellArray, VariableFault> {
-        let shape = self.parts.sides(variable)?.shape;
+    fn read_cell(&mut self, variable: &str, depth: usize) -> Result<CellArray, VariableFault> {
+        let shape = self.parts.read_sides(variable)?.shape;
         let count = self.take_elements(&shape, size_of::<Value>() as u64, variable)?;
         let mut values = Vec::new();
         for index in 1..=count {
             let inner = format!("{variable}{{{index}}}");
-            let ValueHeading { type_name, .. } = self.parts.heading(&inner)?;
-            values.push(self.value(&type_name, &inner, depth + 1)?);
+            let ValueHeading { type_name, .. } = self.parts.read_heading(&inner)?;
+            values.push(self.read_value(&type_name, &inner, depth + 1)?);
         }
         Ok(CellArray { shape, values })
     }
 
     /// Reads the records of a struct or an object. In a struct array or an object, each field is a
     /// cell array with a value for each record.
-    fn records(
+    fn read_records(
         &mut self,
         form: Form,
         shape: Vec<usize>,
@@ -198,10 +213,10 @@ impl Assembler<'_> {
     ) -> Result<StructArray, VariableFault> {
         let count = self.take_elements(&shape, size_of::<Value>() as u64, variable)?;
         let mut fields = Vec::new();
-        for _ in 0..self.parts.field_count(form, variable)? {
-            let ValueHeading { name, type_name } = self.parts.heading(variable)?;
+        for _ in 0..self.parts.read_field_count(form, variable)? {
+            let ValueHeading { name, type_name } = self.parts.read_heading(variable)?;
             let inner = format!("{variable}.{name}");
-            let values = match (form, self.value(&type_name, &inner, depth + 1)?) {
+            let values = match (form, self.read_value(&type_name, &inner, depth + 1)?) {
                 (Form::StructArray | Form::Class, Value::Cell(cell)) => cell.values,
                 (_, value) => vec![value],
             };
@@ -217,44 +232,14 @@ impl Assembler<'_> {
     }
 }
 
-/// Equally spaced numbers from a first number up to a limit.
-#[derive(Clone, Copy)]
-pub(super) struct Range {
-    pub(super) first: f64,
-    pub(super) limit: f64,
-    pub(super) step: f64,
-}
-
-impl Range {
-    /// Converts the range to a row of numbers.
-    pub(super) fn array(
-        self,
-        variable: &str,
-        budget: &ReadingBudget<'_>,
-    ) -> Result<Array, VariableFault> {
-        // The factor includes the limit even if rounding puts the last step just short of it, as in
-        // Octave.
-        let steps = ((self.limit - self.first) / self.step * (1.0 + f64::EPSILON)).floor();
-        let length = if steps >= 0.0 {
-            (steps as usize).saturating_add(1)
-        } else {
-            0
-        };
-        budget.take(length as u64, 8, variable)?;
-        let numbers = (0..length)
-            .map(|index| self.first + index as f64 * self.step)
-            .collect();
-        Ok(Array::matrix(1, length, numbers))
-    }
-}
-
 /// Splits a byte array in column-major order into a string for each row.
-pub(super) fn text_rows(letters: &[u8], height: usize) -> TextArray {
+pub(super) fn byte_rows(letters: &[u8], height: usize) -> TextArray {
     if letters.is_empty() {
         return TextArray::one("");
     }
     let mut texts = Vec::new();
     for row in 0..height {
+        // The letters of a row are `height` apart.
         let letters: Vec<u8> = letters.iter().skip(row).step_by(height).copied().collect();
         texts.push(String::from_utf8_lossy(&letters).into_owned());
     }

@@ -1,12 +1,21 @@
-//! GNU Octave's `save -binary` format: after "Octave-1-L" (little endian) or "Octave-1-B" (big
-//! endian), values whose names and parts are preceded by their lengths.
+//! GNU Octave's `save -binary` format: a header, followed by the values.
+//!
+//! ```text
+//! header   "Octave-1-L" (little endian) or "Octave-1-B" (big endian), float format (1 byte)
+//! value    name, documentation, 1 if global (1 byte), FF, type name, then parts that depend on the
+//!          type
+//! string   length [bytes] (32 bits), characters; also for each name
+//! matrix   minus the number of dimensions (32 bits), dimensions, numbers; or the numbers of rows and
+//!          columns, numbers
+//! floats   a byte with the storage type, then the numbers
+//! ```
 
 use crate::formats::octave::assembly::{
-    Parts, Sides, ValueHeading, read_value, text_rows, texts_in_pages,
+    Parts, Sides, ValueHeading, byte_rows, read_value, texts_in_pages,
 };
 use crate::formats::octave::form::{Element, Form, NumberParts, StorageType};
 use crate::formats::sparse_matrix::{CompressedColumns, SparseEntries};
-use crate::formats::strides::{NumberClass, StoredNumber};
+use crate::formats::stored_number::{NumberClass, StoredNumber};
 use crate::formats::variables::{TextArray, Value, Variable};
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
@@ -15,7 +24,7 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 const MAGIC: &[u8] = b"Octave-1-";
 /// Length of signature, byte order and float format \[bytes\].
 const HEADER: usize = MAGIC.len() + 2;
-/// Byte that announces a type name.
+/// Byte that announces a type name, instead of a type number as in old versions.
 const NAMED_TYPE: u8 = 0xff;
 
 /// Importer of files written by `save -binary`.
@@ -41,7 +50,7 @@ fn read_variables(
     let mut variables = Vec::new();
     while reader.at < bytes.len() {
         budget.take(1, size_of::<Variable>() as u64, "")?;
-        let ValueHeading { name, type_name } = reader.heading("")?;
+        let ValueHeading { name, type_name } = reader.read_heading("")?;
         match read_value(&mut reader, &type_name, &name) {
             Ok(value) => variables.push(Variable { name, value }),
             Err(VariableFault::Unsupported { what, remedy, .. }) => {
@@ -77,7 +86,8 @@ impl<'b> BinaryReader<'b> {
         Ok(found)
     }
 
-    fn int(&mut self, variable: &str) -> Result<i32, VariableFault> {
+    /// Reads the next signed 32-bit integer.
+    fn read_int(&mut self, variable: &str) -> Result<i32, VariableFault> {
         let bytes = self.take(4, variable)?.try_into().unwrap_or_default();
         Ok(if self.big_endian {
             i32::from_be_bytes(bytes)
@@ -86,28 +96,30 @@ impl<'b> BinaryReader<'b> {
         })
     }
 
-    fn length(&mut self, variable: &str) -> Result<usize, VariableFault> {
-        let length = self.int(variable)?;
+    /// Reads a length or an index, which must not be negative.
+    fn read_length(&mut self, variable: &str) -> Result<usize, VariableFault> {
+        let length = self.read_int(variable)?;
         usize::try_from(length).map_err(|_| self.fault(variable, "a length is negative"))
     }
 
-    /// Reads `count` lengths or indices, which must not be negative.
-    fn lengths(&mut self, count: usize, variable: &str) -> Result<Vec<usize>, VariableFault> {
+    /// Reads `count` lengths or indices.
+    fn read_lengths(&mut self, count: usize, variable: &str) -> Result<Vec<usize>, VariableFault> {
         let mut lengths = Vec::new();
         for _ in 0..count {
-            lengths.push(self.length(variable)?);
+            lengths.push(self.read_length(variable)?);
         }
         Ok(lengths)
     }
 
-    fn string(&mut self, variable: &str) -> Result<String, VariableFault> {
-        let length = self.length(variable)?;
+    /// Reads a string, which is preceded by its length.
+    fn read_string(&mut self, variable: &str) -> Result<String, VariableFault> {
+        let length = self.read_length(variable)?;
         Ok(String::from_utf8_lossy(self.take(length, variable)?).into_owned())
     }
 
-    /// Returns the number type as stored: floats may be stored as integers or as shorter floats if
-    /// nothing is lost.
-    fn number_type(
+    /// Returns the number type as stored. For floats, which may be stored as integers or as shorter
+    /// floats if nothing is lost, reads the byte that gives the type.
+    fn read_number_type(
         &mut self,
         element: Element,
         variable: &str,
@@ -146,29 +158,29 @@ impl Parts for BinaryReader<'_> {
         self.budget
     }
 
-    fn heading(&mut self, variable: &str) -> Result<ValueHeading, VariableFault> {
-        let name = self.string(variable)?;
-        let _documentation = self.string(variable)?;
+    fn read_heading(&mut self, variable: &str) -> Result<ValueHeading, VariableFault> {
+        let name = self.read_string(variable)?;
+        let _documentation = self.read_string(variable)?;
         let _is_global = self.take(1, variable)?;
         if self.take(1, variable)? != [NAMED_TYPE] {
             return Err(self.fault(&name, "the type of the value has no name"));
         }
         Ok(ValueHeading {
             name,
-            type_name: self.string(variable)?,
+            type_name: self.read_string(variable)?,
         })
     }
 
-    fn sides(&mut self, variable: &str) -> Result<Sides, VariableFault> {
+    fn read_sides(&mut self, variable: &str) -> Result<Sides, VariableFault> {
         // The number of dimensions precedes them, with a minus sign. Without it, `first` is the
         // number of rows of a matrix.
-        let first = self.int(variable)?;
+        let first = self.read_int(variable)?;
         let shape = match usize::try_from(first) {
-            Ok(rows) => vec![rows, self.length(variable)?],
+            Ok(rows) => vec![rows, self.read_length(variable)?],
             Err(_) => {
                 let count = first.unsigned_abs() as usize;
                 self.budget.take(count as u64, 8, variable)?;
-                self.lengths(count, variable)?
+                self.read_lengths(count, variable)?
             }
         };
         if shape.len() < 2 {
@@ -180,13 +192,13 @@ impl Parts for BinaryReader<'_> {
         })
     }
 
-    fn numbers(
+    fn read_numbers(
         &mut self,
         element: Element,
         count: usize,
         variable: &str,
     ) -> Result<Vec<f64>, VariableFault> {
-        let number_type = self.number_type(element, variable)?;
+        let number_type = self.read_number_type(element, variable)?;
         let count = if element.is_complex {
             count.saturating_mul(2)
         } else {
@@ -196,12 +208,16 @@ impl Parts for BinaryReader<'_> {
         Ok(number_type.decode_all(bytes))
     }
 
-    fn sparse(&mut self, element: Element, variable: &str) -> Result<SparseEntries, VariableFault> {
-        let shape = self.sides(variable)?.shape;
-        let count = self.length(variable)?;
-        let starts = self.lengths(shape[1].saturating_add(1), variable)?;
-        let rows = self.lengths(count, variable)?;
-        let NumberParts { re, im } = element.parts(self.numbers(element, count, variable)?);
+    fn read_sparse(
+        &mut self,
+        element: Element,
+        variable: &str,
+    ) -> Result<SparseEntries, VariableFault> {
+        let shape = self.read_sides(variable)?.shape;
+        let count = self.read_length(variable)?;
+        let starts = self.read_lengths(shape[1].saturating_add(1), variable)?;
+        let rows = self.read_lengths(count, variable)?;
+        let NumberParts { re, im } = element.parts(self.read_numbers(element, count, variable)?);
         self.budget.take(count as u64, 8, variable)?;
         let columns = CompressedColumns {
             shape: [shape[0], shape[1]],
@@ -216,8 +232,8 @@ impl Parts for BinaryReader<'_> {
             .ok_or_else(|| self.fault(variable, "the sparse matrix is inconsistent"))
     }
 
-    fn text(&mut self, variable: &str) -> Result<TextArray, VariableFault> {
-        let shape = self.sides(variable)?.shape;
+    fn read_text(&mut self, variable: &str) -> Result<TextArray, VariableFault> {
+        let shape = self.read_sides(variable)?.shape;
         let &[height, columns] = shape.as_slice() else {
             return Err(texts_in_pages(variable));
         };
@@ -225,15 +241,15 @@ impl Parts for BinaryReader<'_> {
         let texts = if letters.is_empty() { 0 } else { height as u64 };
         self.budget
             .take(texts, size_of::<String>() as u64, variable)?;
-        Ok(text_rows(letters, height))
+        Ok(byte_rows(letters, height))
     }
 
-    fn field_count(&mut self, _: Form, variable: &str) -> Result<usize, VariableFault> {
-        self.length(variable)
+    fn read_field_count(&mut self, _: Form, variable: &str) -> Result<usize, VariableFault> {
+        self.read_length(variable)
     }
 
-    fn class(&mut self, variable: &str) -> Result<String, VariableFault> {
-        self.string(variable)
+    fn read_class(&mut self, variable: &str) -> Result<String, VariableFault> {
+        self.read_string(variable)
     }
 
     fn fault(&self, variable: &str, what: &str) -> VariableFault {

@@ -1,6 +1,6 @@
-//! Storage forms of values, which follow from the names of their types.
+//! Storage forms of values, which follow from the type names that GNU Octave writes.
 
-use crate::formats::strides::NumberClass;
+use crate::formats::stored_number::NumberClass;
 use crate::formats::variables::{Array, ElementKind};
 
 /// Number type in the binary encoding.
@@ -104,6 +104,7 @@ impl Form {
     /// Interprets the words of a numeric type name; `None` if a word is unknown.
     fn from_number_words(name: &str) -> Option<Self> {
         let mut element = Element::FLOAT;
+        // Variant that the words require; its element is complete only after the last word.
         let mut form: Option<fn(Element) -> Self> = None;
         for word in name.split(' ') {
             match word {

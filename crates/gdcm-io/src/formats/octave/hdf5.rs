@@ -1,13 +1,25 @@
 //! GNU Octave's `save -hdf5` format: each value is a group with its type and its parts.
 //!
 //! The file is read like any HDF5 file, with groups as structs, which are then converted to the
-//! values that they represent. Arrays are stored in column-major order with their dimensions
-//! reversed.
+//! values that they represent:
+//!
+//! ```text
+//! A/type    text such as "matrix"
+//! A/value   numbers, text, or a group with the parts of the value:
+//!             range          base, limit, increment
+//!             cell array     dims, then _0, _1, ...: a group like A for each value
+//!             struct         for each field, a group like A
+//!             sparse matrix  nr, nc, cidx, ridx, data: compressed sparse columns
+//!             object         classname, value: a group like that of a struct
+//! ```
+//!
+//! Arrays are stored in column-major order with their dimensions reversed.
 
-use crate::formats::octave::assembly::{Range, text_rows};
+use crate::formats::element_order::{Places, element_count};
+use crate::formats::octave::assembly::byte_rows;
 use crate::formats::octave::form::Form;
+use crate::formats::octave::range::Range;
 use crate::formats::sparse_matrix::CompressedColumns;
-use crate::formats::strides::{Places, count};
 use crate::formats::variables::{
     Array, CellArray, ElementKind, Object, StructArray, TextArray, Value, Variable,
 };
@@ -108,6 +120,7 @@ fn convert_group(
     })
 }
 
+/// Returns the opaque value for a type that is not supported.
 fn unknown_value(type_name: &str) -> Value {
     Value::opaque(format!("a GNU Octave {type_name}"), "save it with -v7")
 }
@@ -116,8 +129,8 @@ fn damaged(variable: &str, what: &str) -> VariableFault {
     VariableFault::damaged(variable, what, 0)
 }
 
-/// Returns an array with its dimensions reversed: the elements, which were read in row-major order,
-/// are put back into file order.
+/// Returns an array with its dimensions reversed: the elements, which the HDF5 reader moved from
+/// row-major to column-major order, are put back into file order.
 fn with_reversed_sides(
     array: &Array,
     variable: &str,
@@ -148,7 +161,7 @@ fn in_file_order(values: &[f64], places: &[usize]) -> Vec<f64> {
 /// Converts a byte array to a string for each row.
 fn texts(codes: &Array) -> TextArray {
     let letters: Vec<u8> = codes.re.iter().map(|&code| code as i64 as u8).collect();
-    text_rows(&letters, codes.shape.first().copied().unwrap_or(0))
+    byte_rows(&letters, codes.shape.first().copied().unwrap_or(0))
 }
 
 /// Parts of a value, which are the members of its group.
@@ -195,7 +208,7 @@ impl<'v> GroupParts<'v> {
                 values.push(convert_group(member, &inner, self.budget)?);
             }
         }
-        if count(&shape) != Some(values.len()) {
+        if element_count(&shape) != Some(values.len()) {
             return Err(self.damaged(
                 "the number of values in a cell array does not match its \
                 dimensions",
@@ -268,6 +281,7 @@ impl<'v> GroupParts<'v> {
             .full_matrix(self.variable, self.budget, || self.sparse_contradiction())
     }
 
+    /// Returns a dimension of a sparse matrix.
     fn side(&self, name: &str) -> Result<usize, VariableFault> {
         match self.number(name) {
             Some(side) if side >= 0.0 => Ok(side as usize),
@@ -283,6 +297,7 @@ impl<'v> GroupParts<'v> {
         damaged(self.variable, what)
     }
 
+    /// Returns the member `name` of the group.
     fn member(&self, name: &str) -> Option<&'v Value> {
         self.parts.field(name)?.first()
     }
@@ -300,6 +315,7 @@ impl<'v> GroupParts<'v> {
         }
     }
 
+    /// Returns the numbers of the member `name` as integers.
     fn integers(&self, name: &str) -> Vec<usize> {
         self.numbers(name)
             .iter()

@@ -10,6 +10,7 @@ mod assembly;
 mod binary;
 mod form;
 mod hdf5;
+mod range;
 mod text;
 
 pub(crate) use binary::OCTAVE_BINARY;

@@ -1,5 +1,16 @@
-//! GNU Octave's `save -text` format: lines such as `# name: A`, `# type: matrix` and `# rows: 8`,
-//! followed by numbers.
+//! GNU Octave's `save -text` format: lines with keys, followed by numbers.
+//!
+//! ```text
+//! # name: A
+//! # type: matrix
+//! # rows: 2
+//! # columns: 3
+//!  1 2 3
+//!  4 5 6
+//! ```
+//!
+//! Matrices are written row by row; arrays with other dimensions have `# ndims: 3`, a line with the
+//! dimensions, and their numbers in column-major order.
 
 use crate::file_error::FileError;
 use crate::formats::octave::assembly::{Parts, Sides, ValueHeading, read_value, texts_in_pages};
@@ -51,7 +62,7 @@ fn read_variables(text: &str, budget: &ReadingBudget<'_>) -> Result<Vec<Variable
     let mut variables = Vec::new();
     while reader.find_name() {
         budget.take(1, size_of::<Variable>() as u64, "")?;
-        let ValueHeading { name, type_name } = reader.heading("")?;
+        let ValueHeading { name, type_name } = reader.read_heading("")?;
         let value = match read_value(&mut reader, &type_name, &name) {
             Ok(value) => value,
             // Reading continues with the next value, which begins at the next line with a name.
@@ -72,12 +83,13 @@ struct TextReader<'t> {
 }
 
 impl<'t> TextReader<'t> {
+    /// Returns the text from the current position on.
     fn rest(&self) -> &'t str {
         &self.text[self.at..]
     }
 
     /// Returns the next line without its line ending.
-    fn line(&mut self) -> Option<&'t str> {
+    fn read_line(&mut self) -> Option<&'t str> {
         let rest = self.rest();
         if rest.is_empty() {
             return None;
@@ -91,7 +103,7 @@ impl<'t> TextReader<'t> {
     fn find_name(&mut self) -> bool {
         loop {
             let begin = self.at;
-            match self.line() {
+            match self.read_line() {
                 None => return false,
                 Some(line) if line.starts_with("# name: ") => {
                     self.at = begin;
@@ -103,9 +115,9 @@ impl<'t> TextReader<'t> {
     }
 
     /// Returns the text after `# key: ` on the next nonempty line.
-    fn key(&mut self, key: &str, variable: &str) -> Result<&'t str, VariableFault> {
+    fn read_key(&mut self, key: &str, variable: &str) -> Result<&'t str, VariableFault> {
         let line = loop {
-            match self.line() {
+            match self.read_line() {
                 None => return Err(self.cut_off(variable)),
                 Some(line) if line.trim().is_empty() => {}
                 Some(line) => break line,
@@ -118,8 +130,8 @@ impl<'t> TextReader<'t> {
     }
 
     /// Returns the non-negative integer after `# key: ` on the next nonempty line.
-    fn key_number(&mut self, key: &str, variable: &str) -> Result<usize, VariableFault> {
-        let text = self.key(key, variable)?;
+    fn read_key_number(&mut self, key: &str, variable: &str) -> Result<usize, VariableFault> {
+        let text = self.read_key(key, variable)?;
         text.parse()
             .map_err(|_| self.fault(variable, &format!("{key}: expected a whole number")))
     }
@@ -133,7 +145,7 @@ impl<'t> TextReader<'t> {
     }
 
     /// Returns the next word, which may be on a later line.
-    fn word(&mut self, variable: &str) -> Result<&'t str, VariableFault> {
+    fn read_word(&mut self, variable: &str) -> Result<&'t str, VariableFault> {
         let rest = self.rest();
         let Some(begin) = rest.find(|letter: char| !letter.is_whitespace()) else {
             return Err(self.cut_off(variable));
@@ -144,13 +156,15 @@ impl<'t> TextReader<'t> {
         Ok(&rest[..length])
     }
 
-    fn index(&mut self, variable: &str) -> Result<usize, VariableFault> {
-        let word = self.word(variable)?;
+    /// Reads the next word as a non-negative integer.
+    fn read_index(&mut self, variable: &str) -> Result<usize, VariableFault> {
+        let word = self.read_word(variable)?;
         word.parse()
             .map_err(|_| self.fault(variable, "expected a whole number"))
     }
 
-    fn number(&self, word: &str, variable: &str) -> Result<f64, VariableFault> {
+    /// Parses a word as a number.
+    fn parse_number(&self, word: &str, variable: &str) -> Result<f64, VariableFault> {
         // Octave writes NA for a missing number.
         if word == "NA" {
             return Ok(f64::NAN);
@@ -161,7 +175,7 @@ impl<'t> TextReader<'t> {
 
     /// Returns the next `length` bytes, which may contain line breaks. If no line ends after them,
     /// which happens after a change of encoding, returns the next line instead.
-    fn text_with_length(
+    fn read_text_with_length(
         &mut self,
         length: usize,
         variable: &str,
@@ -170,10 +184,10 @@ impl<'t> TextReader<'t> {
             && (after.is_empty() || after.starts_with(['\n', '\r']))
         {
             self.at += length;
-            self.line();
+            self.read_line();
             return Ok(text);
         }
-        self.line().ok_or_else(|| self.cut_off(variable))
+        self.read_line().ok_or_else(|| self.cut_off(variable))
     }
 
     fn cut_off(&self, variable: &str) -> VariableFault {
@@ -198,27 +212,27 @@ impl Parts for TextReader<'_> {
         self.budget
     }
 
-    fn heading(&mut self, variable: &str) -> Result<ValueHeading, VariableFault> {
+    fn read_heading(&mut self, variable: &str) -> Result<ValueHeading, VariableFault> {
         Ok(ValueHeading {
-            name: self.key("name", variable)?.to_owned(),
-            type_name: self.key("type", variable)?.to_owned(),
+            name: self.read_key("name", variable)?.to_owned(),
+            type_name: self.read_key("type", variable)?.to_owned(),
         })
     }
 
-    fn sides(&mut self, variable: &str) -> Result<Sides, VariableFault> {
+    fn read_sides(&mut self, variable: &str) -> Result<Sides, VariableFault> {
         if self.has_key("rows") {
-            let rows = self.key_number("rows", variable)?;
-            let columns = self.key_number("columns", variable)?;
+            let rows = self.read_key_number("rows", variable)?;
+            let columns = self.read_key_number("columns", variable)?;
             return Ok(Sides {
                 shape: vec![rows, columns],
                 by_rows: true,
             });
         }
-        let count = self.key_number("ndims", variable)?;
+        let count = self.read_key_number("ndims", variable)?;
         self.budget.take(count as u64, 8, variable)?;
         let mut shape = Vec::new();
         for _ in 0..count {
-            shape.push(self.index(variable)?);
+            shape.push(self.read_index(variable)?);
         }
         if shape.len() < 2 {
             return Err(self.fault(variable, "expected at least two dimensions"));
@@ -229,42 +243,50 @@ impl Parts for TextReader<'_> {
         })
     }
 
-    fn numbers(
+    fn read_numbers(
         &mut self,
         element: Element,
         count: usize,
         variable: &str,
     ) -> Result<Vec<f64>, VariableFault> {
+        // Skip the line before the three numbers of a range.
         if self.has_key("base, limit") {
-            self.line();
+            self.read_line();
         }
         let mut numbers = Vec::new();
         for _ in 0..count {
-            let word = self.word(variable)?;
+            let word = self.read_word(variable)?;
             if element.is_complex {
                 let Some((re, im)) = complex_parts(word) else {
                     return Err(self.fault(variable, "expected a complex number, (re,im)"));
                 };
-                numbers.extend([self.number(re, variable)?, self.number(im, variable)?]);
+                numbers.extend([
+                    self.parse_number(re, variable)?,
+                    self.parse_number(im, variable)?,
+                ]);
             } else {
-                numbers.push(self.number(word, variable)?);
+                numbers.push(self.parse_number(word, variable)?);
             }
         }
         Ok(numbers)
     }
 
-    fn sparse(&mut self, element: Element, variable: &str) -> Result<SparseEntries, VariableFault> {
-        let count = self.key_number("nnz", variable)?;
-        let height = self.key_number("rows", variable)?;
-        let width = self.key_number("columns", variable)?;
+    fn read_sparse(
+        &mut self,
+        element: Element,
+        variable: &str,
+    ) -> Result<SparseEntries, VariableFault> {
+        let count = self.read_key_number("nnz", variable)?;
+        let height = self.read_key_number("rows", variable)?;
+        let width = self.read_key_number("columns", variable)?;
         let mut rows = Vec::new();
         let mut columns = Vec::new();
         let mut numbers = Vec::new();
         for _ in 0..count {
             // Indices count from 1 in Octave; the invalid index 0 wraps to a large number and is
             // rejected below.
-            let row = self.index(variable)?.wrapping_sub(1);
-            let column = self.index(variable)?.wrapping_sub(1);
+            let row = self.read_index(variable)?.wrapping_sub(1);
+            let column = self.read_index(variable)?.wrapping_sub(1);
             if row >= height || column >= width {
                 return Err(self.fault(variable, "an element is outside the matrix"));
             }
@@ -272,7 +294,7 @@ impl Parts for TextReader<'_> {
             self.budget.take(1, 48, variable)?;
             rows.push(row);
             columns.push(column);
-            numbers.extend(self.numbers(element, 1, variable)?);
+            numbers.extend(self.read_numbers(element, 1, variable)?);
         }
         let NumberParts { re, im } = element.parts(numbers);
         Ok(SparseEntries {
@@ -285,21 +307,21 @@ impl Parts for TextReader<'_> {
         })
     }
 
-    fn text(&mut self, variable: &str) -> Result<TextArray, VariableFault> {
+    fn read_text(&mut self, variable: &str) -> Result<TextArray, VariableFault> {
         if !self.has_key("elements") {
             return Err(texts_in_pages(variable));
         }
-        let count = self.key_number("elements", variable)?;
+        let count = self.read_key_number("elements", variable)?;
         if count == 0 {
             if self.has_key("length") {
-                self.line();
+                self.read_line();
             }
             return Ok(TextArray::one(""));
         }
         let mut texts = Vec::new();
         for _ in 0..count {
-            let length = self.key_number("length", variable)?;
-            texts.push(self.text_with_length(length, variable)?.to_owned());
+            let length = self.read_key_number("length", variable)?;
+            texts.push(self.read_text_with_length(length, variable)?.to_owned());
         }
         Ok(TextArray {
             shape: vec![texts.len(), 1],
@@ -307,18 +329,19 @@ impl Parts for TextReader<'_> {
         })
     }
 
-    fn field_count(&mut self, form: Form, variable: &str) -> Result<usize, VariableFault> {
+    fn read_field_count(&mut self, form: Form, variable: &str) -> Result<usize, VariableFault> {
         if form == Form::ScalarStruct {
-            self.sides(variable)?;
+            self.read_sides(variable)?;
         }
-        self.key_number("length", variable)
+        self.read_key_number("length", variable)
     }
 
-    fn class(&mut self, variable: &str) -> Result<String, VariableFault> {
-        Ok(self.key("classname", variable)?.to_owned())
+    fn read_class(&mut self, variable: &str) -> Result<String, VariableFault> {
+        Ok(self.read_key("classname", variable)?.to_owned())
     }
 
     fn fault(&self, variable: &str, what: &str) -> VariableFault {
+        // The line of the byte before the current position.
         let read = &self.text.as_bytes()[..self.at.saturating_sub(1).min(self.text.len())];
         let line = 1 + read.iter().filter(|byte| **byte == b'\n').count();
         VariableFault::line(variable, line, what)

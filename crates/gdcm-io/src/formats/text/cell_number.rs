@@ -50,6 +50,7 @@ pub(super) fn has_number(cell: &str, decimal_comma: bool) -> bool {
     cell_number(cell, decimal_comma).is_some_and(|number| !number.is_nan())
 }
 
+/// Returns whether a cell holds a word or sign for a missing number.
 fn is_missing(cell: &str) -> bool {
     let unsigned = cell.trim_start_matches('-');
     MISSING.iter().any(|word| cell.eq_ignore_ascii_case(word))

@@ -1,5 +1,6 @@
 //! Times of day, with or without a date.
 
+/// Length of a day \[s\].
 const DAY_S: f64 = 86_400.0;
 
 /// Parses a time of day such as "12:30:01.25", "12:30:01,25", "2026-03-01 12:30:01.25" or

@@ -1,141 +1,34 @@
 //! Meaning of the columns of a frequency response table, from their names and units.
+//!
+//! For each column, in this order:
+//!
+//! 1. Separate a unit at the end of the name, such as "mag_dB", unless the unit is already known.
+//! 2. The names "w" and "f" denote the frequency.
+//! 3. Otherwise a word in the name gives the quantity, such as "phase" in "phase P/LAT"; what remains
+//!    of the name is the label of the response.
+//! 4. Otherwise the unit, or a sign such as ∠, gives the quantity.
+//! 5. A missing unit may be implied by the word, such as rad/s by "omega".
 
 use gdcm_model::units::physical_unit::PhysicalUnit;
 
+use crate::formats::text::quantity_words::{
+    ABSOLUTE, BEFORE_UNIT, KnownUnit, Quantity, UNIT_ENDINGS, WORDS,
+};
 use crate::formats::text::response_label::ResponseLabel;
-
-/// Quantity that a column of a frequency response table holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Quantity {
-    Error,
-    Coherence,
-    Magnitude,
-    Phase,
-    Real,
-    Imaginary,
-    Frequency,
-}
-
-/// Units that determine how a column is interpreted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum KnownUnit {
-    RadianPerSecond,
-    Hertz,
-    Decibel,
-    Degree,
-    Radian,
-    Percent,
-    /// Coherence γ.
-    Gamma,
-    /// Squared coherence γ².
-    GammaSquared,
-    /// `rps`, which may mean radians or revolutions per second.
-    Rps,
-    /// Any other unit, such as the unit of a magnitude or of a real part.
-    Other,
-}
 
 /// Meaning of a column, according to its name and unit.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ColumnMeaning {
+    /// Quantity; `None` if neither name nor unit gives it.
     pub(super) quantity: Option<Quantity>,
+    /// Unit; `None` if it is neither given nor implied.
     pub(super) unit: Option<KnownUnit>,
     pub(super) label: ResponseLabel,
     /// Reason for the choice of the quantity, such as "its name contains phase".
     pub(super) reason: String,
 }
 
-/// Words in column names that indicate a quantity. The first quantity with a word in the name
-/// applies: "phase error" is an error.
-const WORDS: [(Quantity, &[&str]); 7] = [
-    (
-        Quantity::Error,
-        &[
-            "error",
-            "err",
-            "std",
-            "sd",
-            "stdev",
-            "stddev",
-            "deviation",
-            "sigma",
-            "uncertainty",
-            "eps",
-        ],
-    ),
-    (
-        Quantity::Coherence,
-        &[
-            "coherence",
-            "coher",
-            "coh",
-            "gamma",
-            "gamma2",
-            "gam",
-            "gam2",
-            "gammasq",
-            "γ",
-            "γ²",
-            "γ2",
-            "cxy",
-        ],
-    ),
-    (
-        Quantity::Magnitude,
-        &[
-            "magnitude",
-            "mag",
-            "amplitude",
-            "ampl",
-            "amp",
-            "gain",
-            "abs",
-            "modulus",
-        ],
-    ),
-    (
-        Quantity::Phase,
-        &["phase", "phas", "phs", "pha", "ph", "angle", "arg"],
-    ),
-    (Quantity::Real, &["real", "re"]),
-    (Quantity::Imaginary, &["imaginary", "imag", "img", "im"]),
-    (
-        Quantity::Frequency,
-        &[
-            "frequency",
-            "frequencies",
-            "freq",
-            "frq",
-            "omega",
-            "om",
-            "ω",
-        ],
-    ),
-];
-
-/// Units that may follow a name without brackets.
-const UNIT_ENDINGS: [(&str, KnownUnit); 13] = [
-    ("rad/s", KnownUnit::RadianPerSecond),
-    ("rad/sec", KnownUnit::RadianPerSecond),
-    ("rad_s", KnownUnit::RadianPerSecond),
-    ("rad_sec", KnownUnit::RadianPerSecond),
-    ("rads", KnownUnit::RadianPerSecond),
-    ("rps", KnownUnit::Rps),
-    ("hz", KnownUnit::Hertz),
-    ("db", KnownUnit::Decibel),
-    ("deg", KnownUnit::Degree),
-    ("rad", KnownUnit::Radian),
-    ("percent", KnownUnit::Percent),
-    ("pct", KnownUnit::Percent),
-    ("%", KnownUnit::Percent),
-];
-
-/// Characters that may separate a name from its unit.
-const BEFORE_UNIT: [char; 6] = ['_', ' ', '-', '.', '/', ','];
-
-/// Words that indicate a magnitude as a ratio, not in decibels.
-const ABSOLUTE: [&str; 6] = ["abs", "absolute", "lin", "linear", "ratio", "modulus"];
-
+/// Word in a column name.
 #[derive(Clone, Copy)]
 struct Word<'n> {
     /// Offset in the name \[bytes\].
@@ -150,21 +43,33 @@ impl ColumnMeaning {
             Some(unit) => (name, Some(known_unit(unit))),
             None => split_unit(name),
         };
-        let usual_unit = match name.trim().to_lowercase().as_str() {
-            _ if unit == Some(KnownUnit::Other) => return Self::from_words(name, unit),
-            "w" => Some(KnownUnit::RadianPerSecond),
-            // In frequency tables, f is in Hz as often as in rad/s: ask the user.
-            "f" => None,
-            _ => return Self::from_words(name, unit),
-        };
+        // With another unit, such as m/s, these letters denote other quantities.
+        if unit != Some(KnownUnit::Other) {
+            match name.trim().to_lowercase().as_str() {
+                "w" => {
+                    let unit = unit.or(Some(KnownUnit::RadianPerSecond));
+                    return Self::frequency_letter(name, unit);
+                }
+                // In frequency tables, f is in Hz as often as in rad/s: ask the user for a missing
+                // unit.
+                "f" => return Self::frequency_letter(name, unit),
+                _ => {}
+            }
+        }
+        Self::from_words(name, unit)
+    }
+
+    /// Returns the meaning of a column whose name is a letter for the frequency.
+    fn frequency_letter(name: &str, unit: Option<KnownUnit>) -> Self {
         Self {
             quantity: Some(Quantity::Frequency),
-            unit: unit.or(usual_unit),
+            unit,
             label: ResponseLabel::default(),
             reason: format!("its name is \"{name}\""),
         }
     }
 
+    /// Interprets a name by the words in it; a name without a word of `WORDS` by its unit.
     fn from_words(name: &str, unit: Option<KnownUnit>) -> Self {
         let words = words_of(name);
         for (quantity, known) in WORDS {
@@ -217,6 +122,7 @@ impl Word<'_> {
         known.contains(&lower.as_str()) || known.contains(&without_digits(&lower))
     }
 
+    /// Returns whether the word indicates a ratio.
     fn is_absolute(&self) -> bool {
         ABSOLUTE.contains(&self.text.to_lowercase().as_str())
     }
@@ -243,6 +149,7 @@ fn usual_unit(quantity: Quantity, word: &str, words: &[Word<'_>]) -> Option<Know
     }
 }
 
+/// Returns the meaning of a given unit.
 fn known_unit(unit: &str) -> KnownUnit {
     match unit.trim().to_lowercase().replace([' ', '.'], "").as_str() {
         "gamma" | "γ" => return KnownUnit::Gamma,
@@ -254,7 +161,7 @@ fn known_unit(unit: &str) -> KnownUnit {
         "1/sec" => return KnownUnit::Hertz,
         _ => {}
     }
-    match PhysicalUnit::of(unit).map(|unit| unit.name) {
+    match PhysicalUnit::parse(unit).map(|unit| unit.name) {
         Some("rad/s") => KnownUnit::RadianPerSecond,
         Some("Hz") => KnownUnit::Hertz,
         Some("dB") => KnownUnit::Decibel,
@@ -304,6 +211,7 @@ fn ends_with_known_word(name: &str) -> bool {
 /// Splits a name into words, which consist of letters, digits and "²".
 fn words_of(name: &str) -> Vec<Word<'_>> {
     let mut words = Vec::new();
+    // Offset of the word that has begun.
     let mut begun = None;
     for (at, character) in name.char_indices() {
         let is_inside = character.is_alphanumeric() || character == '²';

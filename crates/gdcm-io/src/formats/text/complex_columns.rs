@@ -5,8 +5,12 @@ use crate::formats::text::lines::{comment, lines};
 use crate::formats::text::separator::Separator;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
+/// Whether the decimal mark may be a comma; it is always a point in tables with complex numbers.
+const DECIMAL_COMMA: bool = false;
 /// Number of lines examined for complex numbers.
 const SAMPLE: usize = 200;
+/// Upper bound of the memory of the split text, as a multiple of the text.
+const GROWTH: u64 = 3;
 
 /// Replaces each column of complex numbers by two columns, whose headings begin with "re" and "im".
 /// Returns `None` if there is no such column. Line numbers do not change.
@@ -14,10 +18,11 @@ pub fn split_complex(text: &str, budget: &ReadingBudget) -> Result<Option<String
     let Some(columns) = ComplexColumns::recognise(text) else {
         return Ok(None);
     };
-    budget.take(text.len() as u64, 3, "")?;
+    budget.take(text.len() as u64, GROWTH, "")?;
     let mut split = String::with_capacity(2 * text.len());
     for (_, line) in lines(text) {
         budget.work(1, "")?;
+        // The heading may be in a comment, whose mark is then omitted.
         match columns.split_line(comment(line).unwrap_or(line)) {
             Some(line) => split.push_str(&line),
             None => split.push_str(line),
@@ -46,6 +51,7 @@ impl ComplexColumns {
             .find_map(|(_, line)| Self::from_line(line))
     }
 
+    /// Recognises the columns from a row with any separator.
     fn from_line(line: &str) -> Option<Self> {
         Separator::ALL
             .into_iter()
@@ -57,10 +63,10 @@ impl ComplexColumns {
     fn from_separated_line(line: &str, separator: Separator) -> Option<Self> {
         let mut is_complex = Vec::new();
         for cell in separator.cells(line) {
-            if ComplexText::parse(&cell).is_some() {
+            if PartCells::parse(&cell).is_some() {
                 is_complex.push(true);
             } else {
-                cell_number(&cell, false)?;
+                cell_number(&cell, DECIMAL_COMMA)?;
                 is_complex.push(false);
             }
         }
@@ -84,7 +90,7 @@ impl ComplexColumns {
         let mut split = Vec::with_capacity(2 * cells.len());
         for (cell, is_complex) in cells.into_iter().zip(&self.is_complex) {
             if *is_complex {
-                let ComplexText { re, im } = self.parts_or_headings(&cell);
+                let PartCells { re, im } = self.parts_or_headings(&cell);
                 split.push(re);
                 split.push(im);
             } else {
@@ -95,21 +101,21 @@ impl ComplexColumns {
     }
 
     /// Splits a cell: a number into its real and imaginary part, a heading into two headings.
-    fn parts_or_headings(&self, cell: &str) -> ComplexText {
-        if let Some(parts) = ComplexText::parse(cell) {
+    fn parts_or_headings(&self, cell: &str) -> PartCells {
+        if let Some(parts) = PartCells::parse(cell) {
             return parts;
         }
         let cell = cell.trim();
-        match cell_number(cell, false) {
-            Some(number) if number.is_nan() => ComplexText::new(cell, cell),
-            Some(_) => ComplexText::new(cell, "0"),
+        match cell_number(cell, DECIMAL_COMMA) {
+            Some(number) if number.is_nan() => PartCells::new(cell, cell),
+            Some(_) => PartCells::new(cell, "0"),
             None => {
                 let joint = if self.separator == Separator::Blanks {
                     "_"
                 } else {
                     " "
                 };
-                ComplexText {
+                PartCells {
                     re: format!("re{joint}{cell}"),
                     im: format!("im{joint}{cell}"),
                 }
@@ -118,13 +124,14 @@ impl ComplexColumns {
     }
 }
 
-/// Real and imaginary part of a number, or their headings.
-struct ComplexText {
+/// The two cells that replace a cell: the real and the imaginary part of a number, or their
+/// headings.
+struct PartCells {
     re: String,
     im: String,
 }
 
-impl ComplexText {
+impl PartCells {
     fn new(re: &str, im: &str) -> Self {
         Self {
             re: re.to_owned(),
@@ -143,6 +150,7 @@ impl ComplexText {
             .strip_prefix('(')
             .and_then(|cell| cell.strip_suffix(')'))
             .unwrap_or(&cell);
+        // "2*i" is 2 i; NumPy writes "+-" before a negative imaginary part.
         let inner = inner
             .strip_suffix(['i', 'j'])?
             .trim_end_matches('*')
@@ -169,8 +177,9 @@ fn last_sign(number: &str) -> Option<usize> {
     Some(at)
 }
 
+/// Returns whether a text is a number, neither empty nor missing.
 fn is_filled_number(text: &str) -> bool {
-    !text.is_empty() && has_number(text, false)
+    !text.is_empty() && has_number(text, DECIMAL_COMMA)
 }
 
 #[cfg(test)]

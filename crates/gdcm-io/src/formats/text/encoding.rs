@@ -29,6 +29,7 @@ pub fn decode(bytes: &[u8], budget: &ReadingBudget) -> Result<String, VariableFa
     })
 }
 
+/// Decodes a byte of code page 1252, which equals Latin-1 outside 0x80 to 0x9f.
 fn windows_1252(byte: u8) -> char {
     match byte {
         0x80..=0x9f => WINDOWS_1252[usize::from(byte - 0x80)],
@@ -62,6 +63,7 @@ pub(super) fn refuse_binary(text: &str, expected: &'static str) -> Result<(), Va
     }
 }
 
+/// Returns the error for a binary file, whose byte `at` is zero.
 fn no_text(expected: &'static str, at: usize) -> VariableFault {
     VariableFault::format(expected, format!("a binary file (byte {at} is zero)"))
 }

@@ -1,8 +1,15 @@
 //! Frequency responses in a table, recognised by the names and units of its columns.
+//!
+//! ```text
+//! FrequencyColumns::recognise   names and units -> which columns hold which responses
+//!   column_meaning.rs           meaning of a single column
+//!   response_recognition.rs     responses from several columns
+//! FrequencyColumns::values      numbers -> points of each response (response_columns.rs)
+//! ```
 
-use crate::formats::text::columns::TextTable;
 use crate::formats::text::response_columns::{RecognisedResponse, ResponsePoints, column_place};
 use crate::formats::text::response_recognition::{FrequencyColumn, Recognition};
+use crate::formats::text::text_table::TextTable;
 use crate::formats::text::unrecognised::{Unrecognised, units_missing, unrecognised};
 use crate::reading_budget::VariableFault;
 
@@ -69,6 +76,7 @@ impl FrequencyColumns {
         frequencies.len() > 1 && frequencies.is_sorted_by(|above, below| above > below)
     }
 
+    /// Returns the points of each response; the frequencies must increase.
     fn increasing_values(&self, table: &TextTable) -> Result<Vec<ResponsePoints>, VariableFault> {
         let omega = self.omega(table)?;
         self.responses
@@ -133,8 +141,8 @@ mod recognition_tests {
     use std::f64::consts::TAU;
 
     use super::*;
-    use crate::formats::text::columns::read_table;
     use crate::formats::text::response_columns::{CoherenceColumn, ResponseParts};
+    use crate::formats::text::table_reader::read_table;
     use crate::formats::text::unrecognised::UnsaidUnit;
     use crate::reading_budget::ReadingBudget;
 
@@ -358,7 +366,7 @@ mod frequency_values_tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::formats::text::columns::read_table;
+    use crate::formats::text::table_reader::read_table;
     use crate::reading_budget::ReadingBudget;
 
     fn values(text: &str) -> Result<Vec<ResponsePoints>, VariableFault> {

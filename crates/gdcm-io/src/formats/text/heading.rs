@@ -1,16 +1,14 @@
 //! Column names and units, from the lines before the numbers.
 
-use crate::formats::text::cell_number::has_number;
+use gdcm_model::number_format::counted;
+
+use crate::formats::text::heading_cells::heading_cells;
 use crate::formats::text::heading_units::{is_unit, name_and_unit};
 use crate::formats::text::layout::Layout;
-use crate::formats::text::lines::{comment, is_rule};
-use crate::formats::text::separator::Separator;
+use crate::formats::text::lines::{NumberedLine, comment, is_rule};
 
 /// Number of lines before the first row that are searched for names and units.
 const SEARCHED: usize = 100;
-
-/// A line with its number, counted from 1.
-pub(super) type NumberedLine = (usize, String);
 
 /// Names and units of the columns.
 #[derive(Debug, PartialEq, Eq)]
@@ -39,20 +37,21 @@ impl Heading {
             notes: Vec::new(),
         };
         let mut lines = fitting_lines(above, layout).into_iter();
-        let Some(mut names) = lines.next() else {
+        let Some(nearest) = lines.next() else {
             heading.note_misfit(above, layout);
             return heading;
         };
-        if is_units_line(&names.cells)
-            && let Some(before) = lines.next()
-            && names.number > before.number
-        {
-            heading.units = names.cells.iter().map(|cell| unit_of(cell)).collect();
-            heading
-                .notes
-                .push(format!("line {} gives the units", names.number));
-            names = before;
-        }
+        let names = match lines.next() {
+            // The names must be above the units: the next candidate may be a comment below them.
+            Some(next) if is_units_line(&nearest.cells) && next.number < nearest.number => {
+                heading.units = nearest.cells.iter().map(|cell| unit_of(cell)).collect();
+                heading
+                    .notes
+                    .push(format!("line {} gives the units", nearest.number));
+                next
+            }
+            _ => nearest,
+        };
         heading.take_names(&names.cells);
         heading
             .notes
@@ -60,6 +59,7 @@ impl Heading {
         heading
     }
 
+    /// Takes the names, and the units that are still unknown, from the cells of a line.
     fn take_names(&mut self, cells: &[String]) {
         let mut names = Vec::with_capacity(cells.len());
         for (cell, known_unit) in cells.iter().zip(&mut self.units) {
@@ -77,15 +77,15 @@ impl Heading {
         let nearest = above
             .iter()
             .rev()
-            .find(|(_, line)| comment(line).is_none() && !is_rule(line));
-        let Some((number, line)) = nearest else {
+            .find(|line| comment(&line.text).is_none() && !is_rule(&line.text));
+        let Some(NumberedLine { number, text }) = nearest else {
             return;
         };
-        let found = layout.separator.cells(line).count();
+        let found = layout.separator.cells(text).count();
         if found > 1 {
-            let columns = layout.columns;
+            let columns = counted(layout.columns, "column");
             self.notes.push(format!(
-                "line {number} has {found} words for {columns} columns: it is not read as column \
+                "line {number} has {found} words for {columns}: it is not read as column \
                 names"
             ));
         }
@@ -97,17 +97,17 @@ fn fitting_lines(above: &[NumberedLine], layout: Layout) -> Vec<FittingLine> {
     let candidates: Vec<_> = above
         .iter()
         .rev()
-        .filter(|(_, line)| !is_rule(line))
+        .filter(|line| !is_rule(&line.text))
         .take(SEARCHED)
         .collect();
     let mut fitting = Vec::new();
     for is_comment in [false, true] {
-        for (number, line) in &candidates {
-            let marked = comment(line);
-            if marked.is_some() != is_comment {
+        for NumberedLine { number, text } in &candidates {
+            let after_mark = comment(text);
+            if after_mark.is_some() != is_comment {
                 continue;
             }
-            if let Some(cells) = heading_cells(marked.unwrap_or(line), layout) {
+            if let Some(cells) = heading_cells(after_mark.unwrap_or(text), layout) {
                 fitting.push(FittingLine {
                     number: *number,
                     cells,
@@ -116,130 +116,6 @@ fn fitting_lines(above: &[NumberedLine], layout: Layout) -> Vec<FittingLine> {
         }
     }
     fitting
-}
-
-/// Splits a heading into a cell for each column; `None` if this is impossible. The separator may
-/// differ from the separator between the numbers.
-fn heading_cells(line: &str, layout: Layout) -> Option<Vec<String>> {
-    let columns = layout.columns;
-    if layout.separator != Separator::Blanks
-        && let Some(cells) = fitted(trimmed_cells(line, layout.separator, columns), layout)
-    {
-        return Some(cells);
-    }
-    if columns == 1 {
-        return fitted(vec![line.trim().to_owned()], layout);
-    }
-    let others = [
-        Separator::Tab,
-        Separator::Semicolon,
-        Separator::Pipe,
-        Separator::Comma,
-    ];
-    for separator in others {
-        if let Some(cells) = fitted(trimmed_cells(line, separator, columns), layout) {
-            return Some(cells);
-        }
-    }
-    fitted(cells_at_wide_blanks(line, columns), layout)
-        .or_else(|| fitted(cells_with_brackets_joined(line, columns), layout))
-        .or_else(|| fitted(trimmed_cells(line, Separator::Blanks, columns), layout))
-}
-
-/// Returns the cells if they can be a heading: their number equals the number of columns, some
-/// contain letters, and they are not a row with errors. Removes an additional empty cell at the
-/// end.
-fn fitted(mut cells: Vec<String>, layout: Layout) -> Option<Vec<String>> {
-    let ends_empty = cells.last().is_some_and(|cell| cell.trim().is_empty());
-    if cells.len() == layout.columns + 1 && ends_empty {
-        cells.pop();
-    }
-    let fits = cells.len() == layout.columns
-        && cells.iter().any(|cell| has_letters(cell))
-        && !is_mostly_numbers(&cells, layout);
-    if fits { Some(cells) } else { None }
-}
-
-fn has_letters(cell: &str) -> bool {
-    cell.chars().any(char::is_alphabetic)
-}
-
-/// Splits a line into at most two cells more than there are columns, which suffices to detect that
-/// it has too many.
-fn trimmed_cells(line: &str, separator: Separator, columns: usize) -> Vec<String> {
-    separator
-        .cells(line)
-        .take(columns + 2)
-        .map(|cell| cell.trim().to_owned())
-        .collect()
-}
-
-/// Returns whether a line is probably a row with errors: the first cell and more than half of all
-/// cells are numbers.
-pub(super) fn is_mostly_numbers(cells: &[String], layout: Layout) -> bool {
-    let Some(first) = cells.first() else {
-        return false;
-    };
-    let decimal_comma = layout.decimal_comma;
-    if !has_number(first, decimal_comma) {
-        return false;
-    }
-    let numbers = cells
-        .iter()
-        .filter(|cell| has_number(cell, decimal_comma))
-        .count();
-    2 * numbers > cells.len()
-}
-
-/// Splits a line at two or more blanks, so that names can contain single blanks.
-fn cells_at_wide_blanks(line: &str, columns: usize) -> Vec<String> {
-    line.trim()
-        .split("  ")
-        .map(str::trim)
-        .filter(|cell| !cell.is_empty())
-        .take(columns + 2)
-        .map(str::to_owned)
-        .collect()
-}
-
-/// Splits a line at blanks; text in brackets is joined to the preceding cell.
-fn cells_with_brackets_joined(line: &str, columns: usize) -> Vec<String> {
-    const OPENING: [char; 3] = ['[', '(', '{'];
-    const CLOSING: [char; 3] = [']', ')', '}'];
-    let mut cells: Vec<String> = Vec::new();
-    let mut is_open = false;
-    for word in line.split_whitespace() {
-        let count = cells.len();
-        match cells.last_mut() {
-            Some(last) if is_open || word.starts_with(OPENING) => {
-                last.push(' ');
-                last.push_str(word);
-            }
-            _ if count > columns => break,
-            _ => cells.push(word.to_owned()),
-        }
-        let closed = word.matches(CLOSING).count();
-        is_open = if is_open {
-            closed == 0
-        } else {
-            word.matches(OPENING).count() > closed
-        };
-    }
-    cells
-}
-
-/// Returns whether a heading has one name more than `layout` has columns: then the empty cells
-/// after a trailing separator are a column.
-pub(super) fn names_one_more_column(above: &[NumberedLine], layout: Layout) -> bool {
-    above.iter().any(|(_, line)| {
-        let named = layout
-            .separator
-            .cells(comment(line).unwrap_or(line))
-            .take(layout.columns + 2)
-            .filter(|cell| has_letters(cell))
-            .count();
-        named == layout.columns + 1
-    })
 }
 
 /// Returns the unit in a cell, without its brackets; `None` for an empty cell.
@@ -264,12 +140,16 @@ fn is_units_line(cells: &[String]) -> bool {
 #[cfg(test)]
 mod heading_tests {
     use super::*;
+    use crate::formats::text::separator::Separator;
 
     fn find(lines: &[&str], separator: Separator, columns: usize) -> Heading {
         let above: Vec<_> = lines
             .iter()
             .enumerate()
-            .map(|(index, line)| (index + 1, (*line).to_owned()))
+            .map(|(index, line)| NumberedLine {
+                number: index + 1,
+                text: (*line).to_owned(),
+            })
             .collect();
         Heading::find(
             &above,

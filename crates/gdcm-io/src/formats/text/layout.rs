@@ -116,6 +116,7 @@ struct Tally {
     decimal_comma: bool,
     /// Number of rows by row width.
     widths: BTreeMap<usize, RowCount>,
+    /// Number of rows of any width.
     rows: usize,
 }
 
@@ -143,6 +144,7 @@ impl Score {
 }
 
 impl Tally {
+    /// Counts a line if it is a row.
     fn count(&mut self, line: &str) {
         let layout = Layout {
             separator: self.separator,

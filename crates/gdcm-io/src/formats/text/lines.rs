@@ -7,6 +7,14 @@ const TRAILING_MARKS: [&str; 7] = [" # ", " % ", " ! ", " // ", "\t# ", "\t% ", 
 /// Maximum length of an excerpt in a message \[characters\].
 const EXCERPT: usize = 40;
 
+/// A line that is kept, with its number.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NumberedLine {
+    /// Line number, counted from 1.
+    pub number: usize,
+    pub text: String,
+}
+
 /// Iterator over lines and their numbers, from 1; a line ends in a line feed, a carriage return, or
 /// both.
 pub(super) struct Lines<'t> {
@@ -14,6 +22,7 @@ pub(super) struct Lines<'t> {
     number: usize,
 }
 
+/// Returns the lines of a text with their numbers, without a byte order mark.
 pub(super) fn lines(text: &str) -> Lines<'_> {
     Lines {
         rest: Some(text.strip_prefix('\u{feff}').unwrap_or(text)),

@@ -1,50 +1,22 @@
 //! Scanner for MATLAB or Octave statements: blanks and comments, names, strings and numbers.
+//!
+//! Methods that read or skip something move past it; methods that return `None` or false do not
+//! move. A copy of the scanner keeps a position, to which reading can return.
 
 use crate::formats::text::lines::excerpt;
+use crate::formats::text::matlab_brackets::OpenBrackets;
+use crate::formats::text::matlab_number_syntax::{is_digit, past_exponent, past_mantissa};
+use crate::formats::text::matlab_value_error::{MOST_NESTED, Position, ValueError, refused};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Remedy in messages about unsupported statements.
-pub(super) const REMEDY: &str =
-    "write the numbers, or save the workspace in MATLAB: save -v7 workspace.mat";
-/// Maximum nesting depth of values, which are read recursively.
-pub(super) const MOST_NESTED: usize = 64;
-
 /// Returns whether a name can contain this character.
-pub(super) fn is_of_word(character: char) -> bool {
+pub(super) fn is_name_character(character: char) -> bool {
     character.is_alphanumeric() || character == '_'
 }
 
 /// Returns whether a text begins like a name.
-pub(super) fn begins_word(text: &str) -> bool {
+pub(super) fn begins_name(text: &str) -> bool {
     text.starts_with(|first: char| first.is_alphabetic() || first == '_')
-}
-
-/// Reason why a value cannot be read.
-pub(super) enum ValueError {
-    /// The value at position `at` is not supported; reading continues with other values.
-    NotUnderstood { what: String, at: Position },
-    /// An error that ends the reading.
-    Fault(VariableFault),
-}
-
-impl From<VariableFault> for ValueError {
-    fn from(fault: VariableFault) -> Self {
-        Self::Fault(fault)
-    }
-}
-
-pub(super) fn refused<T>(what: impl Into<String>, at: Position) -> Result<T, ValueError> {
-    Err(ValueError::NotUnderstood {
-        what: what.into(),
-        at,
-    })
-}
-
-/// Line and column in the text, both counted from 1.
-#[derive(Clone, Copy)]
-pub(super) struct Position {
-    pub(super) line: usize,
-    pub(super) column: usize,
 }
 
 /// An unsigned real or imaginary number.
@@ -75,6 +47,7 @@ impl<'t> Scanner<'t> {
         }
     }
 
+    /// Returns the text from the current position on.
     pub(super) fn rest(&self) -> &'t str {
         &self.text[self.at..]
     }
@@ -83,6 +56,7 @@ impl<'t> Scanner<'t> {
         self.rest().split(['\n', '\r']).next().unwrap_or_default()
     }
 
+    /// Returns the next character, without moving.
     pub(super) fn peek(&self) -> Option<char> {
         self.rest().chars().next()
     }
@@ -189,26 +163,35 @@ impl<'t> Scanner<'t> {
     }
 
     /// Reads the name at this position; `None` if there is none.
-    pub(super) fn name(&mut self) -> Option<&'t str> {
+    pub(super) fn read_name(&mut self) -> Option<&'t str> {
         let rest = self.rest();
-        if !begins_word(rest) {
+        if !begins_name(rest) {
             return None;
         }
-        let end = rest.find(|c: char| !is_of_word(c)).unwrap_or(rest.len());
+        let end = rest
+            .find(|c: char| !is_name_character(c))
+            .unwrap_or(rest.len());
         self.at += end;
         Some(&rest[..end])
     }
 
     /// Reads the names at this position, separated by points as in "sys.A"; empty if there are
     /// none.
-    pub(super) fn path(&mut self, budget: &ReadingBudget) -> Result<Vec<&'t str>, VariableFault> {
-        let mut path: Vec<&'t str> = self.name().into_iter().collect();
+    pub(super) fn read_path(
+        &mut self,
+        budget: &ReadingBudget,
+    ) -> Result<Vec<&'t str>, VariableFault> {
+        let mut path: Vec<&'t str> = self.read_name().into_iter().collect();
         while let Some(first) = path.first() {
             if path.len() > MOST_NESTED {
                 return Err(VariableFault::too_deep(first));
             }
             let before = self.clone();
-            let next = if self.take(".") { self.name() } else { None };
+            let next = if self.take(".") {
+                self.read_name()
+            } else {
+                None
+            };
             let Some(name) = next else {
                 *self = before;
                 break;
@@ -221,7 +204,7 @@ impl<'t> Scanner<'t> {
 
     /// Reads a string up to the closing quotation mark on the same line; a doubled quotation mark
     /// stands for a single one.
-    pub(super) fn quoted(&mut self, budget: &ReadingBudget) -> Result<String, ValueError> {
+    pub(super) fn read_quoted(&mut self, budget: &ReadingBudget) -> Result<String, ValueError> {
         let opening = self.position();
         let quote = self.peek().unwrap_or('\'');
         self.at += 1;
@@ -247,20 +230,21 @@ impl<'t> Scanner<'t> {
     }
 
     /// Reads the unsigned number at this position; `None` if there is none.
-    pub(super) fn number(&mut self) -> Result<Option<Number>, ValueError> {
+    pub(super) fn read_number(&mut self) -> Result<Option<Number>, ValueError> {
         let rest = self.rest();
         let place = self.position();
         let bytes = rest.as_bytes();
         if !(is_digit(bytes, 0) || (rest.starts_with('.') && is_digit(bytes, 1))) {
             return Ok(None);
         }
+        // Offsets in `rest`: mantissa, exponent, letter i or j, then letters that make it invalid.
         let mut end = past_mantissa(bytes);
         end = past_exponent(bytes, end);
         let value = rest[..end].replace(['d', 'D'], "e").parse();
         let is_imaginary = matches!(bytes.get(end), Some(b'i' | b'j'));
         end += usize::from(is_imaginary);
         let tail = rest[end..]
-            .find(|c: char| !is_of_word(c))
+            .find(|c: char| !is_name_character(c))
             .unwrap_or(rest.len() - end);
         self.at += end + tail;
         match value {
@@ -323,7 +307,7 @@ impl<'t> Scanner<'t> {
 
     /// Moves past a string, or to the end of the line if the string is not closed.
     fn pass_text(&mut self, budget: &ReadingBudget) -> Result<(), VariableFault> {
-        match self.quoted(budget) {
+        match self.read_quoted(budget) {
             Err(ValueError::Fault(fault)) => return Err(fault),
             Err(ValueError::NotUnderstood { .. }) => self.pass_line(),
             Ok(_) => {}
@@ -368,119 +352,10 @@ fn is_indexed_assignment(line: &str, open: char, close: char) -> bool {
         if depth == 0 {
             let behind = line[at + 1..]
                 .trim_start()
-                .trim_start_matches(|c: char| c == '.' || is_of_word(c))
+                .trim_start_matches(|c: char| c == '.' || is_name_character(c))
                 .trim_start();
             return behind.starts_with('=') && !behind.starts_with("==");
         }
     }
     false
-}
-
-/// Open brackets in a statement, the outermost first.
-#[derive(Default)]
-struct OpenBrackets(Vec<OpenBracket>);
-
-struct OpenBracket {
-    bracket: char,
-    place: Position,
-}
-
-impl OpenBrackets {
-    fn is_empty(&self) -> bool {
-        self.0.is_empty()
-    }
-
-    fn is_in_matrix(&self) -> bool {
-        matches!(
-            self.0.last(),
-            Some(OpenBracket {
-                bracket: '[' | '{',
-                ..
-            })
-        )
-    }
-
-    fn open(&mut self, bracket: char, place: Position) -> Result<(), VariableFault> {
-        if self.0.len() >= MOST_NESTED {
-            return Err(VariableFault::too_deep(""));
-        }
-        self.0.push(OpenBracket { bracket, place });
-        Ok(())
-    }
-
-    /// Closes the innermost open bracket that matches, with all brackets inside it; ignores
-    /// `closing` if none matches.
-    fn close(&mut self, closing: char) {
-        let opening = match closing {
-            ')' => '(',
-            ']' => '[',
-            _ => '{',
-        };
-        if let Some(at) = self.0.iter().rposition(|open| open.bracket == opening) {
-            self.0.truncate(at);
-        }
-    }
-
-    /// Closes the round brackets inside the innermost square or curly bracket, because round
-    /// brackets end with their line.
-    fn end_line(&mut self) {
-        while self.0.last().is_some_and(|open| open.bracket == '(') {
-            self.0.pop();
-        }
-    }
-
-    /// Returns an error if a square or curly bracket is still open. Unclosed round brackets are
-    /// tolerated.
-    fn check_closed(self) -> Result<(), VariableFault> {
-        let unclosed = self.0.into_iter().rfind(|open| open.bracket != '(');
-        let Some(OpenBracket { bracket, place }) = unclosed else {
-            return Ok(());
-        };
-        let what = format!(
-            "the bracket {bracket} in column {} is never closed; close it",
-            place.column
-        );
-        Err(VariableFault::line("", place.line, what))
-    }
-}
-
-fn is_digit(bytes: &[u8], at: usize) -> bool {
-    bytes.get(at).is_some_and(u8::is_ascii_digit)
-}
-
-/// Returns the offset after the digits that begin at `from`.
-fn past_digits(bytes: &[u8], from: usize) -> usize {
-    let mut at = from;
-    while is_digit(bytes, at) {
-        at += 1;
-    }
-    at
-}
-
-/// Returns the offset after digits, which may include a decimal point.
-fn past_mantissa(bytes: &[u8]) -> usize {
-    let end = past_digits(bytes, 0);
-    // A point before an operator belongs to the operator: "1./x", "2.^n", "1...".
-    let is_operator = bytes
-        .get(end + 1)
-        .is_some_and(|byte| b"*/\\^'.".contains(byte));
-    if bytes.get(end) == Some(&b'.') && !is_operator {
-        past_digits(bytes, end + 1)
-    } else {
-        end
-    }
-}
-
-/// Returns the offset after the exponent that begins at `from`; `from` if there is no exponent.
-fn past_exponent(bytes: &[u8], from: usize) -> usize {
-    if !matches!(bytes.get(from), Some(b'e' | b'E' | b'd' | b'D')) {
-        return from;
-    }
-    let has_sign = matches!(bytes.get(from + 1), Some(b'+' | b'-'));
-    let digits = from + 1 + usize::from(has_sign);
-    if is_digit(bytes, digits) {
-        past_digits(bytes, digits)
-    } else {
-        from
-    }
 }

@@ -2,10 +2,14 @@
 
 use std::collections::HashSet;
 
-use crate::formats::text::cell_number::{cell_number, is_number};
-use crate::formats::text::columns::{TextTable, read_table};
+use crate::formats::text::cell_number::cell_number;
 use crate::formats::text::encoding::refuse_binary;
 use crate::formats::text::lines::{comment, excerpt, is_rule, lines};
+use crate::formats::text::matrix_lines::{
+    NameLine, is_columns_line, is_number_word, is_row_of_numbers, name_line, scale_line,
+};
+use crate::formats::text::table_reader::read_table;
+use crate::formats::text::text_table::TextTable;
 use crate::formats::variables::{Array, Value, Variable};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
@@ -31,13 +35,13 @@ pub fn read_matrix(
     let single_number = table
         .skipped
         .iter()
-        .find(|(_, line)| cell_number(line, table.decimal_comma).is_some());
-    if let Some((line, _)) = single_number {
+        .find(|line| cell_number(&line.text, table.decimal_comma).is_some());
+    if let Some(line) = single_number {
         let what = format!(
             "a single number, but other rows have {}; complete the row",
             table.columns.len()
         );
-        return Err(VariableFault::line(name, *line, what));
+        return Err(VariableFault::line(name, line.number, what));
     }
     let value = joined(&[table], 1.0, budget, name)?;
     Ok(Variable {
@@ -60,7 +64,7 @@ pub fn read_matrices(text: &str, budget: &ReadingBudget) -> Result<NamedMatrices
     for (number, line) in lines(text) {
         budget.work(1, "")?;
         if !line.trim().is_empty() && comment(line).is_none() && !is_rule(line) {
-            reading.line(number, line)?;
+            reading.take_line(number, line)?;
         }
     }
     reading.finish()
@@ -74,8 +78,8 @@ struct Part {
     text: String,
 }
 
-/// A matrix whose rows are being read.
-struct OpenMatrix {
+/// A matrix as read, whose numbers are not yet parsed.
+struct UnparsedMatrix {
     name: String,
     /// Line number of the matrix name.
     line: usize,
@@ -89,19 +93,23 @@ struct OpenMatrix {
     parts: Vec<Part>,
 }
 
+/// State of reading named matrices.
 struct Reading<'m> {
-    matrices: Vec<OpenMatrix>,
+    /// Matrices so far; rows belong to the last.
+    matrices: Vec<UnparsedMatrix>,
     notes: Vec<String>,
     budget: &'m ReadingBudget<'m>,
 }
 
 impl Reading<'_> {
-    fn line(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
+    /// Reads a line that is neither empty nor a comment. The kinds of lines are tried in this order:
+    /// matrix name, "Columns …", common factor, row, row that begins with a name, any other.
+    fn take_line(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
         if let Some(name_line) = name_line(line) {
             return if !name_line.assigned && self.awaits_columns() {
-                self.column_names(number, line)
+                self.take_column_names(number, line)
             } else {
-                self.begin(number, &name_line)
+                self.begin_matrix(number, &name_line)
             };
         }
         if is_columns_line(line) {
@@ -115,21 +123,21 @@ impl Reading<'_> {
             return Ok(());
         }
         if is_row_of_numbers(line) {
-            return self.row(number, line);
+            return self.take_row(number, line);
         }
         let has_row_names = self.matrices.last().is_some_and(|matrix| matrix.labelled);
         if has_row_names
             && let Some((_, rest)) = line.trim_start().split_once(char::is_whitespace)
             && is_row_of_numbers(rest)
         {
-            return self.row(number, rest);
+            return self.take_row(number, rest);
         }
-        self.other_line(number, line, has_row_names)
+        self.take_other_line(number, line, has_row_names)
     }
 
     /// Reads a line that is neither a name nor a row: a line with column names, a row with errors,
     /// or a line to be skipped.
-    fn other_line(
+    fn take_other_line(
         &mut self,
         number: usize,
         line: &str,
@@ -141,7 +149,7 @@ impl Reading<'_> {
             .filter(|word| is_number_word(word))
             .count();
         if numbers == 0 && (self.awaits_columns() || has_row_names) {
-            return self.column_names(number, line);
+            return self.take_column_names(number, line);
         }
         if 2 * numbers >= words {
             let what = format!("\"{}\" is not a row of numbers; correct it", excerpt(line));
@@ -159,14 +167,19 @@ impl Reading<'_> {
             .is_some_and(|matrix| matrix.assigned && matrix.parts.is_empty())
     }
 
-    fn begin(&mut self, number: usize, name_line: &NameLine<'_>) -> Result<(), VariableFault> {
+    /// Begins a matrix with the line of its name.
+    fn begin_matrix(
+        &mut self,
+        number: usize,
+        name_line: &NameLine<'_>,
+    ) -> Result<(), VariableFault> {
         let NameLine {
             name,
             assigned,
             rest,
         } = *name_line;
         self.budget.take(256 + name.len() as u64, 1, name)?;
-        self.matrices.push(OpenMatrix {
+        self.matrices.push(UnparsedMatrix {
             name: name.to_owned(),
             line: number,
             assigned,
@@ -177,12 +190,12 @@ impl Reading<'_> {
         if rest.is_empty() {
             Ok(())
         } else {
-            self.row(number, rest)
+            self.take_row(number, rest)
         }
     }
 
     /// Reads a line with column names; the rows below it then begin with names.
-    fn column_names(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
+    fn take_column_names(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
         if let Some(matrix) = self.matrices.last_mut() {
             matrix.labelled = true;
         }
@@ -206,7 +219,8 @@ impl Reading<'_> {
         }
     }
 
-    fn row(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
+    /// Adds a row to the last part of the last matrix.
+    fn take_row(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
         let Some(matrix) = self.matrices.last_mut() else {
             let what = "numbers without a name; write the name of the matrix on a line above them";
             return Err(VariableFault::line("", number, what));
@@ -224,12 +238,13 @@ impl Reading<'_> {
         Ok(())
     }
 
+    /// Converts the matrices to variables.
     fn finish(mut self) -> Result<NamedMatrices, VariableFault> {
         let mut variables: Vec<Variable> = Vec::with_capacity(self.matrices.len());
         let mut names = HashSet::with_capacity(self.matrices.len());
         for mut matrix in self.matrices {
             matrix.parts.retain(|part| !part.line_numbers.is_empty());
-            let OpenMatrix { name, line, .. } = &matrix;
+            let UnparsedMatrix { name, line, .. } = &matrix;
             if matrix.parts.is_empty() {
                 self.notes.push(format!(
                     "line {line} (\"{name}\") is skipped: no numbers follow"
@@ -264,7 +279,8 @@ impl Reading<'_> {
     }
 }
 
-impl OpenMatrix {
+impl UnparsedMatrix {
+    /// Parses the parts, and joins them.
     fn value(&self, budget: &ReadingBudget) -> Result<Value, VariableFault> {
         let mut tables = Vec::with_capacity(self.parts.len());
         for part in &self.parts {
@@ -284,12 +300,16 @@ impl Part {
             other => other,
         })?;
         match table.skipped.first() {
-            Some((line, text)) => {
+            Some(line) => {
                 let what = format!(
                     "\"{}\" is not a row like the others; complete it",
-                    excerpt(text)
+                    excerpt(&line.text)
                 );
-                Err(VariableFault::line(name, self.line_number(*line), what))
+                Err(VariableFault::line(
+                    name,
+                    self.line_number(line.number),
+                    what,
+                ))
             }
             None => Ok(table),
         }
@@ -300,26 +320,6 @@ impl Part {
         let number = self.line_numbers.get(line.saturating_sub(1));
         number.copied().unwrap_or(line)
     }
-}
-
-fn is_number_word(word: &str) -> bool {
-    let word = word.trim_end_matches([',', ';']);
-    !word.is_empty() && is_number(word)
-}
-
-/// Returns whether a line contains only numbers, with any separator.
-fn is_row_of_numbers(line: &str) -> bool {
-    let mut has_number = false;
-    for word in line.split(|c: char| c.is_whitespace() || matches!(c, ',' | ';' | '|')) {
-        if word.is_empty() {
-            continue;
-        }
-        if !is_number_word(word) {
-            return false;
-        }
-        has_number = true;
-    }
-    has_number
 }
 
 /// Joins the columns of tables into a matrix, and multiplies it by `scale`.
@@ -342,93 +342,13 @@ fn joined(
     }
     let columns = tables.iter().map(|table| table.columns.len()).sum();
     budget.take((rows * columns) as u64, 8, name)?;
+    // The tables hold their numbers by column: in order, these are the columns of the matrix.
     let values = tables
         .iter()
         .flat_map(|table| table.columns.iter().flatten())
         .map(|value| scale * value)
         .collect();
     Ok(Value::Array(Array::matrix(rows, columns, values)))
-}
-
-// Lines that programs print above the rows of a matrix.
-
-/// A line with the name of a matrix.
-#[derive(Debug, PartialEq, Eq)]
-struct NameLine<'t> {
-    name: &'t str,
-    /// Whether an equals sign follows the name.
-    assigned: bool,
-    /// Text after the name on the same line, such as numbers.
-    rest: &'t str,
-}
-
-/// Parses a line with a name, such as "A", "A =", "A:", "A (3x2)", "A = 5" or "A,,,"; `None` for
-/// any other line.
-fn name_line(line: &str) -> Option<NameLine<'_>> {
-    let line = line.trim().trim_end_matches([',', ';', '\t', ' ']);
-    let end = line
-        .find(|c: char| !(c.is_alphanumeric() || c == '_' || c == '.'))
-        .unwrap_or(line.len());
-    let (name, behind) = line.split_at(end);
-    if is_number(name) || !name.starts_with(|c: char| c.is_alphabetic() || c == '_') {
-        return None;
-    }
-    let behind = behind.trim_start();
-    if let Some(rest) = behind.strip_prefix('=') {
-        return Some(NameLine {
-            name,
-            assigned: true,
-            rest: without_size(rest.trim()),
-        });
-    }
-    let rest = without_size(behind.strip_prefix(':').unwrap_or(behind).trim());
-    if !rest.is_empty() {
-        return None;
-    }
-    Some(NameLine {
-        name,
-        assigned: false,
-        rest,
-    })
-}
-
-/// Removes leading matrix dimensions from a text: "(3x2)", "\[3 x 2\]", "3x2".
-fn without_size(text: &str) -> &str {
-    let inner = text.trim_start_matches(['(', '[']);
-    let (size, rest) = inner.split_at(inner.find([')', ']']).unwrap_or(inner.len()));
-    let Some((rows, columns)) = size.split_once(['x', '×']) else {
-        return text;
-    };
-    if is_count(rows.trim()) && is_count(columns.trim()) {
-        rest.trim_start_matches([')', ']']).trim()
-    } else {
-        text
-    }
-}
-
-fn is_count(word: &str) -> bool {
-    !word.is_empty() && word.bytes().all(|byte| byte.is_ascii_digit())
-}
-
-/// Returns the factor in a line such as "1.0e+03 *"; `None` for any other line.
-fn scale_line(line: &str) -> Option<f64> {
-    let factor = line.trim().strip_suffix('*')?.trim();
-    let factor: f64 = factor.parse().ok()?;
-    if factor.is_finite() {
-        Some(factor)
-    } else {
-        None
-    }
-}
-
-/// Returns whether a line announces a group of columns: "Columns 1 through 6", "Column 7:".
-fn is_columns_line(line: &str) -> bool {
-    let mut words = line.trim().trim_end_matches(':').split_whitespace();
-    matches!(words.next(), Some("Columns" | "Column"))
-        && words.all(|word| {
-            matches!(word, "through" | "and" | "to")
-                || word.bytes().all(|byte| byte.is_ascii_digit())
-        })
 }
 
 #[cfg(test)]
@@ -537,43 +457,5 @@ mod matrix_text_tests {
             let _ = read(&text);
             let _ = read_matrix(&text, "A", &ReadingBudget::new(1 << 20));
         }
-    }
-}
-
-#[cfg(test)]
-mod printed_line_tests {
-    use super::*;
-
-    #[test]
-    fn names_are_alone_or_before_a_sign() {
-        let line = |text| {
-            name_line(text).map(
-                |NameLine {
-                     name,
-                     assigned,
-                     rest,
-                 }| (name, assigned, rest),
-            )
-        };
-        assert_eq!(line("A"), Some(("A", false, "")));
-        assert_eq!(line("  A =  "), Some(("A", true, "")));
-        assert_eq!(line("sys.A = 5"), Some(("sys.A", true, "5")));
-        assert_eq!(line("A: (3 x 2)"), Some(("A", false, "")));
-        assert_eq!(line("A 3x2"), Some(("A", false, "")));
-        assert_eq!(line("A,,,"), Some(("A", false, "")));
-        for text in ["1 2", "nan", "x1 2 3", "x1 x2", "", "(A)"] {
-            assert_eq!(line(text), None, "{text}");
-        }
-    }
-
-    #[test]
-    fn factors_and_column_lines_are_recognised() {
-        assert_eq!(scale_line("   1.0e+03 *"), Some(1000.0));
-        assert_eq!(scale_line("1 2"), None);
-        assert!(
-            is_columns_line(" Columns 1 through 6")
-                && is_columns_line("Column 7:")
-                && !is_columns_line("Column a")
-        );
     }
 }

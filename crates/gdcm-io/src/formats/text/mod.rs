@@ -1,47 +1,65 @@
 //! Text files with numbers: tables in columns, frequency responses, matrices, and MATLAB
 //! statements.
+//!
+//! ```text
+//! bytes -> text                              (encoding)
+//!       -> table: columns, names, units      (table_reader, with layout, heading, cell_number)
+//!            -> frequency responses          (frequency_columns)
+//!       -> table, after complex numbers, words or times of day are replaced by plain numbers
+//!                                            (complex_columns, numbered_words)
+//!       -> matrices with names               (matrix_text)
+//!       -> variables of MATLAB statements    (matlab_statements)
+//! ```
 
 mod cell_number;
 mod clock_time;
 mod column_meaning;
-mod columns;
 mod complex_columns;
 pub(crate) mod encoding;
 mod frequency_columns;
 mod heading;
+mod heading_cells;
 mod heading_units;
 mod layout;
 mod lines;
-mod literal_functions;
-mod literal_values;
-mod literals;
+mod matlab_brackets;
+mod matlab_functions;
+mod matlab_number_syntax;
 mod matlab_scanner;
+mod matlab_statement_values;
+mod matlab_statements;
+mod matlab_value_error;
+mod matlab_workspace;
+mod matrix_lines;
 mod matrix_text;
+mod numbered_words;
+mod quantity_words;
 mod response_columns;
 mod response_label;
 mod response_recognition;
 pub(crate) mod sections;
 mod separator;
+mod table_reader;
+mod text_table;
 mod unrecognised;
-mod word_columns;
-mod workspace;
 
 use crate::file_error::FileError;
 use crate::formats::text::encoding::decode;
-use crate::formats::text::literals::{Statements, read_literals};
+use crate::formats::text::matlab_statements::{Statements, read_statements};
 use crate::formats::{Contents, Importer};
 
-pub(crate) use columns::{TextTable, read_table};
 pub(crate) use complex_columns::split_complex;
 pub(crate) use frequency_columns::FrequencyColumns;
 pub(crate) use matrix_text::{read_matrices, read_matrix};
+pub(crate) use numbered_words::{NumberedText, numbered_words};
 pub(crate) use response_columns::{RecognisedResponse, ResponsePoints};
+pub(crate) use table_reader::read_table;
+pub(crate) use text_table::TextTable;
 pub(crate) use unrecognised::Unrecognised;
 pub use unrecognised::UnsaidUnit;
-pub(crate) use word_columns::{NumberedText, numbered_words};
 
 /// Importer of MATLAB and Octave statements.
-pub(crate) const LITERALS: Importer = Importer {
+pub(crate) const MATLAB_STATEMENTS: Importer = Importer {
     name: "MATLAB statements",
     endings: &["m"],
     recognises: |bytes, ending| {
@@ -52,7 +70,7 @@ pub(crate) const LITERALS: Importer = Importer {
         }
     },
     read: |bytes, path, budget| {
-        let read = decode(bytes, budget).and_then(|text| read_literals(&text, budget));
+        let read = decode(bytes, budget).and_then(|text| read_statements(&text, budget));
         let Statements { variables, notes } =
             read.map_err(|fault| FileError::variables(path, fault))?;
         Ok(Contents::Variables {
@@ -110,14 +128,15 @@ fn begins_with_numbers(bytes: &[u8]) -> bool {
         if line.contains('=') {
             return false;
         }
-        if is_row_of_numbers(line) {
+        if is_row_of_plain_numbers(line) {
             return true;
         }
     }
     false
 }
 
-fn is_row_of_numbers(line: &str) -> bool {
+/// Returns whether a line holds only numbers in the notation of Rust, with any separator.
+fn is_row_of_plain_numbers(line: &str) -> bool {
     let mut has_number = false;
     for cell in line.split([',', ';', '\t', ' ']) {
         if cell.is_empty() {

@@ -1,9 +1,10 @@
 //! Columns of a table that hold a frequency response, and its points.
 
-use crate::formats::text::columns::TextTable;
+use crate::formats::text::text_table::TextTable;
 use crate::reading_budget::VariableFault;
 
-/// A frequency response in columns of a table.
+/// A frequency response in columns of a table; its frequencies are in another column, which all
+/// responses of the table share.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RecognisedResponse {
     /// Output, if the column names give it.

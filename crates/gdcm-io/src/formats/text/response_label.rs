@@ -45,6 +45,7 @@ impl ResponseLabel {
         }
     }
 
+    /// Creates a label from the texts of output and input, either of which may be empty.
     fn from_parts(output: &str, input: &str) -> Self {
         Self {
             output: channel(output),
@@ -55,7 +56,8 @@ impl ResponseLabel {
     /// Parses a name that is common in flight dynamics, such as "q_delta_lon" or "roll_rate";
     /// `None` for any other name.
     fn from_field_name(text: &str) -> Option<Self> {
-        let ResponseName { output, input } = ResponseName::find(text, KnownChannels::Field).ok()?;
+        let ResponseName { output, input } =
+            ResponseName::find(text, KnownChannels::AliasTable).ok()?;
         let names_both = output.is_some() && input.is_some();
         let is_channel = output.as_deref() == Some(text) || input.as_deref() == Some(text);
         if names_both || is_channel {

@@ -1,13 +1,22 @@
 //! Assembly of frequency responses from the columns of a table.
+//!
+//! A response needs two columns: real and imaginary part, or magnitude and phase. Columns belong to
+//! the same response if their names give the same output and input; a column whose name gives none
+//! belongs to the response of the columns before it. A missing unit that the numbers do not reveal is
+//! not guessed: it is added to `unsaid`, and the user is asked.
+//!
+//! `Recognition::frequency` is called before `Recognition::responses`, so that notes and missing
+//! units are listed with the frequency first; afterwards, the results are in the public fields.
 
 use std::f64::consts::TAU;
 
-use crate::formats::text::column_meaning::{ColumnMeaning, KnownUnit, Quantity};
-use crate::formats::text::columns::TextTable;
+use crate::formats::text::column_meaning::ColumnMeaning;
+use crate::formats::text::quantity_words::{KnownUnit, Quantity};
 use crate::formats::text::response_columns::{
     CoherenceColumn, RecognisedResponse, ResponseParts, column_name, column_place,
 };
 use crate::formats::text::response_label::ResponseLabel;
+use crate::formats::text::text_table::TextTable;
 use crate::formats::text::unrecognised::{Unrecognised, UnsaidUnit, unrecognised};
 
 /// Maximum difference between the rectangular and the polar form of a response, relative to its
@@ -17,6 +26,7 @@ const FORM_TOLERANCE: f64 = 0.01;
 /// 1 result from rounding and noise.
 const LARGEST_COHERENCE: f64 = 1.5;
 
+/// Column with the frequencies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct FrequencyColumn {
     /// Column index, from 0.
@@ -37,47 +47,8 @@ pub(super) struct Recognition<'t> {
     pub(super) unused: Vec<String>,
 }
 
-/// Columns that belong to the same response.
-#[derive(Default)]
-struct Group {
-    label: ResponseLabel,
-    columns: Vec<GroupColumn>,
-}
-
-struct GroupColumn {
-    quantity: Quantity,
-    column: usize,
-}
-
-/// Indices of the columns with magnitude and phase.
-#[derive(Clone, Copy)]
-struct PolarColumns {
-    magnitude: usize,
-    phase: usize,
-}
-
-/// Interpretation of a magnitude and a phase column.
-struct PolarReading {
-    parts: ResponseParts,
-    /// Those columns of the two whose missing unit the user must state.
-    unsaid: Vec<UnsaidUnit>,
-}
-
-impl Group {
-    fn column(&self, quantity: Quantity) -> Option<usize> {
-        let found = self.columns.iter().find(|known| known.quantity == quantity);
-        found.map(|known| known.column)
-    }
-
-    fn polar(&self) -> Option<PolarColumns> {
-        Some(PolarColumns {
-            magnitude: self.column(Quantity::Magnitude)?,
-            phase: self.column(Quantity::Phase)?,
-        })
-    }
-}
-
 impl<'t> Recognition<'t> {
+    /// Interprets each column by its name and unit.
     pub(super) fn new(table: &'t TextTable) -> Self {
         Self {
             table,
@@ -140,12 +111,12 @@ impl<'t> Recognition<'t> {
                 self.unused.push(column_name(self.table, column));
             }
             let Some(parts) = self.parts(&group) else {
-                self.leave_out(&group);
+                self.note_incomplete(&group);
                 continue;
             };
             let mut coherence = None;
             if let Some(column) = group.column(Quantity::Coherence) {
-                coherence = Some(self.coherence(column));
+                coherence = Some(self.read_coherence(column));
             }
             responses.push(RecognisedResponse {
                 output: group.label.output,
@@ -160,7 +131,7 @@ impl<'t> Recognition<'t> {
     /// Returns the columns that give the complex numbers of a group; real and imaginary parts are
     /// preferred to magnitude and phase. Returns `None` if a part is missing.
     fn parts(&mut self, group: &Group) -> Option<ResponseParts> {
-        let polar = group.polar();
+        let polar = group.polar_columns();
         if let Some(re) = group.column(Quantity::Real)
             && let Some(im) = group.column(Quantity::Imaginary)
         {
@@ -168,22 +139,22 @@ impl<'t> Recognition<'t> {
             self.note(re, "real part", "");
             self.note(im, "imaginary part", "");
             if let Some(columns) = polar {
-                let polar = self.polar(columns);
+                let polar = self.read_polar(columns);
                 // Do not ask for missing units of the polar form, which serves only as a check.
                 if polar.unsaid.is_empty() {
-                    self.compare(parts, polar.parts);
+                    self.note_agreement(parts, polar.parts);
                 }
             }
             return Some(parts);
         }
-        let polar = self.polar(polar?);
+        let polar = self.read_polar(polar?);
         self.unsaid.extend(polar.unsaid);
         Some(polar.parts)
     }
 
     /// Notes that the columns of a group are not used because one part of the complex number is
     /// missing.
-    fn leave_out(&mut self, group: &Group) {
+    fn note_incomplete(&mut self, group: &Group) {
         for known in &group.columns {
             if known.quantity == Quantity::Error {
                 continue;
@@ -200,7 +171,7 @@ impl<'t> Recognition<'t> {
     /// Interprets a coherence column. It is in percent if its unit is % or a number exceeds
     /// `LARGEST_COHERENCE`. If its unit is missing (a column called gamma), the user is asked
     /// whether it holds γ or γ².
-    fn coherence(&mut self, column: usize) -> CoherenceColumn {
+    fn read_coherence(&mut self, column: usize) -> CoherenceColumn {
         let unit = self.meanings[column].unit;
         if unit.is_none() {
             self.unsaid.push(UnsaidUnit {
@@ -261,7 +232,7 @@ impl<'t> Recognition<'t> {
 
     /// Interprets a magnitude and a phase column; missing units are derived from the numbers if
     /// possible.
-    fn polar(&mut self, columns: PolarColumns) -> PolarReading {
+    fn read_polar(&mut self, columns: PolarColumns) -> PolarReading {
         let PolarColumns { magnitude, phase } = columns;
         let mut unsaid = Vec::new();
         let mut in_db = false;
@@ -328,7 +299,7 @@ impl<'t> Recognition<'t> {
 
     /// Notes whether the rectangular and the polar form of a response agree within
     /// `FORM_TOLERANCE`.
-    fn compare(&mut self, rectangular: ResponseParts, polar: ResponseParts) {
+    fn note_agreement(&mut self, rectangular: ResponseParts, polar: ResponseParts) {
         let table = self.table;
         let differing = (0..table.lines.len()).find(|&row| {
             let (re, im) = rectangular.complex(table, row);
@@ -342,11 +313,58 @@ impl<'t> Recognition<'t> {
             magnitude + 1,
             phase + 1
         );
-        let taken = "the real and imaginary parts, which are used";
+        let used_parts = "the real and imaginary parts, which are used";
         self.notes.push(match differing {
-            None => format!("{columns} agree with {taken}"),
-            Some(row) => format!("{columns} differ from {taken} (line {})", table.lines[row]),
+            None => format!("{columns} agree with {used_parts}"),
+            Some(row) => format!(
+                "{columns} differ from {used_parts} (line {})",
+                table.lines[row]
+            ),
         });
+    }
+}
+
+/// Columns that belong to the same response.
+#[derive(Default)]
+struct Group {
+    label: ResponseLabel,
+    columns: Vec<GroupColumn>,
+}
+
+/// Column that holds a quantity of a response.
+struct GroupColumn {
+    quantity: Quantity,
+    /// Column index, from 0.
+    column: usize,
+}
+
+/// Indices of the columns with magnitude and phase.
+#[derive(Clone, Copy)]
+struct PolarColumns {
+    magnitude: usize,
+    phase: usize,
+}
+
+/// Interpretation of a magnitude and a phase column.
+struct PolarReading {
+    parts: ResponseParts,
+    /// Those columns of the two whose missing unit the user must state.
+    unsaid: Vec<UnsaidUnit>,
+}
+
+impl Group {
+    /// Returns the index of the column with a quantity.
+    fn column(&self, quantity: Quantity) -> Option<usize> {
+        let found = self.columns.iter().find(|known| known.quantity == quantity);
+        found.map(|known| known.column)
+    }
+
+    /// Returns magnitude and phase; `None` unless both are present.
+    fn polar_columns(&self) -> Option<PolarColumns> {
+        Some(PolarColumns {
+            magnitude: self.column(Quantity::Magnitude)?,
+            phase: self.column(Quantity::Phase)?,
+        })
     }
 }
 
@@ -368,6 +386,7 @@ fn group_for(groups: &[Group], quantity: Quantity, label: &ResponseLabel) -> Opt
         .rposition(|group| group.label == *label && group.column(quantity).is_none())
 }
 
+/// Returns the meaning of each column.
 fn column_meanings(table: &TextTable) -> Vec<ColumnMeaning> {
     let mut meanings = Vec::with_capacity(table.columns.len());
     for column in 0..table.columns.len() {

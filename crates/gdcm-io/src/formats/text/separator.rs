@@ -78,6 +78,7 @@ impl Separator {
         line
     }
 
+    /// Returns whether a character ends a cell.
     fn matches(self, character: char) -> bool {
         if self == Separator::Blanks {
             character.is_whitespace()
@@ -106,6 +107,7 @@ impl<'t> Iterator for Cells<'t> {
                 return None;
             }
         }
+        // `behind` is the text in which the end of the cell is sought: without the quotation.
         let Quoted { cell, behind } = Quoted::parse(rest).unwrap_or(Quoted {
             cell: Cow::Borrowed(""),
             behind: rest,

@@ -1,7 +1,7 @@
 //! Tables that are not recognised as frequency responses, and the units that they lack.
 
-use crate::formats::text::columns::TextTable;
 use crate::formats::text::response_columns::column_place;
+use crate::formats::text::text_table::TextTable;
 use crate::reading_budget::VariableFault;
 
 /// A column whose unit is not given and may be either of two.

@@ -106,7 +106,7 @@ impl DelayReading {
                 "{name} looks like a delay, but its name gives neither the delayed signals nor the unit: {WAYS}"
             )),
             Delayed::Inside => Err(format!(
-                "{name}: internal delays are not supported; absorb them first: sys = pade(sys, 3)"
+                "{name}: internal delays are not supported; approximate them first: sys = pade(sys, 3); in discrete time: sys = absorbDelay(sys)"
             )),
             Delayed::Inputs => {
                 let delays = self.channel_delays(field, self.inputs, "input")?;
@@ -148,7 +148,8 @@ impl DelayReading {
     }
 
     /// Splits the delays of single responses (a matrix, outputs x inputs) into delays of inputs and
-    /// of outputs. The output with the smallest delay gets zero.
+    /// of outputs, `tau_oi = tau_o + tau_i`. With `f` the output with the smallest delay to input
+    /// 0, `tau_f = 0`, hence `tau_i = tau_fi` and `tau_o = tau_o0 - tau_f0`.
     ///
     /// # Errors
     /// The reason if the delays cannot be split within `ROUNDING_S`.
@@ -163,8 +164,8 @@ impl DelayReading {
         let values = self.response_delay_values(field)?;
         let values = self.in_seconds(field, &values)?;
         let delays = DMatrix::from_column_slice(self.outputs, self.inputs, &values);
-        let first = delays.column(0).imin();
-        let inputs: Vec<f64> = delays.row(first).iter().copied().collect();
+        let fastest = delays.column(0).imin();
+        let inputs: Vec<f64> = delays.row(fastest).iter().copied().collect();
         let outputs: Vec<f64> = delays
             .column(0)
             .iter()
@@ -176,7 +177,7 @@ impl DelayReading {
                 if remainder.abs() > ROUNDING_S {
                     return Err(format!(
                         "{name}, output {}, input {}: the delays of single responses are not the sum of an output delay and an input delay; \
-                         absorb them first: sys = pade(sys, 3)",
+                         approximate them first: sys = pade(sys, 3); in discrete time: sys = absorbDelay(sys)",
                         output + 1,
                         input + 1
                     ));
@@ -191,19 +192,18 @@ impl DelayReading {
     /// Returns the delays of all responses in the unit of the file, output index fastest; a single
     /// number applies to all responses.
     fn response_delay_values(&self, field: &DelayField<'_>) -> Result<Vec<f64>, String> {
-        let p = self.outputs;
-        let m = self.inputs;
+        let [outputs, inputs] = [self.outputs, self.inputs];
         let values = list_of(field.name, field.value)?;
         if let [delay] = values.as_slice() {
-            return Ok(vec![*delay; p * m]);
+            return Ok(vec![*delay; outputs * inputs]);
         }
-        let has_shape = array_of(field.value).is_some_and(|array| array.shape == [p, m]);
-        let is_row_or_column = (p == 1 || m == 1) && values.len() == p * m;
+        let has_shape = array_of(field.value).is_some_and(|array| array.shape == [outputs, inputs]);
+        let is_row_or_column = (outputs == 1 || inputs == 1) && values.len() == outputs * inputs;
         if has_shape || is_row_or_column {
             return Ok(values);
         }
         Err(format!(
-            "{}: expected a delay for each response, {p} x {m} (outputs x inputs), found {}; {WAYS}",
+            "{}: expected a delay for each response, {outputs} x {inputs} (outputs x inputs), found {}; {WAYS}",
             field.name,
             field.value.words()
         ))

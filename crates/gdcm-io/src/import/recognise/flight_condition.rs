@@ -1,10 +1,13 @@
-//! Flight condition and origin of a model, from the fields beside it.
+//! Flight condition and origin of a model, from the fields beside it and in the enclosing records.
+//!
+//! A quantity may be given as a field (`airspeed_kt`) or in a struct (`trim.airspeed_kt`), beside the
+//! model or in a record that encloses it. A list beside an array of models has an entry for each.
 
 use std::collections::BTreeMap;
 
 use gdcm_model::assembly::found_model::Facts;
 use gdcm_model::dataset::model::Origin;
-use gdcm_model::names::name_facts::RowRole;
+use gdcm_model::names::RowRole;
 use gdcm_model::units::number;
 
 use super::record::Record;
@@ -29,7 +32,7 @@ const OFFSET_PREFIX: &str = "by_";
 /// Limit of the absolute value of a condition's number.
 const GREATEST_CONDITION: f64 = 1e9;
 
-/// Index in an array of models; a list beside the array has an entry for each model.
+/// Position of a model in an array of models.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Page {
     /// Index, counted from 0.
@@ -48,15 +51,15 @@ impl Page {
 /// The reason if the length of a list differs from the number of models, or a value contradicts an
 /// enclosing record.
 pub(super) fn facts_of(record: &Record<'_>, page: Page) -> Result<Facts, String> {
-    let condition = match fact(record, CONDITIONS, page)? {
+    let condition = match quantity(record, CONDITIONS, page)? {
         Some(id) if id.fract() == 0.0 && id.abs() < GREATEST_CONDITION => Some(id as i64),
         _ => None,
     };
     Ok(Facts {
         condition,
-        airspeed_kt: fact(record, AIRSPEEDS, page)?,
-        altitude_ft: fact(record, ALTITUDES, page)?,
-        mass_kg: fact(record, MASSES, page)?,
+        airspeed_kt: quantity(record, AIRSPEEDS, page)?,
+        altitude_ft: quantity(record, ALTITUDES, page)?,
+        mass_kg: quantity(record, MASSES, page)?,
         name: name_beside(record, page),
         ..Facts::default()
     })
@@ -67,12 +70,12 @@ pub(super) fn facts_of(record: &Record<'_>, page: Page) -> Result<Facts, String>
 ///
 /// # Errors
 /// The reason if different values are given.
-fn fact(record: &Record<'_>, names: &[&str], page: Page) -> Result<Option<f64>, String> {
+fn quantity(record: &Record<'_>, names: &[&str], page: Page) -> Result<Option<f64>, String> {
     let mut known: Option<f64> = None;
     for (level, record) in record.with_outer().enumerate() {
         let page = if level == 0 { page } else { Page::ONLY };
-        let beside = figure(record, names, page)?;
-        let inside = figure_inside(record, names)?;
+        let beside = number_beside(record, names, page)?;
+        let inside = number_inside(record, names)?;
         for value in [beside, inside].into_iter().flatten() {
             match known {
                 Some(known) if known != value => {
@@ -91,7 +94,7 @@ fn fact(record: &Record<'_>, names: &[&str], page: Page) -> Result<Option<f64>, 
 }
 
 /// Returns the number in a field; if the field is a list, its entry for the model.
-fn figure(record: &Record<'_>, names: &[&str], page: Page) -> Result<Option<f64>, String> {
+fn number_beside(record: &Record<'_>, names: &[&str], page: Page) -> Result<Option<f64>, String> {
     let Some(field) = record.find(names) else {
         return Ok(None);
     };
@@ -121,7 +124,7 @@ fn figure(record: &Record<'_>, names: &[&str], page: Page) -> Result<Option<f64>
 
 /// Returns a quantity from a struct that holds the flight condition: `trim.airspeed_kt`,
 /// `condition.id`.
-fn figure_inside(record: &Record<'_>, names: &[&str]) -> Result<Option<f64>, String> {
+fn number_inside(record: &Record<'_>, names: &[&str]) -> Result<Option<f64>, String> {
     for keys in CONDITION_STRUCTS {
         let Some(field) = record.find(keys) else {
             continue;
@@ -129,10 +132,10 @@ fn figure_inside(record: &Record<'_>, names: &[&str]) -> Result<Option<f64>, Str
         let Value::Struct(records) = field.value else {
             continue;
         };
-        let inner = Record::from_struct(records, 0, None, 0);
-        let mut value = figure(&inner, names, Page::ONLY)?;
+        let inner = Record::from_struct(records, 0);
+        let mut value = number_beside(&inner, names, Page::ONLY)?;
         if value.is_none() && names == CONDITIONS && keys != ["trim"] {
-            value = figure(&inner, &["id"], Page::ONLY)?;
+            value = number_beside(&inner, &["id"], Page::ONLY)?;
         }
         if value.is_none() {
             continue;
@@ -237,7 +240,7 @@ fn offsets_of(record: &Record<'_>) -> BTreeMap<String, f64> {
             continue;
         };
         record.mark_used(field.name);
-        let inner = Record::from_struct(records, 0, None, 0);
+        let inner = Record::from_struct(records, 0);
         for coordinate in inner.fields() {
             match scalar_of(coordinate.value) {
                 Some(offset) => {

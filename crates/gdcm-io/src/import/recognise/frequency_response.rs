@@ -1,19 +1,17 @@
 //! Recognition of models given by measured frequency responses.
 
-use std::f64::consts::TAU;
-
 use gdcm_model::assembly::FoundModel;
+use gdcm_model::dataset::dataset_draft::{ModelDraft, ResponseArray, ResponseDraft};
 use gdcm_model::dataset::measured_response::Estimate;
 use gdcm_model::dataset::model::Origin;
-use gdcm_model::dataset::unchecked_dataset::{ModelDraft, ResponseArray, ResponseDraft};
-use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit};
 
 use super::delays::refuse_delays;
 use super::flight_condition::{Page, facts_of, origin_of};
 use super::labels::{inputs_of, outputs_of};
 use super::record::Record;
+use super::response_frequencies::{Frequencies, has_several_frequencies};
 use super::state_space::source_of;
-use super::values::{array_of, first_text_of, list_of};
+use super::values::array_of;
 use crate::files::model_collection::bare_draft;
 use crate::formats::variables::Array;
 
@@ -30,13 +28,6 @@ const RESPONSES: &[&str] = &[
 ];
 const REAL_PARTS: &[&str] = &["re", "real", "Hre"];
 const IMAGINARY_PARTS: &[&str] = &["im", "imag", "Him"];
-/// Names of frequencies in rad/s.
-const RADIANS: &[&str] = &["omega", "omega_rad_s", "w", "freq_rad_s", "frequency_rad_s"];
-/// Names of frequencies in an unspecified unit.
-const FREQUENCIES: &[&str] = &["Frequency", "freq", "frequencies", "f"];
-/// Names of frequencies in Hz.
-const HERTZ: &[&str] = &["f_hz", "freq_hz", "frequency_hz"];
-const UNITS: &[&str] = &["FrequencyUnit", "FreqUnits", "Units", "frequency_unit"];
 const COHERENCES: &[&str] = &[
     "coherence",
     "coher",
@@ -49,17 +40,49 @@ const COHERENCES: &[&str] = &[
 const GAMMAS: &[&str] = &["gamma", "γ"];
 
 /// Returns whether fields form a frequency response: more than one frequency, and either complex
-/// values or real and imaginary parts.
+/// values or real and imaginary parts. Marks the fields of these values as used.
 pub(super) fn is_response(record: &Record<'_>) -> bool {
-    let frequencies = record
-        .find(RADIANS)
-        .or_else(|| record.find(FREQUENCIES))
-        .or_else(|| record.find(HERTZ));
-    let Some(frequencies) = frequencies else {
-        return false;
+    has_several_frequencies(record)
+        && (complex_array(record).is_some() || real_and_imaginary(record).is_some())
+}
+
+/// Reads the measured response in `record`.
+pub(super) fn response(record: &Record<'_>, variable: &str) -> Result<FoundModel, String> {
+    refuse_delays(record)?;
+    let frequencies = Frequencies::read(record)?;
+    let stored = StoredResponse::find(record)?;
+    let layout = ResponseLayout::new(stored.shape, frequencies.omega.len())?;
+    let coherence = coherence_of(record, &stored, &layout)?;
+    let response = ResponseDraft {
+        re: layout.ordered("response", stored.re)?,
+        im: layout.ordered("response", stored.im)?,
+        omega: frequencies.omega,
+        coherence,
+        valid_bands: None,
+        estimate: Estimate::default(),
     };
-    let has_frequencies = array_of(frequencies.value).is_some_and(|array| array.len() > 1);
-    has_frequencies && (complex_array(record).is_some() || real_and_imaginary(record).is_some())
+    let origin = match origin_of(record) {
+        Origin::Identified { method, order } => Origin::Identified { method, order },
+        Origin::Nominal { .. } | Origin::Perturbed { .. } => Origin::Identified {
+            method: None,
+            order: None,
+        },
+    };
+    let mut notes = Vec::new();
+    if frequencies.is_hertz {
+        notes.push("frequencies in Hz".to_owned());
+    }
+    Ok(FoundModel {
+        draft: ModelDraft {
+            response: Some(response),
+            source: Some(source_of(variable)),
+            ..bare_draft(variable.to_owned(), origin)
+        },
+        inputs: inputs_of(record, layout.inputs)?,
+        outputs: outputs_of(record, layout.outputs)?,
+        facts: facts_of(record, Page::ONLY)?,
+        notes,
+    })
 }
 
 /// Returns the array of complex values and marks its field as used; `None` if there is none.
@@ -111,45 +134,6 @@ impl<'v> StoredResponse<'v> {
     }
 }
 
-/// Reads the measured response in `record`.
-pub(super) fn response(record: &Record<'_>, variable: &str) -> Result<FoundModel, String> {
-    refuse_delays(record)?;
-    let frequencies = Frequencies::read(record)?;
-    let stored = StoredResponse::find(record)?;
-    let layout = ResponseLayout::new(stored.shape, frequencies.omega.len())?;
-    let coherence = coherence_of(record, &stored, &layout)?;
-    let response = ResponseDraft {
-        re: layout.ordered("response", stored.re)?,
-        im: layout.ordered("response", stored.im)?,
-        omega: frequencies.omega,
-        coherence,
-        valid_bands: None,
-        estimate: Estimate::default(),
-    };
-    let origin = match origin_of(record) {
-        Origin::Identified { method, order } => Origin::Identified { method, order },
-        Origin::Nominal { .. } | Origin::Perturbed { .. } => Origin::Identified {
-            method: None,
-            order: None,
-        },
-    };
-    let mut notes = Vec::new();
-    if frequencies.is_hertz {
-        notes.push("frequencies in Hz".to_owned());
-    }
-    Ok(FoundModel {
-        draft: ModelDraft {
-            response: Some(response),
-            source: Some(source_of(variable)),
-            ..bare_draft(variable.to_owned(), origin)
-        },
-        inputs: inputs_of(record, layout.inputs)?,
-        outputs: outputs_of(record, layout.outputs)?,
-        facts: facts_of(record, Page::ONLY)?,
-        notes,
-    })
-}
-
 /// Returns the coherence γ²; `None` if the record has none.
 ///
 /// # Errors
@@ -181,72 +165,14 @@ fn coherence_of(
     }
 }
 
-/// Frequencies of a response.
-struct Frequencies {
-    /// Angular frequencies \[rad/s\].
-    omega: Vec<f64>,
-    /// Whether the file gives the frequencies in Hz or in a multiple of Hz.
-    is_hertz: bool,
-}
-
-impl Frequencies {
-    fn read(record: &Record<'_>) -> Result<Self, String> {
-        let unit_text = record
-            .get(UNITS)
-            .and_then(first_text_of)
-            .unwrap_or_default();
-        let unit = PhysicalUnit::of(&unit_text);
-        let multiple_of_hertz = unit.filter(|unit| unit.dimension == Dimension::Frequency);
-        let angular_rate = unit.filter(|unit| unit.name.starts_with("rad/"));
-        // Without a unit, MATLAB and python-control use rad/s.
-        let has_default = record.class.is_some() || record.get(&["frdata", "fresp"]).is_some();
-        let (field, is_hertz) = if let Some(field) = record.find(RADIANS) {
-            (field, multiple_of_hertz.is_some())
-        } else if let Some(field) = record.find(FREQUENCIES) {
-            if unit_text.is_empty() && !has_default {
-                return Err(
-                    "frequencies: unit missing, rad/s or Hz; call them omega_rad_s or f_hz, or give \"rad/s\" or \"Hz\" \
-                        beside them as frequency_unit"
-                        .to_owned(),
-                );
-            }
-            (field, multiple_of_hertz.is_some())
-        } else if let Some(field) = record.find(HERTZ) {
-            (field, true)
-        } else {
-            return Err("frequencies are missing".to_owned());
-        };
-        let values = list_of("frequencies", record.take(field))?;
-        let factor = if is_hertz {
-            match multiple_of_hertz {
-                Some(unit) => TAU * unit.size,
-                None => TAU * 1.0,
-            }
-        } else if let Some(unit) = angular_rate {
-            unit.size
-        } else {
-            match unit_text.to_lowercase().as_str() {
-                "" | "rad" | "rads" | "rad/timeunit" => 1.0,
-                other => {
-                    return Err(format!(
-                        "frequencies are in \"{other}\"; expected rad/s or Hz"
-                    ));
-                }
-            }
-        };
-        Ok(Self {
-            omega: values.into_iter().map(|value| value * factor).collect(),
-            is_hertz,
-        })
-    }
-}
-
 /// Dimensions and index order of a stored response.
 struct ResponseLayout {
     outputs: usize,
     inputs: usize,
     /// Number of frequencies.
     count: usize,
+    // Distances in the file between values whose output, input or frequency index differs by 1. In
+    // a file, the first index runs fastest.
     output_stride: usize,
     input_stride: usize,
     frequency_stride: usize,
@@ -298,8 +224,8 @@ impl ResponseLayout {
         for output in 0..self.outputs {
             for input in 0..self.inputs {
                 let start = output * self.output_stride + input * self.input_stride;
-                for k in 0..self.count {
-                    ordered.push(values[start + k * self.frequency_stride]);
+                for frequency in 0..self.count {
+                    ordered.push(values[start + frequency * self.frequency_stride]);
                 }
             }
         }

@@ -79,8 +79,8 @@ fn labels(
     side: ChannelSide,
     count: usize,
 ) -> Result<Vec<ChannelLabel>, String> {
-    let names = list_of_labels(record, side.of(INPUT_NAMES, OUTPUT_NAMES), side, count)?;
-    let units = list_of_labels(record, side.of(INPUT_UNITS, OUTPUT_UNITS), side, count)?;
+    let names = list_of_labels(record, side.pick(INPUT_NAMES, OUTPUT_NAMES), side, count)?;
+    let units = list_of_labels(record, side.pick(INPUT_UNITS, OUTPUT_UNITS), side, count)?;
     let names = names.unwrap_or_else(|| vec![String::new(); count]);
     let mut labels: Vec<ChannelLabel> = names.iter().map(|name| label_of(name)).collect();
     for (label, unit) in labels.iter_mut().zip(units.into_iter().flatten()) {
@@ -182,7 +182,7 @@ fn label_texts(field: &str, value: &Value) -> Result<Option<Vec<String>>, String
 
 /// Returns the label of a channel object as a string, with its unit in brackets: "P [deg/s]".
 fn channel_object_text(records: &StructArray, index: usize) -> Option<String> {
-    let record = Record::from_struct(records, index, None, 0);
+    let record = Record::from_struct(records, index);
     let name = record.get(LABEL_NAMES).and_then(first_text_of)?;
     let unit = record
         .get(LABEL_UNITS)

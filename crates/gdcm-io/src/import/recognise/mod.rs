@@ -11,6 +11,7 @@ mod flight_condition;
 mod frequency_response;
 pub(super) mod labels;
 pub(super) mod record;
+mod response_frequencies;
 mod search;
 mod state_space;
 mod suffixed_matrices;
@@ -41,7 +42,7 @@ pub(crate) const MOST_FOUND: usize = 10_000;
 /// Work steps charged to the budget for each field, which is compared with all recognised names.
 const STEPS: u64 = 64;
 /// Variables that describe the file, and are therefore not listed as unused.
-const SILENT: [&str; 5] = [
+const NEVER_UNUSED: [&str; 5] = [
     "format",
     "version",
     "__header__",
@@ -59,6 +60,7 @@ pub(crate) fn recognise(
     let read = |record: &Record<'_>, variable: &str| read_models(record, variable, pages_first);
     let mut found = search(variables, budget, &read)?;
     let suffixed = suffixed_models(variables, &read, budget)?;
+    // Models with suffixes come first: their matrices are variables of the file itself.
     found.items.splice(0..0, suffixed.found.items);
     found.faults.splice(0..0, suffixed.found.faults);
     if found.items.is_empty() && found.faults.is_empty() {
@@ -68,7 +70,7 @@ pub(crate) fn recognise(
     found.ignored.clear();
     let mut listed = BTreeSet::new();
     for name in std::mem::take(&mut found.unused) {
-        if suffixed.used.contains(&name) || SILENT.contains(&name.as_str()) {
+        if suffixed.used.contains(&name) || NEVER_UNUSED.contains(&name.as_str()) {
             continue;
         }
         let name = without_indices(&name);

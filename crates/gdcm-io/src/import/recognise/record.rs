@@ -1,4 +1,9 @@
 //! Named fields that belong together: a struct, an object, or the variables of a file.
+//!
+//! A record knows the record that encloses it, whose labels and flight condition apply to its models,
+//! and remembers which of its fields were used, so that the others can be reported. MATLAB objects
+//! store the fields that other files hold directly in *parts* (`Data_`); in an array of models, a part
+//! has an element for each model, called *page*.
 
 use std::cell::{OnceCell, RefCell};
 use std::collections::{BTreeSet, HashMap};
@@ -73,10 +78,15 @@ impl<'v> Record<'v> {
         }
     }
 
-    /// Creates a record from element `index` of a struct array, with the fields in the parts of an
-    /// object, because MATLAB objects store their matrices in `Data_`. If a part is an array, its
-    /// element `page` is used.
-    pub(crate) fn from_struct(
+    /// Creates a record from element `index` of a struct array.
+    pub(crate) fn from_struct(records: &'v StructArray, index: usize) -> Self {
+        Self::from_object(records, index, None, 0)
+    }
+
+    /// Creates a record from element `index` of a struct array or, if `class` is given, of an object
+    /// array. The fields in the parts of an object are added to its own; of a part that is an array,
+    /// those of the element `page`.
+    pub(super) fn from_object(
         records: &'v StructArray,
         index: usize,
         class: Option<&'v str>,

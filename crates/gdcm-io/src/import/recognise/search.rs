@@ -1,4 +1,17 @@
-//! Search for models or records through structs, objects, cells and arrays.
+//! Search for models or flight records through structs, objects, cells and arrays.
+//!
+//! ```text
+//! 1  recognise the variables of the file together               (try_record)
+//! 2  for each variable: descend into its value
+//!      struct, object: for each element of the array
+//!          recognise it, or each page of it                     (try_pages)
+//!          if it is not recognised: descend into its fields
+//!      cell: descend into each entry
+//! 3  list the unused fields beside what was found; without any result, list all variables
+//! ```
+//!
+//! The functions that search return whether they found anything, so that a field that holds a model is
+//! not listed as unused.
 
 use std::collections::BTreeSet;
 use std::rc::Rc;
@@ -12,6 +25,11 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Maximum number of variables listed as not recognised.
 const MOST_LISTED: usize = 20;
+/// Memory of a complex number \[bytes\].
+const COMPLEX_BYTES: u64 = 16;
+/// Memory charged for a listed path and for a fault, beside their characters \[bytes\].
+const PATH_BYTES: u64 = 64;
+const FAULT_BYTES: u64 = 128;
 
 /// Models or records found among variables.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,7 +67,7 @@ impl<T> Found<T> {
         }
     }
 
-    fn is_nothing(&self) -> bool {
+    fn has_nothing(&self) -> bool {
         self.items.is_empty() && self.faults.is_empty()
     }
 }
@@ -72,7 +90,8 @@ pub(crate) fn search<T>(
     };
     let whole = Rc::new(Record::from_variables(variables));
     search.try_record(&whole, "")?;
-    let is_whole_file_nothing = search.found.is_nothing();
+    let is_file_no_record = search.found.has_nothing();
+    // Variables in which nothing was found.
     let mut empty = BTreeSet::new();
     for variable in variables {
         if !search.descend(&variable.name, &variable.value, DEEPEST, &whole)? {
@@ -81,14 +100,17 @@ pub(crate) fn search<T>(
     }
     let mut found = search.found;
     found.unused.splice(0..0, unused_among(&whole, &empty));
-    let is_nothing = found.is_nothing();
-    let not_candidates = variables.iter().filter(|variable| {
-        is_nothing || is_whole_file_nothing && matches!(variable.value, Value::Array(_))
-    });
-    for variable in not_candidates.take(MOST_LISTED) {
-        found
-            .ignored
-            .push(format!("{}: {}", variable.name, variable.value.words()));
+    // Unless the variables together form a record, its arrays were not recognised even if other
+    // variables were.
+    let is_nothing_found = found.has_nothing();
+    for variable in variables {
+        let is_array = matches!(variable.value, Value::Array(_));
+        let is_ignored = is_nothing_found || is_file_no_record && is_array;
+        if is_ignored && found.ignored.len() < MOST_LISTED {
+            found
+                .ignored
+                .push(format!("{}: {}", variable.name, variable.value.words()));
+        }
     }
     Ok(found)
 }
@@ -119,7 +141,8 @@ impl<T> Search<'_, T> {
         // Take the memory of all fields, because the results contain copies of their values.
         for field in record.fields() {
             if let Value::Array(array) = field.value {
-                self.budget.take(array.len() as u64, 16, variable)?;
+                self.budget
+                    .take(array.len() as u64, COMPLEX_BYTES, variable)?;
             }
         }
         self.found.add(variable, items);
@@ -188,7 +211,8 @@ impl<T> Search<'_, T> {
                 is_any_found = true;
                 continue;
             }
-            let inner = Rc::new(Record::from_struct(records, index, None, 0).inside(outer));
+            let inner = Rc::new(Record::from_struct(records, index).inside(outer));
+            // Fields in which nothing was found.
             let mut empty = BTreeSet::new();
             for field in inner.fields() {
                 let path = format!("{name}.{}", field.name);
@@ -222,7 +246,7 @@ impl<T> Search<'_, T> {
             } else {
                 format!("{name}(:,:,{})", page + 1)
             };
-            let record = Record::from_struct(records, index, class, page).inside(outer);
+            let record = Record::from_object(records, index, class, page).inside(outer);
             if self.try_record(&record, &name)? {
                 is_any_known = true;
                 self.note_unused(&name, &record.unused())?;
@@ -239,7 +263,7 @@ impl<T> Search<'_, T> {
             } else {
                 format!("{variable}.{name}")
             };
-            self.budget.take(path.len() as u64 + 64, 1, "")?;
+            self.budget.take(path.len() as u64 + PATH_BYTES, 1, "")?;
             if self.found.unused.len() < MOST_PIECES {
                 self.found.unused.push(path);
             }
@@ -248,7 +272,7 @@ impl<T> Search<'_, T> {
     }
 
     fn add_fault(&mut self, fault: String) -> Result<(), VariableFault> {
-        self.budget.take(fault.len() as u64 + 128, 1, "")?;
+        self.budget.take(fault.len() as u64 + FAULT_BYTES, 1, "")?;
         self.found.faults.push(fault);
         Ok(())
     }

@@ -4,17 +4,17 @@
 use nalgebra::DMatrix;
 
 use gdcm_model::assembly::FoundModel;
+use gdcm_model::dataset::dataset_draft::ModelDraft;
 use gdcm_model::dataset::limits::MOST_STATES;
 use gdcm_model::dataset::model::Provenance;
 use gdcm_model::dataset::state_space::Timing;
-use gdcm_model::dataset::unchecked_dataset::ModelDraft;
 use gdcm_model::units::number;
 
 use super::delays::timing_of;
 use super::flight_condition::{Page, facts_of, origin_of};
 use super::labels::{inputs_of, outputs_of, states_of};
 use super::record::Record;
-use super::values::{PagedShape, array_of, matrix_of, page_of};
+use super::values::{PAGES_LAST, PagedShape, array_of, matrix_of, page_of};
 use crate::files::model_collection::bare_draft;
 use crate::formats::variables::{Array, Value};
 
@@ -115,7 +115,7 @@ fn matrix_in_page(
     pages_first: bool,
 ) -> Result<DMatrix<f64>, String> {
     match array_of(value) {
-        Some(array) if array.shape.len() < 3 => page_of(name, array, 0, false),
+        Some(array) if array.shape.len() < 3 => page_of(name, array, 0, PAGES_LAST),
         Some(array) if page.index < PagedShape::new(array, pages_first).pages => {
             page_of(name, array, page.index, pages_first)
         }

@@ -1,4 +1,7 @@
 //! Models whose matrices have a common suffix: `A_nom, B_nom, ...`, `A1, B1, ...`.
+//!
+//! The variables `A_nom, B_nom, C_nom, InputDelay_nom, labels` become the record `A, B, C,
+//! InputDelay, labels`, which is read like any other.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -39,31 +42,16 @@ pub(super) fn suffixed_models(
         .filter_map(|variable| variable.name.strip_prefix('A'))
         .filter(|suffix| !suffix.is_empty() && by_name.contains_key(format!("B{suffix}").as_str()))
         .collect();
+    // Delays that apply to one model only, by their suffix.
     let delays = delays_with_suffix(variables, &suffixes.iter().copied().collect());
     for suffix in suffixes {
         budget.work(STEPS, "")?;
         let mut fields = matrices_with_suffix(&by_name, suffix);
-        if fields.len() < 3 || !is_state_space(&Record::from_fields(fields.iter().copied())) {
+        if !is_state_space(&Record::from_fields(fields.iter().copied())) {
             continue;
         }
         budget.work(STEPS * variables.len() as u64, "")?;
-        for variable in variables {
-            if MATRICES.contains(&variable.name.as_str()) {
-                continue;
-            }
-            let mut name = variable.name.as_str();
-            if delays.contains(name) {
-                match name.strip_suffix(suffix) {
-                    Some(stem) if is_delay(stem) => name = stem,
-                    // Skip a delay that has the suffix of another model.
-                    _ => continue,
-                }
-            }
-            fields.push(Field {
-                name,
-                value: &variable.value,
-            });
-        }
+        fields.extend(fields_beside(variables, suffix, &delays));
         let record = Record::from_fields(fields.into_iter()).shared();
         let name = suffix.trim_start_matches('_');
         models
@@ -71,6 +59,7 @@ pub(super) fn suffixed_models(
             .add(name, read(&record, name).unwrap_or_default());
         for field in record.fields() {
             if record.is_used(field.name) {
+                // In the file, the name has the suffix only if it was removed above.
                 models.used.insert(field.name.to_owned());
                 models.used.insert(format!("{}{suffix}", field.name));
             }
@@ -99,6 +88,35 @@ fn matrices_with_suffix<'v>(by_name: &HashMap<&str, &'v Value>, suffix: &str) ->
         {
             fields.push(Field { name, value });
         }
+    }
+    fields
+}
+
+/// Returns the fields that apply to the model with this suffix, other than its matrices: all
+/// variables but matrices without a suffix and delays with the suffix of another model. The suffix
+/// is removed from its own delays. Matrices of other models remain: their names, with a suffix,
+/// mean nothing in the record.
+fn fields_beside<'v>(
+    variables: &'v [Variable],
+    suffix: &str,
+    delays: &BTreeSet<&str>,
+) -> Vec<Field<'v>> {
+    let mut fields = Vec::new();
+    for variable in variables {
+        if MATRICES.contains(&variable.name.as_str()) {
+            continue;
+        }
+        let mut name = variable.name.as_str();
+        if delays.contains(name) {
+            match name.strip_suffix(suffix) {
+                Some(stem) if is_delay(stem) => name = stem,
+                _ => continue,
+            }
+        }
+        fields.push(Field {
+            name,
+            value: &variable.value,
+        });
     }
     fields
 }

@@ -17,6 +17,69 @@ pub(super) fn is_transfer_function(record: &Record<'_>) -> bool {
     Polynomials::find(record).is_some() || Factors::find(record).is_some()
 }
 
+/// Returns the state-space model of the transfer functions in `record`: the responses, each in
+/// controllable canonical form, in parallel.
+///
+/// ```text
+/// H(s) = d + (c_1 s^(n-1) + ... + c_n) / (s^n + a_1 s^(n-1) + ... + a_n)
+/// A = [-a_1 ... -a_n; I 0],   B = [1; 0; ...; 0],   C = [c_1 ... c_n],   D = d
+/// ```
+///
+/// For a numerator `b_0 s^n + ... + b_n`, `d = b_0` and `c_k = b_k - b_0 a_k`.
+pub(super) fn transfer_function(record: &Record<'_>, variable: &str) -> Result<FoundModel, String> {
+    let FractionTable {
+        fractions,
+        outputs,
+        inputs,
+    } = fractions_of(record)?;
+    let order: usize = fractions.iter().map(Fraction::order).sum();
+    at_most(order, "states", "all responses together")?;
+    at_most(inputs.max(outputs), "channels", "transfer functions")?;
+    let mut a = DMatrix::zeros(order, order);
+    let mut b = DMatrix::zeros(order, inputs);
+    let mut c = DMatrix::zeros(outputs, order);
+    let mut d = DMatrix::zeros(outputs, inputs);
+    // Index of the first state of the current response, from 0.
+    let mut start = 0;
+    // The index of a response counts the outputs first, then the inputs.
+    for (index, fraction) in fractions.iter().enumerate() {
+        let output = index % outputs;
+        let input = index / outputs;
+        let n = fraction.order();
+        let numerator = fraction.padded_numerator();
+        d[(output, input)] = numerator[0];
+        for state in 0..n {
+            a[(start, start + state)] = -fraction.denominator[state + 1];
+            c[(output, start + state)] =
+                numerator[state + 1] - numerator[0] * fraction.denominator[state + 1];
+        }
+        for state in 1..n {
+            a[(start + state, start + state - 1)] = 1.0;
+        }
+        if n > 0 {
+            b[(start, input)] = 1.0;
+        }
+        start += n;
+    }
+    let timing = timing_of(record, outputs, inputs)?;
+    let mut model = build_model(record, variable, Page::ONLY, [a, b, c, d], timing.timing)?;
+    model.notes.extend(timing.notes);
+    model
+        .notes
+        .push("transfer functions, each realised separately".to_owned());
+    Ok(model)
+}
+
+fn fractions_of(record: &Record<'_>) -> Result<FractionTable, String> {
+    if let Some(polynomials) = Polynomials::find(record) {
+        return polynomials.fractions();
+    }
+    match Factors::find(record) {
+        Some(factors) => factors.fractions(),
+        None => Err("no transfer function".to_owned()),
+    }
+}
+
 /// Fields that give transfer functions as polynomials.
 struct Polynomials<'v> {
     numerators: &'v Value,
@@ -185,68 +248,6 @@ impl<'v> CellTable<'v> {
                 columns: 1,
             },
         }
-    }
-}
-
-/// Returns the state-space model of the transfer functions in `record`: the responses, each in
-/// controllable canonical form, in parallel.
-///
-/// ```text
-/// H(s) = d + (c_1 s^(n-1) + ... + c_n) / (s^n + a_1 s^(n-1) + ... + a_n)
-/// A = [-a_1 ... -a_n; I 0],   B = [1; 0; ...; 0],   C = [c_1 ... c_n],   D = d
-/// ```
-///
-/// For a numerator `b_0 s^n + ... + b_n`, `d = b_0` and `c_k = b_k - b_0 a_k`.
-pub(super) fn transfer_function(record: &Record<'_>, variable: &str) -> Result<FoundModel, String> {
-    let FractionTable {
-        fractions,
-        outputs,
-        inputs,
-    } = fractions_of(record)?;
-    let order: usize = fractions.iter().map(Fraction::order).sum();
-    at_most(order, "states", "all responses together")?;
-    at_most(inputs.max(outputs), "channels", "transfer functions")?;
-    let mut a = DMatrix::zeros(order, order);
-    let mut b = DMatrix::zeros(order, inputs);
-    let mut c = DMatrix::zeros(outputs, order);
-    let mut d = DMatrix::zeros(outputs, inputs);
-    // Index of the first state of the current response, from 0.
-    let mut start = 0;
-    for (index, fraction) in fractions.iter().enumerate() {
-        let output = index % outputs;
-        let input = index / outputs;
-        let n = fraction.order();
-        let numerator = fraction.padded_numerator();
-        d[(output, input)] = numerator[0];
-        for state in 0..n {
-            a[(start, start + state)] = -fraction.denominator[state + 1];
-            c[(output, start + state)] =
-                numerator[state + 1] - numerator[0] * fraction.denominator[state + 1];
-        }
-        for state in 1..n {
-            a[(start + state, start + state - 1)] = 1.0;
-        }
-        if n > 0 {
-            b[(start, input)] = 1.0;
-        }
-        start += n;
-    }
-    let timing = timing_of(record, outputs, inputs)?;
-    let mut model = build_model(record, variable, Page::ONLY, [a, b, c, d], timing.timing)?;
-    model.notes.extend(timing.notes);
-    model
-        .notes
-        .push("transfer functions, each realised separately".to_owned());
-    Ok(model)
-}
-
-fn fractions_of(record: &Record<'_>) -> Result<FractionTable, String> {
-    if let Some(polynomials) = Polynomials::find(record) {
-        return polynomials.fractions();
-    }
-    match Factors::find(record) {
-        Some(factors) => factors.fractions(),
-        None => Err("no transfer function".to_owned()),
     }
 }
 

@@ -45,8 +45,11 @@ pub(super) fn matrix_of(name: &str, value: &Value) -> Result<DMatrix<f64>, Strin
             value.words()
         ));
     }
-    page_of(name, array, 0, false)
+    page_of(name, array, 0, PAGES_LAST)
 }
+
+/// Value of `pages_first` for an array whose last index selects the page, as in MATLAB.
+pub(super) const PAGES_LAST: bool = false;
 
 /// Shape of an array that holds several matrices with equal dimensions, called pages.
 #[derive(Clone, Copy, Debug)]
@@ -54,6 +57,10 @@ pub(super) struct PagedShape {
     pub(super) pages: usize,
     pub(super) rows: usize,
     pub(super) columns: usize,
+    /// Distance between the first numbers of successive pages.
+    page_step: usize,
+    /// Distance between successive numbers of a page, which are in column order.
+    number_step: usize,
 }
 
 impl PagedShape {
@@ -66,12 +73,20 @@ impl PagedShape {
                 pages: shape[0],
                 rows: shape[1],
                 columns: shape[2],
+                // The first index runs fastest: the numbers of the pages alternate.
+                page_step: 1,
+                number_step: shape[0].max(1),
             };
         }
+        let rows = shape.first().copied().unwrap_or(0);
+        let columns = shape.get(1).copied().unwrap_or(0);
         Self {
             pages: shape.iter().skip(2).product(),
-            rows: shape.first().copied().unwrap_or(0),
-            columns: shape.get(1).copied().unwrap_or(0),
+            rows,
+            columns,
+            // The pages follow one another.
+            page_step: rows * columns,
+            number_step: 1,
         }
     }
 }
@@ -84,23 +99,18 @@ pub(super) fn page_of(
     pages_first: bool,
 ) -> Result<DMatrix<f64>, String> {
     let PagedShape {
-        pages,
         rows,
         columns,
+        page_step,
+        number_step,
+        ..
     } = PagedShape::new(array, pages_first);
     if has_imaginary_part(array) {
         return Err(format!(
             "{name}: expected real numbers, found complex numbers"
         ));
     }
-    let is_interleaved = array.shape.len() == 3 && pages_first;
-    let start = if is_interleaved {
-        page
-    } else {
-        page * rows * columns
-    };
-    let step = if is_interleaved { pages.max(1) } else { 1 };
-    let numbers = array.re.iter().skip(start).step_by(step);
+    let numbers = array.re.iter().skip(page * page_step).step_by(number_step);
     let values: Vec<f64> = numbers.take(rows * columns).copied().collect();
     // If a later dimension is zero, the array has fewer numbers than the first two dimensions
     // imply.
@@ -137,8 +147,8 @@ pub(super) fn scalar_of(value: &Value) -> Option<f64> {
     }
 }
 
-/// Converts a row or a column to a list of numbers and ignores their imaginary parts; rejects
-/// non-finite numbers.
+/// Converts an array of any shape, in practice a row or a column, to a list of numbers in storage
+/// order, without their imaginary parts; rejects non-finite numbers.
 pub(super) fn list_of(name: &str, value: &Value) -> Result<Vec<f64>, String> {
     let Some(array) = array_of(value) else {
         return Err(format!("{name}: expected numbers, found {}", value.words()));
@@ -153,7 +163,7 @@ pub(super) fn list_of(name: &str, value: &Value) -> Result<Vec<f64>, String> {
     }
 }
 
-/// Converts a row or a column to a list of complex numbers; rejects non-finite numbers.
+/// Converts an array as [`list_of`], with its imaginary parts.
 pub(super) fn complex_list_of(name: &str, value: &Value) -> Result<Vec<Complex<f64>>, String> {
     let re = list_of(name, value)?;
     let im = match array_of(value) {
@@ -167,9 +177,9 @@ pub(super) fn complex_list_of(name: &str, value: &Value) -> Result<Vec<Complex<f
     Ok(parts.map(|(re, im)| Complex::new(re, im)).collect())
 }
 
-/// Returns the strings in a value, without surrounding blanks: a string array, a cell array with a
-/// string in each cell, or an empty array, which MATLAB writes for an empty list. Returns `None`
-/// for any other value.
+/// Returns the strings in a value, without surrounding blanks: those of a string array, the first
+/// string in each cell of a cell array (empty for a cell without strings), or none for an empty
+/// array, which MATLAB writes for an empty list. Returns `None` for any other value.
 pub(in crate::import) fn texts_of(value: &Value) -> Option<Vec<String>> {
     match value {
         Value::Text(text) => Some(

@@ -52,7 +52,7 @@ const OUTPUT_NAMES: [&str; 6] = [
 ];
 const INPUT_UNITS: [&str; 4] = ["inputunit", "inputunits", "inunit", "uunits"];
 const OUTPUT_UNITS: [&str; 4] = ["outputunit", "outputunits", "outunit", "yunits"];
-/// Names of fields that list the column names if a record has a single matrix.
+/// Names of fields that list the column names of a matrix of neither inputs nor outputs.
 const NAMES: [&str; 10] = [
     "names",
     "channels",
@@ -65,7 +65,7 @@ const NAMES: [&str; 10] = [
     "colheaders",
     "varlab",
 ];
-/// Names of fields that list the column units if a record has a single matrix.
+/// Names of fields that list the column units of a matrix of neither inputs nor outputs.
 const UNITS: [&str; 3] = ["units", "columnunits", "channelunits"];
 
 /// Labels of the columns in a field.
@@ -76,33 +76,26 @@ pub(super) struct ColumnLabels {
 }
 
 impl ColumnLabels {
-    /// Finds the labels of a field with `count` columns, first in lists named after the field
-    /// (`u_names`), then in lists of all inputs or all outputs, then in lists of the whole record.
-    /// Lists with another length are ignored.
+    /// Finds the labels of a field with `count` columns in lists named after the field (`u_names`).
+    /// Without these, a matrix of inputs or outputs takes the lists of all inputs or all outputs,
+    /// and any other matrix the lists of the record. Lists with another length are ignored.
     pub(super) fn find(record: &Record<'_>, field: &str, count: usize) -> Self {
         let name = folded_name(field);
-        // A single column called u may be a velocity component instead of an input.
-        let may_be_side = count > 1 || name.len() > 1;
-        let (side, names, units) = if may_be_side && INPUTS.contains(&name.as_str()) {
-            (
-                Some(ChannelSide::Input),
-                list_beside(record, &INPUT_NAMES, count),
-                list_beside(record, &INPUT_UNITS, count),
-            )
-        } else if may_be_side && OUTPUTS.contains(&name.as_str()) {
-            (
-                Some(ChannelSide::Output),
-                list_beside(record, &OUTPUT_NAMES, count),
-                list_beside(record, &OUTPUT_UNITS, count),
-            )
-        } else if count > 1 {
-            (
-                None,
-                list_beside(record, &NAMES, count),
-                list_beside(record, &UNITS, count),
-            )
-        } else {
-            (None, None, None)
+        let side = side_of(&name, count);
+        let shared = match side {
+            Some(ChannelSide::Input) => Some(SharedLists {
+                names: &INPUT_NAMES,
+                units: &INPUT_UNITS,
+            }),
+            Some(ChannelSide::Output) => Some(SharedLists {
+                names: &OUTPUT_NAMES,
+                units: &OUTPUT_UNITS,
+            }),
+            None if count > 1 => Some(SharedLists {
+                names: &NAMES,
+                units: &UNITS,
+            }),
+            None => None,
         };
         let own_names = [
             format!("{name}names"),
@@ -110,10 +103,15 @@ impl ColumnLabels {
             format!("{name}channels"),
         ];
         let own_units = [format!("{name}units")];
-        let names = list_beside(record, &own_names, count).or(names);
+        let mut names = list_beside(record, &own_names, count);
+        let mut units = list_beside(record, &own_units, count);
+        if let Some(shared) = shared {
+            names = names.or_else(|| list_beside(record, shared.names, count));
+            units = units.or_else(|| list_beside(record, shared.units, count));
+        }
         Self {
             names: names.filter(|names| names.iter().all(|name| !name.is_empty())),
-            units: list_beside(record, &own_units, count).or(units),
+            units,
             side,
         }
     }
@@ -142,6 +140,28 @@ impl ColumnLabels {
             }
         }
         columns
+    }
+}
+
+/// Names of the fields whose lists apply to several matrices of a record.
+struct SharedLists {
+    names: &'static [&'static str],
+    units: &'static [&'static str],
+}
+
+/// Returns the side to which a field belongs, by its folded name and number of columns; `None` if it
+/// is neither inputs nor outputs. A single column called u may be a velocity component instead of an
+/// input.
+fn side_of(name: &str, count: usize) -> Option<ChannelSide> {
+    if count <= 1 && name.len() <= 1 {
+        return None;
+    }
+    if INPUTS.contains(&name) {
+        Some(ChannelSide::Input)
+    } else if OUTPUTS.contains(&name) {
+        Some(ChannelSide::Output)
+    } else {
+        None
     }
 }
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use gdcm_model::dataset::condition::ConditionRecord;
 
-use crate::files::study_file::relative_folder;
+use crate::relative_folder::relative_folder;
 
 /// Returns the entry for a record in a dataset file: makes the path of the record's file relative
 /// to the path `dataset`. `requested` lists the files and folders from which records were read.

@@ -1,6 +1,6 @@
 //! Flight records of the embedded example.
 
-use gdcm_model::names::name_pattern::standard_patterns;
+use gdcm_model::names::standard_patterns;
 use gdcm_sysid::records::RecordTable;
 use gdcm_sysid::records::record_guess::RecordGuess;
 

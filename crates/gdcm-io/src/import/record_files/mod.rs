@@ -8,11 +8,11 @@
 //!       -> records: a table is split by a column that numbers them, or where time restarts
 //! ```
 
+mod array_columns;
 mod column_labels;
 mod dataset_entry;
 mod embedded_example;
 mod iddata;
-mod record_columns;
 mod samples;
 mod simulink;
 mod text_columns;
@@ -28,8 +28,8 @@ use std::sync::atomic::AtomicBool;
 use gdcm_sysid::records::separation::Separation;
 use gdcm_sysid::records::{RecordSource, RecordTable};
 
+use self::array_columns::array_columns;
 use self::iddata::{experiments, is_iddata};
-use self::record_columns::array_columns;
 use self::simulink::simulink_columns;
 use self::text_columns::text_columns;
 use self::timetable::timetable_columns;
@@ -39,7 +39,7 @@ use crate::file_error::FileError;
 use crate::formats::recorded_columns::{Columns, MOST_RECORDS};
 use crate::formats::variables::Variable;
 use crate::formats::{
-    Contents, FolderProgress, ImportedFile, import, import_bytes, import_file, of_file,
+    Contents, FolderProgress, ImportedFile, import, import_bytes, import_file, with_file_name,
 };
 use crate::reading_budget::{MOST_MEMORY, ReadingBudget, VariableFault};
 
@@ -280,8 +280,8 @@ impl FoundRecords {
         for columns in found.items {
             self.add_table(columns.in_file(name, sha256));
         }
-        self.faults.extend(of_file(name, found.faults));
-        self.ignored.extend(of_file(name, found.ignored));
+        self.faults.extend(with_file_name(name, found.faults));
+        self.ignored.extend(with_file_name(name, found.ignored));
     }
 
     /// Splits a table into records and adds them.

@@ -1,4 +1,4 @@
-//! Samples over time in vectors and matrices.
+//! Samples over time in vectors and matrices, which files store column by column.
 
 use gdcm_sysid::records::RecordColumn;
 
@@ -13,8 +13,9 @@ pub(super) struct Samples {
 }
 
 /// Returns the real numbers in a value as samples; a vector is a single column. Time runs along the
-/// dimension with length `rows` if given, otherwise along the longer dimension. `None` if the value
-/// has another form.
+/// dimension with length `rows` if given, otherwise along the longer dimension. If neither
+/// dimension has the length `rows`, time runs along the first, and the caller must compare
+/// [`Samples::rows`]. `None` if the value has another form.
 pub(super) fn samples_of(value: &Value, rows: Option<usize>) -> Option<Samples> {
     let array = match value {
         Value::Array(array) => array,
@@ -27,11 +28,12 @@ pub(super) fn samples_of(value: &Value, rows: Option<usize>) -> Option<Samples> 
     if has_imaginary_part(array) || array.is_empty() {
         return None;
     }
-    let is_time_second = match rows {
+    // Whether the second index of the array counts the time, that is, each column is an instant.
+    let is_time_in_columns = match rows {
         Some(rows) => first != rows && second == rows,
         None => second > first,
     };
-    if is_time_second {
+    if is_time_in_columns {
         return Some(Samples {
             rows: second,
             columns: (0..first)
@@ -47,6 +49,7 @@ pub(super) fn samples_of(value: &Value, rows: Option<usize>) -> Option<Samples> 
     })
 }
 
+/// Returns every `step`-th number in storage order, beginning with the number at `from`.
 fn strided_values(array: &Array, from: usize, step: usize) -> Vec<f64> {
     array.re.iter().skip(from).step_by(step).copied().collect()
 }

@@ -2,7 +2,7 @@
 
 use gdcm_sysid::records::RecordColumn;
 
-use super::record_columns::FEWEST_TIMED;
+use super::array_columns::FEWEST_TIMED;
 use super::samples::{named_columns, samples_of};
 use crate::formats::recorded_columns::Columns;
 use crate::formats::variables::Value;
@@ -19,7 +19,7 @@ pub(super) fn simulink_columns(record: &Record<'_>, variable: &str) -> Option<Co
     let rows = time.rows;
     let mut columns = vec![RecordColumn::new("time", time.columns.into_iter().next()?)];
     for index in 0..signals.shape.iter().product::<usize>() {
-        let signal = Record::from_struct(signals, index, None, 0);
+        let signal = Record::from_struct(signals, index);
         columns.extend(signal_columns(&signal, index, rows).unwrap_or_default());
     }
     if columns.len() < 2 || rows < FEWEST_TIMED {

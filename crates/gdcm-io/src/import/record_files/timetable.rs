@@ -81,7 +81,7 @@ fn inner_record(value: &Value) -> Option<Record<'_>> {
         Value::Object(object) => &object.records,
         Value::Array(_) | Value::Text(_) | Value::Cell(_) | Value::Opaque { .. } => return None,
     };
-    Some(Record::from_struct(records, 0, None, 0))
+    Some(Record::from_struct(records, 0))
 }
 
 /// Returns the numeric columns that are as long as the first; omits other variables.

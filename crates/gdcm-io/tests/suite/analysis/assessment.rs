@@ -24,7 +24,7 @@ const PAPER: AssessmentChoice = AssessmentChoice {
 #[test]
 fn the_assessment_of_the_paper_is_that_of_the_analysis() {
     let analysis = &*EXAMPLE_WITH_SUGGESTIONS_REJECTED;
-    let table = AssessmentTable::of(analysis, PAPER);
+    let table = AssessmentTable::assess(analysis, PAPER);
     assert_eq!(table.left_out.len(), 1);
     assert_eq!(
         (table.left_out[0].condition, table.left_out[0].why.code()),
@@ -52,7 +52,7 @@ fn each_conditions_own_optimum_of_the_representative_is_what_its_result_says() {
         correction: AssessedCorrection::Own,
         ..PAPER
     };
-    let table = AssessmentTable::of(analysis, own);
+    let table = AssessmentTable::assess(analysis, own);
     assert_eq!(
         (table.conditions.len(), table.left_out.len()),
         (11, 0),
@@ -71,7 +71,7 @@ fn each_conditions_own_optimum_of_the_representative_is_what_its_result_says() {
 #[test]
 fn the_mean_weighs_single_frequencies_that_the_median_leaves_out() {
     let analysis = &*EXAMPLE_WITH_SUGGESTIONS_REJECTED;
-    let mean = AssessmentTable::of(
+    let mean = AssessmentTable::assess(
         analysis,
         AssessmentChoice {
             average: CostAverage::Mean,
@@ -102,7 +102,7 @@ fn the_mean_weighs_single_frequencies_that_the_median_leaves_out() {
 fn a_sentence_sums_an_assessment_up() {
     let analysis = &*EXAMPLE_WITH_SUGGESTIONS_REJECTED;
     let dataset = &analysis.study.dataset;
-    let table = AssessmentTable::of(analysis, PAPER);
+    let table = AssessmentTable::assess(analysis, PAPER);
     let summary = table.summary(dataset.on_axis());
     assert_eq!(
         summary.compared, 50,
@@ -148,7 +148,7 @@ fn evidence_is_of_the_scheduled_conditions_and_agrees_with_the_schedule() {
         (
             scheduled.len(),
             evidence.airspeeds_kt.len(),
-            evidence.kinds.len()
+            evidence.fits.len()
         ),
         (11, 11, SCHEDULE_KINDS.len())
     );
@@ -174,9 +174,9 @@ fn evidence_is_of_the_scheduled_conditions_and_agrees_with_the_schedule() {
             .collect::<Vec<_>>()
     };
     let errors = evidence
-        .kinds
+        .fits
         .iter()
-        .map(|kind| kind.left_out_rms_ln(on_axis()).unwrap())
+        .map(|fit| fit.left_out_rms_ln(on_axis()).unwrap())
         .collect::<Vec<f64>>();
     // The gain deficits of the example change by tens of percent over airspeed, so the constant
     // schedule predicts left-out conditions worst.

@@ -40,7 +40,7 @@ const MANY: usize = 8000;
 /// Trim at which the synthetic aircraft was flown.
 #[derive(Clone, Copy)]
 enum FlownTrim {
-    /// Drawn from the distribution of the physics models, as one model more.
+    /// Drawn from the same distribution as the trims of the physics models.
     LikeTheBundle,
     /// The nominal trim, although the trims of the physics models vary.
     Nominal,

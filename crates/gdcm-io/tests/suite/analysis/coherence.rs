@@ -12,9 +12,9 @@ use gdcm_model::dataset::{Band, Channel, Condition, Dataset, Model};
 use gdcm_study::ConditionAnalysis;
 use gdcm_study::decisions::settings::{DEFAULT_COHERENCE, Settings};
 use gdcm_study::results::caution::{Caution, Undefined};
+use gdcm_study::results::condition_remarks::condition_remarks;
+use gdcm_study::results::remark::Remark;
 use gdcm_words::caution::caution_text;
-use gdcm_words::condition_remarks::remarks;
-use gdcm_words::remark::RemarkKind;
 
 use super::responses::model_of;
 use super::*;
@@ -34,7 +34,7 @@ fn dataset(coherence: Option<&dyn Fn(usize, f64) -> f64>, bands: Option<[f64; 2]
     let dynamics = model_of("compleib_HE2_AH64_130kt.json");
     let (outputs, inputs) = dynamics.shape();
     let grid = FrequencyGrid::logarithmic(Band::new(0.5, 12.0).unwrap(), 200);
-    let flight = FrequencyResponse::of(&dynamics, &grid)
+    let flight = FrequencyResponse::from_dynamics(&dynamics, &grid)
         .curves()
         .map(|pair, values| {
             let turned = |(k, (value, omega)): (usize, (&Complex<f64>, &f64))| {
@@ -231,7 +231,7 @@ fn equal_coherence_gives_the_medians_of_no_coherence_to_the_last_digit() {
 #[test]
 fn a_dataset_without_coherence_gives_the_same_whether_it_is_on_or_off() {
     let plain = dataset(None, None);
-    assert_eq!(Settings::of(&plain).coherence_threshold, None);
+    assert_eq!(Settings::for_dataset(&plain).coherence_threshold, None);
     let off = with(&plain, &[]);
     let on = with(&plain, &[setting::COHERENCE.to(Some(0.9))]);
     assert_eq!(
@@ -313,13 +313,11 @@ fn a_result_says_what_coherence_did() {
     );
 
     let equal = with(&dataset(Some(&|_, _| 0.8), None), &[]);
-    let said = remarks(&equal.study, only(&equal), None);
-    let weighed = said.iter().find(|remark| {
-        remark
-            .text
-            .contains("J, G and D of 4 responses are weighted by coherence")
-    });
-    assert_eq!(weighed.unwrap().kind, RemarkKind::Good);
+    let said = condition_remarks(&equal.study, only(&equal), None);
+    assert!(
+        said.contains(&Remark::CoherenceUsed { responses: 4 }),
+        "{said:?}"
+    );
 
     let off = words(&with(&noisy(), &[setting::COHERENCE.to(None::<f64>)]));
     assert!(

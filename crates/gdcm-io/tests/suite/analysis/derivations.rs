@@ -162,7 +162,7 @@ fn costs_and_their_changes_are_told() {
                 correction,
                 average: CostAverage::Mean,
             };
-            let change = AssessmentTable::of(analysis(), choice)
+            let change = AssessmentTable::assess(analysis(), choice)
                 .change(CONDITION, pair())
                 .unwrap();
             assert_eq!(

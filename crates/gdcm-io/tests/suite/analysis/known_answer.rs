@@ -25,7 +25,7 @@ fn dataset_of(file: &str, delay_s: f64) -> Dataset {
     let dynamics = model_of(file);
     let (outputs, inputs) = dynamics.shape();
     let grid = FrequencyGrid::logarithmic(Band::new(0.2, 30.0).unwrap(), 3000);
-    let response = FrequencyResponse::of(&dynamics, &grid);
+    let response = FrequencyResponse::from_dynamics(&dynamics, &grid);
     let flight = response.curves().map(|pair, values| {
         let net_gain = gain(pair.output) * gain(outputs + pair.input);
         let lag = |omega: &f64| Complex::from_polar(net_gain, -omega * delay_s);

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use gdcm_method::correction::Channel as CorrectedChannel;
-use gdcm_method::correction::leads::{LeadDesign, LeadSettings};
+use gdcm_method::correction::lead_design::{LeadDesign, LeadSettings};
 use gdcm_method::schedule::ScheduleCaution;
 use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::condition::FlightState;
@@ -15,8 +15,9 @@ use gdcm_model::dataset::{Band, Channel, Condition, Dataset, Model, ModelId};
 use gdcm_model::response::LeadOrder;
 use gdcm_study::decisions::settings::DelayFrom;
 use gdcm_study::results::assessment_table::{AssessedModel, AssessmentChoice};
+use gdcm_study::results::condition_remarks::condition_remarks;
+use gdcm_study::results::remark::Remark;
 use gdcm_study::{AssessedCorrection, AssessmentTable, PhaseCorrection};
-use gdcm_words::condition_remarks::remarks;
 use gdcm_words::leads::lead_words;
 
 use super::*;
@@ -129,7 +130,7 @@ fn costs_of_the_example_with_leads_agree_for_each_condition_and_under_the_schedu
         correction: AssessedCorrection::Scheduled,
         average: EXAMPLE_WITH_LEADS.study.settings.cost_average,
     };
-    let scheduled = AssessmentTable::of(&EXAMPLE_WITH_LEADS, choice);
+    let scheduled = AssessmentTable::assess(&EXAMPLE_WITH_LEADS, choice);
     let conditions = list(&reference["example"]["conditions"]).iter();
     for (expected, under) in conditions.zip(list(&reference["example"]["scheduled"])) {
         let id = ConditionId(expected["id"].as_i64().unwrap());
@@ -174,30 +175,24 @@ fn the_schedule_of_the_example_holds_the_mean_signed_delay_of_each_channel() {
         "all inputs want lead"
     );
     // M15.6: in condition 4, NX requires a delay of 69 ms.
-    let hidden =
-        |caution: &&ScheduleCaution| matches!(caution, ScheduleCaution::SignedDelayApart { .. });
-    let (inputs, outputs) = schedule_names();
-    let hidden: Vec<String> = schedule
-        .cautions
-        .iter()
-        .filter(hidden)
-        .map(|of| of.words(&inputs, &outputs))
-        .collect();
-    assert!(
-        hidden
-            .iter()
-            .any(|words| words.starts_with("NX: +69 ms in condition 4 against −1")),
-        "{hidden:?}"
-    );
-    let words = hidden.concat();
-    assert!(
-        words.contains("cannot be scheduled over airspeed"),
-        "{words}"
-    );
+    let nx = output_named("NX");
+    let apart = schedule.cautions.iter().find_map(|caution| match caution {
+        ScheduleCaution::SignedDelayApart {
+            channel,
+            condition: ConditionId(4),
+            tau_s,
+            elsewhere_s,
+        } if *channel == nx => Some([*tau_s, *elsewhere_s]),
+        _ => None,
+    });
+    let apart_ms = apart.expect("NX in condition 4").map(|s| (1e3 * s).round());
+    assert_eq!(apart_ms, [69.0, -17.0]);
 }
 
-fn schedule_names() -> (Vec<String>, Vec<String>) {
-    EXAMPLE_WITH_LEADS.study.dataset.names_of_channels()
+fn output_named(name: &str) -> CorrectedChannel {
+    let outputs = EXAMPLE_WITH_LEADS.study.dataset.outputs();
+    let index = outputs.iter().position(|output| output.name == name);
+    CorrectedChannel::Output(index.unwrap())
 }
 
 #[test]
@@ -267,22 +262,13 @@ fn delays_of_the_band_are_fitted_to_the_line_through_the_phase() {
 fn what_leads_do_and_cost_is_told_and_what_to_check_first() {
     let result = EXAMPLE_WITH_LEADS.condition(ConditionId(1)).unwrap();
     let study = &EXAMPLE_WITH_LEADS.study;
-    let said: Vec<String> = remarks(study, result, None)
-        .into_iter()
-        .map(|remark| remark.text)
-        .collect();
-    let first = said
-        .iter()
-        .find(|text| text.contains("First check the time alignment of the records"))
-        .unwrap();
+    let said = condition_remarks(study, result, None);
     assert!(
-        first.starts_with("All held responses need about"),
-        "{first}"
-    );
-    assert!(
-        said.contains(&"All 5 held responses get the delay or lead that they need.".to_owned()),
+        said.iter()
+            .any(|remark| matches!(remark, Remark::CommonLead { lead_s } if *lead_s > 0.0)),
         "{said:?}"
     );
+    assert!(said.contains(&Remark::LeadsMatched { held: 5 }), "{said:?}");
     let words = lead_words(study, result, None);
     // Reference values: P from LAT requires a lead of 65.4 ms, of which 24.1 ms on P and 41.2 ms on
     // LAT.
@@ -323,11 +309,12 @@ fn where_all_held_responses_want_lead_the_result_offers_it_with_what_it_buys() {
         (offer.with - taken).abs() < 0.1 * offer.without,
         "{offer:?}, {taken}"
     );
-    let offered = remarks(&study, result, None)
+    let offered = condition_remarks(&study, result, None)
         .into_iter()
-        .find(|remark| remark.phase.is_some())
+        .find(|remark| remark.suggested_phase().is_some())
         .unwrap();
-    assert_eq!(offered.phase, Some(PhaseCorrection::Lead));
+    assert_eq!(offered, Remark::LeadsOffered(offer));
+    assert_eq!(offered.suggested_phase(), Some(PhaseCorrection::Lead));
     assert!(
         EXAMPLE_WITH_LEADS
             .condition(ConditionId(1))
@@ -366,7 +353,7 @@ fn known(entry: &Value, plant: &Value) -> Dataset {
             });
         factor * k
     };
-    let flight = FrequencyResponse::of(&dynamics, &grid)
+    let flight = FrequencyResponse::from_dynamics(&dynamics, &grid)
         .curves()
         .map(|pair, values| {
             let factor =

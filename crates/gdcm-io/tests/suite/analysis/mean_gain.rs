@@ -24,7 +24,7 @@ fn magnitudes(
     let models = dataset.condition(CONDITION).unwrap().bundle(kind).iter();
     let kept = models.filter(|model| !rejected.contains(model.name.as_str()));
     let of_model = |dynamics| {
-        FrequencyResponse::of(dynamics, grid)
+        FrequencyResponse::from_dynamics(dynamics, grid)
             .curves()
             .map(|_, curve| {
                 curve

@@ -148,7 +148,7 @@ fn the_envelopes_are_those_of_independent_code() {
 fn jumping(id: i64) -> Vec<String> {
     let dataset = &crate::REFERENCE_DATASET.dataset;
     let modes =
-        ConditionModes::of(dataset.condition(ConditionId(id)).unwrap(), &Unobserved).unwrap();
+        ConditionModes::compute(dataset.condition(ConditionId(id)).unwrap(), &Unobserved).unwrap();
     let names = modes.condition.bundle(BundleKind::Physics);
     let suggested = EXAMPLE_WITH_SUGGESTIONS_REJECTED
         .condition(ConditionId(id))
@@ -195,7 +195,7 @@ fn states_take_part_in_the_modes_by_their_names() {
         ),
         (39, "q", "state 40")
     );
-    let modes = ConditionModes::of(&condition, &Unobserved).unwrap();
+    let modes = ConditionModes::compute(&condition, &Unobserved).unwrap();
     let of_nominal = modes.physics[condition.nominal()].as_ref().unwrap();
     let mut slow = 0;
     for mode in of_nominal {

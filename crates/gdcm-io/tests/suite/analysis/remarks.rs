@@ -1,12 +1,13 @@
 //! Remarks on the results of a condition.
 
-use gdcm_words::condition_remarks::remarks;
-use gdcm_words::remark::{Remark, RemarkKind};
+use gdcm_study::results::condition_remarks::condition_remarks;
+use gdcm_study::results::remark::Remark;
+use gdcm_study::results::remark_kind::RemarkKind;
 
 use super::*;
 
 fn said(analysis: &Analysis, condition: i64) -> Vec<Remark> {
-    remarks(
+    condition_remarks(
         &analysis.study,
         analysis.condition(ConditionId(condition)).unwrap(),
         analysis.schedule.as_ref().ok(),
@@ -30,17 +31,20 @@ fn a_held_response_that_goes_farther_from_flight_is_named_with_both_costs() {
     for condition in analysis.study.dataset.conditions() {
         let result = analysis.condition(condition.id()).unwrap();
         let said = said(analysis, condition.id().0);
-        let remark = said
-            .iter()
-            .find(|remark| remark.text.starts_with("Held, but farther from flight"));
+        let farther = said.iter().find_map(|remark| match remark {
+            Remark::HeldFarther(responses) => Some(responses.as_slice()),
+            _ => None,
+        });
         for pair in result.held().marked() {
             let cost = result.cost[pair].unwrap();
-            let name = format!("{} (J ", analysis.study.dataset.pair_name(pair));
-            let is_named = remark.is_some_and(|remark| remark.text.contains(&name));
-            assert_eq!(is_named, cost.total() > 0.5, "{name} {cost:?}");
-            worse += usize::from(is_named);
+            let named = farther
+                .unwrap_or_default()
+                .iter()
+                .find(|response| response.pair == pair);
+            assert_eq!(named.is_some(), cost.total() > 0.5, "{pair:?} {cost:?}");
+            assert!(named.is_none_or(|response| response.cost == cost));
+            worse += usize::from(named.is_some());
         }
-        assert!(remark.is_none_or(|remark| remark.kind == RemarkKind::Caution));
     }
     assert_eq!(worse, 2, "LAT → R in conditions 5 and 11");
 }
@@ -57,11 +61,7 @@ fn a_condition_that_is_left_out_of_the_schedule_says_so() {
         })
         .unwrap();
     let analysis = analyze(&mut engine, &study);
-    let says = |condition| {
-        said(&analysis, condition)
-            .iter()
-            .any(|remark| remark.text.contains("left out of the schedule"))
-    };
+    let says = |condition| said(&analysis, condition).contains(&Remark::LeftOutOfSchedule);
     assert!(says(3) && !says(4));
 }
 
@@ -89,7 +89,7 @@ fn a_tolerance_decides_whether_a_loop_of_held_gains_agrees() {
     assert!(
         said(&strict, 1)
             .iter()
-            .any(|remark| remark.kind == RemarkKind::Trouble)
+            .any(|remark| remark.kind() == RemarkKind::Trouble)
     );
     assert!(
         study
@@ -107,14 +107,9 @@ fn a_tolerance_decides_whether_a_loop_of_held_gains_agrees() {
         result.gains.conflicts
     );
     let said = said(&lenient, 1);
-    assert!(
-        said[0].text.contains("held gains are matched within 3 dB"),
-        "{}",
-        said[0].text
-    );
-    assert!(
-        said.iter()
-            .any(|remark| remark.kind == RemarkKind::Good
-                && remark.text.contains("which is accepted"))
-    );
+    let Remark::GainsMatched { tolerance_db, .. } = said[0] else {
+        panic!("{:?}", said[0]);
+    };
+    assert_eq!(tolerance_db, Some(3.0));
+    assert!(said.iter().any(|remark| remark.code() == "loop-agrees"));
 }

@@ -17,7 +17,7 @@ fn grid(low: f64, high: f64, points: usize) -> FrequencyGrid {
 }
 
 fn response(model: &StateSpace, grid: &FrequencyGrid) -> Values {
-    let response = FrequencyResponse::of(&Dynamics::StateSpace(model.clone()), grid);
+    let response = FrequencyResponse::from_dynamics(&Dynamics::StateSpace(model.clone()), grid);
     response.curves().clone()
 }
 
@@ -321,7 +321,7 @@ proptest! {
         let parts = [part(0, 0, n, n), part(0, n, n, m), part(n, 0, p, n), part(n, n, p, m)];
         let computable = parts.iter().flat_map(|part| part.iter()).all(|entry| entry.abs() <= LARGEST_ENTRY);
         let [a, b, c, d] = parts;
-        let response = FrequencyResponse::of(&Dynamics::StateSpace(StateSpace::new(a, b, c, d).unwrap()), &grid(0.5, 12.0, 20));
+        let response = FrequencyResponse::from_dynamics(&Dynamics::StateSpace(StateSpace::new(a, b, c, d).unwrap()), &grid(0.5, 12.0, 20));
         let none = response.not_finite();
         prop_assert!(computable || none.len() == p * m, "what is too large is refused whole");
         // A generous limit: the computation takes about a thousandth of this time.

@@ -72,7 +72,7 @@ pub fn dynamics_of(case: &Value) -> Dynamics {
 /// contains both ends of its band.
 fn response_at(dynamics: &Dynamics, omega: f64) -> PairTable<Complex<f64>> {
     let band = gdcm_model::dataset::Band::new(omega, 2.0 * omega).unwrap();
-    let response = FrequencyResponse::of(dynamics, &FrequencyGrid::logarithmic(band, 2));
+    let response = FrequencyResponse::from_dynamics(dynamics, &FrequencyGrid::logarithmic(band, 2));
     response.curves().map(|_, values| values[0])
 }
 

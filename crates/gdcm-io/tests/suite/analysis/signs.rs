@@ -9,11 +9,12 @@ use gdcm_model::dataset::{Condition, Dataset, Model};
 use gdcm_study::Execution;
 use gdcm_study::decisions::named_decisions::Decisions;
 use gdcm_study::decisions::signs::SignRole;
+use gdcm_study::results::condition_remarks::condition_remarks;
 use gdcm_study::results::convention_doubt::Convention;
+use gdcm_study::results::remark::{Remark, SuggestedSign};
 use gdcm_study::stages::convention_check::doubts_of_models;
-use gdcm_words::condition_remarks::remarks;
 use gdcm_words::convention_doubt::doubt_text;
-use gdcm_words::decisions::dataset_difference_text;
+use gdcm_words::dataset_differences::dataset_difference_text;
 
 use super::*;
 
@@ -107,11 +108,13 @@ fn an_output_of_the_other_sign_is_found_and_turned_to_the_last_digit() {
         "{words}"
     );
     // The remark on the sign comes first, before remarks on delays, zeros or modes.
-    let said = remarks(&study, flipped.condition(ConditionId(1)).unwrap(), None);
-    assert_eq!(
-        (said[0].text.as_str(), said[0].turn),
-        (words.as_str(), Some((NZ, Some(SignRole::Identified))))
-    );
+    let said = condition_remarks(&study, flipped.condition(ConditionId(1)).unwrap(), None);
+    assert_eq!(said[0], Remark::ConventionDoubt(doubt.clone()));
+    let identified = SuggestedSign {
+        channel: NZ,
+        role: Some(SignRole::Identified),
+    };
+    assert_eq!(said[0].suggested_sign(), Some(identified));
     let execution = Execution::sequential();
     assert_eq!(
         doubts_of_models(&study, &execution).unwrap()[0].channel,
@@ -125,13 +128,17 @@ fn an_output_of_the_other_sign_is_found_and_turned_to_the_last_digit() {
     assert_eq!(turned.doubts, []);
     let example = analyze(&mut Engine::default(), &study_of_example());
     assert_eq!(results(&turned), results(&example));
-    let said = remarks(&study, turned.condition(ConditionId(1)).unwrap(), None);
-    assert!(
-        said[0]
-            .text
-            .starts_with("The sign of NZ is reversed in the identified models")
-            && said[0].turn == Some((NZ, None))
-    );
+    let said = condition_remarks(&study, turned.condition(ConditionId(1)).unwrap(), None);
+    let reversed = Remark::ChannelTurned {
+        channel: NZ,
+        role: SignRole::Identified,
+    };
+    assert_eq!(said[0], reversed);
+    let restored = SuggestedSign {
+        channel: NZ,
+        role: None,
+    };
+    assert_eq!(said[0].suggested_sign(), Some(restored));
 
     turn(&mut study, NZ, None);
     assert_eq!((&study, &study.dataset), (&before, &before.dataset));
@@ -200,7 +207,7 @@ fn a_unit_that_one_side_has_otherwise_is_named_with_its_factor() {
 fn measured_responses_are_turned_with_their_coherence() {
     let grid = FrequencyGrid::logarithmic(study_of_example().dataset.band(), 60);
     let study = changed(BundleKind::Identified, |model| {
-        let response = FrequencyResponse::of(&model.dynamics, &grid);
+        let response = FrequencyResponse::from_dynamics(&model.dynamics, &grid);
         let part = |of: fn(&Complex<f64>) -> f64| {
             PairTable::from_fn(6, 4, |pair| {
                 response.curve(pair).iter().map(of).collect::<Vec<f64>>()
@@ -249,7 +256,7 @@ fn measured_responses_are_turned_with_their_coherence() {
 fn signs_go_with_the_decisions_by_the_names_of_channels() {
     let mut study = study_of_example();
     turn(&mut study, NZ, Some(SignRole::All));
-    let decisions = Decisions::of(&study);
+    let decisions = Decisions::from_study(&study);
     assert_eq!(decisions.signs[0].channel, "NZ");
     let (again, not_applied) = decisions.applied_to(study_of_example().dataset);
     assert!(again == study && not_applied.is_empty(), "{not_applied:?}");

@@ -9,8 +9,8 @@ use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_study::ConditionAnalysis;
 use gdcm_study::results::analysis::ConditionFailure;
 use gdcm_study::stages::condition_curves::ConditionCurves;
-use gdcm_study::stages::condition_responses::KnownModels;
 use gdcm_study::stages::engine::WantedFirst;
+use gdcm_study::stages::known_models::KnownModels;
 
 use super::*;
 use crate::EveryCore;

@@ -150,7 +150,7 @@ fn a_discrete_model_has_the_response_of_its_definition() {
         }
     );
     let grid = FrequencyGrid::logarithmic(dataset.band(), 30);
-    let response = FrequencyResponse::of(dynamics, &grid);
+    let response = FrequencyResponse::from_dynamics(dynamics, &grid);
     let complex = |matrix: &DMatrix<f64>| matrix.map(Complex::from);
     for (k, omega) in grid.omega().iter().enumerate() {
         let order = model.order();

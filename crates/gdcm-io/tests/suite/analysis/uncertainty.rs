@@ -8,6 +8,7 @@ use gdcm_io::{DatasetOrigin, load_dataset_bytes};
 use gdcm_method::correction::Channel;
 use gdcm_method::schedule::airspeeds::airspeed_indicators;
 use gdcm_method::schedule::{ScheduleKind, SecondVariable};
+use gdcm_method::uncertainty::bar::BarRemark;
 use gdcm_method::uncertainty::{
     Bar, Design, Difference, IdentificationSource, Scalar, ScheduleBand, SecondVariableDesign,
     VarianceComponent, VarianceDecomposition, holm,
@@ -17,7 +18,7 @@ use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_study::PhaseCorrection;
 use gdcm_study::results::uncertainty::{AirspeedDifference, PairScatter, Uncertainty};
 use gdcm_words::ExplainTarget;
-use gdcm_words::decisions::dataset_difference_text;
+use gdcm_words::dataset_differences::dataset_difference_text;
 use gdcm_words::derivation::derivation;
 
 use super::*;
@@ -331,7 +332,7 @@ fn bundles_of_known_spread_have_the_bars_of_the_reference() {
     let output = found
         .bar(ConditionId(1), Scalar::ChannelGain(Channel::Output(0)))
         .unwrap();
-    assert_eq!(output.remarks(), ["the bundle has no spread"]);
+    assert_eq!(output.remarks(), [BarRemark::NoSpread]);
 }
 
 #[test]
@@ -415,7 +416,7 @@ fn a_table_of_numbers_is_split_as_the_reference_does() {
                 .iter()
                 .map(|id| *id as usize - 1)
                 .collect();
-            Difference::of(&bars[places[0]], &bars[places[1]])
+            Difference::between(&bars[places[0]], &bars[places[1]])
         });
         let probabilities: Vec<f64> = differences
             .map(|difference| difference.p().unwrap())
@@ -423,7 +424,7 @@ fn a_table_of_numbers_is_split_as_the_reference_does() {
         for (found, reference) in holm(&probabilities).iter().zip(references) {
             assert_near("Holm", *found, &reference["p_holm"], TOLERANCE);
         }
-        let about_schedule = VarianceDecomposition::of(&design, &bars).unwrap();
+        let about_schedule = VarianceDecomposition::new(&design, &bars).unwrap();
         assert_split(
             "about the schedule",
             &about_schedule,
@@ -432,11 +433,11 @@ fn a_table_of_numbers_is_split_as_the_reference_does() {
         );
         assert_split(
             "at equal airspeed",
-            &VarianceDecomposition::of(&by_airspeed, &bars).unwrap(),
+            &VarianceDecomposition::new(&by_airspeed, &bars).unwrap(),
             &table["same_airspeed"],
             TOLERANCE,
         );
-        let band = ScheduleBand::of(&Arc::new(design.clone()), &about_schedule, 0.9);
+        let band = ScheduleBand::new(&Arc::new(design.clone()), &about_schedule, 0.9);
         for (place, airspeed) in numbers(&table["bands"]["airspeed_kt"])
             .into_iter()
             .enumerate()
@@ -462,7 +463,7 @@ fn a_table_of_numbers_is_split_as_the_reference_does() {
             assert_near("left out", found.unwrap(), reference, TOLERANCE);
         }
         for (name, values) in [("altitude", "altitude_ft"), ("weight", "mass_kg")] {
-            let effect = SecondVariableDesign::of(&rows, &numbers(&case[values]))
+            let effect = SecondVariableDesign::new(&rows, &numbers(&case[values]))
                 .unwrap()
                 .effect(&figures, 0.9);
             assert_near(name, effect.effect, &table[name]["effect"], TOLERANCE);
@@ -596,7 +597,7 @@ fn one_model_left_says_what_is_not_included() {
     };
     assert_eq!(
         (bar(1).trim, bar(1).remarks()),
-        (None, vec!["uncertainty of the trim not included"])
+        (None, vec![BarRemark::NoTrim])
     );
     assert!(
         bar(1).half_width(0.9).unwrap() > 0.0,
@@ -628,7 +629,7 @@ fn without_a_second_identified_model_anywhere_the_bar_is_of_the_trim_only() {
         .unwrap();
     assert_eq!(
         (bar.identification, bar.remarks()),
-        (None, vec!["uncertainty of the identification not included"])
+        (None, vec![BarRemark::NoIdentification])
     );
     assert_eq!(bar.degrees_of_freedom(), Some(4.0));
 }

@@ -4,12 +4,13 @@
 use std::sync::Arc;
 
 use gdcm_model::dataset::{Dataset, ModelId};
-use gdcm_study::decisions::differences::Difference;
+use gdcm_study::decisions::dataset_differences::Difference;
 use gdcm_study::decisions::edit::LONGEST_REASON;
 use gdcm_study::decisions::history::History;
 use gdcm_study::jobs::analysis_jobs::VariantJob;
 use gdcm_study::jobs::job::Job;
-use gdcm_words::decisions::{dataset_difference_text, decision_differences};
+use gdcm_words::dataset_differences::dataset_difference_text;
+use gdcm_words::decision_differences::decision_differences;
 
 use super::*;
 

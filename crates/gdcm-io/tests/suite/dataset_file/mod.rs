@@ -232,7 +232,7 @@ fn names_of_states_are_kept_where_there_is_one_for_each() {
         panic!("{:?}", wrong.cautions)
     };
     assert!(
-        caution.contains("1 state names for 2 states; the names are ignored"),
+        caution.contains("1 state name for 2 states; the names are ignored"),
         "{caution}"
     );
 }

@@ -4,9 +4,9 @@ use nalgebra::DMatrix;
 
 use gdcm_io::files::dataset_file::save_dataset;
 use gdcm_model::dataset::condition::{ConditionRecord, RecordKind};
+use gdcm_model::dataset::dataset_draft::ModelDraft;
 use gdcm_model::dataset::model::Origin;
 use gdcm_model::dataset::state_space::Timing;
-use gdcm_model::dataset::unchecked_dataset::ModelDraft;
 use gdcm_model::dataset::{BundleKind, Pair};
 
 use super::*;

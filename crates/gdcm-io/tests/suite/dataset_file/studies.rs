@@ -18,7 +18,7 @@ use gdcm_study::decisions::setting::SETTINGS;
 use gdcm_study::decisions::setting_row::{Kind, Setting, Value};
 use gdcm_study::decisions::signs::SignRole;
 use gdcm_study::{Edit, Study};
-use gdcm_words::decisions::dataset_difference_text;
+use gdcm_words::dataset_differences::dataset_difference_text;
 
 use super::SMALL;
 

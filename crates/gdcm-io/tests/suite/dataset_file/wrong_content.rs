@@ -313,7 +313,7 @@ fn a_model_has_matrices_or_a_frequency_response() {
         physics,
         &[
             "physics model \"nominal\" (number 1)",
-            "for identified models",
+            "only an identified model",
         ],
     );
 }

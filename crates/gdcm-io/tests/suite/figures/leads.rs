@@ -54,7 +54,7 @@ fn leads_are_drawn_to_ten_times_the_band_with_the_limit_and_the_price() {
     let leads = shown
         .and_then(|shown| shown.correction.leads.as_ref())
         .expect("leads");
-    let price_db = LeadPrice::of(leads).expect("a price").of_pair_db(pair);
+    let price_db = LeadPrice::new(leads).expect("a price").of_pair_db(pair);
     // Rounding of a power and of a sum of decibels.
     assert!(
         (omega - 120.0).abs() < 1e-9 && (gain_db - price_db).abs() < 1e-9,

@@ -136,7 +136,7 @@ fn diagonal() -> Figure {
         .plot(Plot::new("LON → Q").panel(Panel::new(x, y).with(curve.key("rising"))))
 }
 
-const RED: Color = Color::of(Hue::Nominal);
+const RED: Color = Color::new(Hue::Nominal);
 
 fn bytes(figure: &Figure, width: ColumnWidth, format: FigureFormat) -> Vec<u8> {
     let mut bytes = Vec::new();

@@ -398,7 +398,7 @@ fn net_gains_on_paper_have_their_bars_and_brackets() {
     let rows = figure.tables().remove(0).rows;
     let lower: Vec<&String> = rows
         .iter()
-        .filter(|row| row[0] == "bar of 90 %, lower")
+        .filter(|row| row[0] == "90 % error bar, lower")
         .map(|row| &row[3])
         .collect();
     assert!(

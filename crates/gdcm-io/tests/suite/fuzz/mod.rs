@@ -27,10 +27,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, LazyLock, Mutex};
 use std::time::{Duration, Instant};
 
-use gdcm_io::files::requirements_file::{add_tolerances, load_tolerances, read_levels};
+use gdcm_io::files::levels_and_tolerances::{add_tolerances, load_tolerances, read_levels};
+use gdcm_io::files::recovery_file::lost_studies;
 use gdcm_io::files::rules_file::{add_rules, load_rules};
 use gdcm_io::files::study_file::open_study_of;
-use gdcm_io::files::user_state::lost_studies;
 use gdcm_io::import::model_files::models_of_bytes;
 use gdcm_io::import::record_files::records_of_bytes;
 use gdcm_io::output_set::OutputSet;

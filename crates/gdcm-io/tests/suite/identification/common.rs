@@ -8,7 +8,7 @@ use serde_json::Value;
 use gdcm_model::dataset::{Model, Pair, StateSpace};
 use gdcm_model::executor::{Executor, Sequential, Task};
 use gdcm_model::response::evaluate;
-use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::response::frequency_grid::log_spaced;
 use gdcm_model::simulation::Segment;
 use gdcm_sysid::identification::ResponseEstimate;
 use gdcm_sysid::spectra::local_polynomial::local_polynomial;

@@ -45,7 +45,8 @@ fn identified(id: ConditionId) -> Identification {
     let preparation = Preparation::of(&borrowed(&inputs), &borrowed(&outputs));
     let band = dataset.band();
     let request =
-        IdentificationRequest::of(records.iter(), preparation, [band.min(), band.max()]).unwrap();
+        IdentificationRequest::from_used(records.iter(), preparation, [band.min(), band.max()])
+            .unwrap();
     assert_eq!(
         (request.records.len(), request.options.held_out.len()),
         (9, 1)

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVectorViewMut};
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::{Dynamics, StateSpace};
 use gdcm_model::executor::Sequential;
-use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::response::frequency_grid::log_spaced;
 use gdcm_model::simulation::FlightRecord;
 use gdcm_study::results::channel_time_skew::ChannelTimeSkew;
 use gdcm_sysid::identification::{Preparation, ResponseEstimate};

@@ -6,11 +6,12 @@ use proptest::prelude::*;
 use gdcm_model::dataset::StateSpace;
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::executor::Sequential;
-use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::response::frequency_grid::log_spaced;
 use gdcm_model::simulation::{FirstOrderHold, LowPass, Segment};
 use gdcm_sysid::likelihood::noise_covariance::NoiseCovariance;
 use gdcm_sysid::spectra::cut_off::CutOff;
-use gdcm_sysid::spectra::local_polynomial::{LocalPolynomialError, local_polynomial};
+use gdcm_sysid::spectra::local_polynomial::local_polynomial;
+use gdcm_sysid::spectra::local_polynomial_error::LocalPolynomialError;
 use gdcm_sysid::spectra::scales::{Scales, ScalingError};
 use gdcm_sysid::spectra::spectrum::{Spectrum, spectra};
 

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use gdcm_model::executor::Sequential;
 use gdcm_model::simulation::FlightRecord;
 use gdcm_sysid::identification::{Hold, Preparation};
-use gdcm_sysid::spectra::gaps::{Cause, Treatment};
+use gdcm_sysid::spectra::gap::{Cause, Treatment};
 use gdcm_sysid::spectra::preparation::{Prepared, prepare};
 use gdcm_sysid::spectra::preparation_settings::PreparationError;
 use gdcm_sysid::spectra::record_cautions::RecordCaution;
@@ -169,7 +169,7 @@ fn short_pieces_are_dropped_with_a_caution_and_a_place() {
     let prepared = prepared(&record, &settings());
     assert_eq!(prepared.segments.len(), 1);
     assert!(
-        words(&prepared.cautions).contains("sweep: 7.8 s from 22.2"),
+        words(&prepared.cautions).contains("sweep: the 7.8 s after 22.2"),
         "{}",
         words(&prepared.cautions)
     );
@@ -399,7 +399,7 @@ fn copies_twins_and_wrong_units_raise_cautions() {
     settings.outputs[1].limit = Some(300.0);
     let text = words(&prepared(&record, &settings).cautions);
     assert!(
-        text.contains("Q reaches 400.000, beyond 300: check its unit"),
+        text.contains("Q reaches 400.000, above the plausible maximum 300"),
         "{text}"
     );
     assert!(text.contains("LON and PED always moved together"), "{text}");

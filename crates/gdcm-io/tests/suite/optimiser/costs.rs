@@ -1,7 +1,9 @@
 //! Sensitivities and toggles, compared with solutions of the modified problem.
 
-use gdcm_method::correction::sensitivity::{ActiveConstraint, Sensitivity, sensitivities, toggles};
+use gdcm_method::correction::sensitivity::{ActiveConstraint, Sensitivity, sensitivities};
+use gdcm_method::correction::toggles::toggles;
 use gdcm_method::correction::{Bounds, Channel, Problem, ProofBudget, Quantity};
+use gdcm_words::sensitivity::sensitivity_text;
 
 use super::instances::{delay_instances, gain_instances};
 use super::solved;
@@ -26,7 +28,7 @@ fn gain_sensitivities_are_slopes_of_the_least_objective() {
         for sensitivity in sensitivities(problem, &solution) {
             let with = |factor: f64| {
                 let mut changed = problem.clone();
-                match sensitivity.restraint {
+                match sensitivity.constraint {
                     // Exclude the held entry from the objective, in which its delta gain would
                     // count too.
                     ActiveConstraint::Held(pair) => {
@@ -42,13 +44,13 @@ fn gain_sensitivities_are_slopes_of_the_least_objective() {
                 .iter()
                 .filter(|other| {
                     matches!(
-                        other.restraint,
+                        other.constraint,
                         ActiveConstraint::LowerBound(_) | ActiveConstraint::UpperBound(_)
                     )
                 })
                 .count()
                 > 1;
-            if !matches!(sensitivity.restraint, ActiveConstraint::Held(_)) && several_on_bound {
+            if !matches!(sensitivity.constraint, ActiveConstraint::Held(_)) && several_on_bound {
                 // Skip bounds that several channels have reached: changing the bound gives only the
                 // sum of their sensitivities.
                 continue;
@@ -72,7 +74,7 @@ fn delay_sensitivities_are_slopes_of_the_least_objective() {
         let problem = &instance.problem;
         let solution = solved(problem);
         for sensitivity in sensitivities(problem, &solution) {
-            let ActiveConstraint::Held(pair) = sensitivity.restraint else {
+            let ActiveConstraint::Held(pair) = sensitivity.constraint else {
                 continue;
             };
             let with = |step_s: f64| {
@@ -108,7 +110,7 @@ fn sensitivities_are_put_into_words() {
     // The five held entries of Table 2; the wide bounds of this instance are not active.
     assert_eq!(all.len(), 5);
     for sensitivity in all {
-        let words = sensitivity.words(&inputs, &outputs);
+        let words = sensitivity_text(&sensitivity, &inputs, &outputs);
         let change = if sensitivity.per_unit > 0.0 {
             "lowering"
         } else {
@@ -124,19 +126,19 @@ fn sensitivities_are_put_into_words() {
 }
 
 #[test]
-fn no_restraint_is_said_to_cost_more_than_the_whole_objective() {
+fn no_constraint_is_said_to_cost_more_than_the_whole_objective() {
     let words = |share_per_unit: f64| {
-        let restraint = ActiveConstraint::LowerBound(Channel::Input(0));
+        let constraint = ActiveConstraint::LowerBound(Channel::Input(0));
         let per_unit = 1e-6 * share_per_unit;
         let sensitivity = Sensitivity {
             quantity: Quantity::Delay,
-            restraint,
+            constraint,
             per_unit,
             share_per_unit,
         };
         (
             sensitivity.step(),
-            sensitivity.words(&["LON".to_owned()], &[]),
+            sensitivity_text(&sensitivity, &["LON".to_owned()], &[]),
         )
     };
     let (step, of_much) = words(1.2156);
@@ -230,14 +232,14 @@ fn a_bound_that_acts_has_a_multiplier_of_the_right_sign() {
         upper: 1.3,
     };
     let solution = solved(&problem);
-    let restraints = sensitivities(&problem, &solution);
-    let bounds: Vec<_> = restraints
+    let found = sensitivities(&problem, &solution);
+    let bounds: Vec<_> = found
         .iter()
-        .filter(|found| !matches!(found.restraint, ActiveConstraint::Held(_)))
+        .filter(|found| !matches!(found.constraint, ActiveConstraint::Held(_)))
         .collect();
     assert!(!bounds.is_empty());
     for bound in bounds {
-        match bound.restraint {
+        match bound.constraint {
             ActiveConstraint::UpperBound(_) => assert!(bound.per_unit < 0.0, "{bound:?}"),
             _ => assert!(bound.per_unit > 0.0, "{bound:?}"),
         }

@@ -86,7 +86,7 @@ fn what_is_held_along_a_path_balances_every_slope() {
     for sensitivity in sensitivities(&problem, &solution) {
         // Convert from per dB to per natural logarithm.
         let slope = sensitivity.per_unit * 20.0 / std::f64::consts::LN_10;
-        match sensitivity.restraint {
+        match sensitivity.constraint {
             ActiveConstraint::Held(pair) => {
                 balance[pair.input] += slope;
                 balance[MOST_CHANNELS + pair.output] += slope;

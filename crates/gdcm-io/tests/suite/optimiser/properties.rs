@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 
-use gdcm_method::correction::branch_and_bound::search::Limit;
+use gdcm_method::correction::branch_and_bound::proof_budget::Limit;
 use gdcm_method::correction::{
     Bounds, GainObjective, Outcome, Problem, ProofBudget, Quantity, Solution,
 };

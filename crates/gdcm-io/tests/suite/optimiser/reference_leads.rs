@@ -4,12 +4,13 @@
 use proptest::prelude::*;
 use serde_json::Value;
 
-use gdcm_method::correction::leads::{LeadDesign, LeadSettings};
+use gdcm_method::correction::lead_design::{LeadDesign, LeadSettings};
 use gdcm_method::correction::sensitivity::kkt_residual;
 use gdcm_method::correction::solve::solve;
 use gdcm_method::correction::{Bounds, Outcome, Problem, ProofBudget};
 use gdcm_model::dataset::{Band, Pair, PairTable};
 use gdcm_model::response::{FrequencyGrid, LeadOrder};
+use gdcm_words::conflict_text::{conflict_text, miss_text};
 
 use super::instances::{numbers, table};
 use super::solved;
@@ -82,7 +83,7 @@ fn filters_have_the_reference_response_band_delay_and_gain_at_infinity() {
     for entry in list(&reference(), "filters") {
         let design = design(entry);
         let lead_s = number(&entry["lead_s"]);
-        let filter = design.filter_of(lead_s);
+        let filter = design.filter_for_lead(lead_s);
         let [omega, re, im] = ["omega", "re", "im"].map(|name| numbers(&entry[name]));
         for (at, omega) in omega.iter().enumerate() {
             let value = filter.at(*omega);
@@ -205,8 +206,8 @@ fn a_bound_on_the_gain_of_the_filters_is_met_and_explained() {
     };
     let inputs = names("u", 4);
     let outputs = names("y", 6);
-    let told = solution.unmatched[0].words(12.0, &inputs, &outputs)
-        + &solution.conflicts[0].words(&inputs, &outputs);
+    let told = miss_text(&solution.unmatched[0], 12.0, &inputs, &outputs)
+        + &conflict_text(&solution.conflicts[0], &inputs, &outputs);
     for part in [
         "of lead that it needs",
         "R_max limits",
@@ -270,7 +271,7 @@ proptest! {
     fn filters_in_series_add_up_in_band_delay(first_s in 0.0_f64..0.08, second_s in 0.0_f64..0.08) {
         let entry = serde_json::json!({"order": 2, "pole": 3.0});
         let design = design(&entry);
-        let [first, second] = [first_s, second_s].map(|lead_s| design.filter_of(lead_s));
+        let [first, second] = [first_s, second_s].map(|lead_s| design.filter_for_lead(lead_s));
         let omega = design.omega();
         let moment: f64 = omega.iter().map(|&omega| omega * (first.at(omega) * second.at(omega)).arg()).sum();
         let series_s = -moment / omega.iter().map(|omega| omega * omega).sum::<f64>();

@@ -1,17 +1,21 @@
-//! Parts of the box of scales, given by bounds on the difference between every two scales.
+//! Parts of the box of scales, given by bounds on the difference between every two scales:
+//! `s_to - s_from <= bound(from, to)`.
 
 use crate::correction::interval::Interval;
 
-/// Bounds on the differences of scales: `s_j - s_i <= bound(i, j)` for every two scales, the ground
-/// included.
+/// Excess of a difference over its bound that is a rounding error.
+const ROUNDING: f64 = 1e-13;
+
+/// Bounds on the differences of scales: `s_to - s_from <= bound(from, to)` for every two scales,
+/// the ground included.
 ///
-/// The bounds are closed under addition (shortest paths; "difference bound matrices"): each is the
-/// tightest bound implied by the others.
+/// As the lengths of edges of a graph, the bounds are shortest paths ("difference bound matrices"):
+/// each is the tightest bound implied by the others.
 #[derive(Clone, Debug)]
 pub(crate) struct DifferenceBounds {
     /// Number of scales, including the ground.
     count: usize,
-    /// The bounds, count x count, row by row.
+    /// The bounds, count x count: `bound(from, to)` at `from * count + to`.
     bounds: Vec<f64>,
 }
 
@@ -46,6 +50,7 @@ impl DifferenceBounds {
             return None;
         }
         let mut part = self.clone();
+        // The new bound shortens the path from i to j that leads through it: i, from, to, j.
         for i in 0..count {
             for j in 0..count {
                 if j == i {
@@ -103,10 +108,10 @@ impl DifferenceBounds {
 
     /// Returns whether `scales` satisfies the bounds, up to rounding.
     pub(crate) fn contains(&self, scales: &[f64]) -> bool {
-        let slack = 1e-13;
-        (0..self.count).all(|i| {
-            (0..self.count)
-                .all(|j| scales[j] - scales[i] <= self.bounds[i * self.count + j] + slack)
+        (0..self.count).all(|from| {
+            (0..self.count).all(|to| {
+                scales[to] - scales[from] <= self.bounds[from * self.count + to] + ROUNDING
+            })
         })
     }
 }

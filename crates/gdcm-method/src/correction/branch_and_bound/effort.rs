@@ -1,4 +1,5 @@
-//! Work of a search, counted instead of timed, so that the results are reproducible.
+//! Work of a search, counted instead of timed, so that the results are reproducible; and the request
+//! to stop it.
 
 use std::cell::Cell;
 
@@ -19,7 +20,7 @@ impl<'a> Effort<'a> {
     /// Work between two polls, about half a millisecond.
     const POLL_INTERVAL: u64 = 20_000;
 
-    /// Creates a counter at zero; `stop` returns whether to stop.
+    /// Creates a counter at zero; `stop` returns whether to stop, and is polled at once.
     pub(crate) fn new(stop: &'a dyn Fn() -> bool) -> Self {
         Self {
             stop,

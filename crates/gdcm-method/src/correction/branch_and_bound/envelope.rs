@@ -1,14 +1,26 @@
-//! Convex envelope of an exponential over an interval: a line on the left, the exponential itself
-//! on the right (McCormick 1976).
+//! Convex envelope of an exponential `g(v) = R (e^v - c)^2` over an interval `low <= v <= high`: a
+//! line on the left, where `g` is concave, the exponential itself on the right (McCormick 1976).
+//!
+//! ```text
+//! tangent  through (low, g(low)), touching g at a point beyond the inflection
+//! chord    from (low, g(low)) to (high, g(high)), if no such point lies within the interval
+//! ```
 
 use super::derivatives::Derivatives;
 use super::exponential::Exponential;
 use super::rounded::Rounded;
 use crate::correction::interval::Interval;
 
+/// Maximum number of steps to the tangent; the work per term in `underestimator` allows for them.
+const TANGENT_STEPS: usize = 14;
+/// Distance of the tangent below the function's left end, relative to the value there, at which it is
+/// close enough.
+const SUFFICIENT_CLOSENESS: f64 = 1e-9;
+
 /// Line that replaces the exponential below `until` in its convex envelope.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Line {
+    /// Argument up to which the line applies.
     until: f64,
     /// Argument for which `value` is given.
     at: f64,
@@ -23,8 +35,8 @@ impl Line {
         if function.is_zero() || over.low >= function.inflection() {
             return None;
         }
-        let start = function.at(over.low, over.low.exp());
-        let end = function.at(over.high, over.high.exp());
+        let start = function.evaluate(over.low, over.low.exp());
+        let end = function.evaluate(over.high, over.high.exp());
         if over.high <= function.inflection() || overshoot(over.low, &start, over.high, &end) >= 0.0
         {
             return Some(Self::chord(over, start.value, end.value));
@@ -32,9 +44,9 @@ impl Line {
         Some(Self::tangent(function, over, &start, end))
     }
 
-    /// Finds the tangent through the left end by Newton's method. The iterate approaches from the
-    /// right, where every tangent lies below the function, so that an approximate tangent is
-    /// sufficient.
+    /// Finds the tangent through the left end by Newton's method within a bracket. `start` and
+    /// `end` are the function at both ends of the interval. The iterate approaches from the right,
+    /// where every tangent lies below the function, so that an approximate tangent is sufficient.
     fn tangent(
         function: &Exponential,
         over: Interval,
@@ -46,7 +58,7 @@ impl Line {
         let mut left = function.inflection().max(low);
         let mut right = over.high;
         let mut tangent = end;
-        for _ in 0..14 {
+        for _ in 0..TANGENT_STEPS {
             let excess = overshoot(low, start, right, &tangent);
             let newton = right - excess / (tangent.curvature * (low - right));
             let next = if left < newton && newton < right {
@@ -54,14 +66,14 @@ impl Line {
             } else {
                 0.5 * (left + right)
             };
-            let at = function.at(next, next.exp());
+            let at = function.evaluate(next, next.exp());
             if overshoot(low, start, next, &at) > 0.0 {
                 left = next;
             } else {
                 right = next;
                 tangent = at;
             }
-            if -overshoot(low, start, right, &tangent) <= 1e-9 * start.value.value {
+            if -overshoot(low, start, right, &tangent) <= SUFFICIENT_CLOSENESS * start.value.value {
                 break;
             }
         }
@@ -116,8 +128,8 @@ impl Line {
     }
 }
 
-/// Returns the amount by which the tangent at `v`, extended to `low`, exceeds the value `start`; it
-/// decreases as `v` increases beyond the inflection.
+/// Returns the amount by which the tangent at `v`, extended to `low`, exceeds the value `start` at
+/// `low`; it decreases as `v` increases beyond the inflection. `at` is the function at `v`.
 fn overshoot(low: f64, start: &Derivatives, v: f64, at: &Derivatives) -> f64 {
     at.value.value + at.slope.value * (low - v) - start.value.value
 }
@@ -128,6 +140,6 @@ pub(super) fn enveloped(function: &Exponential, line: Option<&Line>, v: f64) -> 
     match line {
         Some(line) if v < line.until => line.evaluate(v),
         _ if function.is_zero() => Derivatives::default(),
-        _ => function.at(v, v.exp()),
+        _ => function.evaluate(v, v.exp()),
     }
 }

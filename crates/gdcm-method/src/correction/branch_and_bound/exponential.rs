@@ -1,29 +1,40 @@
 //! Exponential terms: all entries whose products depend on the same difference of scales, combined
 //! into a single square.
+//!
+//! ```text
+//! sum w (G - A e^v)^2 = R (e^v - c)^2 + least,     R = sum w A^2,   c = sum w G A / R
+//! ```
+//!
+//! The sum is over the entries with the delta gain `G`, the weight `w` and the product `A e^v` of
+//! the two channel gains. `v` is the difference of the scales of the input and the output.
 
 use super::derivatives::{Derivatives, Range};
 use super::rounded::Rounded;
 use crate::correction::interval::Interval;
 
-/// The function `weight (e^v - centre)^2`: the sum of `w (G - A e^v)^2` over the entries that share
-/// the logarithm `v`, less its minimum.
+/// The function `R (e^v - c)^2`: the sum over the entries, less its minimum.
 ///
-/// Concave where `e^v < centre / 2`, convex elsewhere (`(G - K)^2` is convex in the logarithm where
-/// `K >= G / 2`).
+/// Concave where `e^v < c / 2`, convex elsewhere.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Exponential {
+    /// `R`.
     pub(super) weight: f64,
+    /// `c`.
     pub(super) centre: f64,
     /// Bound on the relative rounding error of `weight` and `centre`.
     rounding: f64,
 }
 
-/// An entry `weight (gain - product e^v)^2`; `error` is the relative error of `product`.
+/// An entry `weight (gain - product e^v)^2`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ProductEntry {
+    /// `w`.
     weight: f64,
+    /// `G`.
     gain: f64,
+    /// `A`.
     product: f64,
+    /// Relative rounding error of `product`.
     error: f64,
 }
 
@@ -57,9 +68,9 @@ pub(crate) struct CombinedEntries {
 }
 
 impl CombinedEntries {
-    /// Combines the entries that share a logarithm.
+    /// Combines the entries that share `v`.
     ///
-    /// The minimum is summed from the residuals: `P - Q^2 / R` would cancel.
+    /// The minimum is summed from the residuals at `e^v = c`: `sum w G^2 - R c^2` would cancel.
     pub(crate) fn new(entries: &[ProductEntry]) -> Self {
         let weight = entries
             .iter()
@@ -109,14 +120,14 @@ impl Exponential {
 
     /// Returns a bound on the relative rounding error of `weight`, `centre` and `z = e^v`; the
     /// terms are `rounding`, the difference `v`, the exponential and its reciprocal.
-    pub(super) fn relative(&self, v: f64) -> f64 {
+    pub(super) fn relative_error(&self, v: f64) -> f64 {
         self.rounding + (v.abs() + 4.0) * f64::EPSILON
     }
 
     /// Evaluates the function at `v`, given `z = e^v`.
-    pub(crate) fn at(&self, v: f64, z: f64) -> Derivatives {
+    pub(crate) fn evaluate(&self, v: f64, z: f64) -> Derivatives {
         let away = z - self.centre;
-        let relative = self.relative(v);
+        let relative = self.relative_error(v);
         let error = relative * (z + self.centre);
         let slope = 2.0 * self.weight * z * away;
         Derivatives {
@@ -137,7 +148,7 @@ impl Exponential {
         let lowest_at = (0.25 * self.centre).clamp(least, most);
         let lowest = 2.0 * self.weight * lowest_at * (2.0 * lowest_at - self.centre);
         let size = 2.0 * self.weight * most * (2.0 * most + self.centre);
-        let margin = 4.0 * self.relative(v.low.abs().max(v.high.abs())) * size;
+        let margin = 4.0 * self.relative_error(v.low.abs().max(v.high.abs())) * size;
         Range {
             least: lowest - margin,
             most: size + margin,
@@ -151,7 +162,7 @@ impl Exponential {
         let least = v.low.exp();
         let most = v.high.exp();
         let size = 2.0 * self.weight * most * (most + self.centre);
-        let margin = 4.0 * self.relative(v.low.abs().max(v.high.abs())) * size;
+        let margin = 4.0 * self.relative_error(v.low.abs().max(v.high.abs())) * size;
         let lowest = self.slope_at((0.5 * self.centre).clamp(least, most));
         let highest = self.slope_at(least).max(self.slope_at(most));
         Range {

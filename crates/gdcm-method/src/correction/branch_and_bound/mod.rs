@@ -1,17 +1,22 @@
 //! Global minimum of the objective over the scales that the constrained products leave free, with a
 //! proof.
 //!
-//! Constraining `k_o k_i` fixes the logarithms in a connected component of channels up to a common
-//! offset, the *scale* `s` (M8, structure). With the ground, whose scale is always 0, the objective
-//! is a sum of functions, each of a single difference of scales:
+//! Constraining `k_o k_i` fixes the logarithms of the gains in a connected component of channels up
+//! to a common offset, the *scale* `s_i` of component `i` (M8, proof). With the ground, a last
+//! scale that is always 0, the objective is a sum of functions, each of a single difference of
+//! scales:
 //!
 //! ```text
-//! F(s) = c + sum over terms f_t(s_j - s_i),     f_t(u) = R1 (e^u - c1)^2 + R2 (e^-u - c2)^2   or   w (u - c)^2
+//! F(s) = constant + sum over terms f(u),   u = s_j - s_i,   i < j
+//! f(u) = R1 (e^u - c1)^2 + R2 (e^-u - c2)^2     gains compared as ratios
+//! f(u) = W (u - c)^2                            gains compared in dB, and delays
 //! ```
 //!
-//! Each exponential is convex where `e^u >= c / 2`, and a term is concave on at most one interval.
-//! A *node* is a part of the box, given by *difference bounds* `s_j - s_i <= b_ij`. Spatial
-//! (interval) branch and bound:
+//! The weights `R1`, `R2`, `W` and the centres `c1`, `c2`, `c` combine the entries between the two
+//! components: `R1`, `c1` those with the input in `j`, `R2`, `c2` those with the input in `i`.
+//! `R1 (e^u - c1)^2` is convex where `e^u >= c1 / 2`, likewise the other exponential, and `f` is
+//! concave on at most one interval. A *node* is a part of the box `lower <= s <= upper`, given by
+//! *difference bounds* `s_j - s_i <= b_ij`. Spatial (interval) branch and bound:
 //!
 //! ```text
 //!  1  best <- local minimum of F from the given start (projected Newton)
@@ -20,14 +25,27 @@
 //!     and the budget lasts
 //!  4     node <- the open node with the lowest bound;  listing: close it if the monotonicity or
 //!        convexity test shows that it contains no minimum other than those found
-//!  5     node.bound <- tangent plane to its underestimator (each term's convex envelope) at the minimum of the underestimator,
-//!        less the rounding error
-//!  6     best <- local minimum of F from there, if it may be a new one worth listing
-//!  7     if node.bound >= 1.01 best, close it; if node.bound >= best, keep it only for the listing
-//!  8     if F is convex over the hull of node and best (convexity test), close it with the bound from best's gradient and Hessian
+//!  5     node.bound <- minimum, over the node's box, of a tangent plane to its underestimator (each term's convex envelope),
+//!        less the rounding error;  if node.bound >= 1.01 best, close the node
+//!  6     best <- local minimum of F from the tangent point, if it may be a new one worth listing
+//!  7     if node.bound >= best: close the node if F is convex over it or line 4 now closes it;
+//!        before the proof, keep it for the listing
+//!  8     if node.bound < best: close the node if F is convex over the hull of node and best (convexity test),
+//!        with the bound from best's gradient and Hessian
 //!  9     branch: at the difference whose term lies furthest above its envelope, or at the end of a concave interval
 //! 10  lower bound <- lowest bound of all closed and open nodes
 //! ```
+//!
+//! | line | file |
+//! |---|---|
+//! | 1, 6 | `newton`, each step by `active_set` |
+//! | 2, 3, 7, 9, 10 | `search`, `open_nodes`, `difference_bounds`, `proof_budget` |
+//! | 4 | `node_exclusion` |
+//! | 5 | `underestimator`, `envelope`, `convex_bound` |
+//! | 8 | `bound_near_minimum`, `node_exclusion`, `convex_bound` |
+//!
+//! The function `F` is in `objective`, its terms in `term`, `quadratic`, `exponential` and
+//! `concave_interval`, its derivatives in `expansion` and `derivatives`.
 //!
 //! Sources: Hansen and Walster, *Global Optimization Using Interval Analysis* (2004), for
 //! branching, monotonicity and convexity tests; Horst and Tuy, *Global Optimization* (1996), for
@@ -36,18 +54,24 @@
 //! wherever Newton's method ends, so that the bound does not require convergence; its rounding
 //! error is summed over the terms (`Rounded`).
 
+mod active_set;
+mod bound_near_minimum;
+mod concave_interval;
+mod convex_bound;
 mod derivatives;
 mod difference_bounds;
 pub(crate) mod effort;
 mod envelope;
+pub(crate) mod expansion;
 pub(crate) mod exponential;
 pub(crate) mod newton;
 mod node_exclusion;
 pub(crate) mod objective;
 mod open_nodes;
+pub mod proof_budget;
 pub(crate) mod quadratic;
 pub(crate) mod rounded;
-pub mod search;
+pub(crate) mod search;
 pub(crate) mod term;
 mod underestimator;
 

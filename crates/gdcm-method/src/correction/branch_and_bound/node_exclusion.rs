@@ -1,39 +1,50 @@
-//! Tests that exclude a node: monotonicity (it contains no minimum) and convexity (it contains no
-//! minimum other than one already found). Hansen & Walster, *Global Optimization Using Interval
-//! Analysis*, 2004.
+//! Tests that exclude a node (a part of the box, here the *region*) from the search.
+//!
+//! ```text
+//! monotonicity  some slope dF/ds_i has a constant sign over the region, and s_i can move downhill without meeting
+//!               a bound: the region contains no minimum
+//! convexity     the Hessian of F, with each term's curvature replaced by its minimum over the region, is positive
+//!               definite: the region contains at most one minimum
+//! ```
+//!
+//! Hansen & Walster, *Global Optimization Using Interval Analysis*, 2004. The scales of a *floating
+//! piece*, which no term connects with the ground, can be shifted together without a change of the
+//! objective: one of them, the *reference*, does not move in the tests.
 
 use nalgebra::DMatrix;
 
 use super::derivatives::Range;
 use super::difference_bounds::DifferenceBounds;
-use super::objective::{Expansion, Objective};
-use super::rounded::Rounded;
+use super::expansion::add_curvature;
+use super::objective::Objective;
 use super::term::Term;
-use super::underestimator::quadratic_bound;
 use crate::correction::interval::Interval;
+
+/// Distance from the end of the box that is a rounding error.
+const ROUNDING: f64 = 1e-12;
 
 /// The objective with the structure needed by the exclusion tests.
 pub(super) struct NodeExclusion<'a> {
-    objective: &'a Objective,
-    /// Reference scale of each scale: the ground, or the first scale in its floating piece.
-    base: Vec<usize>,
+    pub(super) objective: &'a Objective,
+    /// Reference of each scale: the ground, or the first scale in its floating piece.
+    reference: Vec<usize>,
     /// For each scale, the scales relative to which it is bounded: the ground, or the other scales
     /// in its floating piece.
-    stops: Vec<Vec<usize>>,
+    bounded_by: Vec<Vec<usize>>,
     /// Floating pieces: scales that terms connect with one another, but not with the ground.
-    floating: Vec<Vec<usize>>,
+    pub(super) floating: Vec<Vec<usize>>,
 }
 
 impl<'a> NodeExclusion<'a> {
     pub(super) fn new(objective: &'a Objective) -> Self {
         let ground = objective.ground();
-        let mut base = vec![ground; objective.scales()];
-        let mut stops = vec![vec![ground]; objective.scales()];
+        let mut reference = vec![ground; objective.scales()];
+        let mut bounded_by = vec![vec![ground]; objective.scales()];
         let floating = objective.floating_pieces();
         for piece in &floating {
             for &scale in piece {
-                base[scale] = piece[0];
-                stops[scale] = piece
+                reference[scale] = piece[0];
+                bounded_by[scale] = piece
                     .iter()
                     .copied()
                     .filter(|&other| other != scale)
@@ -42,8 +53,8 @@ impl<'a> NodeExclusion<'a> {
         }
         Self {
             objective,
-            base,
-            stops,
+            reference,
+            bounded_by,
             floating,
         }
     }
@@ -77,7 +88,7 @@ impl<'a> NodeExclusion<'a> {
         let slopes = self.slope_ranges(&hull);
         let ground = self.objective.ground();
         let free: Vec<usize> = (0..ground)
-            .filter(|&scale| self.stops[scale] != [ground] || sign(&slopes[scale]) == 0)
+            .filter(|&scale| self.bounded_by[scale] != [ground] || sign(&slopes[scale]) == 0)
             .collect();
         self.is_convex_in(&hull, free)
     }
@@ -89,7 +100,7 @@ impl<'a> NodeExclusion<'a> {
 
     /// Returns whether a bound stops the scale from moving downhill, given the sign of its slope.
     fn is_stopped(&self, region: &DifferenceBounds, scale: usize, sign: i8) -> bool {
-        self.stops[scale].iter().any(|&other| {
+        self.bounded_by[scale].iter().any(|&other| {
             if sign > 0 {
                 self.reaches_box(region, scale, other)
             } else {
@@ -100,11 +111,12 @@ impl<'a> NodeExclusion<'a> {
 
     /// Returns whether `s_to - s_from` has the same maximum over the region as over the whole box.
     fn reaches_box(&self, region: &DifferenceBounds, from: usize, to: usize) -> bool {
-        region.range(from, to).high >= self.objective.upper[to] - self.objective.lower[from] - 1e-12
+        region.range(from, to).high
+            >= self.objective.upper[to] - self.objective.lower[from] - ROUNDING
     }
 
-    /// Bounds the slope in each scale over the region; `size` is the sum of the sizes of the terms'
-    /// slopes.
+    /// Bounds the slope `dF/ds_i` in each scale over the region; `size` is the sum of the sizes of
+    /// the terms' slopes. A term's slope counts positive at its `to`, negative at its `from`.
     fn slope_ranges(&self, region: &DifferenceBounds) -> Vec<Range> {
         let mut ranges = vec![Range::default(); self.objective.scales()];
         for term in &self.objective.terms {
@@ -122,92 +134,18 @@ impl<'a> NodeExclusion<'a> {
         ranges
     }
 
-    /// Bounds the objective from below over a region on which it is convex, from its gradient and
-    /// Hessian at `minimum`. `None` if the gradient is too large for such a bound.
-    pub(super) fn bound_at(&self, minimum: &[f64], at: &Expansion) -> Option<f64> {
-        // Distance from the minimum, much larger than the error of the scales, much smaller than a
-        // distance over which the curvature changes.
-        const WITHIN: f64 = 0.01;
-        let least = self.least_hessian(|term| {
-            let u = term.difference(minimum);
-            Interval {
-                low: u - 2.0 * WITHIN,
-                high: u + 2.0 * WITHIN,
-            }
-        });
-        let push: Vec<f64> = (0..minimum.len())
-            .map(|scale| self.push(minimum, at, scale))
-            .collect();
-        let anchors = self.anchors(at, &push)?;
-        let lower = &self.objective.lower;
-        let upper = &self.objective.upper;
-        let free: Vec<usize> = (0..self.objective.ground())
-            .filter(|scale| lower[*scale] < upper[*scale] && !anchors.contains(scale))
-            .collect();
-        let inverse = reduced(&least, &free).cholesky()?.inverse();
-        let mut reach = vec![0.0; minimum.len()];
-        for (position, &scale) in free.iter().enumerate() {
-            reach[scale] = inverse[(position, position)].sqrt();
-        }
-        quadratic_bound(at, &reach, WITHIN, |scale| push[scale] > 0.0)
-    }
-
-    /// Returns the magnitude of the slope that certainly pushes the scale against its active bound;
-    /// 0 without an active bound or a certain sign.
-    fn push(&self, minimum: &[f64], at: &Expansion, scale: usize) -> f64 {
-        let slope = at.gradient[scale];
-        let is_stopped = if slope > 0.0 {
-            minimum[scale] <= self.objective.lower[scale]
-        } else {
-            minimum[scale] >= self.objective.upper[scale]
+    /// Builds the Hessian from the minimum curvature of every term over its range.
+    pub(super) fn least_hessian(&self, range: impl Fn(&Term) -> Interval) -> LeastHessian {
+        let scales = self.objective.scales();
+        let mut least = LeastHessian {
+            entries: vec![0.0; scales * scales],
+            sizes: vec![0.0; scales],
         };
-        if is_stopped {
-            (slope.abs() - at.gradient_error[scale]).max(0.0)
-        } else {
-            0.0
-        }
-    }
-
-    /// Chooses a reference scale for each floating piece: a fixed scale or, if bounds are active,
-    /// the scale that is pushed hardest. Returns `None` if this push is less than the sum of the
-    /// slope magnitudes of the scales in the piece that no bound pushes.
-    fn anchors(&self, at: &Expansion, push: &[f64]) -> Option<Vec<usize>> {
-        let mut anchors = Vec::new();
-        for piece in &self.floating {
-            let fixed = piece
-                .iter()
-                .find(|&&scale| self.objective.lower[scale] >= self.objective.upper[scale]);
-            if let Some(&fixed) = fixed {
-                anchors.push(fixed);
-                continue;
-            }
-            let hardest = piece
-                .iter()
-                .copied()
-                .max_by(|a, b| push[*a].total_cmp(&push[*b]))?;
-            let lean: f64 = piece
-                .iter()
-                .filter(|&&scale| push[scale] == 0.0)
-                .map(|&scale| at.gradient[scale].abs() + at.gradient_error[scale])
-                .sum();
-            if push[hardest] > 0.0 && push[hardest] < lean {
-                return None;
-            }
-            anchors.push(hardest);
-        }
-        Some(anchors)
-    }
-
-    /// Builds the Hessian from the minimum curvature of every term over its range. `gradient_error`
-    /// then holds, for each diagonal entry, the sum of its curvature sizes, to which its rounding
-    /// error is proportional.
-    fn least_hessian(&self, range: impl Fn(&Term) -> Interval) -> Expansion {
-        let mut least = Expansion::zero(self.objective.scales());
         for term in &self.objective.terms {
             let curvature = term.function.curvatures(range(term).not_empty());
-            least.add(term, Rounded::default(), curvature.least);
-            least.gradient_error[term.from] += curvature.size;
-            least.gradient_error[term.to] += curvature.size;
+            add_curvature(&mut least.entries, scales, term, curvature.least);
+            least.sizes[term.from] += curvature.size;
+            least.sizes[term.to] += curvature.size;
         }
         least
     }
@@ -217,9 +155,33 @@ impl<'a> NodeExclusion<'a> {
     /// exceeds it by a positive semidefinite matrix.
     fn is_convex_in(&self, region: &DifferenceBounds, mut free: Vec<usize>) -> bool {
         let least = self.least_hessian(|term| region.range(term.from, term.to));
-        // `retain`: the reference scale of a floating piece does not move.
-        free.retain(|&scale| self.base[scale] != scale);
-        free.is_empty() || reduced(&least, &free).cholesky().is_some()
+        // `retain`: the reference of a floating piece does not move.
+        free.retain(|&scale| self.reference[scale] != scale);
+        free.is_empty() || least.reduced(&free).cholesky().is_some()
+    }
+}
+
+/// The Hessian that consists of the minimum curvature of every term over a range.
+pub(super) struct LeastHessian {
+    /// Scales x scales, row by row.
+    entries: Vec<f64>,
+    /// For each diagonal entry, the sum of the sizes of its curvatures, to which its rounding error
+    /// is proportional.
+    sizes: Vec<f64>,
+}
+
+impl LeastHessian {
+    /// Returns the Hessian in the `free` scales. Its diagonal is reduced by a margin for the
+    /// rounding in its sums (up to n terms) and in its factorisation (n (n + 1) roundings: Higham,
+    /// *Accuracy and Stability of Numerical Algorithms*, 2002, theorem 10.3).
+    pub(super) fn reduced(&self, free: &[usize]) -> DMatrix<f64> {
+        let scales = self.sizes.len();
+        let roundings = ((scales + 1) * (scales + 2)) as f64;
+        DMatrix::from_fn(free.len(), free.len(), |row, column| {
+            let entry = self.entries[free[row] * scales + free[column]];
+            let margin = roundings * f64::EPSILON * self.sizes[free[row]];
+            if row == column { entry - margin } else { entry }
+        })
     }
 }
 
@@ -236,17 +198,4 @@ fn add_range(sum: &mut Range, slope: Range) {
 /// Returns the sign of a slope that is constant over its range, -1 or 1; 0 if the sign may change.
 fn sign(slope: &Range) -> i8 {
     i8::from(slope.least > 0.0) - i8::from(slope.most < 0.0)
-}
-
-/// Returns the Hessian in the `free` scales. Its diagonal is reduced by a margin for the rounding
-/// in its sums (up to n terms) and in its factorisation (n (n + 1) roundings: Higham, *Accuracy and
-/// Stability of Numerical Algorithms*, 2002, theorem 10.3).
-fn reduced(hessian: &Expansion, free: &[usize]) -> DMatrix<f64> {
-    let scales = hessian.gradient.len();
-    let roundings = ((scales + 1) * (scales + 2)) as f64;
-    DMatrix::from_fn(free.len(), free.len(), |row, column| {
-        let entry = hessian.hessian[free[row] * scales + free[column]];
-        let margin = roundings * f64::EPSILON * hessian.gradient_error[free[row]];
-        if row == column { entry - margin } else { entry }
-    })
 }

@@ -1,85 +1,10 @@
-//! The objective as a function of the scales, after the constraints are eliminated.
+//! The objective as a function of the scales, after the constraints are eliminated:
+//! `F(s) = constant + sum of terms f(s_to - s_from)` (formulas in [`super`]).
 
+use super::expansion::{Curvature, Differentiable, Expansion, ScaleBox};
 use super::rounded::Rounded;
 use super::term::Term;
-
-/// Value, gradient and Hessian (row by row) with respect to the scales, with bounds on the rounding
-/// error of value and gradient.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Expansion {
-    pub(crate) value: Rounded,
-    pub(crate) gradient: Vec<f64>,
-    pub(crate) gradient_error: Vec<f64>,
-    pub(crate) hessian: Vec<f64>,
-}
-
-impl Expansion {
-    /// Creates an expansion of zeros in `scales` scales.
-    pub(crate) fn zero(scales: usize) -> Self {
-        Self {
-            value: Rounded::default(),
-            gradient: vec![0.0; scales],
-            gradient_error: vec![0.0; scales],
-            hessian: vec![0.0; scales * scales],
-        }
-    }
-
-    /// Resets the expansion to a constant value, without new memory.
-    pub(crate) fn clear(&mut self, constant: Rounded) {
-        self.value = constant;
-        self.gradient.fill(0.0);
-        self.gradient_error.fill(0.0);
-        self.hessian.fill(0.0);
-    }
-
-    /// Adds the slope and curvature of a term to gradient and Hessian; the value is added
-    /// separately.
-    pub(crate) fn add(&mut self, term: &Term, slope: Rounded, curvature: f64) {
-        let scales = self.gradient.len();
-        let from = term.from;
-        let to = term.to;
-        self.add_to_gradient(to, slope);
-        self.add_to_gradient(from, -slope);
-        self.hessian[to * scales + to] += curvature;
-        self.hessian[from * scales + from] += curvature;
-        self.hessian[to * scales + from] -= curvature;
-        self.hessian[from * scales + to] -= curvature;
-    }
-
-    fn add_to_gradient(&mut self, scale: usize, slope: Rounded) {
-        let mut sum = Rounded {
-            value: self.gradient[scale],
-            error: self.gradient_error[scale],
-        };
-        sum.add(slope);
-        self.gradient[scale] = sum.value;
-        self.gradient_error[scale] = sum.error;
-    }
-}
-
-/// Treatment of negative curvature.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Curvature {
-    True,
-    /// Replaced by its magnitude, which keeps the Hessian positive semidefinite far from a minimum.
-    Magnitude,
-}
-
-/// A function of the scales that can be minimised by Newton's method.
-pub(crate) trait Differentiable {
-    /// Writes value, gradient and Hessian at `scales` to `into`.
-    fn expand(&self, scales: &[f64], curvature: Curvature, into: &mut Expansion);
-
-    /// Returns the work of an expansion, in the unit of [`super::effort::Effort`].
-    fn work(&self) -> u64;
-}
-
-/// The box `lower <= s <= upper` of the scales; the ground is the last entry.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct ScaleBox<'a> {
-    pub(crate) lower: &'a [f64],
-    pub(crate) upper: &'a [f64],
-}
+use crate::correction::connected_pieces::connected_pieces;
 
 /// The objective `constant + sum(terms)` over the box of scales.
 ///
@@ -130,7 +55,7 @@ impl Objective {
         let sum: f64 = self
             .terms
             .iter()
-            .map(|term| term.function.at(term.difference(scales)).value.value)
+            .map(|term| term.function.evaluate(term.difference(scales)).value.value)
             .sum();
         self.constant.value + sum
     }
@@ -174,41 +99,17 @@ impl Differentiable for Objective {
     fn expand(&self, scales: &[f64], curvature: Curvature, into: &mut Expansion) {
         into.clear(self.constant);
         for term in &self.terms {
-            let at = term.function.at(term.difference(scales));
+            let at = term.function.evaluate(term.difference(scales));
             into.value.add(at.value);
             let bend = match curvature {
                 Curvature::True => at.curvature,
                 Curvature::Magnitude => at.curvature.abs(),
             };
-            into.add(term, at.slope, bend);
+            into.add_derivatives(term, at.slope, bend);
         }
     }
 
     fn work(&self) -> u64 {
         self.terms.len() as u64
     }
-}
-
-/// Finds the connected components of a graph with `count` nodes and the given edges; each lists its
-/// nodes in ascending order.
-pub(crate) fn connected_pieces(
-    count: usize,
-    edges: impl Iterator<Item = [usize; 2]>,
-) -> Vec<Vec<usize>> {
-    let mut piece_of: Vec<usize> = (0..count).collect();
-    for [a, b] in edges {
-        let kept = piece_of[a];
-        let merged = piece_of[b];
-        for piece in &mut piece_of {
-            if *piece == merged {
-                *piece = kept;
-            }
-        }
-    }
-    let mut pieces = vec![Vec::new(); count];
-    for (node, &piece) in piece_of.iter().enumerate() {
-        pieces[piece].push(node);
-    }
-    pieces.retain(|piece| !piece.is_empty());
-    pieces
 }

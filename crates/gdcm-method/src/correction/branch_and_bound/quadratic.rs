@@ -1,5 +1,12 @@
-//! Quadratic terms: all entries of a least-squares objective that share the same difference of
+//! Quadratic terms: all entries of a least-squares objective that share the same difference `u` of
 //! scales, combined into a single square.
+//!
+//! ```text
+//! sum w (u_e - u)^2 = W (u - c)^2 + sum w (u_e - c)^2,     W = sum w,   c = sum w u_e / W
+//! ```
+//!
+//! The sum is over the entries with the weight `w` and the *target difference* `u_e`, the
+//! difference of scales at which the entry meets its delta.
 
 use super::rounded::Rounded;
 use super::term::{Function, Term, TermSum};
@@ -14,7 +21,7 @@ pub(crate) struct SquareEntry {
     pub(crate) weight: f64,
     /// Target: delta gain or delta delay; in a quadratic term, converted to the coordinate.
     pub(crate) delta: f64,
-    /// Value of the entry if both scales are 0.
+    /// Value of the entry, the sum of its two coordinates, if both scales are 0.
     pub(crate) offset: Rounded,
 }
 
@@ -57,6 +64,7 @@ impl SquareEntry {
 #[derive(Clone, Copy, Default)]
 struct SquareGroup {
     count: f64,
+    /// `W`.
     weight: f64,
     /// `sum weight difference`.
     moment: f64,
@@ -96,6 +104,7 @@ impl SquareGroup {
 /// Combines the entries into one quadratic term for each pair of scales that share an entry. The
 /// constant is the sum of the squared residuals at the minima of the terms.
 pub(crate) fn quadratic_terms(entries: &[SquareEntry], scales: usize) -> TermSum {
+    // The group of the scales `from < to` is at `from * scales + to`.
     let mut groups = vec![SquareGroup::default(); scales * scales];
     for entry in entries {
         let target = entry.target_difference();
@@ -115,9 +124,9 @@ pub(crate) fn quadratic_terms(entries: &[SquareEntry], scales: usize) -> TermSum
         } else {
             groups[from * scales + to].centre()
         };
-        let left = difference.value - centre.value;
-        let error = difference.error + centre.error + f64::EPSILON * left.abs();
-        constant.add(Rounded::square(entry.weight, left, error, f64::EPSILON));
+        let residual = difference.value - centre.value;
+        let error = difference.error + centre.error + f64::EPSILON * residual.abs();
+        constant.add(Rounded::square(entry.weight, residual, error, f64::EPSILON));
     }
     let mut terms = Vec::new();
     for from in 0..scales {

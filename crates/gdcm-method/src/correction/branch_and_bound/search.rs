@@ -1,18 +1,32 @@
-//! The branch-and-bound search and its budget.
+//! The branch-and-bound search for the global minimum and for the other minima within 1 % of it.
 
+use super::convex_bound::tangent_bound;
 use super::difference_bounds::DifferenceBounds;
 use super::effort::{Effort, SearchStopped};
+use super::expansion::{Curvature, Differentiable, Expansion, ScaleBox};
 use super::newton::Newton;
 use super::node_exclusion::NodeExclusion;
-use super::objective::{Curvature, Differentiable, Expansion, Objective, ScaleBox};
+use super::objective::Objective;
 use super::open_nodes::{Node, OpenNodes};
-use super::underestimator::{ConcaveEnd, Underestimator, tangent_bound};
+use super::proof_budget::{Limit, ProofBudget};
+use super::underestimator::{ConcaveEnd, Underestimator};
 
+/// Relative gap that is accepted as a proof.
+pub(crate) const PROOF: f64 = 1e-9;
+/// Relative gap at which branching stops, well below [`PROOF`].
+const AIM: f64 = 2e-10;
 /// Minima up to this factor above the best are listed.
 const NEAR: f64 = 1.01;
 
-/// Relative gap at which branching stops, well below [`PROOF`].
-const AIM: f64 = 2e-10;
+/// Loss of a node's bound, because Newton's method ended early, that is accepted: as a share of the
+/// desired gap or, if the node will be branched anyway, of the distance of the bound from its goal.
+const ACCEPTED_LOSS: f64 = 0.05;
+/// Difference of scales up to which two minima are duplicates.
+const SAME_MINIMUM: f64 = 1e-6;
+/// Share of a term's range between each end and the point at which the range is split.
+const SPLIT_MARGIN: f64 = 0.15;
+/// Width of a term's range up to which it is not split.
+const LEAST_SPLIT_WIDTH: f64 = 1e-11;
 
 /// A local minimum of the objective.
 #[derive(Clone, Debug)]
@@ -78,14 +92,14 @@ struct Search<'a> {
     proven_at: Option<u64>,
     /// Whether every closed node was shown to contain no local minimum other than those found.
     all_minima: bool,
-    /// Lower bound of each scale in the current node.
+    /// Memory for the lower bound of each scale in a part of the box.
     lower: Vec<f64>,
-    /// Upper bound of each scale in the current node.
+    /// Memory for the upper bound of each scale in a part of the box.
     upper: Vec<f64>,
     /// Curvature of underestimators outside their node. It is well above the curvature of the
-    /// objective, so that the bound of a node next to a minimum is attained at the edge of that
-    /// node.
-    beyond: f64,
+    /// objective at the best minimum, so that the bound of a node next to a minimum is attained at
+    /// the edge of that node.
+    outer_curvature: f64,
 }
 
 impl<'a> Search<'a> {
@@ -112,7 +126,7 @@ impl<'a> Search<'a> {
             all_minima: true,
             lower: objective.lower.clone(),
             upper: objective.upper.clone(),
-            beyond: 0.0,
+            outer_curvature: 0.0,
         }
     }
 
@@ -152,7 +166,7 @@ impl<'a> Search<'a> {
         is_listing_spent || spent >= self.budget.work || self.open.is_full()
     }
 
-    /// Returns the divisor in the relative gap.
+    /// Returns the divisor of the relative gap.
     fn denominator(&self) -> f64 {
         self.best.max(self.floor)
     }
@@ -175,27 +189,31 @@ impl<'a> Search<'a> {
             region,
             mut start,
         } = node;
+        // Line 4.
         let listing = self.proven_at.is_some();
         if listing && self.is_searched(&region) {
             return self.close(bound);
         }
+        // Line 5: afterwards, `start` is the tangent point.
         self.effort
             .spend(Underestimator::WORK_PER_TERM * self.objective.work());
-        let underestimator = Underestimator::new(self.objective, &region, self.beyond);
+        let underestimator = Underestimator::new(self.objective, &region, self.outer_curvature);
         let goal = if listing { self.cutoff() } else { self.aim() };
         let bound = bound.max(self.lower_bound(&underestimator, &region, &mut start, goal));
         if bound >= self.cutoff() {
             return self.close(bound);
         }
-        let known = self.minima.len();
+        // Line 6. A minimum to be listed lies below the cutoff; a start near it may lie slightly
+        // above.
+        let known_minima = self.minima.len();
         let value = self.objective.value(&start);
-        // A minimum to be listed lies below the cutoff; a start near it may lie slightly above.
         if value < self.best || (value < NEAR * self.cutoff() && !self.has_minimum_in(&region)) {
             self.descend(&start);
         }
         if bound >= self.aim() {
+            // Line 7: line 4 can apply now only if line 6 has found another minimum.
             if underestimator.is_exact()
-                || (listing && self.minima.len() > known && self.is_searched(&region))
+                || (listing && self.minima.len() > known_minima && self.is_searched(&region))
             {
                 return self.close(bound);
             }
@@ -209,6 +227,7 @@ impl<'a> Search<'a> {
         } else if let Some(convex) = self.convex_bound(&region, underestimator.is_exact())
             && convex >= self.aim()
         {
+            // Line 8.
             return self.close(bound.max(convex));
         }
         self.branch(&underestimator, &region, bound, &start);
@@ -219,8 +238,10 @@ impl<'a> Search<'a> {
         self.closed = self.closed.min(bound);
     }
 
-    /// Returns the largest lower bound found by Newton's method on the underestimator. Moves
-    /// `start` to the minimum of the underestimator.
+    /// Line 5: returns the largest lower bound found by Newton's method on the underestimator.
+    /// Moves `start` to the last point, near the minimum of the underestimator.
+    ///
+    /// `goal` is the bound above which the node need not be branched.
     fn lower_bound(
         &mut self,
         underestimator: &Underestimator<'_>,
@@ -233,7 +254,7 @@ impl<'a> Search<'a> {
             *scale = scale.clamp(self.lower[index], self.upper[index]);
         }
         let cutoff = self.cutoff();
-        let tolerance = 0.05 * AIM * self.denominator();
+        let tolerance = ACCEPTED_LOSS * AIM * self.denominator();
         let effort = self.effort;
         let most = self.budget.work;
         let bounds = ScaleBox {
@@ -246,17 +267,15 @@ impl<'a> Search<'a> {
             .minimise(underestimator, bounds, start, |scales, at| {
                 best = best.max(tangent_bound(scales, at, bounds));
                 let loss = at.value.value - best;
-                // If the node will be branched anyway, a loss that is small relative to its
-                // distance from the goal is acceptable.
-                let branched_anyway = !exact && loss <= 0.05 * (goal - at.value.value);
+                let branched_anyway = !exact && loss <= ACCEPTED_LOSS * (goal - at.value.value);
                 let sharp = loss <= tolerance.max(2.0 * at.value.error);
                 best >= cutoff || branched_anyway || sharp || effort.spent() >= most
             });
         best
     }
 
-    /// Minimises the objective from `start` over the whole box, and stores the minimum if it is
-    /// new.
+    /// Line 6: minimises the objective from `start` over the whole box, and stores the minimum if
+    /// it is new.
     fn descend(&mut self, start: &[f64]) {
         let mut scales = start.to_vec();
         self.newton.minimise(
@@ -273,7 +292,7 @@ impl<'a> Search<'a> {
                 .hessian
                 .iter()
                 .fold(0.0_f64, |most, entry| most.max(entry.abs()));
-            self.beyond = 8.0 * curvature;
+            self.outer_curvature = 8.0 * curvature;
         }
         self.effort
             .spend((self.minima.len() * self.objective.terms.len()) as u64);
@@ -281,7 +300,7 @@ impl<'a> Search<'a> {
         let known = self
             .minima
             .iter()
-            .position(|known| self.is_same(&known.scales, &found.scales));
+            .position(|known| self.are_duplicates(&known.scales, &found.scales));
         match known {
             Some(known) if value < self.minima[known].value => self.minima[known] = found,
             Some(_) => {}
@@ -292,7 +311,7 @@ impl<'a> Search<'a> {
 
     /// Returns whether two minima are duplicates: equal up to 1e-6, or so close that the curvature
     /// of the terms at `known` raises the objective between them by at most the desired gap.
-    fn is_same(&self, known: &[f64], found: &[f64]) -> bool {
+    fn are_duplicates(&self, known: &[f64], found: &[f64]) -> bool {
         let mut longest = 0.0_f64;
         let mut rise = 0.0;
         for term in &self.objective.terms {
@@ -300,9 +319,9 @@ impl<'a> Search<'a> {
             let there = term.difference(found);
             let change = (there - here).abs();
             longest = longest.max(change);
-            rise += 0.5 * term.function.at(here).curvature.abs() * change * change;
+            rise += 0.5 * term.function.evaluate(here).curvature.abs() * change * change;
         }
-        longest <= 1e-6 || rise <= AIM * self.denominator()
+        longest <= SAME_MINIMUM || rise <= AIM * self.denominator()
     }
 
     /// Returns whether any known minimum is inside the region.
@@ -343,7 +362,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Returns whether the node contains no local minimum other than those already found.
+    /// Line 4: returns whether the node contains no local minimum other than those already found.
     fn is_searched(&self, region: &DifferenceBounds) -> bool {
         self.effort.spend(self.exclusion.work());
         if self.exclusion.has_no_minimum(region) {
@@ -359,8 +378,8 @@ impl<'a> Search<'a> {
     }
 
     /// Line 9: branches at the term that loses most of the node's bound. If nothing is lost or the
-    /// best minimum is already proven, separates convex from concave parts, then reduces the
-    /// variation of the slopes.
+    /// best minimum is already proven, separates convex from concave parts; where this is not
+    /// possible either, splits the range of the term whose slope varies most.
     fn branch(
         &mut self,
         underestimator: &Underestimator<'_>,
@@ -385,13 +404,13 @@ impl<'a> Search<'a> {
         }
         if let Some(term) = term {
             let range = region.range(term.from, term.to);
-            if range.width() > 1e-11 {
-                let margin = 0.15 * range.width();
-                let at = term
+            if range.width() > LEAST_SPLIT_WIDTH {
+                let margin = SPLIT_MARGIN * range.width();
+                let split = term
                     .difference(start)
                     .clamp(range.low + margin, range.high - margin);
-                self.push(region.below(term.from, term.to, at), bound, start);
-                self.push(region.above(term.from, term.to, at), bound, start);
+                self.push(region.below(term.from, term.to, split), bound, start);
+                self.push(region.above(term.from, term.to, split), bound, start);
                 return;
             }
         }
@@ -409,23 +428,23 @@ impl<'a> Search<'a> {
         bound: f64,
         start: &[f64],
     ) {
-        let mut rest = Some(region.clone());
+        let mut near_start = Some(region.clone());
         for end in ends {
-            let Some(region) = rest else { return };
+            let Some(rest) = near_start else { return };
             self.effort.spend((start.len() * start.len()) as u64 / 4);
-            let below = region.below(end.from, end.to, end.at);
-            let above = region.above(end.from, end.to, end.at);
-            let outer;
+            let below = rest.below(end.from, end.to, end.at);
+            let above = rest.above(end.from, end.to, end.at);
+            let far_side;
             if start[end.to] - start[end.from] < end.at {
-                rest = below;
-                outer = above;
+                near_start = below;
+                far_side = above;
             } else {
-                rest = above;
-                outer = below;
+                near_start = above;
+                far_side = below;
             }
-            self.push(outer, bound, start);
+            self.push(far_side, bound, start);
         }
-        self.push(rest, bound, start);
+        self.push(near_start, bound, start);
     }
 
     /// Adds a part of the box to the open nodes, unless it is empty.
@@ -471,44 +490,4 @@ impl<'a> Search<'a> {
             all_minima: self.all_minima && left >= cutoff,
         }
     }
-}
-
-/// Relative gap that is accepted as a proof.
-pub(crate) const PROOF: f64 = 1e-9;
-
-/// Budget of the search for a proof. It is counted instead of timed, so that results are
-/// reproducible.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ProofBudget {
-    /// Maximum total work, in evaluations of a term of the objective (20 to 30 ns on a core). A
-    /// step in progress is completed.
-    pub work: u64,
-    /// Maximum work after the proof, spent on finding every other local minimum within 1 % of the
-    /// best.
-    pub listing: u64,
-    /// Maximum memory for the open nodes \[bytes\].
-    pub bytes: usize,
-}
-
-impl Default for ProofBudget {
-    /// Returns a budget of about two seconds on one core and 64 MB, far more than a condition with
-    /// constrained on-axis responses needs, and of at most a few milliseconds for the other minima.
-    fn default() -> Self {
-        Self {
-            work: 80_000_000,
-            listing: 200_000,
-            bytes: 64_000_000,
-        }
-    }
-}
-
-/// Limit that ended a search before the proof.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Limit {
-    /// The work, [`ProofBudget::work`].
-    Work,
-    /// The memory, [`ProofBudget::bytes`].
-    Memory,
-    /// Double precision: a sharper bound is not possible.
-    Rounding,
 }

@@ -1,6 +1,15 @@
-//! Terms of the objective: functions of a difference of scales, with bounds on their rounding
+//! Terms of the objective: functions of a difference `u` of scales, with bounds on their rounding
 //! errors.
+//!
+//! ```text
+//! f(u) = W (u - c)^2                              gains compared in dB, and delays
+//! f(u) = R1 (e^u - c1)^2 + R2 (e^-u - c2)^2       gains compared as ratios
+//! ```
+//!
+//! `R1` and `c1` are the weight and the centre of the `forward` exponential, `R2` and `c2` those of
+//! the `backward` exponential, which is a function of `-u`.
 
+use super::concave_interval::concave_interval;
 use super::derivatives::{Derivatives, Range};
 use super::exponential::Exponential;
 use super::rounded::Rounded;
@@ -60,7 +69,7 @@ impl Function {
     }
 
     /// Evaluates the function at `u`.
-    pub(crate) fn at(&self, u: f64) -> Derivatives {
+    pub(crate) fn evaluate(&self, u: f64) -> Derivatives {
         match self {
             Function::Quadratic {
                 weight,
@@ -83,11 +92,11 @@ impl Function {
                 forward, backward, ..
             } => {
                 let z = u.exp();
-                let ahead = forward.at(u, z);
+                let ahead = forward.evaluate(u, z);
                 if backward.is_zero() {
                     ahead
                 } else {
-                    ahead.plus_mirrored(backward.at(-u, 1.0 / z))
+                    ahead.plus_mirrored(backward.evaluate(-u, 1.0 / z))
                 }
             }
         }
@@ -132,8 +141,8 @@ impl Function {
     pub(crate) fn slopes(&self, over: Interval) -> Range {
         match self {
             Function::Quadratic { .. } => {
-                let down = self.at(over.low).slope;
-                let up = self.at(over.high).slope;
+                let down = self.evaluate(over.low).slope;
+                let up = self.evaluate(over.high).slope;
                 let size = down.value.abs().max(up.value.abs());
                 Range {
                     least: down.value - down.error,
@@ -186,100 +195,4 @@ impl Function {
             }
         }
     }
-}
-
-/// Finds the only interval on which the sum of two exponentials is concave, widened slightly;
-/// `None` if the sum is convex everywhere.
-///
-/// With `z = e^u` the curvature times `z^2 / 2` is the quartic
-/// `2 R1 z^4 - R1 c1 z^3 - R2 c2 z + 2 R2`. Its coefficients change sign twice, so that it has
-/// either no or two positive roots (Descartes); its derivative has a single positive root.
-fn concave_interval(forward: &Exponential, backward: &Exponential) -> Option<Interval> {
-    // Far above the rounding error of a logarithm of magnitude up to 83 (twice 180 dB, in both
-    // directions).
-    const SLACK: f64 = 1e-11;
-    match (forward.is_zero(), backward.is_zero()) {
-        (true, true) => return None,
-        (false, true) => {
-            return Some(Interval {
-                low: f64::NEG_INFINITY,
-                high: forward.inflection() + SLACK,
-            });
-        }
-        (true, false) => {
-            return Some(Interval {
-                low: -backward.inflection() - SLACK,
-                high: f64::INFINITY,
-            });
-        }
-        (false, false) => {}
-    }
-    let deepest = quartic_least(forward, backward).ln();
-    if is_surely_convex(forward, backward, deepest) {
-        return None;
-    }
-    // First guess of the brackets: `reach` exceeds the distance between the inflections
-    // `ln(c1 / 2)` and `-ln(c2 / 2)`; `convex_end` moves further away if necessary.
-    let reach = 1.0 + (forward.inflection() + backward.inflection()).abs();
-    let left = convex_end(forward, backward, deepest - reach, deepest);
-    let right = convex_end(forward, backward, deepest + reach, deepest);
-    Some(Interval {
-        low: left - SLACK,
-        high: right + SLACK,
-    })
-}
-
-/// Returns whether the quartic of [`concave_interval`], divided by `z^2`, is positive at `u` by
-/// more than its rounding error.
-fn is_surely_convex(forward: &Exponential, backward: &Exponential, u: f64) -> bool {
-    let z = u.exp();
-    let parts = [
-        2.0 * forward.weight * z.powi(2),
-        -forward.weight * forward.centre * z,
-        -backward.weight * backward.centre / z,
-        2.0 * backward.weight / (z * z),
-    ];
-    let relative = 4.0 * forward.relative(u).max(backward.relative(u));
-    let least: f64 = parts.iter().map(|part| part - relative * part.abs()).sum();
-    least > 0.0
-}
-
-/// Returns the positive `z` at which the quartic of [`concave_interval`] is minimal: the root of
-/// `8 R1 z^3 - 3 R1 c1 z^2 - R2 c2`, found by Newton's method from the right, where the cubic is
-/// convex and increasing.
-fn quartic_least(forward: &Exponential, backward: &Exponential) -> f64 {
-    let square = 3.0 * forward.centre / 8.0;
-    let constant = backward.weight * backward.centre / (8.0 * forward.weight);
-    let mut z = square + constant.cbrt();
-    for _ in 0..60 {
-        let step = (z * z * (z - square) - constant) / (z * (3.0 * z - 2.0 * square));
-        z -= step;
-        if step.abs() <= 1e-15 * z {
-            break;
-        }
-    }
-    z
-}
-
-/// Finds the end of the concave interval between `outside` and `inside` by bisection, and returns
-/// the convex side of the final bracket. Requires that the sum is not certainly convex at `inside`;
-/// `outside` is moved further away until the sum is certainly convex there.
-fn convex_end(forward: &Exponential, backward: &Exponential, outside: f64, inside: f64) -> f64 {
-    let mut convex = outside;
-    let mut other = inside;
-    for _ in 0..40 {
-        if is_surely_convex(forward, backward, convex) {
-            break;
-        }
-        convex += convex - inside;
-    }
-    while (convex - other).abs() > 1e-12 * (1.0 + convex.abs()) {
-        let middle = 0.5 * (convex + other);
-        if is_surely_convex(forward, backward, middle) {
-            convex = middle;
-        } else {
-            other = middle;
-        }
-    }
-    convex
 }

@@ -6,15 +6,20 @@ use proptest::prelude::*;
 
 use gdcm_model::dataset::PairTable;
 
+use super::convex_bound::tangent_bound;
 use super::difference_bounds::DifferenceBounds;
 use super::effort::Effort;
+use super::expansion::{Curvature, Differentiable, Expansion, ScaleBox};
 use super::newton::Newton;
 use super::node_exclusion::NodeExclusion;
-use super::objective::{Curvature, Differentiable, Expansion, Objective, ScaleBox};
-use super::search::{ProofBudget, search};
-use super::underestimator::{Underestimator, tangent_bound};
-use crate::correction::components::{Components, Constraints, Placement};
-use crate::correction::problem::{Bounds, Problem};
+use super::objective::Objective;
+use super::proof_budget::ProofBudget;
+use super::search::search;
+use super::underestimator::Underestimator;
+use crate::correction::channel_bounds::Bounds;
+use crate::correction::components::{Components, Placement};
+use crate::correction::constraints::Constraints;
+use crate::correction::problem::Problem;
 use crate::correction::quantity::{GainObjective, Quantity};
 use crate::correction::scaled_objective::{rounding_floor, scaled_objective};
 

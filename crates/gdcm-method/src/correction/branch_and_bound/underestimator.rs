@@ -1,16 +1,22 @@
-//! A convex underestimator of the objective over a node (a part of the box of scales), and its
-//! lower bounds.
+//! A convex underestimator of the objective over a node, a part of the box of scales.
+//!
+//! ```text
+//! F(s) = constant + sum over terms f(s_to - s_from)  >=  constant + sum over terms e(s_to - s_from)
+//! e: f itself where f is convex over the node's range of the difference, otherwise the sum of the envelopes
+//!    of its two exponentials
+//! ```
 
 use super::derivatives::Derivatives;
 use super::difference_bounds::DifferenceBounds;
 use super::envelope::{Line, enveloped};
-use super::objective::{Curvature, Differentiable, Expansion, Objective, ScaleBox};
+use super::expansion::{Curvature, Differentiable, Expansion};
+use super::objective::Objective;
 use super::rounded::Rounded;
 use super::term::{Function, Term};
 use crate::correction::interval::Interval;
 
-/// Lines in the convex envelopes of a term's two exponentials; `None` for an exponential that is
-/// convex over the node.
+/// Lines in the convex envelopes of a term's two exponentials (see [`Line`]); `None` for an
+/// exponential that is convex over the node.
 #[derive(Clone, Copy, Debug)]
 struct EnvelopeLines {
     forward: Option<Line>,
@@ -20,16 +26,17 @@ struct EnvelopeLines {
 /// Underestimator of a term over the range of its difference.
 ///
 /// Newton's method respects only the node's box, and may leave this range. Outside it, the
-/// underestimator continues along its tangent and bends upwards. Any convex continuation is valid,
-/// and this one keeps the minimum close.
+/// underestimator continues along its tangent and bends upwards
+/// ([`Underestimator::outer_curvature`]). Any convex continuation is valid, and this one keeps the
+/// minimum close.
 #[derive(Clone, Copy, Debug)]
-struct TermUnder {
+struct TermUnderestimator {
     /// `None` if the term is convex over the node, and thus its own underestimator.
     lines: Option<EnvelopeLines>,
     range: Interval,
 }
 
-impl TermUnder {
+impl TermUnderestimator {
     fn new(term: &Term, region: &DifferenceBounds) -> Self {
         let range = region.range(term.from, term.to).not_empty();
         let lines = match &term.function {
@@ -66,7 +73,7 @@ impl TermUnder {
                 lines.backward.as_ref(),
                 -u,
             )),
-            _ => function.at(u),
+            _ => function.evaluate(u),
         }
     }
 }
@@ -96,52 +103,56 @@ fn highest<'a>(terms: impl Iterator<Item = RankedTerm<'a>>) -> Option<RankedTerm
 /// Convex function of the scales that does not exceed the objective anywhere in the node.
 pub(crate) struct Underestimator<'a> {
     objective: &'a Objective,
-    unders: Vec<TermUnder>,
-    /// Curvature outside the ranges of the differences.
-    beyond: f64,
+    per_term: Vec<TermUnderestimator>,
+    /// Curvature of every term's underestimator outside the range of the term's difference.
+    outer_curvature: f64,
 }
 
 impl<'a> Underestimator<'a> {
     /// Work of the construction per term: up to fourteen steps to a tangent.
     pub(crate) const WORK_PER_TERM: u64 = 12;
 
-    /// Creates the underestimator of `objective` over `region`, with curvature `beyond` outside the
+    /// Creates the underestimator of `objective` over `region`, with `outer_curvature` outside the
     /// ranges of the differences.
-    pub(crate) fn new(objective: &'a Objective, region: &DifferenceBounds, beyond: f64) -> Self {
-        let unders = objective
+    pub(crate) fn new(
+        objective: &'a Objective,
+        region: &DifferenceBounds,
+        outer_curvature: f64,
+    ) -> Self {
+        let per_term = objective
             .terms
             .iter()
-            .map(|term| TermUnder::new(term, region))
+            .map(|term| TermUnderestimator::new(term, region))
             .collect();
         Self {
             objective,
-            unders,
-            beyond,
+            per_term,
+            outer_curvature,
         }
     }
 
     /// Returns whether the underestimator equals the objective, because every term is convex over
     /// the node.
     pub(crate) fn is_exact(&self) -> bool {
-        self.unders.iter().all(TermUnder::is_exact)
+        self.per_term.iter().all(TermUnderestimator::is_exact)
     }
 
     /// Iterates over the terms that are not convex over the node.
-    fn nonconvex(&self) -> impl Iterator<Item = (&'a Term, &TermUnder)> {
+    fn nonconvex(&self) -> impl Iterator<Item = (&'a Term, &TermUnderestimator)> {
         self.objective
             .terms
             .iter()
-            .zip(&self.unders)
-            .filter(|(_, under)| !under.is_exact())
+            .zip(&self.per_term)
+            .filter(|(_, underestimator)| !underestimator.is_exact())
     }
 
     /// Finds the term that is furthest above its envelope at `scales` (clamped to the node's
     /// ranges); `None` if the distance, less its rounding error, does not exceed `least_gap`.
     pub(crate) fn widest_gap(&self, scales: &[f64], least_gap: f64) -> Option<&'a Term> {
-        let gaps = self.nonconvex().map(|(term, under)| {
-            let u = under.difference(term, scales);
-            let above = term.function.at(u).value;
-            let below = under.inside(&term.function, u).value;
+        let gaps = self.nonconvex().map(|(term, underestimator)| {
+            let u = underestimator.difference(term, scales);
+            let above = term.function.evaluate(u).value;
+            let below = underestimator.inside(&term.function, u).value;
             RankedTerm {
                 term,
                 rank: above.value - below.value - above.error - below.error,
@@ -160,9 +171,9 @@ impl<'a> Underestimator<'a> {
     /// bounded, and the rest is convex in these terms.
     pub(super) fn concave_ends(&self, scales: &[f64]) -> Vec<ConcaveEnd> {
         let mut ends = Vec::new();
-        for (term, under) in self.nonconvex() {
-            let u = under.difference(term, scales);
-            if let Some(end) = term.function.concave_end(u, under.range) {
+        for (term, underestimator) in self.nonconvex() {
+            let u = underestimator.difference(term, scales);
+            if let Some(end) = term.function.concave_end(u, underestimator.range) {
                 ends.push(ConcaveEnd {
                     from: term.from,
                     to: term.to,
@@ -178,37 +189,44 @@ impl<'a> Underestimator<'a> {
     /// Returns the term whose slope varies most over the node, weighted by its range: this term is
     /// the most likely obstacle to the monotonicity and convexity tests.
     pub(crate) fn widest_slope(&self) -> Option<&'a Term> {
-        let terms = self.objective.terms.iter().zip(&self.unders);
-        let variations = terms.map(|(term, under)| {
-            let slopes = term.function.slopes(under.range);
+        let terms = self.objective.terms.iter().zip(&self.per_term);
+        let variations = terms.map(|(term, underestimator)| {
+            let slopes = term.function.slopes(underestimator.range);
             RankedTerm {
                 term,
-                rank: (slopes.most - slopes.least) * under.range.width(),
+                rank: (slopes.most - slopes.least) * underestimator.range.width(),
             }
         });
         highest(variations).map(|widest| widest.term)
     }
 
-    /// Evaluates the underestimator of a term, also outside its range.
-    fn at(&self, term: &Term, under: &TermUnder, scales: &[f64]) -> Derivatives {
+    /// Evaluates the underestimator of a term. Outside its range, at the distance `x` from the
+    /// nearer end, the value is `e + e' x + outer_curvature x^2 / 2`, with the value `e` and the
+    /// slope `e'` at that end.
+    fn evaluate(
+        &self,
+        term: &Term,
+        underestimator: &TermUnderestimator,
+        scales: &[f64],
+    ) -> Derivatives {
         let u = term.difference(scales);
-        let end = under.range.nearest(u);
-        let mut at = under.inside(&term.function, end);
-        let beyond = u - end;
-        if beyond != 0.0 {
-            let bend = self.beyond * beyond;
-            let rise = (at.slope.value + 0.5 * bend) * beyond;
-            let moved = at.slope.error * beyond.abs()
+        let end = underestimator.range.nearest(u);
+        let mut at = underestimator.inside(&term.function, end);
+        let outside = u - end;
+        if outside != 0.0 {
+            let bend = self.outer_curvature * outside;
+            let rise = (at.slope.value + 0.5 * bend) * outside;
+            let rise_error = at.slope.error * outside.abs()
                 + 4.0 * f64::EPSILON * (rise.abs() + (at.slope.value * u).abs());
             at.value.add(Rounded {
                 value: rise,
-                error: moved,
+                error: rise_error,
             });
             at.slope.add(Rounded {
                 value: bend,
-                error: 2.0 * f64::EPSILON * (bend.abs() + self.beyond * u.abs()),
+                error: 2.0 * f64::EPSILON * (bend.abs() + self.outer_curvature * u.abs()),
             });
-            at.curvature = self.beyond;
+            at.curvature = self.outer_curvature;
         }
         at
     }
@@ -217,63 +235,16 @@ impl<'a> Underestimator<'a> {
 impl Differentiable for Underestimator<'_> {
     fn expand(&self, scales: &[f64], _curvature: Curvature, into: &mut Expansion) {
         into.clear(self.objective.constant);
-        for (term, under) in self.objective.terms.iter().zip(&self.unders) {
-            let at = self.at(term, under, scales);
+        for (term, underestimator) in self.objective.terms.iter().zip(&self.per_term) {
+            let at = self.evaluate(term, underestimator, scales);
             into.value.add(at.value);
             // `max(0.0)`: the curvature is negative only by the rounding of the interval's ends.
-            into.add(term, at.slope, at.curvature.max(0.0));
+            into.add_derivatives(term, at.slope, at.curvature.max(0.0));
         }
     }
 
     fn work(&self) -> u64 {
         2 * self.objective.terms.len() as u64
-    }
-}
-
-/// Bounds a convex function over a box from below, by its tangent plane at `scales` (inside the
-/// box), less the rounding errors of the value, of every slope and of their sum.
-pub(super) fn tangent_bound(scales: &[f64], at: &Expansion, bounds: ScaleBox<'_>) -> f64 {
-    let mut bound = at.value.value - at.value.error;
-    for (index, scale) in scales.iter().enumerate() {
-        let slope = at.gradient[index];
-        let error = at.gradient_error[index];
-        let down = (slope + error).max(0.0) * (scale - bounds.lower[index]).max(0.0);
-        let up = (error - slope).max(0.0) * (bounds.upper[index] - scale).max(0.0);
-        bound -= down.max(up);
-    }
-    // Each of the n + 1 subtractions rounds a value between the function value and the bound; each
-    // product rounds four times, relative to the sum of the products.
-    bound - (scales.len() as f64 + 5.0) * f64::EPSILON * at.value.value.abs().max(bound.abs())
-}
-
-/// Bounds a convex function from below near a point at which its slopes are almost zero, by its
-/// tangent plane and Hessian. `None` if the slopes are too large.
-///
-/// Let `H` be a matrix that the Hessian exceeds by a positive semidefinite matrix while no scale is
-/// further than `within` from the point. `reach` is `sqrt(diagonal of H^-1)`, and 0 for a fixed
-/// scale. With the gradient `g`, its error `e` and `r = sum (|g| + e) reach`, the parabola
-/// `g d + d' H d / 2` is nowhere below `-r^2 / 2`, and rises again before any scale has moved by
-/// `r reach`; beyond this distance, a convex function continues to rise. A scale that its slope has
-/// `pushed` against its bound can only raise the function.
-pub(super) fn quadratic_bound(
-    at: &Expansion,
-    reach: &[f64],
-    within: f64,
-    pushed: impl Fn(usize) -> bool,
-) -> Option<f64> {
-    let mut sum = 0.0;
-    for (scale, reach) in reach.iter().enumerate() {
-        if !pushed(scale) {
-            sum += (at.gradient[scale].abs() + at.gradient_error[scale]) * reach;
-        }
-    }
-    let farthest = sum * reach.iter().fold(0.0_f64, |most, reach| most.max(*reach));
-    if farthest <= within {
-        // `1.0 + 1e-6`: margin for rounding in the sum and in the inverse.
-        let bound = at.value.value - at.value.error - 0.5 * sum * sum * (1.0 + 1e-6);
-        Some(bound - 4.0 * f64::EPSILON * bound.abs())
-    } else {
-        None
     }
 }
 
@@ -357,7 +328,7 @@ mod tests {
             at in -3.0..3.0_f64,
         ) {
             let convex = function.is_convex_over(Interval { low: at, high: at });
-            let curvature = function.at(at).curvature;
+            let curvature = function.evaluate(at).curvature;
             // The interval is widened by 1e-11, so that the curvature at its ends is 1e-11 times
             // its slope there.
             prop_assert!(convex == (curvature > 0.0) || curvature.abs() <= 1e-6, "{} {}", convex, curvature);
@@ -371,7 +342,7 @@ mod tests {
             share in 0.0..1.0_f64,
         ) {
             let range = Interval { low, high: low + width };
-            let at = function.at(low + share * width);
+            let at = function.evaluate(low + share * width);
             let slopes = function.slopes(range);
             let curvatures = function.curvatures(range);
             prop_assert!(slopes.least <= at.slope.value + at.slope.error && at.slope.value - at.slope.error <= slopes.most);

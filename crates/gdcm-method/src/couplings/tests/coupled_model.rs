@@ -8,7 +8,7 @@ use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
 
 use super::{constant, matrix_at};
 use crate::correction::Pade;
-use crate::couplings::coupling_effects::relative_change_db;
+use crate::couplings::response_change::relative_change_db;
 use crate::couplings::{CoupledModelError, CouplingMatrices, LoopMargin};
 
 /// A helicopter with four states, two inputs, three outputs and feed-through.
@@ -31,7 +31,7 @@ fn grid() -> FrequencyGrid {
 }
 
 fn response_of(model: &StateSpace) -> FrequencyResponse {
-    FrequencyResponse::of(&Dynamics::StateSpace(model.clone()), &grid())
+    FrequencyResponse::from_dynamics(&Dynamics::StateSpace(model.clone()), &grid())
 }
 
 fn pade() -> Pade {
@@ -64,7 +64,7 @@ fn without_couplings_nothing_changes() {
             .iter()
             .all(|shift| shift.distance_rad_s() == Some(0.0) && !shift.is_newly_unstable())
     );
-    let margin = LoopMargin::of(
+    let margin = LoopMargin::find(
         &none.least_singular_values(&response_of(&physics)),
         grid().omega(),
     )
@@ -168,10 +168,10 @@ fn a_pole_that_the_loop_makes_unstable_is_marked() {
         .unwrap();
     assert!(shifts[0].is_newly_unstable() && (shifts[0].after.re - 0.5).abs() < 1e-15);
     assert_eq!(shifts[0].distance_rad_s(), Some(1.5));
-    let response = FrequencyResponse::of(&Dynamics::StateSpace(lag), &grid());
+    let response = FrequencyResponse::from_dynamics(&Dynamics::StateSpace(lag), &grid());
     let couplings = constant(&dmatrix![1.0], &dmatrix![0.9]);
     let margin =
-        LoopMargin::of(&couplings.least_singular_values(&response), grid().omega()).unwrap();
+        LoopMargin::find(&couplings.least_singular_values(&response), grid().omega()).unwrap();
     // |1 - 0.9 / (1 + j 0.2)| at the lowest frequency.
     let expected = (Complex::from(1.0) - Complex::from(0.9) / Complex::new(1.0, 0.2)).norm();
     assert!(

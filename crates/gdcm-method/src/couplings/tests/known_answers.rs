@@ -9,7 +9,7 @@ use gdcm_model::progress::Unobserved;
 
 use super::{REFERENCE, constant, disturbed, fit, matrix, matrix_at, numbers, synthetic_aircraft};
 use crate::correction::Pade;
-use crate::couplings::fit::left_out_fits;
+use crate::couplings::jackknife::left_out_fits;
 use crate::couplings::problem::{CouplingError, CouplingOptions};
 use crate::couplings::{CouplingBars, CouplingMatrices, CouplingProblem, Unknown};
 
@@ -212,7 +212,7 @@ fn bars_need_three_conditions_and_agree_with_the_jackknife() {
     let left_out: Vec<_> = fits.iter().map(|fit| fit.condition).collect();
     assert_eq!(left_out, [1, 2, 3, 4].map(ConditionId));
     assert_eq!(fits[1].fit, fit(&disturbed().without(1)));
-    let bars = CouplingBars::of(&fits, 80.0, 0.9).unwrap();
+    let bars = CouplingBars::from_fits(&fits, 80.0, 0.9).unwrap();
     let entries: Vec<f64> = fits
         .iter()
         .map(|left_out| left_out.fit.matrices.feedback()[(1, 2)])

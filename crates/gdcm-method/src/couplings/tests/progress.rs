@@ -7,8 +7,8 @@ use gdcm_model::executor::Sequential;
 use gdcm_model::progress::{Cancelled, Progress};
 
 use super::{disturbed, many_channels};
-use crate::couplings::fit::left_out_fits;
 use crate::couplings::fit_couplings;
+use crate::couplings::jackknife::left_out_fits;
 use crate::couplings::problem::CouplingError;
 
 /// A progress listener that cancels immediately.

@@ -1,16 +1,35 @@
 //! Directory of the objects: the class of each object, and the place of each property value.
+//!
+//! ```text
+//! header     10 words of 32 bits: version, number of names, offsets [bytes] of 8 regions
+//! names      of properties and classes, each ended by a zero byte; counted from 1
+//! region 0   classes, 4 words each: index of the package name, of the class name, 2 unused
+//! region 1   property lists of objects whose class saves another value ("created" by the class)
+//! region 2   objects, 6 words each: class, 2 unused, index of the list in region 1 (0 if there is
+//!            none), index of the list in region 3, 1 unused
+//! region 3   property lists of all other objects
+//! regions 4 to 7 are not read
+//! ```
+//!
+//! A property list is the number of its properties, 3 words for each (index of the name, kind of
+//! content, content), and padding to a multiple of 8 bytes. Classes, objects and lists are counted
+//! from 0; their entries 0 are empty.
 
 use crate::formats::mat::cursor::ByteOrder;
 use crate::formats::mat::element::decode_name;
 use crate::formats::mat::subsystem::damaged;
 use crate::reading_budget::VariableFault;
 
-/// Length of the header \[bytes\]: version, number of names, and eight region offsets.
+/// Length of the header \[bytes\].
 const HEADER_BYTES: usize = 40;
+/// Number of words for a class.
+const CLASS_WORDS: usize = 4;
+/// Number of words for a property in a list.
+const PROPERTY_WORDS: usize = 3;
 /// Newest supported layout version.
 const NEWEST: u32 = 4;
 
-/// Regions of 32-bit words after the names; the values are their indices.
+/// Regions after the names that are read; the values are their numbers.
 #[derive(Clone, Copy)]
 enum Region {
     Classes = 0,
@@ -26,11 +45,11 @@ pub(super) struct Directory {
     /// Class names by class number; class 0 is not used.
     classes: Vec<String>,
     objects: Vec<ObjectEntry>,
-    /// Property lists of objects that their class saves as another value.
+    /// Property lists of objects whose class saves another value instead of the object.
     created: Vec<Vec<Property>>,
     /// Property lists of all other objects.
     plain: Vec<Vec<Property>>,
-    /// Number of cells after the property values.
+    /// Number of cells after the property values, which depends on the version.
     pub(super) cells_after_values: usize,
 }
 
@@ -97,13 +116,13 @@ impl Directory {
         };
         directory.classes = bytes
             .words(Region::Classes)?
-            .chunks_exact(4)
+            .chunks_exact(CLASS_WORDS)
             .map(|class| directory.qualified_name(class))
             .collect();
         Ok(directory)
     }
 
-    /// Returns the class name with its package, from the indices of both names.
+    /// Returns the class name with its package, from the words of a class.
     fn qualified_name(&self, words: &[u32]) -> String {
         let package = self.name_or_empty(words.first());
         let name = self.name_or_empty(words.get(1));
@@ -114,6 +133,7 @@ impl Directory {
         }
     }
 
+    /// Returns the name at an index, counted from 1; empty if there is no such name.
     fn name_or_empty(&self, number: Option<&u32>) -> &str {
         number
             .and_then(|&number| self.name(number))
@@ -202,6 +222,7 @@ impl<'b> DirectoryBytes<'b> {
             .collect())
     }
 
+    /// Returns the words of a region.
     fn words(&self, region: Region) -> Result<Vec<u32>, VariableFault> {
         let number = region as usize;
         let words = match self.regions.get(number..number + 2) {
@@ -221,7 +242,7 @@ fn decode_words(bytes: &[u8], order: ByteOrder) -> Vec<u32> {
     words.iter().map(|&word| order.u32(word)).collect()
 }
 
-/// Decodes the object entries, which have six words each.
+/// Decodes the entries of all objects.
 fn object_entries(words: &[u32]) -> Vec<ObjectEntry> {
     let (entries, _) = words.as_chunks();
     entries
@@ -234,28 +255,29 @@ fn object_entries(words: &[u32]) -> Vec<ObjectEntry> {
         .collect()
 }
 
-/// Decodes consecutive property lists; each is preceded by its length and padded to a multiple of
-/// eight bytes.
+/// Decodes consecutive property lists.
 fn property_lists(words: &[u32]) -> Result<Vec<Vec<Property>>, VariableFault> {
     let mut lists = Vec::new();
     let mut rest = words;
     while let [count, after @ ..] = rest {
-        let length = (*count as usize).saturating_mul(3);
+        let length = (*count as usize).saturating_mul(PROPERTY_WORDS);
         let Some((list, after)) = after.split_at_checked(length) else {
             return Err(damaged("the properties of an object are cut off"));
         };
         let (properties, _) = list.as_chunks();
         lists.push(properties.iter().copied().map(decode_property).collect());
-        rest = after.get((length + 1) % 2..).unwrap_or_default();
+        // With its count, a list has `length` + 1 words; one word of padding makes them even.
+        let padding = (length + 1) % 2;
+        rest = after.get(padding..).unwrap_or_default();
     }
     Ok(lists)
 }
 
-fn decode_property([name, kind, value]: [u32; 3]) -> Property {
+fn decode_property([name, kind, content]: [u32; PROPERTY_WORDS]) -> Property {
     let content = match kind {
-        0 => Content::Name(value),
-        1 => Content::Cell(value as usize),
-        _ => Content::Number(value),
+        0 => Content::Name(content),
+        1 => Content::Cell(content as usize),
+        _ => Content::Number(content),
     };
     Property { name, content }
 }

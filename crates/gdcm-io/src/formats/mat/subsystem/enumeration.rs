@@ -1,10 +1,19 @@
-//! Members of enumeration classes, saved as a record with indices into a list of names.
+//! Members of enumeration classes, saved as a record with these fields:
+//!
+//! ```text
+//! EnumerationInstanceTag   recognises the record
+//! ClassName                class number
+//! ValueNames               for each member, the index of its name in the directory
+//! ValueIndices             for each value, an index in `ValueNames`, from 0
+//! ```
 
 use crate::formats::mat::subsystem::directory::Directory;
 use crate::formats::variables::{Object, StructArray, Value};
 
 /// Field by which a record of enumeration members is recognised.
 const TAG: &str = "EnumerationInstanceTag";
+/// Estimated memory of a member without its name \[bytes\].
+const VALUE: u64 = 256;
 /// Property that holds the name of the member.
 const MEMBER: &str = "Name";
 
@@ -46,7 +55,10 @@ impl<'d> EnumerationMembers<'d> {
 
     /// Estimates the memory of the converted value \[bytes\].
     pub(super) fn memory(&self) -> u64 {
-        self.names.iter().map(|name| name.len() as u64 + 256).sum()
+        self.names
+            .iter()
+            .map(|name| name.len() as u64 + VALUE)
+            .sum()
     }
 
     /// Converts the members to an object array whose only property is the member name.

@@ -1,14 +1,25 @@
-//! Objects of MATLAB classes, stored in a separate part of the file: the cells of a
-//! `FileWrapper__`.
+//! Objects of MATLAB classes, stored in a separate part of the file, which MATLAB calls subsystem
+//! data: the cells of a `FileWrapper__`.
 //!
-//! The first cell is a directory that lists the objects and the cell of each property; the last
-//! cells are shared by all objects of a class. The format is not published by The MathWorks; this
-//! reader follows the descriptions by the MatFileHandler, matio (Python) and MAT.jl projects. Files
-//! up to version 7 and files of version 7.3 (HDF5) use the same format.
+//! ```text
+//! cell 0        directory: names, classes, objects, and the cell of each property  (directory.rs)
+//! cell 1        not read
+//! cells 2 ...   values of the properties
+//! last cells    1, 2 or 3 depending on the version of the directory; the very last holds the
+//!               defaults of the properties, a record for each class; the others are not used
+//! ```
+//!
+//! A variable holds only a reference: the class number and the object numbers (`reference.rs`). The
+//! properties of these objects are put together by `object_assembly.rs`; a property may in turn be a
+//! reference.
+//!
+//! The format is not published by The MathWorks; this reader follows the descriptions by the
+//! MatFileHandler, matio (Python) and MAT.jl projects. Files up to version 7 and files of version
+//! 7.3 (HDF5) use the same format.
 
 mod directory;
 mod enumeration;
-mod instance;
+mod object_assembly;
 mod packed_text;
 mod reference;
 
@@ -16,7 +27,7 @@ use std::collections::HashMap;
 
 use crate::formats::mat::subsystem::directory::Directory;
 use crate::formats::mat::subsystem::enumeration::EnumerationMembers;
-use crate::formats::mat::subsystem::instance::Assembly;
+use crate::formats::mat::subsystem::object_assembly::Assembly;
 use crate::formats::mat::unreadable::unreadable;
 use crate::formats::mat::value_path::ValuePath;
 use crate::formats::variables::{StructArray, Value};
@@ -38,7 +49,7 @@ pub struct Subsystem {
     directory: Directory,
     /// Values of the properties, by the index used in the directory.
     values: Vec<Value>,
-    /// Defaults of the properties, a record for each class.
+    /// Defaults of the properties, a record for each class number.
     defaults: Vec<Value>,
     /// Exact values of 64-bit integers, by index in `values`.
     long_words: LongWords,
@@ -56,8 +67,9 @@ impl Subsystem {
             Some(Value::Cell(defaults)) => defaults.values,
             _ => Vec::new(),
         };
-        let shared = directory.cells_after_values.saturating_sub(1);
-        values.truncate(values.len().saturating_sub(shared));
+        // The defaults, which were removed above, are one of the cells after the values.
+        let unused = directory.cells_after_values.saturating_sub(1);
+        values.truncate(values.len().saturating_sub(unused));
         Ok(Self {
             directory,
             values: values.split_off(CELLS_BEFORE_VALUES.min(values.len())),

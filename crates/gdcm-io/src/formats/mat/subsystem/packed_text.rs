@@ -5,25 +5,28 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// The only supported version of the packing.
 const VERSION: u64 = 1;
+/// Upper bound of the memory for a word: a length with its string, or four units and their
+/// characters \[bytes\].
+const MEMORY_PER_WORD: u64 = 64;
 /// Length that marks a missing string.
 const MISSING: u64 = u64::MAX;
 
-/// Unpacks strings from words: version, number of dimensions, dimensions, string lengths, and
-/// UTF-16 units, four in each word. A missing string becomes an empty string. Returns `None` for
-/// words in any other form.
+/// Unpacks strings from words: version, number of dimensions, dimensions, string lengths \[UTF-16
+/// units\], and the units of all strings, four in each word. A missing string becomes an empty
+/// string. Returns `None` for words in any other form.
 pub(super) fn unpack_texts(
     words: &[u64],
     budget: &ReadingBudget<'_>,
 ) -> Result<Option<TextArray>, VariableFault> {
-    budget.take(words.len() as u64, 64, "")?;
+    budget.take(words.len() as u64, MEMORY_PER_WORD, "")?;
     Ok(parse_words(words))
 }
 
 fn parse_words(words: &[u64]) -> Option<TextArray> {
-    let [VERSION, dimensions, rest @ ..] = words else {
+    let [VERSION, dimensions, after_count @ ..] = words else {
         return None;
     };
-    let (sides, rest) = rest.split_at_checked(usize::try_from(*dimensions).ok()?)?;
+    let (sides, after_sides) = after_count.split_at_checked(usize::try_from(*dimensions).ok()?)?;
     let mut shape = Vec::with_capacity(sides.len());
     for &side in sides {
         shape.push(usize::try_from(side).ok()?);
@@ -32,8 +35,9 @@ fn parse_words(words: &[u64]) -> Option<TextArray> {
     for &side in &shape {
         count = count.checked_mul(side)?;
     }
-    let (lengths, rest) = rest.split_at_checked(count)?;
-    let units: Vec<u16> = rest
+    let (lengths, packed_units) = after_sides.split_at_checked(count)?;
+    // The first unit is in the lowest 16 bits of a word.
+    let units: Vec<u16> = packed_units
         .iter()
         .flat_map(|word| [0, 16, 32, 48].map(|shift| (word >> shift) as u16))
         .collect();

@@ -1,6 +1,6 @@
 //! References to objects, as stored in MATLAB files.
 
-use crate::formats::strides::count;
+use crate::formats::element_order::element_count;
 use crate::formats::variables::{ElementKind, Value};
 
 /// First word of every reference.
@@ -25,7 +25,7 @@ impl Reference {
         let (sides, rest) = rest.split_at_checked(*dimensions as usize)?;
         let shape: Vec<usize> = sides.iter().map(|&side| side as usize).collect();
         let (&class, objects) = rest.split_last()?;
-        if shape.len() < 2 || count(&shape)? != objects.len() {
+        if shape.len() < 2 || element_count(&shape)? != objects.len() {
             return None;
         }
         Some(Self {

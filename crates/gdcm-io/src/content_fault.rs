@@ -1,0 +1,107 @@
+//! Faults in the content of the program's own files, each with its place in the file.
+//!
+//! A fault does not know the path of the file; [`FileError`](crate::file_error::FileError) adds it.
+
+use gdcm_method::requirements::tolerance_check::ToleranceError;
+use gdcm_model::dataset::band::BandError;
+use gdcm_model::dataset::draft_fault::{DraftError, DraftFault};
+use gdcm_model::dataset::location::Location;
+use gdcm_model::message_text::{quoted, sanitized};
+use gdcm_study::decisions::edit_refusal::EditRefusal;
+
+/// Fault in an entry of a file; the message states the expected and the actual content.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ContentFault {
+    #[error("expected {expected}, found {found} (line {line}, column {column})")]
+    Type {
+        expected: String,
+        found: String,
+        /// Line, counted from 1.
+        line: usize,
+        /// Column in bytes, counted from 1.
+        column: usize,
+    },
+    /// A number is NaN, infinite, or too large for a 64-bit float.
+    #[error("expected a finite number, found {found} (line {line}, column {column})")]
+    NotFinite {
+        found: String,
+        /// Line, counted from 1.
+        line: usize,
+        /// Column in bytes, counted from 1.
+        column: usize,
+    },
+    /// Lists or objects are nested too deeply.
+    #[error("lists or objects are nested too deeply (line {line}, column {column})")]
+    TooDeep {
+        /// Line, counted from 1.
+        line: usize,
+        /// Column in bytes, counted from 1.
+        column: usize,
+    },
+    #[error("the key \"{key}\" is missing; add it")]
+    MissingKey { key: String },
+    #[error("duplicate key {}; remove one", quoted(key))]
+    DuplicateKey { key: String },
+    /// Any other fault in the text.
+    #[error("{reason} (line {line}, column {column})")]
+    Text {
+        reason: String,
+        /// Line, counted from 1.
+        line: usize,
+        /// Column in bytes, counted from 1.
+        column: usize,
+    },
+    /// A list has more entries than permitted.
+    #[error("expected at most {most} entries, found {found}")]
+    TooMany {
+        most: usize,
+        /// Number of entries.
+        found: usize,
+    },
+    /// A string is not one of the permitted words.
+    #[error("expected {expected}, found {}", quoted(found))]
+    Word {
+        /// Permitted words, as displayed in the message.
+        expected: String,
+        found: String,
+    },
+    /// A row in a tolerance table is invalid.
+    #[error(transparent)]
+    Tolerance(#[from] ToleranceError),
+    #[error(transparent)]
+    Band(#[from] BandError),
+    /// The content is not a valid dataset.
+    #[error("{}", sanitized(&.0.to_string()))]
+    Dataset(#[from] DraftFault),
+    /// A study contains a condition twice.
+    #[error("duplicate condition {id}; remove one")]
+    DuplicateCondition { id: i64 },
+    /// A study contains an invalid decision.
+    #[error("{}", sanitized(&.0.to_string()))]
+    Refused(#[from] EditRefusal),
+}
+
+/// A fault in a file, with its place. Both are boxed to keep `Result`s small.
+#[derive(Debug)]
+pub(super) struct ContentError {
+    pub(super) place: Box<Location>,
+    pub(super) fault: Box<ContentFault>,
+}
+
+impl ContentError {
+    pub(super) fn new(place: Location, fault: impl Into<ContentFault>) -> Self {
+        Self {
+            place: Box::new(place),
+            fault: Box::new(fault.into()),
+        }
+    }
+}
+
+impl From<DraftError> for ContentError {
+    fn from(error: DraftError) -> Self {
+        Self {
+            place: error.place,
+            fault: Box::new((*error.fault).into()),
+        }
+    }
+}

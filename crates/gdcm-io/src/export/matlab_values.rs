@@ -1,0 +1,75 @@
+//! Values of MATLAB built from numbers and strings: structs, cell columns, vectors and matrices.
+
+use gdcm_model::dataset::Dataset;
+
+use crate::files::export_contents::ExportContents;
+use crate::formats::variables::{Array, CellArray, StructArray, Value};
+
+/// Fields of a struct, in order.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Fields {
+    fields: Vec<(String, Value)>,
+}
+
+impl Fields {
+    /// Adds a field. `name` must consist of letters, digits and _.
+    pub(super) fn add(&mut self, name: &str, value: Value) {
+        self.fields.push((name.to_owned(), value));
+    }
+
+    /// Returns a struct with these fields.
+    pub(super) fn record(self) -> Value {
+        records(vec![self])
+    }
+}
+
+/// Returns a row of structs, which must have the same fields.
+pub(super) fn records(records: Vec<Fields>) -> Value {
+    let shape = vec![1, records.len()];
+    let mut fields: Vec<(String, Vec<Value>)> = Vec::new();
+    for record in records {
+        for (place, (name, value)) in record.fields.into_iter().enumerate() {
+            match fields.get_mut(place) {
+                Some((_, values)) => values.push(value),
+                None => fields.push((name, vec![value])),
+            }
+        }
+    }
+    Value::Struct(StructArray { shape, fields })
+}
+
+/// Returns a cell column with one string per cell.
+pub(super) fn cell_of_texts(texts: impl IntoIterator<Item = String>) -> Value {
+    let values: Vec<Value> = texts.into_iter().map(Value::text).collect();
+    Value::Cell(CellArray {
+        shape: vec![values.len(), 1],
+        values,
+    })
+}
+
+/// Returns a row vector.
+pub(super) fn row(values: impl IntoIterator<Item = f64>) -> Value {
+    let values: Vec<f64> = values.into_iter().collect();
+    matrix(1, values.len(), values)
+}
+
+/// Returns a column vector.
+pub(super) fn column(values: impl IntoIterator<Item = f64>) -> Value {
+    let values: Vec<f64> = values.into_iter().collect();
+    matrix(values.len(), 1, values)
+}
+
+/// Returns a matrix from its values in column-major order.
+pub(super) fn matrix(rows: usize, columns: usize, values: Vec<f64>) -> Value {
+    Value::Array(Array::matrix(rows, columns, values))
+}
+
+/// Returns a struct with the source of each correction part in a file, and with the omitted parts.
+pub(super) fn contained_parts(contents: &ExportContents, dataset: &Dataset) -> Value {
+    let mut fields = Fields::default();
+    for (name, source) in contents.parts() {
+        fields.add(name, Value::text(source.word()));
+    }
+    fields.add("left_out", cell_of_texts(contents.left_out_words(dataset)));
+    fields.record()
+}

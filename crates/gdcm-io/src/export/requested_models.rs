@@ -1,0 +1,193 @@
+//! The corrected models that an export requests: choice of the conditions, the physics model and
+//! the correction, and computation of the corrected model with its accuracy.
+
+use gdcm_method::correction::{self, ChannelCorrection, LeadPrice};
+use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dynamics, Model};
+use gdcm_study::{Analysis, AssessedCorrection, ConditionAnalysis};
+use gdcm_words::caution::failure_text;
+use gdcm_words::lead_price::price_text;
+
+use super::exported_model::{DescribedPrice, ExportedModel};
+use super::model_description::{correction_words, couplings_words};
+use super::state_names::state_names;
+use super::{ExportRequest, ExportedRole};
+use crate::export_fault::ExportFault;
+use crate::files::export_contents::{ExportContents, LeftOutPart};
+
+/// Returns the requested corrected models, in the order of the dataset.
+pub(super) fn exported_models(
+    analysis: &Analysis,
+    request: &ExportRequest,
+) -> Result<Vec<ExportedModel>, ExportFault> {
+    let dataset = &analysis.study.dataset;
+    analysis
+        .asked_couplings()
+        .map_err(|error| ExportFault::NoCouplings {
+            why: error.words(&dataset.names_of_channels().0),
+        })?;
+    let Some(id) = request.condition else {
+        return dataset
+            .conditions()
+            .iter()
+            .map(|condition| exported_model(analysis, request, condition))
+            .collect();
+    };
+    match dataset.condition(id) {
+        Some(condition) => Ok(vec![exported_model(analysis, request, condition)?]),
+        None => Err(ExportFault::NoCondition { condition: id }),
+    }
+}
+
+/// Returns the correction parts in the requested models; none if the study lacks the requested
+/// schedule.
+pub(super) fn contents_of_models(analysis: &Analysis, request: &ExportRequest) -> ExportContents {
+    let conditions: Vec<ConditionId> = match request.condition {
+        Some(condition) => vec![condition],
+        None => analysis.study.dataset.ids().collect(),
+    };
+    match ExportContents::of_models(analysis, request.correction, &conditions) {
+        Ok(contents) => contents,
+        Err(_) => ExportContents::of_scheduled(analysis),
+    }
+}
+
+fn exported_model(
+    analysis: &Analysis,
+    request: &ExportRequest,
+    condition: &Condition,
+) -> Result<ExportedModel, ExportFault> {
+    let id = condition.id();
+    let (inputs, outputs) = analysis.study.dataset.names_of_channels();
+    let model = model_of(analysis, &request.role, condition)?;
+    let correction = correction_of(analysis, request.correction, condition)?;
+    let Dynamics::StateSpace(dynamics) = &model.dynamics else {
+        return Err(ExportFault::NoMatrices {
+            condition: id,
+            model: model.name.clone(),
+        });
+    };
+    let corrected = analysis
+        .corrected_model(condition, dynamics, &correction, request.pade)
+        .map_err(|error| ExportFault::Model {
+            condition: id,
+            model: model.name.clone(),
+            words: error.words(&inputs, &outputs),
+        })?;
+    let price = correction.leads.as_ref().and_then(LeadPrice::new);
+    let band_top_rad_s = analysis.study.settings.band.max();
+    let is_sampled = dynamics.timing().sample_time_s.is_some();
+    let contents = ExportContents::of_models(analysis, request.correction, &[id])
+        .map_err(ExportFault::Schedule)?;
+    Ok(ExportedModel {
+        condition: id,
+        airspeed_kt: condition.flight_state().airspeed_kt,
+        name: model.name.clone(),
+        correction: correction_words(request.correction),
+        states: state_names(&analysis.study.dataset, model, &corrected),
+        delay_states: corrected
+            .delay_states
+            .iter()
+            .map(|(_, states)| states)
+            .sum(),
+        lead_states: corrected.lead_states.iter().map(|(_, states)| states).sum(),
+        pade_order: if is_sampled { 0 } else { request.pade.order() },
+        approximation_error_deg: corrected.phase_error(band_top_rad_s).to_degrees(),
+        left_out_deg: left_out_phase_deg(&contents, band_top_rad_s),
+        contents,
+        band_top_rad_s,
+        price: price.map(|price| DescribedPrice {
+            words: price_text(&price, &inputs, &outputs),
+            price,
+        }),
+        couplings: couplings_words(analysis, dynamics),
+        model: corrected.model,
+    })
+}
+
+/// Returns the phase lag \[deg\] at `omega` \[rad/s\] of the omitted delays: the longest input
+/// delay plus the longest output delay over all conditions.
+fn left_out_phase_deg(contents: &ExportContents, omega: f64) -> f64 {
+    let mut input_s = 0.0_f64;
+    let mut output_s = 0.0_f64;
+    for part in &contents.left_out {
+        let LeftOutPart::Delay(delayed) = part else {
+            continue;
+        };
+        for own in &delayed.delays {
+            match delayed.channel {
+                correction::Channel::Input(_) => input_s = input_s.max(own.delay_s),
+                correction::Channel::Output(_) => output_s = output_s.max(own.delay_s),
+            }
+        }
+    }
+    (omega * (input_s + output_s)).to_degrees()
+}
+
+/// Returns the physics model of a condition that `role` selects.
+fn model_of<'c>(
+    analysis: &Analysis,
+    role: &ExportedRole,
+    condition: &'c Condition,
+) -> Result<&'c Model, ExportFault> {
+    let name = match role {
+        ExportedRole::Nominal => {
+            return Ok(&condition.bundle(BundleKind::Physics)[condition.nominal()]);
+        }
+        ExportedRole::Representative => {
+            result_of(analysis, condition)?.representative_name(BundleKind::Physics)
+        }
+        ExportedRole::Named(name) => name,
+    };
+    match condition.model(BundleKind::Physics, name) {
+        Some(model) => Ok(model),
+        None => Err(ExportFault::NoModel {
+            condition: condition.id(),
+            model: name.to_owned(),
+        }),
+    }
+}
+
+/// Returns the requested correction of a condition.
+fn correction_of(
+    analysis: &Analysis,
+    which: AssessedCorrection,
+    condition: &Condition,
+) -> Result<ChannelCorrection, ExportFault> {
+    match which {
+        AssessedCorrection::Own => Ok(result_of(analysis, condition)?.correction.clone()),
+        AssessedCorrection::Scheduled | AssessedCorrection::ScheduledWithoutLeads => {
+            let schedule = analysis
+                .schedule
+                .as_ref()
+                .map_err(|error| ExportFault::Schedule(*error))?;
+            let correction = schedule.at_state(condition.flight_state());
+            if which == AssessedCorrection::Scheduled {
+                Ok(correction)
+            } else {
+                Ok(correction.without_leads())
+            }
+        }
+        AssessedCorrection::ScheduleOfOthers => {
+            let schedule = analysis
+                .schedule_without(condition.id())
+                .map_err(ExportFault::Schedule)?;
+            Ok(schedule.at_state(condition.flight_state()))
+        }
+    }
+}
+
+/// Returns the analysis of a condition.
+fn result_of<'a>(
+    analysis: &'a Analysis,
+    condition: &Condition,
+) -> Result<&'a ConditionAnalysis, ExportFault> {
+    let why = match analysis.conditions.get(&condition.id()) {
+        Some(Ok(result)) => return Ok(result),
+        Some(Err(failure)) => failure_text(failure, &analysis.study.dataset),
+        None => "it has no result".to_owned(),
+    };
+    Err(ExportFault::NoResult {
+        condition: condition.id(),
+        why,
+    })
+}

@@ -1,0 +1,115 @@
+//! Headings of files with an exported schedule: meaning and units of its quantities, origin,
+//! contents, and notes.
+
+use gdcm_model::message_text::shortened;
+use gdcm_plot::figure::all_channels;
+use gdcm_words::lead_price::price_text;
+use gdcm_words::schedule::schedule_caution_text;
+
+use super::exported_schedule::{ExportedSchedule, LEAD_INTERVALS};
+use super::program_text::{comment, number};
+
+impl ExportedSchedule<'_> {
+    /// Returns the heading of a file with the schedule, line by line; `notes` are included.
+    pub(super) fn heading(&self, notes: &[String]) -> Vec<String> {
+        let airspeeds = &self.schedule.airspeeds;
+        let quantities = if self.schedule.has_delays() {
+            "Gains and delays"
+        } else {
+            "Gains (no delays)"
+        };
+        let mut lines = vec![
+            format!("{quantities} that correct a helicopter model, scheduled with airspeed."),
+            "The model gets the input Mi*u(t - tau_i); its output ym gives y(t) = Mo*ym(t - tau_o).".to_owned(),
+            "Units: airspeed in knots, delays in seconds, gains without a unit.".to_owned(),
+            format!(
+                "Airspeeds outside {} to {} kt are clamped to the ends of this range.",
+                airspeeds.min_kt, airspeeds.max_kt
+            ),
+            format!("Correction: {}", comment(&shortened(&self.source.name))),
+            format!("Dataset: {}", comment(&shortened(self.dataset.name()))),
+            format!("SHA-256 of the dataset: {}", comment(&self.source.sha256)),
+            concat!("Written by: gdcm ", env!("CARGO_PKG_VERSION")).to_owned(),
+        ];
+        lines.extend(self.lead_lines());
+        if self.couplings.is_some() {
+            lines.extend(
+                [
+                    "Couplings: instead of u1 = Mi*u(t - tau_i), after leads, the model itself \
+                    gets u2 = mixing*u1 + feedback*ym;",
+                    "ym is its output before any correction. If the model has a feed-through D, \
+                    u2 and ym depend on each other instantaneously;",
+                    "the solution is u2 = u1m + F*y0, where u1m = mixing*u1, y0 = C*x + D*u1m, F \
+                    = feedback*inverse(I - D*feedback).",
+                ]
+                .map(str::to_owned),
+            );
+        }
+        lines.push(format!("Contains: {}.", self.contents.words()));
+        for words in self.contents.left_out_words(self.dataset) {
+            lines.push(format!("Left out: {}.", comment(&words)));
+        }
+        for note in notes {
+            lines.push(format!("Note: {}", comment(note)));
+        }
+        lines
+    }
+
+    /// Describes the lead filters, line by line; empty without lead filters.
+    fn lead_lines(&self) -> Vec<String> {
+        let Some(leads) = &self.schedule.leads else {
+            return Vec::new();
+        };
+        let lag_s = leads.design.lag_s();
+        let filter = match leads.design.settings().order.number() {
+            1 => "L(s) = (1 + a*s)/(1 + b*s)",
+            _ => "L(s) = (1 + sqrt(2)*a*s + a^2*s^2)/(1 + sqrt(2)*b*s + b^2*s^2)",
+        };
+        vec![
+            format!(
+                "Lead: each input, after its gain and delay, and each output, before them, passes \
+                through {filter},"
+            ),
+            format!(
+                "with b = {} s for all channels, and a [s] for each channel; a = b means no lead.",
+                number(lag_s)
+            ),
+            format!(
+                "In fixed-step code, use Tustin's rule and a step of at most {} s.",
+                number(0.5 * lag_s)
+            ),
+        ]
+    }
+
+    /// Returns the remarks on the schedule: missing delays, cost of leads, and cautions.
+    pub(super) fn notes(&self) -> Vec<String> {
+        let (inputs, outputs) = self.dataset.names_of_channels();
+        let mut notes = Vec::new();
+        if !self.schedule.has_delays() {
+            notes.push("delays are not scheduled in this study: they are zero here".to_owned());
+        }
+        if let Some(price) = self.schedule.lead_price() {
+            notes.push(price_text(&price, &inputs, &outputs));
+        }
+        for caution in &self.schedule.cautions {
+            notes.push(schedule_caution_text(caution, &inputs, &outputs));
+        }
+        notes
+    }
+
+    /// Returns the remarks on the schedule, and a remark if lead filters are given as tables.
+    pub(super) fn notes_of_curves(&self) -> Vec<String> {
+        let mut notes = self.notes();
+        let has_lead_table = all_channels(self.dataset).into_iter().any(|channel| {
+            self.zero_s(channel)
+                .is_some_and(|zero_s| zero_s.figures.parameters().len() > 1)
+        });
+        if has_lead_table {
+            notes.push(format!(
+                "the lead filters are tables over airspeed, linear between {} points",
+                LEAD_INTERVALS + 1
+            ));
+        }
+        notes
+    }
+}

@@ -1,0 +1,111 @@
+//! Maximum deviation of a table, interpolated linearly, from the curve that it samples.
+
+/// Number of grid intervals in the search for the maximum deviation.
+const GRID: usize = 2000;
+/// Number of golden-section steps; each multiplies the interval by 0.618.
+const STEPS: usize = 60;
+
+/// Maximum deviation of a table from its curve, with its position.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct TableDeviation {
+    /// Deviation at `airspeed_kt`, in the unit of the `measure` passed to [`Self::greatest`].
+    pub(super) value: f64,
+    /// Airspeed \[kt\] at which the maximum occurs.
+    pub(super) airspeed_kt: f64,
+}
+
+impl TableDeviation {
+    /// Finds the maximum deviation within `range_kt` of a table that samples `curve` at the
+    /// airspeeds `points`; `measure` returns the deviation of an interpolated value, given the
+    /// exact value.
+    ///
+    /// A grid search is refined by a golden-section search in the two intervals beside the greatest
+    /// grid value.
+    pub(super) fn greatest(
+        points: &[f64],
+        range_kt: [f64; 2],
+        curve: impl Fn(f64) -> f64,
+        measure: impl Fn(f64, f64) -> f64,
+    ) -> Self {
+        let values: Vec<f64> = points.iter().map(|&point| curve(point)).collect();
+        let deviation_at = |kt: f64| Self {
+            value: measure(interpolated(points, &values, kt), curve(kt)),
+            airspeed_kt: kt,
+        };
+        let [least, most] = range_kt;
+        let step = (most - least) / GRID as f64;
+        let mut greatest = deviation_at(least);
+        for index in 1..=GRID {
+            greatest = greatest.or_greater(deviation_at(least + index as f64 * step));
+        }
+        let mut low = (greatest.airspeed_kt - step).max(least);
+        let mut high = (greatest.airspeed_kt + step).min(most);
+        let golden_ratio = (5_f64.sqrt() - 1.0) / 2.0;
+        for _ in 0..STEPS {
+            let left = deviation_at(high - golden_ratio * (high - low));
+            let right = deviation_at(low + golden_ratio * (high - low));
+            if left.value > right.value {
+                greatest = greatest.or_greater(left);
+                high = right.airspeed_kt;
+            } else {
+                greatest = greatest.or_greater(right);
+                low = left.airspeed_kt;
+            }
+        }
+        greatest
+    }
+
+    /// Returns the larger of two deviations; `self` if they are equal.
+    pub(super) fn or_greater(self, other: Self) -> Self {
+        if other.value > self.value {
+            other
+        } else {
+            self
+        }
+    }
+}
+
+/// Interpolates a table linearly at an airspeed; the end values apply outside its range.
+fn interpolated(points: &[f64], values: &[f64], airspeed_kt: f64) -> f64 {
+    let above = points.partition_point(|&point| point <= airspeed_kt);
+    match (above.checked_sub(1), points.get(above)) {
+        (None, _) => values[0],
+        (Some(below), None) => values[below],
+        (Some(below), Some(&end)) => {
+            let part = (airspeed_kt - points[below]) / (end - points[below]);
+            values[below] + part * (values[above] - values[below])
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_deviation_of_a_parabola_is_greatest_in_the_middle() {
+        // Between 0 and h, the chord of x^2 is at most h^2/4 above the curve.
+        let found = TableDeviation::greatest(
+            &[0.0, 10.0, 16.0],
+            [0.0, 16.0],
+            |x| x * x,
+            |a, b| (a - b).abs(),
+        );
+        assert!(
+            (found.value - 25.0).abs() < 1e-12 && (found.airspeed_kt - 5.0).abs() < 1e-5,
+            "{found:?}"
+        );
+    }
+
+    #[test]
+    fn beyond_the_table_its_end_values_count() {
+        let found = TableDeviation::greatest(&[2.0, 4.0], [0.0, 4.0], |x| x, |a, b| (a - b).abs());
+        assert_eq!(
+            found,
+            TableDeviation {
+                value: 2.0,
+                airspeed_kt: 0.0
+            }
+        );
+    }
+}

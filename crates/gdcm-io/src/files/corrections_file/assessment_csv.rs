@@ -1,0 +1,202 @@
+//! `assessment.csv`: a row for each condition and response.
+
+use std::collections::BTreeSet;
+use std::io::{self, Write};
+
+use gdcm_method::schedule::CostChange;
+use gdcm_method::uncertainty::{Bar, Scalar};
+use gdcm_model::dataset::{ConditionId, Pair};
+use gdcm_study::Analysis;
+use gdcm_words::assessment::not_assessed_text;
+
+use super::csv_condition::{ConditionResults, cell, condition_results};
+use crate::csv_text::write_records;
+
+/// A response in a condition.
+struct ResponseRow<'a> {
+    results: &'a ConditionResults<'a>,
+    pair: Pair,
+}
+
+/// Name of a column, with the function that formats its cell.
+type ResponseColumn = (&'static str, fn(&ResponseRow<'_>) -> String);
+
+const RESPONSE_COLUMNS: [ResponseColumn; 34] = [
+    ("condition", |row| row.results.condition.id().to_string()),
+    ("airspeed_kt", |row| {
+        row.results.condition.flight_state().airspeed_kt.to_string()
+    }),
+    ("output", |row| {
+        row.results.analysis.study.dataset.outputs()[row.pair.output]
+            .name
+            .clone()
+    }),
+    ("input", |row| {
+        row.results.analysis.study.dataset.inputs()[row.pair.input]
+            .name
+            .clone()
+    }),
+    ("on_axis", |row| {
+        row.results.analysis.study.dataset.on_axis()[row.pair].to_string()
+    }),
+    ("held", |row| {
+        row.results
+            .result()
+            .is_some_and(|result| result.held()[row.pair])
+            .to_string()
+    }),
+    ("G", |row| {
+        cell(
+            row.results
+                .result()
+                .and_then(|result| result.wanted_gain(row.pair)),
+        )
+    }),
+    ("D_s", |row| {
+        cell(
+            row.results
+                .result()
+                .and_then(|result| result.comparison.delta.delay_s[row.pair]),
+        )
+    }),
+    ("net_gain", |row| {
+        cell(row.results.own().map(|own| own.net_gain(row.pair)))
+    }),
+    ("net_delay_s", |row| {
+        cell(row.results.own().map(|own| own.net_delay_s(row.pair)))
+    }),
+    ("scheduled_net_gain", |row| {
+        cell(
+            row.results
+                .scheduled
+                .as_ref()
+                .map(|scheduled| scheduled.net_gain(row.pair)),
+        )
+    }),
+    ("scheduled_net_delay_s", |row| {
+        cell(
+            row.results
+                .scheduled
+                .as_ref()
+                .map(|scheduled| scheduled.net_delay_s(row.pair)),
+        )
+    }),
+    ("J_mag_uncorrected", |row| {
+        cell(row.change().map(|change| change.uncorrected.magnitude))
+    }),
+    ("J_phase_uncorrected", |row| {
+        cell(row.change().map(|change| change.uncorrected.phase))
+    }),
+    ("J_mag_scheduled", |row| {
+        cell(row.change().map(|change| change.corrected.magnitude))
+    }),
+    ("J_phase_scheduled", |row| {
+        cell(row.change().map(|change| change.corrected.phase))
+    }),
+    ("dJ_mag", |row| {
+        cell(row.change().map(|change| change.magnitude()))
+    }),
+    ("dJ_phase", |row| {
+        cell(row.change().map(|change| change.phase()))
+    }),
+    ("dJ", |row| cell(row.change().map(|change| change.total()))),
+    ("left_out", |row| row.left_out()),
+    ("D_band_s", |row| {
+        cell(
+            row.results
+                .result()
+                .and_then(|result| result.comparison.delta.band_delay_s[row.pair]),
+        )
+    }),
+    ("held_out", |row| {
+        row.results
+            .analysis
+            .study
+            .choice(row.results.condition.id())
+            .held_out
+            .to_string()
+    }),
+    ("G_low", |row| row.results.lower_end(Scalar::Gain(row.pair))),
+    ("G_high", |row| {
+        row.results.upper_end(Scalar::Gain(row.pair))
+    }),
+    ("D_low_s", |row| {
+        row.results.lower_end(Scalar::Delay(row.pair))
+    }),
+    ("D_high_s", |row| {
+        row.results.upper_end(Scalar::Delay(row.pair))
+    }),
+    ("net_gain_low", |row| {
+        row.results.lower_end(Scalar::NetGain(row.pair))
+    }),
+    ("net_gain_high", |row| {
+        row.results.upper_end(Scalar::NetGain(row.pair))
+    }),
+    ("u_net_gain_physics", |row| {
+        row.results
+            .deviation(Scalar::NetGain(row.pair), |bar| bar.trim)
+    }),
+    ("u_net_gain_identification", |row| {
+        row.results
+            .deviation(Scalar::NetGain(row.pair), |bar| bar.identification)
+    }),
+    ("degrees_of_freedom", |row| {
+        cell(
+            row.results
+                .bar(Scalar::NetGain(row.pair))
+                .and_then(Bar::degrees_of_freedom),
+        )
+    }),
+    ("left_in_band", |row| cell(row.left_in_band())),
+    ("D_band_low_s", |row| {
+        row.results.lower_end(Scalar::BandDelay(row.pair))
+    }),
+    ("D_band_high_s", |row| {
+        row.results.upper_end(Scalar::BandDelay(row.pair))
+    }),
+];
+
+/// Writes `assessment.csv`: G, D \[s\], net gains, and J of the nominal model with and without the
+/// scheduled correction, for every response in the chosen conditions. A missing value is an empty
+/// cell. `left_out` gives the reason why a condition is not assessed, `D_band_s` is the band delay
+/// (M15.2), and the columns `…_low` and `…_high` contain confidence intervals.
+pub(crate) fn write_assessment_csv(
+    analysis: &Analysis,
+    chosen: &BTreeSet<ConditionId>,
+    file: &mut dyn Write,
+) -> io::Result<()> {
+    let mut records = vec![RESPONSE_COLUMNS.map(|(name, _)| name.to_owned())];
+    for results in &condition_results(analysis, chosen) {
+        for pair in analysis.study.dataset.on_axis().pairs() {
+            let row = ResponseRow { results, pair };
+            records.push(RESPONSE_COLUMNS.map(|(_, cell)| cell(&row)));
+        }
+    }
+    write_records(file, records.into_iter())
+}
+
+impl ResponseRow<'_> {
+    /// Returns the change in J due to the schedule; `None` if the condition or the response is not
+    /// assessed.
+    fn change(&self) -> Option<CostChange> {
+        let id = self.results.condition.id();
+        let changes = self.results.analysis.assessment.get(&id)?;
+        changes.as_ref().ok()?[self.pair]
+    }
+
+    /// Returns the reason why the condition is not assessed; empty if it is assessed.
+    fn left_out(&self) -> String {
+        let id = self.results.condition.id();
+        match self.results.analysis.assessment.get(&id) {
+            Some(Err(why)) => not_assessed_text(why, &self.results.analysis.study.dataset),
+            _ => String::new(),
+        }
+    }
+
+    /// Returns the deviation within the band that a single gain cannot remove.
+    fn left_in_band(&self) -> Option<f64> {
+        let uncertainty = self.results.analysis.uncertainty.as_ref()?;
+        let id = self.results.condition.id();
+        uncertainty.conditions.get(&id)?.left_in_band[self.pair]
+    }
+}

@@ -1,0 +1,184 @@
+//! The part of `corrections.json` about a condition.
+
+use serde_json::{Map, Value, json};
+
+use gdcm_method::fidelity::Cost;
+use gdcm_model::dataset::model::Provenance;
+use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Model, PairTable};
+use gdcm_study::ConditionAnalysis;
+use gdcm_study::decisions::choices::ConditionChoice;
+use gdcm_study::results::caution::Caution;
+use gdcm_words::caution::caution_text;
+use gdcm_words::convention_doubt::doubt_text;
+use gdcm_words::leads::lead_cautions;
+
+use super::couplings::condition_couplings;
+use super::labelled_analysis::LabelledAnalysis;
+use super::pair_rows::rows;
+use super::solutions::{delay_solution, gain_solution};
+use super::uncertainty::{bars, net_gain_bar};
+use crate::json_empty_members::without_empty;
+
+/// Returns the object with all results of a condition.
+pub(super) fn condition_json(
+    names: &LabelledAnalysis<'_>,
+    condition: &Condition,
+    result: &ConditionAnalysis,
+) -> Value {
+    let study = &names.analysis.study;
+    let id = condition.id();
+    let choice = study.choice(id);
+    let correction = &result.correction;
+    let corrected_costs = result
+        .cost
+        .map(|_, change| change.map(|change| change.corrected));
+    let members = json!({
+        "id": id.0,
+        "name": condition.flight_state().name,
+        "airspeed_kt": condition.flight_state().airspeed_kt,
+        "physics_representative": result.representative_name(BundleKind::Physics),
+        "identified_representative": result.representative_name(BundleKind::Identified),
+        "rejected": study.rejected_names(id),
+        "reasons": rejection_reasons(choice),
+        "suggested_outliers": result.suggested(),
+        "discontinuity": discontinuity(condition, result),
+        "set_aside": set_aside(names, result),
+        "sources": sources(condition),
+        "scheduled": choice.scheduled,
+        "held_out": choice.held_out,
+        "held": names.pairs(result.held().marked()),
+        "G": rows(&result.gain_problem.delta, |gain| *gain),
+        "D_s": rows(&result.comparison.delta.delay_s, |delay| *delay),
+        "D_band_s": rows(&result.comparison.delta.band_delay_s, |delay| *delay),
+        "gain_bounds": [result.gain_bounds().lower, result.gain_bounds().upper],
+        "delay_upper_s": result.delay_upper_s(),
+        "gains": names.gains(correction),
+        "delays_s": names.delays_s(correction),
+        "lead": names.leads(correction),
+        "gain_solution": gain_solution(names, result),
+        "delay_solution": delay_solution(names, result),
+        "net_gains": net_gains(names, id, result),
+        "bars": bars(names, id),
+        "couplings": condition_couplings(names.analysis, result),
+        "J": {
+            "uncorrected": costs(&result.comparison.representative.cost),
+            "corrected": costs(&corrected_costs),
+        },
+        "cautions": cautions(names, result),
+    });
+    without_empty(
+        members,
+        &[
+            "reasons",
+            "sources",
+            "held_out",
+            "lead",
+            "bars",
+            "couplings",
+        ],
+    )
+}
+
+/// Returns the rejected models with the reasons that the engineer noted.
+fn rejection_reasons(choice: &ConditionChoice) -> Value {
+    let mut reasons = Vec::new();
+    for kind in BundleKind::BOTH {
+        for (model, why) in &choice.bundle(kind).reasons {
+            reasons.push(json!({"bundle": kind.to_string(), "model": model, "why": why}));
+        }
+    }
+    Value::Array(reasons)
+}
+
+/// Returns the models that the analysis excluded automatically, with reasons.
+fn set_aside(names: &LabelledAnalysis<'_>, result: &ConditionAnalysis) -> Value {
+    let mut models = Vec::new();
+    for caution in &result.cautions {
+        if let Caution::SetAside { model, .. } = caution {
+            models.push(json!({"model": model.name, "why": caution_words(names, caution)}));
+        }
+    }
+    Value::Array(models)
+}
+
+fn caution_words(names: &LabelledAnalysis<'_>, caution: &Caution) -> String {
+    caution_text(caution, |pair| names.analysis.study.dataset.pair_name(pair))
+}
+
+/// Returns the suspected faults of the models, followed by the cautions about the results and about
+/// leads.
+fn cautions(names: &LabelledAnalysis<'_>, result: &ConditionAnalysis) -> Value {
+    let study = &names.analysis.study;
+    let mut cautions = Vec::new();
+    for doubt in &result.doubts {
+        cautions.push(doubt_text(doubt, &study.dataset));
+    }
+    for caution in &result.cautions {
+        cautions.push(caution_words(names, caution));
+    }
+    cautions.extend(lead_cautions(study, result));
+    json!(cautions)
+}
+
+/// Returns the net gain of each response, with its interval if available.
+fn net_gains(names: &LabelledAnalysis<'_>, id: ConditionId, result: &ConditionAnalysis) -> Value {
+    let mut net_gains = Vec::new();
+    for pair in result.held().pairs() {
+        let mut members = Map::new();
+        members.insert("gain".to_owned(), json!(result.correction.net_gain(pair)));
+        if let Some(Value::Object(bar)) = net_gain_bar(names.analysis, id, pair) {
+            members.extend(bar);
+        }
+        net_gains.push(names.response_entries(pair, Value::Object(members)));
+    }
+    Value::Array(net_gains)
+}
+
+/// Returns the magnitude part and the phase part of J for each response.
+fn costs(table: &PairTable<Option<Cost>>) -> Value {
+    json!({
+        "mag": rows(table, |cost| cost.magnitude),
+        "phase": rows(table, |cost| cost.phase),
+    })
+}
+
+/// Returns the sources of the models that the dataset states.
+fn sources(condition: &Condition) -> Value {
+    let mut sources = Vec::new();
+    for kind in BundleKind::BOTH {
+        for model in condition.bundle(kind) {
+            if let Some(provenance) = &model.source {
+                sources.push(source(kind, model, provenance));
+            }
+        }
+    }
+    Value::Array(sources)
+}
+
+fn source(kind: BundleKind, model: &Model, provenance: &Provenance) -> Value {
+    let source = json!({
+        "bundle": kind.to_string(),
+        "model": model.name,
+        "file": provenance.file,
+        "sha256": provenance.sha256,
+        "variable": provenance.variable,
+        "made": provenance.made,
+        "note": provenance.note,
+        "records": provenance.records,
+        "unused": provenance.unused,
+    });
+    without_empty(source, &["records", "unused"])
+}
+
+/// Returns the discontinuity ratios by model name, in file order; empty if they could not be
+/// computed.
+fn discontinuity(condition: &Condition, result: &ConditionAnalysis) -> Value {
+    let mut ratios = Map::new();
+    if let Ok(found) = &result.figures.discontinuity {
+        let models = condition.bundle(BundleKind::Physics).iter();
+        for (model, ratio) in models.zip(&found.ratios) {
+            ratios.insert(model.name.clone(), json!(ratio));
+        }
+    }
+    Value::Object(ratios)
+}

@@ -1,0 +1,108 @@
+//! Results of a condition as cells of the CSV files.
+
+use std::collections::BTreeSet;
+
+use gdcm_method::correction::ChannelCorrection;
+use gdcm_method::uncertainty::{Bar, Scalar, VarianceComponent};
+use gdcm_model::dataset::{Condition, ConditionId};
+use gdcm_study::{Analysis, ConditionAnalysis};
+
+use crate::files::export_contents::ExportContents;
+
+/// A condition of an analysis, with its scheduled correction.
+pub(super) struct ConditionResults<'a> {
+    pub(super) analysis: &'a Analysis,
+    pub(super) condition: &'a Condition,
+    /// Correction given by the schedule, if there is one.
+    pub(super) scheduled: Option<ChannelCorrection>,
+    /// Description of the parts of the correction in the file, and of the omitted parts.
+    pub(super) contains: String,
+}
+
+/// Returns the results of the chosen conditions, in the order of the dataset.
+pub(super) fn condition_results<'a>(
+    analysis: &'a Analysis,
+    chosen: &BTreeSet<ConditionId>,
+) -> Vec<ConditionResults<'a>> {
+    let dataset = &analysis.study.dataset;
+    let contents = ExportContents::of_results(analysis);
+    let mut contains = contents.words();
+    for words in contents.left_out_words(dataset) {
+        contains.push_str(&format!("; left out: {words}"));
+    }
+    let mut results = Vec::new();
+    for condition in dataset.conditions() {
+        if chosen.contains(&condition.id()) {
+            let schedule = analysis.schedule.as_ref().ok();
+            results.push(ConditionResults {
+                analysis,
+                condition,
+                scheduled: schedule.map(|schedule| schedule.at_state(condition.flight_state())),
+                contains: contains.clone(),
+            });
+        }
+    }
+    results
+}
+
+impl ConditionResults<'_> {
+    pub(super) fn result(&self) -> Option<&ConditionAnalysis> {
+        self.analysis.condition(self.condition.id())
+    }
+
+    /// Returns the condition's own correction; `None` if the condition has no result.
+    pub(super) fn own(&self) -> Option<&ChannelCorrection> {
+        self.result().map(|result| &result.correction)
+    }
+
+    /// Returns the error bar of a scalar result; `None` if it was not computed.
+    pub(super) fn bar(&self, scalar: Scalar) -> Option<&Bar> {
+        self.analysis
+            .uncertainty
+            .as_ref()?
+            .bar(self.condition.id(), scalar)
+    }
+
+    /// Formats the lower end of the total interval: a factor for a gain, seconds for a delay. Empty
+    /// if there is no interval.
+    pub(super) fn lower_end(&self, scalar: Scalar) -> String {
+        cell(self.interval(scalar).map(|[lower, _]| lower))
+    }
+
+    /// Formats the upper end of the total interval, as [`Self::lower_end`].
+    pub(super) fn upper_end(&self, scalar: Scalar) -> String {
+        cell(self.interval(scalar).map(|[_, upper]| upper))
+    }
+
+    /// Returns the total interval: factors for a gain, whose bar is an interval of its natural
+    /// logarithm; seconds for a delay.
+    fn interval(&self, scalar: Scalar) -> Option<[f64; 2]> {
+        let uncertainty = self.analysis.uncertainty.as_ref()?;
+        let ends = self.bar(scalar)?.interval(uncertainty.level)?;
+        if scalar.is_delay() {
+            Some(ends)
+        } else {
+            Some(ends.map(f64::exp))
+        }
+    }
+
+    /// Formats the standard deviation of a variance component; empty if it is missing.
+    pub(super) fn deviation(
+        &self,
+        scalar: Scalar,
+        component: fn(&Bar) -> Option<VarianceComponent>,
+    ) -> String {
+        let component = self.bar(scalar).and_then(component);
+        cell(component.map(|component| component.variance.sqrt()))
+    }
+}
+
+/// Formats a value at full precision; empty if it is missing or not finite.
+pub(super) fn cell(value: Option<f64>) -> String {
+    match value {
+        // `Debug` writes very large and small values with an exponent, where `Display` would write
+        // hundreds of zeros.
+        Some(value) if value.is_finite() => format!("{value:?}"),
+        _ => String::new(),
+    }
+}

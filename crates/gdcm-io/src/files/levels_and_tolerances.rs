@@ -1,0 +1,159 @@
+//! Tables that the engineer supplies as separate files, for use in any study (M17): level
+//! boundaries of bandwidth and phase delay, and tolerances of time histories.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use gdcm_method::requirements::{LevelBoundaries, Tolerance, ToleranceTable};
+use gdcm_model::dataset::location::Location;
+
+use crate::content_fault::{ContentError, ContentFault};
+use crate::file_error::FileError;
+use crate::file_reading::Source;
+use crate::json_reading::{Format, json_error};
+use crate::json_writing::write_pretty;
+use crate::output_set::OutputSet;
+use crate::reading_budget::ReadingBudget;
+
+const TOLERANCES: Format = Format {
+    name: "gdcm-tolerances",
+    version: 1,
+};
+
+#[derive(Serialize, Deserialize)]
+struct TolerancesText {
+    format: String,
+    version: u64,
+    #[serde(default)]
+    source: String,
+    tolerances: Vec<Tolerance>,
+}
+
+/// Reads level boundaries from a file, `[{"name": "Level 1", "axis": "P", "points": [[rad/s, s],
+/// ...]}]` (M17.1).
+///
+/// # Errors
+/// [`FileError`] with the line if the file cannot be read, or a boundary is invalid.
+pub fn read_levels(path: &Path) -> Result<LevelBoundaries, FileError> {
+    let source = Source::read(path, &ReadingBudget::default())?;
+    let text = source.text();
+    serde_json::from_slice(text)
+        .map_err(|error| json_error(text, path, Location::default(), &error))
+}
+
+/// Reads a tolerance table, with cautions about unknown keys.
+///
+/// # Errors
+/// [`FileError`] if the file cannot be read, or any part of it is invalid.
+pub fn load_tolerances(path: &Path) -> Result<(ToleranceTable, Vec<String>), FileError> {
+    let budget = ReadingBudget::default();
+    let source = Source::read(path, &budget)?;
+    let (text, cautions) = TOLERANCES.decode::<TolerancesText>(source.text(), path, &budget)?;
+    match ToleranceTable::new(text.source, text.tolerances) {
+        Ok(table) => Ok((table, cautions)),
+        Err(error) => {
+            let error = ContentError::new(Location::default(), ContentFault::from(error));
+            Err(FileError::content(path, error))
+        }
+    }
+}
+
+/// Adds a file with a tolerance table to `outputs`.
+pub fn add_tolerances(
+    table: &ToleranceTable,
+    path: &Path,
+    outputs: &mut OutputSet,
+) -> Result<(), FileError> {
+    let text = TolerancesText {
+        format: TOLERANCES.name.to_owned(),
+        version: TOLERANCES.version,
+        source: table.source().to_owned(),
+        tolerances: table.rows().to_vec(),
+    };
+    outputs.add(path, |file| write_pretty(&text, file))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output_set::Existing;
+
+    #[test]
+    fn levels_are_read_and_faults_in_them_reported_with_their_place() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("levels.json");
+        let read = |text: &str| {
+            std::fs::write(&path, text).unwrap();
+            read_levels(&path).map_err(|error| error.to_string())
+        };
+        let levels =
+            read(r#"[{"name": "Level 1", "axis": "P", "points": [[2, 0], [2.5, 0.2]]}]"#).unwrap();
+        assert_eq!(
+            levels.of_axis("P").next().unwrap().points,
+            [[2.0, 0.0], [2.5, 0.2]]
+        );
+        let cases = [
+            (
+                r#"[{"name": "L", "axis": "P", "points": [[2, 0]]}]"#,
+                "expected at least 2 points, found 1",
+            ),
+            (r#"[{"name": "L", "points": [[2, 0], [1, 1]]}]"#, "axis"),
+            (r#"{"levels": []}"#, "a list"),
+            ("[{", "end"),
+        ];
+        for (text, words) in cases {
+            let error = read(text).unwrap_err();
+            assert!(
+                error.contains("levels.json") && error.contains(words),
+                "{error}"
+            );
+        }
+    }
+
+    fn written(table: &ToleranceTable) -> (tempfile::TempDir, std::path::PathBuf) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("tolerances.json");
+        let mut outputs = OutputSet::new(Existing::Keep, Vec::new());
+        add_tolerances(table, &path, &mut outputs).unwrap();
+        outputs.persist().unwrap();
+        (folder, path)
+    }
+
+    #[test]
+    fn a_table_is_read_as_it_is_written() {
+        let table = ToleranceTable::default();
+        let (_folder, path) = written(&table);
+        assert_eq!(load_tolerances(&path).unwrap(), (table, Vec::new()));
+    }
+
+    #[test]
+    fn faults_in_a_table_are_reported_with_their_row() {
+        let (_folder, path) = written(&ToleranceTable::default());
+        let right = std::fs::read_to_string(&path).unwrap();
+        for (from, to, words) in [
+            (
+                "\"absolute\": 3.0",
+                "\"absolute\": 0.0",
+                "tolerance 1, \"roll rate\": expected absolute above zero, found 0",
+            ),
+            (
+                "\"channel\": \"P\"",
+                "\"channel\": \"\"",
+                "tolerance 1, \"roll rate\": expected the name of an output",
+            ),
+            ("\"absolute\": 3.0,", "", "\"absolute\" is missing"),
+            ("gdcm-tolerances", "gdcm-rules", "gdcm-tolerances"),
+        ] {
+            std::fs::write(&path, right.replacen(from, to, 1)).unwrap();
+            let error = load_tolerances(&path).unwrap_err().to_string();
+            assert!(error.contains(words), "{error}");
+        }
+        std::fs::write(&path, right.replacen("\"source\"", "\"sauce\"", 1)).unwrap();
+        let (table, cautions) = load_tolerances(&path).unwrap();
+        assert!(
+            table.source().is_empty() && cautions.len() == 1 && cautions[0].contains("sauce"),
+            "{cautions:?}"
+        );
+    }
+}

@@ -1,0 +1,248 @@
+//! `requirements.csv`: a row for each value.
+
+use std::io::{self, Write};
+
+use gdcm_method::requirements::BandwidthRule;
+use gdcm_model::dataset::ConditionId;
+use gdcm_study::results::required_bandwidth::BandwidthFinding;
+use gdcm_study::results::required_modes::{ModeFinding, ModeNumbers};
+use gdcm_study::results::required_summary::SummaryFinding;
+use gdcm_study::results::requirements::Requirements;
+use gdcm_study::results::time_histories::{HistoryFinding, TimeHistories, ToleranceFinding};
+use gdcm_words::missing_results::{no_bandwidth_text, no_mode_value_text, no_summary_text};
+
+use crate::csv_text::write_records;
+
+/// Column names of the CSV file, separated by blanks.
+const HEADING: &str = "question condition airspeed_kt role model output input mode record tolerance quantity value low high remark";
+
+/// Writes the CSV file: bandwidths, modes, summary costs, then time histories.
+pub(super) fn write_rows(
+    requirements: &Requirements,
+    time_histories: &TimeHistories,
+    file: &mut dyn Write,
+) -> io::Result<()> {
+    let mut rows: Vec<Vec<String>> = vec![HEADING.split(' ').map(str::to_owned).collect()];
+    for finding in &requirements.bandwidth {
+        rows.extend(bandwidth_rows(finding));
+    }
+    for finding in &requirements.modes {
+        rows.extend(mode_rows(finding));
+    }
+    for finding in &requirements.summary {
+        rows.extend(summary_rows(finding));
+    }
+    for finding in &time_histories.records {
+        rows.extend(history_rows(finding));
+    }
+    write_records(file, rows.into_iter())
+}
+
+/// Identification of a value: the first ten cells of its CSV row.
+#[derive(Clone, Copy, Default)]
+struct Subject<'a> {
+    question: &'a str,
+    condition: ConditionId,
+    airspeed_kt: f64,
+    role: &'a str,
+    model: &'a str,
+    output: &'a str,
+    input: &'a str,
+    mode: &'a str,
+    record: &'a str,
+    tolerance: &'a str,
+}
+
+impl Subject<'_> {
+    /// Returns the CSV row of the quantity `name`.
+    fn row(
+        &self,
+        name: &str,
+        value: Option<f64>,
+        interval: Option<[f64; 2]>,
+        remark: String,
+    ) -> Vec<String> {
+        vec![
+            self.question.to_owned(),
+            self.condition.to_string(),
+            self.airspeed_kt.to_string(),
+            self.role.to_owned(),
+            self.model.to_owned(),
+            self.output.to_owned(),
+            self.input.to_owned(),
+            self.mode.to_owned(),
+            self.record.to_owned(),
+            self.tolerance.to_owned(),
+            name.to_owned(),
+            cell(value),
+            cell(interval.map(|[low, _]| low)),
+            cell(interval.map(|[_, high]| high)),
+            remark,
+        ]
+    }
+}
+
+/// Formats a value; a missing value becomes an empty cell.
+fn cell(value: Option<f64>) -> String {
+    match value {
+        Some(value) => value.to_string(),
+        None => String::new(),
+    }
+}
+
+fn bandwidth_rows(finding: &BandwidthFinding) -> Vec<Vec<String>> {
+    let subject = Subject {
+        question: "bandwidth",
+        condition: finding.condition,
+        airspeed_kt: finding.airspeed_kt,
+        role: finding.role.name(),
+        model: &finding.model,
+        output: &finding.output,
+        input: &finding.input,
+        ..Subject::default()
+    };
+    let mut rows = Vec::new();
+    for (name, value) in finding.quantities() {
+        let interval = finding.interval.get(name).copied();
+        let remark = bandwidth_remark(finding, name, value.is_some());
+        rows.push(subject.row(name, value, interval, remark));
+    }
+    rows
+}
+
+/// Returns the reason why a quantity is missing; otherwise remarks on how it was determined.
+fn bandwidth_remark(finding: &BandwidthFinding, name: &'static str, is_known: bool) -> String {
+    if !is_known {
+        let why = finding.absent.get(name);
+        return why.map(no_bandwidth_text).unwrap_or_default();
+    }
+    let mut remarks: Vec<String> = Vec::new();
+    if name == "omega_bw_rad_s" && finding.gain_limited {
+        remarks.push("gain-limited".to_owned());
+    }
+    if name == "omega_bw_rad_s" && finding.rule == Some(BandwidthRule::PhaseGainUnknown) {
+        remarks.push("from the phase margin; the gain margin is unknown".to_owned());
+    }
+    if name == "phase_delay_s" && finding.phase_delay_of_line {
+        remarks.push("from the least-squares line".to_owned());
+    }
+    if finding.rests_above(name) {
+        remarks.push("depends on the response above the band".to_owned());
+    }
+    if finding.rests_below_band.contains(&name) {
+        remarks.push("depends on the response below the band".to_owned());
+    }
+    if let Some(count) = finding.swaps_left_out.get(name) {
+        remarks.push(match count {
+            1 => "1 exchange of models gives no value".to_owned(),
+            _ => format!("{count} exchanges of models give no value"),
+        });
+    }
+    remarks.join("; ")
+}
+
+fn mode_rows(finding: &ModeFinding) -> Vec<Vec<String>> {
+    let mut rows = model_mode_rows(finding, "identified", &finding.identified);
+    if let Some(numbers) = &finding.physics {
+        rows.extend(model_mode_rows(finding, "physics", numbers));
+    }
+    if let Some(numbers) = &finding.corrected {
+        rows.extend(model_mode_rows(finding, "corrected", numbers));
+    }
+    rows
+}
+
+/// Returns the CSV rows of a mode of the model with this role.
+fn model_mode_rows(finding: &ModeFinding, role: &str, numbers: &ModeNumbers) -> Vec<Vec<String>> {
+    let mode = match finding.name {
+        Some(name) => format!("{} {name}", finding.number),
+        None => finding.number.to_string(),
+    };
+    let subject = Subject {
+        question: "modes",
+        condition: finding.condition,
+        airspeed_kt: finding.airspeed_kt,
+        role,
+        model: &numbers.model,
+        mode: &mode,
+        ..Subject::default()
+    };
+    let mut rows = Vec::new();
+    for (name, value) in numbers.quantities() {
+        let why = match numbers.absent.get(name) {
+            Some(why) => no_mode_value_text(*why),
+            None => "",
+        };
+        rows.push(subject.row(name, value, None, why.to_owned()));
+    }
+    rows
+}
+
+fn summary_rows(finding: &SummaryFinding) -> Vec<Vec<String>> {
+    let subject = Subject {
+        question: "summary",
+        condition: finding.condition,
+        airspeed_kt: finding.airspeed_kt,
+        role: finding.role.name(),
+        model: &finding.model,
+        ..Subject::default()
+    };
+    let mut rows = Vec::new();
+    for (name, value) in finding.quantities() {
+        let why = match finding.absent.get(name) {
+            Some(why) => no_summary_text(*why),
+            None => "",
+        };
+        rows.push(subject.row(name, value, None, why.to_owned()));
+    }
+    rows
+}
+
+/// Returns the CSV rows of a time history: quantities without a tolerance, then those of each
+/// tolerance.
+fn history_rows(finding: &HistoryFinding) -> Vec<Vec<String>> {
+    let subject = Subject {
+        question: "time_histories",
+        condition: finding.condition,
+        airspeed_kt: finding.airspeed_kt,
+        role: finding.role.name(),
+        model: &finding.model,
+        input: finding.moved_input.as_deref().unwrap_or_default(),
+        record: &finding.record,
+        ..Subject::default()
+    };
+    let remark = match (finding.j_rms, finding.j_rms_left_out.as_slice()) {
+        (None, _) => {
+            "J_rms needs an output that is an angle, a rate, a speed or an acceleration".to_owned()
+        }
+        (Some(_), []) => String::new(),
+        (Some(_), left_out) => format!("without {}", left_out.join(", ")),
+    };
+    let mut rows = vec![subject.row("j_rms", finding.j_rms, None, remark)];
+    for (output, theil) in &finding.theil {
+        let subject = Subject { output, ..subject };
+        rows.push(subject.row("theil", Some(*theil), None, String::new()));
+    }
+    for tolerance in &finding.tolerances {
+        let subject = Subject {
+            output: &tolerance.output,
+            tolerance: &tolerance.quantity,
+            ..subject
+        };
+        for (name, value) in tolerance.quantities() {
+            let remark = tolerance_remark(tolerance, name);
+            rows.push(subject.row(name, value, None, remark));
+        }
+    }
+    rows
+}
+
+/// Returns the unit of an excess, or the trend that a correlation indicates.
+fn tolerance_remark(finding: &ToleranceFinding, name: &str) -> String {
+    match (name, finding.correlation, finding.trend) {
+        ("largest_excess", ..) => finding.unit.clone(),
+        ("correlation", None, _) => "the flown or the simulated output is constant".to_owned(),
+        ("correlation", _, Some(trend)) => format!("off-axis, trend {}", trend.name()),
+        _ => String::new(),
+    }
+}

@@ -1,0 +1,115 @@
+//! `requirements.json`: the findings as the analysis holds them, with sentences instead of the
+//! codes of missing values and cautions.
+
+use std::collections::BTreeMap;
+use std::io;
+
+use serde::Serialize;
+use serde_json::Value;
+
+use gdcm_model::dataset::Dataset;
+use gdcm_study::results::requirements::Requirements;
+use gdcm_study::results::time_histories::TimeHistories;
+use gdcm_words::missing_results::{
+    missing_reason_text, no_bandwidth_text, no_mode_value_text, no_summary_text,
+    reversed_phase_text,
+};
+
+const NAME: &str = "gdcm-requirements";
+const VERSION: u64 = 1;
+
+/// Findings on the requirements, with the dataset to which they apply.
+#[derive(Clone, Copy)]
+pub struct RequirementResults<'a> {
+    pub requirements: &'a Requirements,
+    pub time_histories: &'a TimeHistories,
+    pub dataset: &'a Dataset,
+    /// SHA-256 of the dataset's file.
+    pub sha256: &'a str,
+}
+
+/// Returns the contents of `requirements.json`.
+pub(super) fn requirements_json(results: RequirementResults<'_>) -> io::Result<Value> {
+    let document = RequirementsDocument {
+        format: NAME,
+        version: VERSION,
+        software: concat!("gdcm ", env!("CARGO_PKG_VERSION")),
+        dataset: DatasetName {
+            name: results.dataset.name(),
+            sha256: results.sha256,
+        },
+        requirements: results.requirements,
+        time_histories: results.time_histories,
+    };
+    with_sentences(&document, results)
+}
+
+/// Contents of `requirements.json`: the dataset, then the findings.
+#[derive(Serialize)]
+struct RequirementsDocument<'a> {
+    format: &'static str,
+    version: u64,
+    software: &'static str,
+    dataset: DatasetName<'a>,
+    #[serde(flatten)]
+    requirements: &'a Requirements,
+    time_histories: &'a TimeHistories,
+}
+
+#[derive(Serialize)]
+struct DatasetName<'a> {
+    name: &'a str,
+    sha256: &'a str,
+}
+
+/// Converts the contents of `requirements.json`, and replaces the codes of missing values and
+/// cautions by sentences.
+fn with_sentences(
+    document: &RequirementsDocument<'_>,
+    results: RequirementResults<'_>,
+) -> io::Result<Value> {
+    let mut value = serde_json::to_value(document)?;
+    for (index, finding) in results.requirements.bandwidth.iter().enumerate() {
+        let entry = &mut value["bandwidth"][index];
+        replace_absent(entry, &finding.absent, no_bandwidth_text);
+    }
+    for (index, finding) in results.requirements.modes.iter().enumerate() {
+        let models = [
+            ("identified", Some(&finding.identified)),
+            ("physics", finding.physics.as_ref()),
+            ("corrected", finding.corrected.as_ref()),
+        ];
+        for (role, numbers) in models {
+            if let Some(numbers) = numbers {
+                let entry = &mut value["modes"][index][role];
+                replace_absent(entry, &numbers.absent, |why| no_mode_value_text(*why));
+            }
+        }
+    }
+    for (index, finding) in results.requirements.summary.iter().enumerate() {
+        let entry = &mut value["summary"][index];
+        replace_absent(entry, &finding.absent, |why| no_summary_text(*why));
+    }
+    for (index, missing) in results.requirements.missing.iter().enumerate() {
+        value["missing"][index]["why"] = missing_reason_text(&missing.why).into();
+    }
+    for (index, phase) in results.requirements.cautions.iter().enumerate() {
+        value["cautions"][index]["text"] = reversed_phase_text(phase, results.dataset).into();
+    }
+    for (index, missing) in results.time_histories.missing.iter().enumerate() {
+        let why = missing_reason_text(&missing.why);
+        value["time_histories"]["missing"][index]["why"] = why.into();
+    }
+    Ok(value)
+}
+
+/// Replaces the codes of the missing values of a finding by sentences.
+fn replace_absent<T, S: Into<Value>>(
+    entry: &mut Value,
+    absent: &BTreeMap<&'static str, T>,
+    text: impl Fn(&T) -> S,
+) {
+    for (name, why) in absent {
+        entry["absent"][*name] = text(why).into();
+    }
+}

@@ -1,0 +1,185 @@
+//! Conversion between study files and decisions: a study becomes text, and text becomes decisions
+//! that are checked against the dataset.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use gdcm_model::dataset::location::Location;
+use gdcm_model::dataset::{Condition, ConditionId, Dataset};
+use gdcm_study::Study;
+use gdcm_study::decisions::adopted_models::AdoptedModels;
+use gdcm_study::decisions::choices::ConditionChoice;
+use gdcm_study::decisions::named_decisions::Decisions;
+use gdcm_study::decisions::settings::{ResponseNames, Settings};
+
+use super::json_form::{
+    ConditionText, DatasetReference, FORMAT, StudyText, TakenText, VariantText,
+};
+use crate::content_fault::{ContentError, ContentFault};
+use crate::files::dataset_file::{ModelText, RecordText};
+
+impl StudyText {
+    pub(super) fn new(study: &Study, dataset: DatasetReference) -> Self {
+        let mut variants = Vec::new();
+        for variant in &study.variants {
+            if let Some(variant_study) = study.of_variant(&variant.name) {
+                variants.push(VariantText {
+                    name: variant.name.clone(),
+                    settings: variant.settings.named(&study.dataset),
+                    conditions: ConditionText::from_study(&variant_study),
+                });
+            }
+        }
+        let mut taken = Vec::new();
+        for (condition, adopted) in study.taken_models() {
+            taken.push(TakenText {
+                condition: condition.0,
+                identified_models: adopted.models.iter().map(ModelText::of_model).collect(),
+                records: adopted
+                    .records
+                    .iter()
+                    .map(RecordText::from_record)
+                    .collect(),
+            });
+        }
+        Self {
+            format: FORMAT.name.to_owned(),
+            version: FORMAT.version,
+            software: concat!("gdcm ", env!("CARGO_PKG_VERSION")).to_owned(),
+            dataset,
+            settings: study.settings.named(&study.dataset),
+            conditions: ConditionText::from_study(study),
+            taken,
+            signs: study.turned_channels(),
+            requirements: study.requirements.as_ref().clone(),
+            variants,
+        }
+    }
+}
+
+impl ConditionText {
+    fn from_condition(condition: &Condition, study: &Study) -> Self {
+        let ConditionChoice {
+            physics,
+            identified,
+            scheduled,
+            held_out,
+        } = study.choice(condition.id()).clone();
+        Self {
+            id: condition.id().0,
+            physics,
+            identified,
+            scheduled,
+            held_out,
+        }
+    }
+
+    /// Returns the decisions about all conditions.
+    fn from_study(study: &Study) -> Vec<Self> {
+        let conditions = study.dataset.conditions().iter();
+        conditions
+            .map(|condition| Self::from_condition(condition, study))
+            .collect()
+    }
+}
+
+/// Converts the content of a study file to decisions, checked against the dataset.
+pub(super) fn decisions_of(text: StudyText, dataset: &Dataset) -> Result<Decisions, ContentError> {
+    let mut decisions = present_decisions(text.settings, text.conditions, dataset)?;
+    decisions.taken = adopted_models(text.taken, dataset)?;
+    for variant in text.variants {
+        let VariantText {
+            name,
+            settings,
+            conditions,
+        } = variant;
+        match present_decisions(settings, conditions, dataset) {
+            Ok(variant) => decisions.variants.push((name, variant)),
+            Err(mut error) => {
+                error.place.entry = format!("variant \"{name}\", {}", error.place.entry);
+                return Err(error);
+            }
+        }
+    }
+    decisions.signs = text.signs;
+    decisions.requirements = Arc::new(text.requirements);
+    Ok(decisions)
+}
+
+/// Returns the decisions in effect, without the variants.
+///
+/// # Errors
+/// [`ContentError`] for a setting outside its range, or a condition that appears twice.
+fn present_decisions(
+    mut settings: Settings<ResponseNames>,
+    conditions: Vec<ConditionText>,
+    dataset: &Dataset,
+) -> Result<Decisions, ContentError> {
+    settings.complete_delay_scheduling();
+    let start = Settings::for_dataset(dataset);
+    settings
+        .with_responses(|_, _| start.ignored.clone())
+        .check()
+        .map_err(|(setting, refusal)| {
+            ContentError::new(
+                Location::entry(format!("settings, {}", setting.key.replace('.', ", "))),
+                refusal,
+            )
+        })?;
+    let mut choices = BTreeMap::new();
+    for (index, condition) in conditions.into_iter().enumerate() {
+        let ConditionText {
+            id,
+            physics,
+            identified,
+            scheduled,
+            held_out,
+        } = condition;
+        let choice = ConditionChoice {
+            physics,
+            identified,
+            scheduled,
+            held_out,
+        };
+        if choices.insert(ConditionId(id), choice).is_some() {
+            return Err(ContentError::new(
+                Location::condition(index + 1, id),
+                ContentFault::DuplicateCondition { id },
+            ));
+        }
+    }
+    Ok(Decisions {
+        settings,
+        choices,
+        taken: Vec::new(),
+        signs: Vec::new(),
+        requirements: Arc::default(),
+        variants: Vec::new(),
+    })
+}
+
+/// Returns the models adopted by a study, checked against its dataset.
+fn adopted_models(
+    texts: Vec<TakenText>,
+    dataset: &Dataset,
+) -> Result<Vec<(ConditionId, Arc<AdoptedModels>)>, ContentError> {
+    let mut adopted = Vec::with_capacity(texts.len());
+    for (index, text) in texts.into_iter().enumerate() {
+        let mut place = Location::condition(index + 1, text.condition);
+        place.entry = "taken".to_owned();
+        let mut models = Vec::with_capacity(text.identified_models.len());
+        for model in text.identified_models {
+            let (model, _) = dataset.identified_model(model.into_identified())?;
+            models.push(model);
+        }
+        let mut records = Vec::with_capacity(text.records.len());
+        for (index, record) in text.records.into_iter().enumerate() {
+            records.push(record.into_record(&place, index + 1)?);
+        }
+        adopted.push((
+            ConditionId(text.condition),
+            Arc::new(AdoptedModels { models, records }),
+        ));
+    }
+    Ok(adopted)
+}

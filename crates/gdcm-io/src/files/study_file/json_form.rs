@@ -1,0 +1,111 @@
+//! JSON objects of a study file.
+
+use serde::{Deserialize, Serialize};
+
+use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_CONDITIONS, MOST_MODELS, MOST_RECORDS};
+use gdcm_model::whole_number::whole;
+use gdcm_study::decisions::choices::BundleChoice;
+use gdcm_study::decisions::dataset_differences::Inventory;
+use gdcm_study::decisions::requirement_settings::RequirementSettings;
+use gdcm_study::decisions::settings::{ResponseNames, Settings};
+use gdcm_study::decisions::signs::TurnedChannel;
+
+use crate::files::dataset_file::{ModelText, RecordText};
+use crate::json_reading::{Format, list};
+
+/// Maximum number of variants in a study file.
+pub(crate) const MOST_VARIANTS: usize = 1000;
+
+/// Format and version of a study file.
+pub(super) const FORMAT: Format = Format {
+    name: "gdcm-study",
+    version: 1,
+};
+
+/// Content of a study file.
+#[derive(Deserialize, Serialize)]
+pub(super) struct StudyText {
+    pub(super) format: String,
+    #[serde(deserialize_with = "whole")]
+    pub(super) version: u64,
+    pub(super) software: String,
+    pub(super) dataset: DatasetReference,
+    pub(super) settings: Settings<ResponseNames>,
+    #[serde(deserialize_with = "list::<MOST_CONDITIONS, _, _>")]
+    pub(super) conditions: Vec<ConditionText>,
+    /// Identified models that replace those of the dataset.
+    #[serde(
+        default,
+        skip_serializing_if = "Vec::is_empty",
+        deserialize_with = "list::<MOST_CONDITIONS, _, _>"
+    )]
+    pub(super) taken: Vec<TakenText>,
+    /// Channels whose sign is reversed in some models.
+    #[serde(
+        default,
+        skip_serializing_if = "Vec::is_empty",
+        deserialize_with = "list::<MOST_CHANNELS, _, _>"
+    )]
+    pub(super) signs: Vec<TurnedChannel>,
+    /// Decisions about the requirements; omitted if they are the defaults.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub(super) requirements: RequirementSettings,
+    /// Named alternatives to the decisions; absent in older studies.
+    #[serde(
+        default,
+        skip_serializing_if = "Vec::is_empty",
+        deserialize_with = "list::<MOST_VARIANTS, _, _>"
+    )]
+    pub(super) variants: Vec<VariantText>,
+}
+
+/// Identified models adopted in a condition, and their flight records.
+#[derive(Deserialize, Serialize)]
+pub(super) struct TakenText {
+    #[serde(deserialize_with = "whole")]
+    pub(super) condition: i64,
+    #[serde(deserialize_with = "list::<MOST_MODELS, _, _>")]
+    pub(super) identified_models: Vec<ModelText>,
+    #[serde(default, deserialize_with = "list::<MOST_RECORDS, _, _>")]
+    pub(super) records: Vec<RecordText>,
+}
+
+/// A named alternative to the decisions.
+#[derive(Deserialize, Serialize)]
+pub(super) struct VariantText {
+    pub(super) name: String,
+    pub(super) settings: Settings<ResponseNames>,
+    #[serde(deserialize_with = "list::<MOST_CONDITIONS, _, _>")]
+    pub(super) conditions: Vec<ConditionText>,
+}
+
+/// Reference from a study to its dataset.
+#[derive(Clone, Deserialize, Serialize)]
+pub(super) struct DatasetReference {
+    /// Path relative to the study's directory, with `/` between its parts; `None` for the embedded
+    /// example.
+    pub(super) path: Option<String>,
+    /// Name of the dataset, for display only.
+    pub(super) name: String,
+    pub(super) sha256: String,
+    /// Summary of the dataset's contents, used to find changes; absent in older studies.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) holds: Option<Inventory>,
+}
+
+/// Decisions about a condition.
+#[derive(Deserialize, Serialize)]
+pub(super) struct ConditionText {
+    #[serde(deserialize_with = "whole")]
+    pub(super) id: i64,
+    pub(super) physics: BundleChoice,
+    pub(super) identified: BundleChoice,
+    pub(super) scheduled: bool,
+    /// Whether the condition is held out for validation; absent in older studies.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub(super) held_out: bool,
+}
+
+fn is_default(settings: &RequirementSettings) -> bool {
+    *settings == RequirementSettings::default()
+}

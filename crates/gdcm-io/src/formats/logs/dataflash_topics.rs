@@ -1,0 +1,229 @@
+//! Samples in binary and text DataFlash logs, grouped by message name and instance.
+//!
+//! Once all layouts are known, the steps in this order are: [`SampleFields::find`] for each message
+//! type, [`Topics::add`] for each message, and [`Topics::into_columns`] at the end.
+
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+
+use gdcm_sysid::records::ModeSpan;
+
+use crate::formats::logs::dataflash_layouts::{FieldKind, Layouts, MessageLayout};
+use crate::formats::logs::documented_channels::{ARDUPILOT, assign_documented_meanings};
+use crate::formats::logs::mode_spans::{mode_spans, modes_note};
+use crate::formats::logs::topic_samples::{TopicField, TopicSamples};
+use crate::formats::recorded_columns::Columns;
+use crate::reading_budget::{ReadingBudget, VariableFault};
+
+/// Names of messages that describe the log and hold no samples.
+const DESCRIPTIONS: [&str; 5] = ["FMT", "FMTU", "UNIT", "MULT", "PARM"];
+/// Unit letter of the field that identifies the instance of a sensor.
+const INSTANCE: char = '#';
+
+/// Message fields from which samples are read.
+pub(super) struct SampleFields<'l> {
+    pub(super) layout: &'l MessageLayout,
+    stamp: Stamp,
+    /// Index of the field that identifies the instance.
+    instance: Option<usize>,
+    numbers: Vec<SampleNumber>,
+}
+
+/// Time stamp field of a message.
+#[derive(Clone, Copy)]
+struct Stamp {
+    field: usize,
+    /// Unit of the time stamp \[s\].
+    unit_s: f64,
+}
+
+/// Numeric field of a message.
+struct SampleNumber {
+    field: usize,
+    multiplier: f64,
+    unit: Option<String>,
+}
+
+impl<'l> SampleFields<'l> {
+    /// Finds the time stamp, the instance and the numeric fields of a layout; returns `None` for a
+    /// layout without a time stamp or without numeric fields, and for messages that describe the
+    /// log.
+    pub(super) fn find(layout: &'l MessageLayout, layouts: &Layouts) -> Option<Self> {
+        if DESCRIPTIONS.contains(&layout.name.as_str()) {
+            return None;
+        }
+        let stamp = match layout.index_of("TimeUS") {
+            Some(field) => Stamp {
+                field,
+                unit_s: 1e-6,
+            },
+            None => Stamp {
+                field: layout.index_of("TimeMS")?,
+                unit_s: 1e-3,
+            },
+        };
+        let instance = layout
+            .units
+            .iter()
+            .take(layout.fields.len())
+            .position(|unit| *unit == INSTANCE);
+        let mut numbers = Vec::new();
+        for (index, field) in layout.fields.iter().enumerate() {
+            let FieldKind::Number { factor, .. } = field.kind else {
+                continue;
+            };
+            if index == stamp.field || Some(index) == instance {
+                continue;
+            }
+            // Some format letters already include a factor, which the multiplier repeats.
+            let multiplier = if factor == 1.0 {
+                layouts.multiplier(layout, index)
+            } else {
+                1.0
+            };
+            numbers.push(SampleNumber {
+                field: index,
+                multiplier,
+                unit: layouts.unit(layout, index),
+            });
+        }
+        if numbers.is_empty() {
+            return None;
+        }
+        Some(Self {
+            layout,
+            stamp,
+            instance,
+            numbers,
+        })
+    }
+}
+
+/// Samples read so far, by message name and instance.
+#[derive(Default)]
+pub(super) struct Topics {
+    by_name: BTreeMap<(String, u64), TopicSamples>,
+}
+
+impl Topics {
+    /// Adds a sample from a message, whose fields have the values that `value` returns for their
+    /// indices; ignores a message without a time stamp.
+    pub(super) fn add(
+        &mut self,
+        fields: &SampleFields<'_>,
+        value: impl Fn(usize) -> Option<f64>,
+        budget: &ReadingBudget<'_>,
+    ) -> Result<(), VariableFault> {
+        let Some(time) = value(fields.stamp.field) else {
+            return Ok(());
+        };
+        let instance = match fields.instance.and_then(&value) {
+            Some(instance) if (0.0..=255.0).contains(&instance) => instance as u64,
+            _ => 0,
+        };
+        let name = &fields.layout.name;
+        let topic = match self.by_name.entry((name.clone(), instance)) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(place) => {
+                budget.take(fields.numbers.len() as u64 + 1, 128, name)?;
+                place.insert(new_topic(fields, instance))
+            }
+        };
+        let values = fields
+            .numbers
+            .iter()
+            .map(|number| match value(number.field) {
+                Some(value) => value * number.multiplier,
+                None => f64::NAN,
+            });
+        topic.push(time * fields.stamp.unit_s, values, budget)
+    }
+
+    /// Returns the columns, with their documented channels and units, and the flight modes over
+    /// time.
+    pub(super) fn into_columns(self, notes: Vec<String>) -> Result<Columns, VariableFault> {
+        let modes = self.flight_modes();
+        let columns = self
+            .by_name
+            .into_values()
+            .flat_map(TopicSamples::into_columns)
+            .collect();
+        let mut columns = Columns {
+            notes,
+            ..Columns::new(String::new(), columns)
+        };
+        if columns.columns.is_empty() {
+            return Err(VariableFault::damaged(
+                "",
+                "a log without a message that has time stamps and numbers",
+                0,
+            ));
+        }
+        columns
+            .notes
+            .extend(assign_documented_meanings(&mut columns.columns, &ARDUPILOT));
+        columns.notes.extend(modes_note(&modes));
+        columns.modes = modes;
+        Ok(columns)
+    }
+
+    /// Returns the spans in which the vehicle was armed, and those of the flight modes.
+    fn flight_modes(&self) -> Vec<ModeSpan> {
+        let mut modes = Vec::new();
+        if let Some(armed) = self.states("ARM", "ArmState") {
+            modes.extend(mode_spans(armed.time_s, armed.values(), |state| {
+                if state == 0.0 {
+                    None
+                } else {
+                    Some("armed".to_owned())
+                }
+            }));
+        }
+        let mode = self
+            .states("MODE", "ModeNum")
+            .or_else(|| self.states("MODE", "Mode"));
+        if let Some(mode) = mode {
+            modes.extend(mode_spans(mode.time_s, mode.values(), |mode| {
+                Some(format!("mode {mode}"))
+            }));
+        }
+        modes
+    }
+
+    /// Returns a field over time, from instance 0 of a message.
+    fn states(&self, name: &str, field: &str) -> Option<States<'_>> {
+        let topic = self.by_name.get(&(name.to_owned(), 0))?;
+        Some(States {
+            time_s: &topic.time_s,
+            field: topic.field(field)?,
+        })
+    }
+}
+
+/// Values of a field over time.
+struct States<'t> {
+    time_s: &'t [f64],
+    field: &'t TopicField,
+}
+
+impl States<'_> {
+    fn values(&self) -> impl Iterator<Item = f64> {
+        self.field.values.iter().copied()
+    }
+}
+
+/// Creates a topic without samples for an instance of a message.
+fn new_topic(fields: &SampleFields<'_>, instance: u64) -> TopicSamples {
+    let name = &fields.layout.name;
+    let name = if instance == 0 {
+        name.clone()
+    } else {
+        format!("{name}[{instance}]")
+    };
+    let columns = fields.numbers.iter().map(|number| TopicField {
+        name: fields.layout.fields[number.field].name.clone(),
+        unit: number.unit.clone(),
+        values: Vec::new(),
+    });
+    TopicSamples::new(name, columns.collect())
+}

@@ -1,0 +1,182 @@
+//! Channels and units of logged columns, according to the documentation of each logging system.
+
+use gdcm_sysid::records::RecordColumn;
+
+/// A column whose channel and unit are documented.
+struct DocumentedColumn {
+    name: &'static str,
+    channel: &'static str,
+    /// Unit; empty if the documentation gives none.
+    unit: &'static str,
+}
+
+const fn documented(
+    name: &'static str,
+    channel: &'static str,
+    unit: &'static str,
+) -> DocumentedColumn {
+    DocumentedColumn {
+        name,
+        channel,
+        unit,
+    }
+}
+
+/// Documented columns in the logs of a system. If several columns measure a channel, the first in
+/// this list that is present and varies is used.
+pub(super) struct Meanings {
+    columns: &'static [DocumentedColumn],
+    /// Note for the user about sign conventions.
+    signs: &'static str,
+}
+
+/// PX4: `VehicleTorqueSetpoint.msg`, `VehicleThrustSetpoint.msg` (normalised, body axes),
+/// `VehicleAngularVelocity.msg` \[rad/s\], `VehicleAcceleration.msg` \[m/s²\]; before 1.14
+/// `ActuatorControls.msg` (<https://docs.px4.io/main/en/msg_docs/>).
+pub(super) const PX4: Meanings = Meanings {
+    columns: &[
+        documented("vehicle_torque_setpoint.xyz[0]", "LAT", "1"),
+        documented("vehicle_torque_setpoint.xyz[1]", "LON", "1"),
+        documented("vehicle_torque_setpoint.xyz[2]", "PED", "1"),
+        documented("vehicle_thrust_setpoint.xyz[2]", "COL", "1"),
+        documented("actuator_controls_0.control[0]", "LAT", "1"),
+        documented("actuator_controls_0.control[1]", "LON", "1"),
+        documented("actuator_controls_0.control[2]", "PED", "1"),
+        documented("actuator_controls_0.control[3]", "COL", "1"),
+        documented("vehicle_angular_velocity.xyz[0]", "P", "rad/s"),
+        documented("vehicle_angular_velocity.xyz[1]", "Q", "rad/s"),
+        documented("vehicle_angular_velocity.xyz[2]", "R", "rad/s"),
+        documented("sensor_combined.gyro_rad[0]", "P", "rad/s"),
+        documented("sensor_combined.gyro_rad[1]", "Q", "rad/s"),
+        documented("sensor_combined.gyro_rad[2]", "R", "rad/s"),
+        documented("vehicle_acceleration.xyz[0]", "NX", "m/s^2"),
+        documented("vehicle_acceleration.xyz[1]", "NY", "m/s^2"),
+        documented("vehicle_acceleration.xyz[2]", "NZ", "m/s^2"),
+        documented("sensor_combined.accelerometer_m_s2[0]", "NX", "m/s^2"),
+        documented("sensor_combined.accelerometer_m_s2[1]", "NY", "m/s^2"),
+        documented("sensor_combined.accelerometer_m_s2[2]", "NZ", "m/s^2"),
+    ],
+    signs: "signs follow PX4's convention: body axes forward, right and down, so that thrust and \
+        acceleration along z are negative upwards (give COL=-COLUMN to reverse a sign)",
+};
+
+/// Messages of ArduPilot: `SIDD` (system identification mode), `RATE` (rate controllers), `IMU`
+/// (inertial measurement unit) and `ATT` (attitude)
+/// (<https://ardupilot.org/copter/docs/logmessages.html>). In `RATE`, `R`, `P` and `Y` are roll,
+/// pitch and yaw; `…Out` goes to the motors, from -1 to 1 (`AOut` from 0 to 1).
+pub(super) const ARDUPILOT: Meanings = Meanings {
+    columns: &[
+        documented("RATE.ROut", "LAT", "1"),
+        documented("RATE.POut", "LON", "1"),
+        documented("RATE.YOut", "PED", "1"),
+        documented("RATE.AOut", "COL", "1"),
+        documented("SIDD.Gx", "P", "deg/s"),
+        documented("SIDD.Gy", "Q", "deg/s"),
+        documented("SIDD.Gz", "R", "deg/s"),
+        documented("SIDD.Ax", "NX", "m/s^2"),
+        documented("SIDD.Ay", "NY", "m/s^2"),
+        documented("SIDD.Az", "NZ", "m/s^2"),
+        documented("SIDD.Targ", "TARG", ""),
+        documented("RATE.R", "P", "deg/s"),
+        documented("RATE.P", "Q", "deg/s"),
+        documented("RATE.Y", "R", "deg/s"),
+        documented("IMU.GyrX", "P", "rad/s"),
+        documented("IMU.GyrY", "Q", "rad/s"),
+        documented("IMU.GyrZ", "R", "rad/s"),
+        documented("IMU.AccX", "NX", "m/s^2"),
+        documented("IMU.AccY", "NY", "m/s^2"),
+        documented("IMU.AccZ", "NZ", "m/s^2"),
+        documented("ATT.Roll", "PHI", "deg"),
+        documented("ATT.Pitch", "THETA", "deg"),
+    ],
+    signs: "signs follow ArduPilot's convention: body axes forward, right and down, so that the \
+        acceleration along z is negative upwards (give NZ=-COLUMN to reverse a sign)",
+};
+
+/// Betaflight and relatives: field names of the blackbox; `axisSum` is the sum of the controller
+/// terms, which is the input to the mixer (<https://betaflight.com/docs/development/Blackbox>).
+pub(super) const BETAFLIGHT: Meanings = Meanings {
+    columns: &[
+        documented("axisSum[0]", "LAT", ""),
+        documented("axisSum[1]", "LON", ""),
+        documented("axisSum[2]", "PED", ""),
+        documented("rcCommand[3]", "COL", ""),
+        documented("gyroADC[0]", "P", "deg/s"),
+        documented("gyroADC[1]", "Q", "deg/s"),
+        documented("gyroADC[2]", "R", "deg/s"),
+    ],
+    signs: "signs follow the flight controller's convention: check the sign of one channel before \
+        using signs of derivatives",
+};
+
+/// Assigns the documented channels and units to columns. Returns a note that lists the assigned
+/// channels; `None` if there are none.
+pub(super) fn assign_documented_meanings(
+    columns: &mut [RecordColumn],
+    meanings: &Meanings,
+) -> Option<String> {
+    let mut channels: Vec<&str> = Vec::new();
+    let mut assignments: Vec<String> = Vec::new();
+    for documented in meanings.columns {
+        let DocumentedColumn {
+            name,
+            channel,
+            unit,
+        } = *documented;
+        let Some(column) = columns.iter_mut().find(|column| column.name == name) else {
+            continue;
+        };
+        if column.unit.is_none() && !unit.is_empty() {
+            column.unit = Some(unit.to_owned());
+        }
+        if varies(column) && !channels.contains(&channel) {
+            column.meaning = Some(channel);
+            channels.push(channel);
+            assignments.push(format!("{channel} = {name}"));
+        }
+    }
+    if assignments.is_empty() {
+        return None;
+    }
+    Some(format!(
+        "according to the documentation of the logging system: {}; {}",
+        assignments.join(", "),
+        meanings.signs
+    ))
+}
+
+/// Returns whether a column has two different values.
+fn varies(column: &RecordColumn) -> bool {
+    column.range().is_some_and(|(least, most)| least < most)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_channel_is_the_first_column_that_is_present_and_varies() {
+        let moving = vec![0.0, 1.0, 2.0];
+        let mut columns = vec![
+            RecordColumn::new("RATE.P", moving.clone()),
+            RecordColumn::new("RATE.R", moving.clone()),
+            RecordColumn::new("SIDD.Gx", vec![1.0; 3]),
+            RecordColumn {
+                unit: Some("deg".into()),
+                ..RecordColumn::new("IMU.GyrY", moving)
+            },
+        ];
+        let words = assign_documented_meanings(&mut columns, &ARDUPILOT).unwrap();
+        let found: Vec<_> = columns.iter().map(|column| column.meaning).collect();
+        assert_eq!(found, [Some("Q"), Some("P"), None, None], "{words}");
+        assert_eq!(
+            columns[3].unit.as_deref(),
+            Some("deg"),
+            "the unit in the file is kept"
+        );
+        assert!(
+            words.starts_with("according to the documentation of the logging system: P = RATE.R, Q = RATE.P; signs"),
+            "{words}"
+        );
+    }
+}

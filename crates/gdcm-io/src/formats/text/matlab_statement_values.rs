@@ -1,0 +1,380 @@
+//! Values in MATLAB or Octave statements: numbers, strings, matrices, cell arrays and models.
+
+use gdcm_model::number_format::counted;
+
+use crate::formats::element_order::first_index_fastest;
+use crate::formats::text::matlab_functions::{Call, Function};
+use crate::formats::text::matlab_scanner::{Number, Scanner};
+use crate::formats::text::matlab_value_error::{
+    MOST_NESTED, Position, REMEDY, ValueError, refused,
+};
+use crate::formats::text::matlab_workspace::Workspace;
+use crate::formats::variables::{Array, CellArray, ElementKind, TextArray, Value};
+use crate::reading_budget::{ReadingBudget, VariableFault};
+
+/// Operators within brackets if blanks surround them. After a blank only, a sign begins the next
+/// element: `[1 -2]`.
+const OPERATORS: &str = "+-*/^:.\\";
+/// Operators within brackets if no blank precedes them; the quotation mark transposes.
+const ATTACHED_OPERATORS: &str = "+-*/^:.\\'";
+
+/// Reads values, beginning at the position of the scanner.
+pub(super) struct ValueReader<'r, 't, 'm> {
+    pub(super) scanner: &'r mut Scanner<'t>,
+    pub(super) budget: &'r ReadingBudget<'m>,
+    /// Variables assigned by earlier statements.
+    pub(super) workspace: &'r Workspace<'t>,
+}
+
+struct ComplexNumber {
+    re: f64,
+    im: f64,
+}
+
+/// Elements between brackets, in row-major order.
+struct Rows<T> {
+    rows: usize,
+    columns: usize,
+    elements: Vec<T>,
+}
+
+/// Element of a matrix.
+enum Element {
+    Number { re: f64, im: f64 },
+    Text(String),
+}
+
+impl ValueReader<'_, '_, '_> {
+    /// Reads a value; rejects a statement that continues after it.
+    pub(super) fn read_whole_value(&mut self) -> Result<Value, ValueError> {
+        let value = self.read_value(0)?;
+        self.scanner.pass_blanks()?;
+        match self.scanner.peek() {
+            None | Some(';' | ',' | '\n' | '\r') => Ok(value),
+            Some(_) => refuse_expression(self.scanner.position()),
+        }
+    }
+
+    /// Reads a value; `depth` is its nesting depth.
+    fn read_value(&mut self, depth: usize) -> Result<Value, ValueError> {
+        if depth > MOST_NESTED {
+            return Err(VariableFault::too_deep("").into());
+        }
+        self.scanner.pass_blanks()?;
+        let place = self.scanner.position();
+        if let Some(ComplexNumber { re, im }) = self.read_complex(false)? {
+            let im = if im == 0.0 { None } else { Some(vec![im]) };
+            return Ok(Value::Array(Array {
+                im,
+                ..Array::matrix(1, 1, vec![re])
+            }));
+        }
+        match self.scanner.peek() {
+            Some('[') => self.read_matrix(),
+            Some('{') => self.read_cell_array(place, depth),
+            Some('\'' | '"') => Ok(Value::text(self.scanner.read_quoted(self.budget)?)),
+            Some('@') => refused(format!("functions are not supported; {REMEDY}"), place),
+            None | Some('\n' | '\r' | ';' | ',') => {
+                refused("a value is missing here; write it", place)
+            }
+            Some(_) => self.read_named_value(place, depth),
+        }
+    }
+
+    /// Reads a function call, or a copy of a variable or field.
+    fn read_named_value(&mut self, place: Position, depth: usize) -> Result<Value, ValueError> {
+        let path = self.scanner.read_path(self.budget)?;
+        let before = self.scanner.clone();
+        self.scanner.pass_blanks()?;
+        match path.as_slice() {
+            [] => refused(
+                format!("this is not a number, string or matrix; {REMEDY}"),
+                place,
+            ),
+            [function] if self.scanner.take("(") => self.read_call(function, place, depth),
+            path => {
+                *self.scanner = before;
+                self.workspace.copy(path, place, self.budget)
+            }
+        }
+    }
+
+    /// Reads a real number, or a complex number such as `1 - 2i`, at this position; `None`, without
+    /// moving, if there is no number. `in_matrix`: between square brackets, where a blank may
+    /// separate two elements.
+    fn read_complex(&mut self, in_matrix: bool) -> Result<Option<ComplexNumber>, ValueError> {
+        let before = self.scanner.clone();
+        let Some(Number {
+            value,
+            is_imaginary,
+        }) = self.read_signed()?
+        else {
+            *self.scanner = before;
+            return Ok(None);
+        };
+        let behind = self.scanner.clone();
+        let is_spaced = self.scanner.pass_blanks()?;
+        let is_sign = matches!(self.scanner.peek(), Some('+' | '-'));
+        // The blank in `[1 -2i]` separates two elements, but not in `[1 - 2i]`, where another blank
+        // follows the sign.
+        let is_separate = in_matrix
+            && is_spaced
+            && !self.scanner.rest()[usize::from(is_sign)..].starts_with([' ', '\t']);
+        if is_sign
+            && !is_imaginary
+            && !is_separate
+            && let Ok(Some(Number {
+                value: im,
+                is_imaginary: true,
+            })) = self.read_signed()
+        {
+            return Ok(Some(ComplexNumber { re: value, im }));
+        }
+        *self.scanner = behind;
+        Ok(Some(if is_imaginary {
+            ComplexNumber { re: 0.0, im: value }
+        } else {
+            ComplexNumber { re: value, im: 0.0 }
+        }))
+    }
+
+    /// Reads a number with any signs before it; `None` if there is no number.
+    fn read_signed(&mut self) -> Result<Option<Number>, ValueError> {
+        let mut sign = 1.0;
+        loop {
+            match self.scanner.peek() {
+                Some('-') => sign = -sign,
+                Some('+') => {}
+                _ => break,
+            }
+            self.scanner.at += 1;
+            self.scanner.pass_blanks()?;
+            self.budget.work(1, "")?;
+        }
+        if let Some(number) = self.scanner.read_number()? {
+            return Ok(Some(Number {
+                value: sign * number.value,
+                ..number
+            }));
+        }
+        let value = match self.scanner.read_name() {
+            Some("inf" | "Inf") => sign * f64::INFINITY,
+            Some("nan" | "NaN") => f64::NAN,
+            _ => return Ok(None),
+        };
+        Ok(Some(Number {
+            value,
+            is_imaginary: false,
+        }))
+    }
+
+    /// Reads rows of elements from an opening bracket, at this position, to the closing bracket
+    /// `close`; `read_element` reads an element. Commas or blanks separate elements, semicolons or
+    /// line ends separate rows; empty rows do not count.
+    fn read_rows<T>(
+        &mut self,
+        close: char,
+        opening: Position,
+        mut read_element: impl FnMut(&mut Self) -> Result<T, ValueError>,
+    ) -> Result<Rows<T>, ValueError> {
+        self.scanner.at += 1;
+        let mut elements = Vec::new();
+        let mut columns = 0;
+        let mut rows = 0;
+        let mut row_length = 0;
+        loop {
+            let is_spaced = self.scanner.pass_blanks()?;
+            let place = self.scanner.position();
+            let next = self.scanner.peek();
+            let ends_row = matches!(next, Some(';' | '\n' | '\r')) || next == Some(close);
+            if ends_row && row_length > 0 {
+                if rows == 0 {
+                    columns = row_length;
+                }
+                rows += 1;
+                if row_length != columns {
+                    let found = counted(row_length, "column");
+                    let what = format!(
+                        "row {rows} has {found}, but the first row has {columns}; complete the \
+                        shorter row"
+                    );
+                    return refused(what, opening);
+                }
+                row_length = 0;
+            }
+            match next {
+                None => return refused("the bracket is never closed; close it", opening),
+                Some('\n' | '\r') => self.scanner.new_line(),
+                Some(';' | ',') => self.scanner.at += 1,
+                Some(sign) if sign == close => {
+                    self.scanner.at += 1;
+                    return Ok(Rows {
+                        rows,
+                        columns,
+                        elements,
+                    });
+                }
+                Some(sign) => {
+                    if row_length > 0 && self.is_operator(sign, is_spaced) {
+                        return refuse_expression(place);
+                    }
+                    self.budget.take(2, size_of::<T>() as u64, "")?;
+                    elements.push(read_element(self)?);
+                    row_length += 1;
+                }
+            }
+        }
+    }
+
+    /// Returns whether a character after an element is an operator, which this reader cannot
+    /// evaluate: true in `[1 - 2]` and `[1-2]`, false in `[1 -2]` and `[1, - 2]`.
+    fn is_operator(&self, sign: char, is_spaced: bool) -> bool {
+        let before = self.scanner.text[..self.scanner.at]
+            .trim_end()
+            .chars()
+            .next_back();
+        if before == Some(',') {
+            return false;
+        }
+        if !is_spaced {
+            return ATTACHED_OPERATORS.contains(sign);
+        }
+        let behind = &self.scanner.rest()[sign.len_utf8()..];
+        behind.starts_with([' ', '\t']) && OPERATORS.contains(sign)
+    }
+
+    /// Reads a cell array.
+    fn read_cell_array(&mut self, opening: Position, depth: usize) -> Result<Value, ValueError> {
+        let Rows {
+            rows,
+            columns,
+            elements,
+        } = self.read_rows('}', opening, |reader| {
+            reader.budget.take(4, 64, "")?;
+            reader.read_value(depth + 1)
+        })?;
+        Ok(Value::Cell(CellArray {
+            shape: vec![rows, columns],
+            values: first_index_fastest(&[rows, columns], elements),
+        }))
+    }
+
+    /// Reads a matrix of numbers, transposed if a quotation mark follows it, or of strings in
+    /// double quotation marks.
+    fn read_matrix(&mut self) -> Result<Value, ValueError> {
+        let opening = self.scanner.position();
+        let Rows {
+            rows,
+            columns,
+            elements,
+        } = self.read_rows(']', opening, Self::read_matrix_element)?;
+        let count = elements.len();
+        self.budget
+            .take(count as u64, 2 * size_of::<Element>() as u64, "")?;
+        let is_transposed = self.scanner.take("'");
+        // Values are stored in column-major order, which for the transpose is the order as read, row
+        // by row.
+        let shape = if is_transposed {
+            vec![columns, rows]
+        } else {
+            vec![rows, columns]
+        };
+        let by_column = if is_transposed {
+            elements
+        } else {
+            first_index_fastest(&[rows, columns], elements)
+        };
+        let mut real_parts = Vec::new();
+        let mut imaginary_parts = Vec::new();
+        let mut texts = Vec::new();
+        for element in by_column {
+            match element {
+                Element::Number { re, im } => {
+                    real_parts.push(re);
+                    // The quotation mark denotes the conjugate transpose.
+                    imaginary_parts.push(if is_transposed { -im } else { im });
+                }
+                Element::Text(text) => texts.push(text),
+            }
+        }
+        if texts.is_empty() {
+            let is_complex = imaginary_parts.iter().any(|part| *part != 0.0);
+            return Ok(Value::Array(Array {
+                shape,
+                kind: ElementKind::Float,
+                re: real_parts,
+                im: if is_complex {
+                    Some(imaginary_parts)
+                } else {
+                    None
+                },
+            }));
+        }
+        if texts.len() < count || is_transposed {
+            return refused(
+                "numbers and strings cannot be mixed in brackets; write {…} instead of […]",
+                opening,
+            );
+        }
+        Ok(Value::Text(TextArray { shape, texts }))
+    }
+
+    /// Reads an element between square brackets.
+    fn read_matrix_element(&mut self) -> Result<Element, ValueError> {
+        let place = self.scanner.position();
+        if let Some(ComplexNumber { re, im }) = self.read_complex(true)? {
+            return Ok(Element::Number { re, im });
+        }
+        match self.scanner.peek() {
+            Some('"') => Ok(Element::Text(self.scanner.read_quoted(self.budget)?)),
+            Some('\'') => refused(
+                "strings in brackets are not joined; write {'A', 'B'}",
+                place,
+            ),
+            _ => refused(
+                format!("only numbers are supported in brackets; {REMEDY}"),
+                place,
+            ),
+        }
+    }
+
+    /// Reads the arguments after the opening bracket of a function call, and returns the value of
+    /// the function.
+    fn read_call(
+        &mut self,
+        name: &str,
+        place: Position,
+        depth: usize,
+    ) -> Result<Value, ValueError> {
+        let Some(function) = Function::find(name) else {
+            return refused(format!("{name}(…) is not evaluated; {REMEDY}"), place);
+        };
+        let mut arguments = Vec::new();
+        loop {
+            self.scanner.pass_blanks()?;
+            if arguments.is_empty() && self.scanner.take(")") {
+                break;
+            }
+            self.budget.take(2, size_of::<Value>() as u64, "")?;
+            arguments.push(self.read_value(depth + 1)?);
+            self.scanner.pass_blanks()?;
+            if self.scanner.take(")") {
+                break;
+            }
+            if !self.scanner.take(",") {
+                return refuse_expression(self.scanner.position());
+            }
+        }
+        let call = Call {
+            name,
+            function,
+            place,
+        };
+        call.value(arguments, self.budget)
+    }
+}
+
+/// Returns the error for an expression, because this reader evaluates none.
+fn refuse_expression<T>(place: Position) -> Result<T, ValueError> {
+    refused(format!("expressions are not evaluated; {REMEDY}"), place)
+}

@@ -1,0 +1,136 @@
+//! Variables assigned by MATLAB or Octave statements.
+
+use std::collections::HashMap;
+
+use crate::formats::text::matlab_value_error::{MOST_NESTED, Position, ValueError, refused};
+use crate::formats::variables::{StructArray, Value, Variable};
+use crate::reading_budget::{ReadingBudget, VariableFault};
+
+/// Variables and fields assigned so far.
+#[derive(Default)]
+pub(super) struct Workspace<'t> {
+    /// Variables in the order of their first assignments, with their last values.
+    pub(super) variables: Vec<Variable>,
+    /// Index in `variables`, by name.
+    places: HashMap<&'t str, usize>,
+}
+
+impl<'t> Workspace<'t> {
+    /// Sets the variable or field at `path`.
+    pub(super) fn set(
+        &mut self,
+        path: &[&'t str],
+        value: Value,
+        budget: &ReadingBudget,
+    ) -> Result<(), VariableFault> {
+        let Some((name, fields)) = path.split_first() else {
+            return Ok(());
+        };
+        budget.take(
+            path.iter().map(|part| part.len() as u64 + 128).sum(),
+            2,
+            name,
+        )?;
+        let place = match self.places.get(name) {
+            Some(place) => *place,
+            None => self.add(name),
+        };
+        set_field(&mut self.variables[place].value, fields, value);
+        Ok(())
+    }
+
+    /// Adds a variable with an empty struct as its value; returns its index.
+    fn add(&mut self, name: &'t str) -> usize {
+        let place = self.variables.len();
+        self.places.insert(name, place);
+        self.variables.push(Variable {
+            name: name.to_owned(),
+            value: empty_struct(),
+        });
+        place
+    }
+
+    /// Returns a copy of the variable or field at `path`; `place` is the position of its name in
+    /// the text.
+    ///
+    /// # Errors
+    /// [`ValueError`] if the variable or field does not exist or is opaque.
+    pub(super) fn copy(
+        &self,
+        path: &[&str],
+        place: Position,
+        budget: &ReadingBudget,
+    ) -> Result<Value, ValueError> {
+        let Some((name, fields)) = path.split_first() else {
+            return refused("a name is missing", place);
+        };
+        let Some(&index) = self.places.get(name) else {
+            return refused(
+                format!("{name} has not been assigned; write its value"),
+                place,
+            );
+        };
+        let mut value = &self.variables[index].value;
+        for field in fields {
+            value = match value {
+                Value::Struct(records) if let Some([only]) = records.field(field) => only,
+                _ => return refused(format!("{} has no field {field}", path.join(".")), place),
+            };
+        }
+        if let Value::Opaque { .. } = value {
+            return refused(
+                format!("{} itself could not be read", path.join(".")),
+                place,
+            );
+        }
+        budget.take(memory_of(value, 0)?, 1, "")?;
+        Ok(value.clone())
+    }
+}
+
+/// Returns a record without fields.
+fn empty_struct() -> Value {
+    Value::Struct(StructArray::one(Vec::new()))
+}
+
+/// Sets the field at `path` in a value, or the value itself for an empty path; adds missing fields.
+/// A value that cannot have fields becomes opaque.
+fn set_field(target: &mut Value, path: &[&str], value: Value) {
+    let Some((name, rest)) = path.split_first() else {
+        *target = value;
+        return;
+    };
+    let words = target.words();
+    match target {
+        Value::Struct(StructArray { fields, .. }) => {
+            let known = fields.iter().position(|(known, _)| known == name);
+            let place = known.unwrap_or(fields.len());
+            if known.is_none() {
+                fields.push(((*name).to_owned(), vec![empty_struct()]));
+            }
+            if let Some(field) = fields[place].1.first_mut() {
+                set_field(field, rest, value);
+            }
+        }
+        Value::Opaque { .. } => {}
+        _ => {
+            let why = format!(
+                "field {name} is set in {words}, which cannot have fields; use \
+                different names"
+            );
+            *target = Value::opaque("a variable with a field", why);
+        }
+    }
+}
+
+/// Returns the memory that a copy of a value needs \[bytes\].
+fn memory_of(value: &Value, depth: usize) -> Result<u64, VariableFault> {
+    if depth > MOST_NESTED {
+        return Err(VariableFault::too_deep(""));
+    }
+    let mut memory = value.own_memory();
+    for inner in value.inner() {
+        memory += memory_of(inner, depth + 1)?;
+    }
+    Ok(memory)
+}

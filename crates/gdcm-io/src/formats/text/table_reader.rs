@@ -1,0 +1,492 @@
+//! Reading of tables of numbers in columns, written by programs or by hand.
+//!
+//! 1. Recognise separator, decimal mark and number of columns (`layout.rs`).
+//! 2. Take each line as a row, or keep it as skipped.
+//! 3. Find names and units in the lines above the first row (`heading.rs`).
+
+use gdcm_model::number_format::counted;
+
+use crate::formats::text::cell_number::cell_number;
+use crate::formats::text::encoding::refuse_binary;
+use crate::formats::text::heading::Heading;
+use crate::formats::text::heading_cells::{is_mostly_numbers, names_one_more_column};
+use crate::formats::text::layout::{Layout, RowShape};
+use crate::formats::text::lines::{NumberedLine, comment, excerpt, is_rule, lines};
+use crate::formats::text::separator::Separator;
+use crate::formats::text::text_table::TextTable;
+use crate::reading_budget::{ReadingBudget, VariableFault};
+
+/// Name of the expected contents in error messages.
+const EXPECTED: &str = "a table of numbers in columns";
+/// Number of lines before the first row among which a repeated heading is looked up.
+const COMPARED_HEADINGS: usize = 20;
+
+/// Reads a table of numbers in columns, and recognises its separator, decimal mark, names and
+/// units.
+pub fn read_table(text: &str, budget: &ReadingBudget) -> Result<TextTable, VariableFault> {
+    refuse_binary(text, EXPECTED)?;
+    let Some(layout) = Layout::recognise(text, budget)? else {
+        return Err(no_numbers(text));
+    };
+    let mut reading = Reading::new(layout, budget)?;
+    for (number, line) in lines(text) {
+        reading.take_line(number, line)?;
+    }
+    reading.finish(text)
+}
+
+/// Returns the error for a text without a row of numbers.
+fn no_numbers(text: &str) -> VariableFault {
+    let found = match excerpt(text).as_str() {
+        "" => "an empty file".to_owned(),
+        start => format!("no row of numbers (the text begins with \"{start}\")"),
+    };
+    VariableFault::format(EXPECTED, found)
+}
+
+/// State of reading a table. Each line is a row, or it is skipped: an empty line, a comment, a ruled
+/// line, and a line before the first row that may be a heading. Skipped lines other than empty lines
+/// are kept, because names and units are looked up in them at the end.
+struct Reading<'m> {
+    layout: Layout,
+    budget: &'m ReadingBudget<'m>,
+    columns: Vec<Vec<f64>>,
+    /// Line number of each row.
+    lines: Vec<usize>,
+    skipped: Vec<NumberedLine>,
+    notes: Vec<String>,
+}
+
+impl<'m> Reading<'m> {
+    fn new(layout: Layout, budget: &'m ReadingBudget<'m>) -> Result<Self, VariableFault> {
+        // Memory of an empty column, and later of its unit and name.
+        budget.take(layout.columns as u64, 128, "")?;
+        Ok(Self {
+            layout,
+            budget,
+            columns: vec![Vec::new(); layout.columns],
+            lines: Vec::new(),
+            skipped: Vec::new(),
+            notes: Vec::new(),
+        })
+    }
+
+    /// Adds a line as a row, or skips it.
+    ///
+    /// # Errors
+    /// [`VariableFault`] if a row has the wrong number of columns, or text follows the first row.
+    fn take_line(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
+        if line.trim().is_empty() {
+            return Ok(());
+        }
+        if comment(line).is_some() {
+            // Check for rows first: "#N/A;1" and ";1;2" are rows that begin with a comment mark.
+            return match self.layout.row_shape(line) {
+                Some(shape) if self.layout.fits(shape) => self.take_row(number, line),
+                _ => self.skip_line(number, line),
+            };
+        }
+        if is_rule(line) {
+            return self.skip_line(number, line);
+        }
+        if self.lines.is_empty() {
+            self.take_line_before_rows(number, line)
+        } else if self.repeats_heading(line) {
+            self.notes.push(format!(
+                "line {number} repeats a heading: the rows after it continue the table"
+            ));
+            self.skip_line(number, line)
+        } else {
+            self.take_row(number, line)
+        }
+    }
+
+    /// Adds a line as the first row, or skips it.
+    fn take_line_before_rows(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
+        match self.layout.row_shape(line) {
+            Some(shape) if self.layout.fits(shape) => self.take_row(number, line),
+            // A single number in a wider table is no row: it may be a number of rows or a date.
+            Some(RowShape { width: 1, .. }) => {
+                let columns = self.layout.columns;
+                self.notes.push(format!(
+                    "line {number} is skipped: it holds one number, but the table has {columns} \
+                    columns"
+                ));
+                self.skip_line(number, line)
+            }
+            Some(_) => self.take_row(number, line),
+            None => self.take_text_before_rows(number, line),
+        }
+    }
+
+    /// Returns whether a line repeats the heading, as programs do when they continue a record.
+    fn repeats_heading(&self, line: &str) -> bool {
+        self.skipped_above_rows()
+            .iter()
+            .take(COMPARED_HEADINGS)
+            .any(|heading| heading.text.trim() == line.trim())
+    }
+
+    /// Returns the lines before the first row that were skipped.
+    fn skipped_above_rows(&self) -> &[NumberedLine] {
+        let first_row = self.lines.first().copied().unwrap_or(0);
+        let count = self.skipped.partition_point(|line| line.number < first_row);
+        &self.skipped[..count]
+    }
+
+    /// Adds a line that is not a row of numbers as the first row if it is probably a row with errors,
+    /// which are then reported; otherwise skips it.
+    fn take_text_before_rows(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
+        let columns = self.layout.columns;
+        let cells: Vec<_> = self
+            .layout
+            .cells(line)
+            .take(columns + 2)
+            .map(|cell| cell.into_owned())
+            .collect();
+        let fits = cells.len() == columns || cells.len() == columns + 1;
+        if fits && is_mostly_numbers(&cells, self.layout) {
+            self.take_row(number, line)
+        } else {
+            self.skip_line(number, line)
+        }
+    }
+
+    /// Keeps a line that is not a row.
+    fn skip_line(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
+        self.budget.take(2 * line.len() as u64 + 64, 1, "")?;
+        self.skipped.push(NumberedLine {
+            number,
+            text: line.to_owned(),
+        });
+        Ok(())
+    }
+
+    /// Appends the numbers in a line to the columns.
+    ///
+    /// # Errors
+    /// [`VariableFault`] if a cell is not a number, or the number of columns is wrong.
+    fn take_row(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
+        let is_first = self.lines.is_empty();
+        // An empty last cell is a column, not a trailing separator, if the heading names it.
+        if is_first && self.layout.trailing && names_one_more_column(&self.skipped, self.layout) {
+            self.layout.columns += 1;
+            self.layout.trailing = false;
+            self.columns.push(Vec::new());
+        }
+        // Take twice the memory of a row: vectors grow by doubling.
+        self.budget.take(self.layout.columns as u64 + 1, 16, "")?;
+        let mut cells = self.layout.cells(line);
+        let mut ends_empty = false;
+        for (index, column) in self.columns.iter_mut().enumerate() {
+            let Some(cell) = cells.next() else {
+                return Err(self.wrong_width(number, line));
+            };
+            let Some(value) = cell_number(&cell, self.layout.decimal_comma) else {
+                let what = self.no_number(index, &cell, line);
+                return Err(VariableFault::line("", number, what));
+            };
+            ends_empty = cell.trim().is_empty();
+            column.push(value);
+        }
+        let is_complete = match cells.next() {
+            None => self.layout.fits(RowShape {
+                width: self.layout.columns,
+                ends_empty,
+            }),
+            // One empty cell is allowed, after a trailing separator.
+            Some(extra) => cells.next().is_none() && extra.trim().is_empty(),
+        };
+        if !is_complete {
+            return Err(self.wrong_width(number, line));
+        }
+        self.lines.push(number);
+        Ok(())
+    }
+
+    /// Describes a cell that is not a number, or a line without numbers, with a remedy.
+    fn no_number(&self, index: usize, cell: &str, line: &str) -> String {
+        /// Maximum number of cells examined in a line.
+        const EXAMINED: usize = 20;
+        let decimal_comma = self.layout.decimal_comma;
+        let mut cells = self.layout.cells(line).take(EXAMINED);
+        if cells.all(|cell| cell_number(&cell, decimal_comma).is_none()) {
+            let start = excerpt(line);
+            return format!(
+                "text among the rows (\"{start}\"); put # before it, or split the file if another \
+                table follows"
+            );
+        }
+        let mark = if decimal_comma && cell.contains('.') {
+            " (the decimal mark is the comma)"
+        } else {
+            ""
+        };
+        format!(
+            "column {} holds \"{}\", which is not a number{mark}; correct it, or leave the cell \
+            empty",
+            index + 1,
+            excerpt(cell)
+        )
+    }
+
+    /// Returns the error for a line with the wrong number of columns.
+    fn wrong_width(&self, number: usize, line: &str) -> VariableFault {
+        let mut found: usize = 0;
+        let mut ends_empty = false;
+        for cell in self.layout.cells(line) {
+            found += 1;
+            ends_empty = cell.trim().is_empty();
+        }
+        if self.layout.trailing && ends_empty {
+            found -= 1;
+        }
+        let expected = self.layout.columns;
+        let separator = self.layout.separator.words();
+        VariableFault::line(
+            "",
+            number,
+            format!(
+                "{}, but the table has {expected} (separated by {separator}); \
+                complete the line, or split the file where the columns change",
+                counted(found, "column")
+            ),
+        )
+    }
+
+    /// Finds names and units in the skipped lines, and returns the table.
+    fn finish(mut self, text: &str) -> Result<TextTable, VariableFault> {
+        if self.lines.is_empty() {
+            return Err(no_numbers(text));
+        }
+        let heading = Heading::find(self.skipped_above_rows(), self.layout);
+        self.notes.extend(heading.notes);
+        if heading.names.is_none() && self.may_have_decimal_commas() {
+            let note = "each line has one comma, which is read as the separator of two columns; \
+                decimal commas would look the same";
+            self.notes.push(note.to_owned());
+        }
+        Ok(TextTable {
+            names: heading.names,
+            units: heading.units,
+            columns: self.columns,
+            lines: self.lines,
+            separator: self.layout.separator,
+            decimal_comma: self.layout.decimal_comma,
+            skipped: self.skipped,
+            notes: self.notes,
+        })
+    }
+
+    /// Returns whether the table could instead be a single column with decimal commas: it has two
+    /// columns of integers, separated by commas.
+    fn may_have_decimal_commas(&self) -> bool {
+        self.layout.separator == Separator::Comma
+            && self.layout.columns == 2
+            && !self.layout.decimal_comma
+            && self
+                .columns
+                .iter()
+                .flatten()
+                .all(|value| value.fract() == 0.0)
+    }
+}
+
+#[cfg(test)]
+mod columns_tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn read(text: &str) -> Result<TextTable, VariableFault> {
+        read_table(text, &ReadingBudget::new(1 << 24))
+    }
+
+    fn missing(table: &TextTable) -> usize {
+        table
+            .columns
+            .iter()
+            .flatten()
+            .filter(|value| value.is_nan())
+            .count()
+    }
+
+    #[test]
+    fn a_comma_can_be_the_decimal_mark() {
+        let table = read("\u{feff}omega [rad/s];Re;Im\r\n0,1;1,5;-2,5E-1\r\n0,2;1,0;\r\n").unwrap();
+        assert_eq!(table.names.as_deref().unwrap(), ["omega", "Re", "Im"]);
+        assert_eq!(table.units, [Some("rad/s".to_owned()), None, None]);
+        assert_eq!(table.columns[..2], [vec![0.1, 0.2], vec![1.5, 1.0]]);
+        assert_eq!(table.columns[2][0], -0.25);
+        assert!(table.columns[2][1].is_nan());
+        assert_eq!(
+            (missing(&table), table.lines[0], table.decimal_comma),
+            (1, 2, true)
+        );
+        assert_eq!(table.lines, [2, 3]);
+    }
+
+    #[test]
+    fn strokes_align_columns_and_end_lines() {
+        let table = read(
+            "  _Vind,_kias |   ____Q,rad/s | \n   -10.42649 |       0.00079 | \n   1 | 2 | \n",
+        )
+        .unwrap();
+        assert_eq!(table.names.as_deref().unwrap(), ["Vind", "Q"]);
+        assert_eq!(
+            table.units,
+            [Some("kias".to_owned()), Some("rad/s".to_owned())]
+        );
+        assert_eq!(table.columns, [[-10.42649, 1.0], [0.00079, 2.0]]);
+    }
+
+    #[test]
+    fn headings_can_be_given_instead_of_those_in_the_file() {
+        let table = read("w,P [dB],x\n1,2,3\n2,3,4\n").unwrap();
+        assert_eq!(table.headings(), ["w", "P [dB]", "x"]);
+        let said = ["f [Hz]", "", "phase [deg]"].map(str::to_owned);
+        let table = table.with_headings(&said).unwrap();
+        assert_eq!((table.headings(), table.columns.len()), (said.to_vec(), 3));
+        assert_eq!(table.units[2].as_deref(), Some("deg"));
+        let fault = table.with_headings(&said[..2]).unwrap_err().to_string();
+        assert!(fault.contains("2 headings for 3 columns"), "{fault}");
+    }
+
+    #[test]
+    fn comments_rules_and_blank_lines_are_skipped() {
+        let text = "% by a tool\n# w mag ph\n-------\n1 2 3\n\n! middle\n4 5 6 # behind\n// end\n";
+        let table = read(text).unwrap();
+        assert_eq!(table.names.as_deref().unwrap(), ["w", "mag", "ph"]);
+        assert_eq!(table.columns, [[1.0, 4.0], [2.0, 5.0], [3.0, 6.0]]);
+        assert_eq!(
+            table
+                .skipped
+                .iter()
+                .map(|line| line.number)
+                .collect::<Vec<_>>(),
+            [1, 2, 3, 6, 8]
+        );
+    }
+
+    #[test]
+    fn fortran_writes_a_count_and_exponents_with_d() {
+        let table = read("2\n 1.0D+03 -2.0D-01\n 2.0D+03  ****\n").unwrap();
+        assert_eq!(table.columns[0], [1000.0, 2000.0]);
+        assert_eq!(
+            table.notes[0],
+            "line 1 is skipped: it holds one number, but the table has 2 columns"
+        );
+        assert_eq!(missing(&table), 1);
+    }
+
+    #[test]
+    fn faults_name_the_line() {
+        let message = |text: &str| read(text).unwrap_err().to_string();
+        assert_eq!(
+            message("a,b,c\n1,2,3\n4,5\n"),
+            "line 3: 2 columns, but the table has 3 (separated by commas); \
+             complete the line, or split the file where the columns change"
+        );
+        assert_eq!(
+            message("1,2,3\n4,x,6\n"),
+            "line 2: column 2 holds \"x\", which is not a number; correct it, or leave the cell empty"
+        );
+        assert_eq!(
+            message("1,5;2\n1.5;3\n1,6;2\n"),
+            "line 2: column 1 holds \"1.5\", which is not a number (the decimal mark is the comma); \
+             correct it, or leave the cell empty"
+        );
+        assert!(
+            message("t;x;\n1;2;\n3;4;\n5;\n").starts_with("line 4: 1 column, but the table has 2")
+        );
+        assert_eq!(
+            message("1,2\n3,4\nt,x\n"),
+            "line 3: text among the rows (\"t,x\"); put # before it, or split the file if another table follows"
+        );
+        assert_eq!(
+            message(" \n"),
+            "expected a table of numbers in columns, found an empty file"
+        );
+        assert!(
+            message("hello world")
+                .contains("no row of numbers (the text begins with \"hello world\")")
+        );
+    }
+
+    #[test]
+    fn headings_in_the_middle_are_skipped_with_a_note() {
+        let table = read("t,x\n1,2\n3,4\nt,x\n1,5\n").unwrap();
+        assert_eq!(table.columns, [[1.0, 3.0, 1.0], [2.0, 4.0, 5.0]]);
+        assert!(
+            table
+                .notes
+                .iter()
+                .any(|note| note.starts_with("line 4 repeats a heading"))
+        );
+        assert!(read("t,x\n1,2\nt,y\n").is_err());
+    }
+
+    #[test]
+    fn a_slip_in_the_first_row_is_no_heading() {
+        assert!(
+            read("w,m,p\n1,2,x\n4,5,6\n7,8,9")
+                .unwrap_err()
+                .to_string()
+                .starts_with("line 2: column 3")
+        );
+        assert!(
+            read("1,2\n4,5,6\n7,8,9")
+                .unwrap_err()
+                .to_string()
+                .starts_with("line 1: 2 columns")
+        );
+    }
+
+    #[test]
+    fn an_empty_cell_is_no_separator_at_the_end() {
+        let named = read("a,b,c,\n1,2,3,\n4,5,6,").unwrap();
+        assert_eq!(named.columns.len(), 3);
+        let empty = read(";1;2\n3;4;5\n").unwrap();
+        assert!(empty.columns[0][0].is_nan());
+    }
+
+    #[test]
+    fn columns_with_nothing_in_the_last_keep_it_if_it_has_a_name() {
+        let table = read("a,b,c\n1,2,\n4,5,\n").unwrap();
+        assert_eq!(table.names.as_deref().unwrap(), ["a", "b", "c"]);
+        assert_eq!((table.columns.len(), missing(&table)), (3, 2));
+    }
+
+    #[test]
+    fn tables_beyond_the_limit_are_refused_before_their_memory_is_taken() {
+        let wide = "1,".repeat(1_000_000);
+        assert!(matches!(read(&wide), Err(VariableFault::TooLarge { .. })));
+        let stopped = read_table(
+            "1,2",
+            &ReadingBudget::new(1 << 20).stopped_by(std::sync::Arc::new(true.into())),
+        );
+        assert_eq!(stopped, Err(VariableFault::Stopped));
+        assert!(matches!(read("1,2\0"), Err(VariableFault::Format { .. })));
+    }
+
+    proptest! {
+        #[test]
+        fn numbers_written_come_back(
+            rows in prop::collection::vec(prop::collection::vec(-1e300..1e300, 3), 1..20),
+            separator in prop::sample::select(vec![",", ";", "\t", " | ", "  "]),
+        ) {
+            let line = |row: &Vec<f64>| row.iter().map(|x| format!("{x:e}")).collect::<Vec<_>>().join(separator);
+            let text = rows.iter().map(line).collect::<Vec<_>>().join("\n");
+            let table = read(&text).unwrap();
+            for (index, row) in rows.iter().enumerate() {
+                let back: Vec<f64> = table.columns.iter().map(|column| column[index]).collect();
+                prop_assert_eq!(&back, row);
+            }
+        }
+
+        #[test]
+        fn any_text_is_read_or_refused(text in "[0-9a-z,;| \\t\\n\"#%.eE+\\-\\[\\]()]{0,200}") {
+            let _ = read(&text);
+        }
+    }
+}

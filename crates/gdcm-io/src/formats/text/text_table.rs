@@ -1,0 +1,77 @@
+//! Table of numbers in columns, with the names and units that a text or the rules give.
+
+use gdcm_model::number_format::counted;
+
+use crate::formats::text::heading_units::name_and_unit;
+use crate::formats::text::lines::NumberedLine;
+use crate::formats::text::separator::Separator;
+use crate::reading_budget::VariableFault;
+
+/// Table of numbers in columns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TextTable {
+    /// Column names; `None` if the text has none.
+    pub names: Option<Vec<String>>,
+    /// Unit of each column, where the text gives it.
+    pub units: Vec<Option<String>>,
+    /// Numbers by column. A missing number is NaN; code that needs the number reports its position.
+    pub columns: Vec<Vec<f64>>,
+    /// Line number of each row, counted from 1.
+    pub lines: Vec<usize>,
+    pub separator: Separator,
+    pub decimal_comma: bool,
+    /// Lines that are not rows, such as comments and headings.
+    pub skipped: Vec<NumberedLine>,
+    /// Notes for the user on how ambiguous parts were read.
+    pub notes: Vec<String>,
+}
+
+impl TextTable {
+    /// Returns the name of a column, if the text gives one.
+    pub(super) fn name(&self, column: usize) -> Option<&str> {
+        self.names.as_ref()?.get(column).map(String::as_str)
+    }
+
+    /// Returns the column headings, with units such as "omega \[rad/s\]"; empty strings for columns
+    /// without a name.
+    pub fn headings(&self) -> Vec<String> {
+        (0..self.units.len())
+            .map(|column| self.heading(column))
+            .collect()
+    }
+
+    fn heading(&self, column: usize) -> String {
+        let name = self.name(column).unwrap_or_default();
+        match &self.units[column] {
+            Some(unit) => format!("{name} [{unit}]").trim().to_owned(),
+            None => name.to_owned(),
+        }
+    }
+
+    /// Replaces the names and units of all columns by those in `headings`, in the notation of
+    /// [`TextTable::headings`].
+    ///
+    /// # Errors
+    /// [`VariableFault`] if the number of headings differs from the number of columns.
+    pub fn with_headings(mut self, headings: &[String]) -> Result<Self, VariableFault> {
+        if headings.len() != self.columns.len() {
+            let found = format!(
+                "{} for {}",
+                counted(headings.len(), "heading"),
+                counted(self.columns.len(), "column")
+            );
+            return Err(VariableFault::format("one heading for each column", found));
+        }
+        let mut names = Vec::with_capacity(headings.len());
+        self.units.clear();
+        for heading in headings {
+            let (name, unit) = name_and_unit(heading);
+            names.push(name);
+            self.units.push(unit);
+        }
+        self.names = Some(names);
+        self.notes
+            .push("the column headings are taken from the rules".to_owned());
+        Ok(self)
+    }
+}

@@ -1,0 +1,143 @@
+//! Frequencies of a measured response: their field and their unit.
+
+use std::f64::consts::TAU;
+
+use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit};
+
+use super::record::Record;
+use super::values::{Field, array_of, first_text_of, list_of};
+
+/// Names of frequencies in rad/s.
+const RADIANS: &[&str] = &["omega", "omega_rad_s", "w", "freq_rad_s", "frequency_rad_s"];
+/// Names of frequencies in an unspecified unit.
+const FREQUENCIES: &[&str] = &["Frequency", "freq", "frequencies", "f"];
+/// Names of frequencies in Hz.
+const HERTZ: &[&str] = &["f_hz", "freq_hz", "frequency_hz"];
+/// Names of the field with the unit of the frequencies.
+const UNITS: &[&str] = &["FrequencyUnit", "FreqUnits", "Units", "frequency_unit"];
+
+/// Returns whether a record has a field with more than one frequency.
+pub(super) fn has_several_frequencies(record: &Record<'_>) -> bool {
+    let frequencies = record
+        .find(RADIANS)
+        .or_else(|| record.find(FREQUENCIES))
+        .or_else(|| record.find(HERTZ));
+    let Some(frequencies) = frequencies else {
+        return false;
+    };
+    array_of(frequencies.value).is_some_and(|array| array.len() > 1)
+}
+
+/// Frequencies of a response.
+pub(super) struct Frequencies {
+    /// Angular frequencies \[rad/s\].
+    pub(super) omega: Vec<f64>,
+    /// Whether the file gives the frequencies in Hz or in a multiple of Hz.
+    pub(super) is_hertz: bool,
+}
+
+impl Frequencies {
+    pub(super) fn read(record: &Record<'_>) -> Result<Self, String> {
+        let unit = FrequencyUnit::read(record);
+        let GivenFrequencies { field, is_hertz } = GivenFrequencies::find(record, &unit)?;
+        let values = list_of("frequencies", record.take(field))?;
+        let factor = if is_hertz {
+            unit.rad_s_per_multiple_of_hertz()
+        } else {
+            unit.rad_s_per_angular_rate()?
+        };
+        Ok(Self {
+            omega: values.into_iter().map(|value| value * factor).collect(),
+            is_hertz,
+        })
+    }
+}
+
+/// Field with the frequencies of a response.
+struct GivenFrequencies<'v> {
+    field: Field<'v>,
+    is_hertz: bool,
+}
+
+impl<'v> GivenFrequencies<'v> {
+    /// Finds the field; its name decides about the unit, unless a unit is given.
+    ///
+    /// # Errors
+    /// The reason if there are no frequencies, or neither their name nor a unit tells whether they
+    /// are in rad/s or Hz.
+    fn find(record: &Record<'v>, unit: &FrequencyUnit) -> Result<Self, String> {
+        // Without a unit, MATLAB and python-control use rad/s.
+        let has_default = record.class.is_some() || record.get(&["frdata", "fresp"]).is_some();
+        if let Some(field) = record.find(RADIANS) {
+            Ok(Self {
+                field,
+                is_hertz: unit.multiple_of_hertz.is_some(),
+            })
+        } else if let Some(field) = record.find(FREQUENCIES) {
+            if unit.text.is_empty() && !has_default {
+                return Err(
+                    "frequencies: unit missing, rad/s or Hz; call them omega_rad_s or f_hz, or give \"rad/s\" or \"Hz\" \
+                        beside them as frequency_unit"
+                        .to_owned(),
+                );
+            }
+            Ok(Self {
+                field,
+                is_hertz: unit.multiple_of_hertz.is_some(),
+            })
+        } else if let Some(field) = record.find(HERTZ) {
+            Ok(Self {
+                field,
+                is_hertz: true,
+            })
+        } else {
+            Err("frequencies are missing".to_owned())
+        }
+    }
+}
+
+/// Unit that is given beside the frequencies.
+struct FrequencyUnit {
+    /// Name of the unit; empty if none is given.
+    text: String,
+    /// The unit, if it is Hz, kHz, ...
+    multiple_of_hertz: Option<PhysicalUnit>,
+    /// The unit, if it is an angle in rad over a time.
+    angular_rate: Option<PhysicalUnit>,
+}
+
+impl FrequencyUnit {
+    fn read(record: &Record<'_>) -> Self {
+        let text = record
+            .get(UNITS)
+            .and_then(first_text_of)
+            .unwrap_or_default();
+        let unit = PhysicalUnit::parse(&text);
+        Self {
+            multiple_of_hertz: unit.filter(|unit| unit.dimension == Dimension::Frequency),
+            angular_rate: unit.filter(|unit| unit.name.starts_with("rad/")),
+            text,
+        }
+    }
+
+    /// Returns the factor from the unit to rad/s; without a unit, from Hz.
+    fn rad_s_per_multiple_of_hertz(&self) -> f64 {
+        match self.multiple_of_hertz {
+            Some(unit) => TAU * unit.size,
+            None => TAU,
+        }
+    }
+
+    /// Returns the factor from the unit to rad/s; without a unit, 1.
+    fn rad_s_per_angular_rate(&self) -> Result<f64, String> {
+        if let Some(unit) = self.angular_rate {
+            return Ok(unit.size);
+        }
+        match self.text.to_lowercase().as_str() {
+            "" | "rad" | "rads" | "rad/timeunit" => Ok(1.0),
+            other => Err(format!(
+                "frequencies are in \"{other}\"; expected rad/s or Hz"
+            )),
+        }
+    }
+}

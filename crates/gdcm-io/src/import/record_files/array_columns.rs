@@ -1,0 +1,179 @@
+//! Flight records from vectors and matrices of equal length.
+
+use std::collections::BTreeMap;
+
+use gdcm_model::names::time_name::{SAMPLE_TIME_NAMES, time_name_rank};
+use gdcm_sysid::records::RecordColumn;
+
+use super::column_labels::ColumnLabels;
+use super::samples::samples_of;
+use crate::formats::recorded_columns::Columns;
+use crate::formats::variables::Value;
+use crate::import::recognise::record::Record;
+
+/// Minimum number of samples in a record with time stamps or a sample time.
+pub(super) const FEWEST_TIMED: usize = 20;
+/// Minimum number of samples in a record with neither time stamps nor a sample time.
+const FEWEST: usize = 50;
+const SAMPLE_RATE_NAMES: [&str; 5] = [
+    "fs",
+    "sample_rate",
+    "sampling_rate",
+    "sample_rate_hz",
+    "fsamp",
+];
+
+/// Length of a record.
+struct RecordLength {
+    /// Number of samples.
+    rows: usize,
+    /// Whether a time vector determines the length.
+    is_timed: bool,
+}
+
+/// Returns the record that the arrays of equal length form: the length of the time vector,
+/// otherwise the length with the most columns. Returns `None` if there are too few samples or
+/// columns, and for a model.
+pub(super) fn array_columns(record: &Record<'_>, variable: &str) -> Option<Columns> {
+    let is_model = ["A", "B", "C"]
+        .iter()
+        .all(|letter| record.exact(letter).is_some());
+    if is_model {
+        return None;
+    }
+    let sample_time_s = sample_time(record);
+    let RecordLength { rows, is_timed } = record_length(record)?;
+    let fewest = if is_timed || sample_time_s.is_some() {
+        FEWEST_TIMED
+    } else {
+        FEWEST
+    };
+    if rows < fewest {
+        return None;
+    }
+    let mut arrays = LongArrays::find(record, rows);
+    if arrays.columns.len() < 2 {
+        return None;
+    }
+    if !arrays.have_names {
+        for (index, column) in arrays.columns.iter_mut().enumerate() {
+            column.name = format!("column {}", index + 1);
+        }
+    }
+    let mut notes = Vec::new();
+    if !arrays.left_out.is_empty() {
+        notes.push(format!(
+            "omitted because of another length: {}",
+            arrays.left_out.join(", ")
+        ));
+    }
+    Some(Columns {
+        named: arrays.have_names,
+        sample_time_s,
+        notes,
+        ..Columns::new(variable.to_owned(), arrays.columns)
+    })
+}
+
+/// Vectors and matrices with the length of a record.
+struct LongArrays {
+    columns: Vec<RecordColumn>,
+    /// Whether the columns have names: not those of a single matrix without labels.
+    have_names: bool,
+    /// Names of the arrays with another length; single numbers are not listed.
+    left_out: Vec<String>,
+}
+
+impl LongArrays {
+    fn find(record: &Record<'_>, rows: usize) -> Self {
+        let mut columns: Vec<RecordColumn> = Vec::new();
+        let mut matrices = 0;
+        let mut vectors = 0;
+        let mut has_labels = false;
+        let mut left_out = Vec::new();
+        for field in record.fields() {
+            let Some(samples) = samples_of(field.value, Some(rows)) else {
+                continue;
+            };
+            let name = field.name.trim_matches('_');
+            if samples.rows != rows {
+                if samples.rows > 1 {
+                    left_out.push(name.to_owned());
+                }
+                continue;
+            }
+            let count = samples.columns.len();
+            if count == 1 {
+                vectors += 1;
+            } else {
+                matrices += 1;
+            }
+            let labels = ColumnLabels::find(record, name, count);
+            has_labels |= labels.has_names();
+            columns.extend(labels.label(name, samples.columns));
+        }
+        Self {
+            columns,
+            have_names: has_labels || vectors > 0 || matrices > 1,
+            left_out,
+        }
+    }
+}
+
+/// Returns the length of the longest time vector. Without a sufficiently long one, returns the
+/// length with the most columns; in a tie, the greater length.
+fn record_length(record: &Record<'_>) -> Option<RecordLength> {
+    let mut timed = None;
+    for field in record.fields() {
+        if time_name_rank(field.name).is_some_and(|rank| rank < 2)
+            && let Some(samples) = samples_of(field.value, None)
+            && samples.columns.len() == 1
+        {
+            timed = timed.max(Some(samples.rows));
+        }
+    }
+    if let Some(rows) = timed
+        && rows >= FEWEST_TIMED
+    {
+        return Some(RecordLength {
+            rows,
+            is_timed: true,
+        });
+    }
+    let mut columns_by_length: BTreeMap<usize, usize> = BTreeMap::new();
+    for field in record.fields() {
+        if let Some(samples) = samples_of(field.value, None)
+            && samples.columns.len() < samples.rows
+        {
+            *columns_by_length.entry(samples.rows).or_default() += samples.columns.len();
+        }
+    }
+    let (rows, _) = columns_by_length
+        .into_iter()
+        .max_by_key(|(rows, columns)| (*columns, *rows))?;
+    Some(RecordLength {
+        rows,
+        is_timed: false,
+    })
+}
+
+/// Returns the sample time \[s\], given directly or as a sample rate \[Hz\]; `None` if neither is
+/// given.
+fn sample_time(record: &Record<'_>) -> Option<f64> {
+    let step = match positive_number(record, &SAMPLE_TIME_NAMES) {
+        Some(step) => step,
+        None => 1.0 / positive_number(record, &SAMPLE_RATE_NAMES)?,
+    };
+    if step.is_finite() { Some(step) } else { None }
+}
+
+/// Returns the positive number in the first field found under these names; `None` if there is none.
+fn positive_number(record: &Record<'_>, names: &[&str]) -> Option<f64> {
+    let Value::Array(array) = record.get(names)? else {
+        return None;
+    };
+    match array.re.as_slice() {
+        [value] if *value > 0.0 => Some(*value),
+        _ => None,
+    }
+}

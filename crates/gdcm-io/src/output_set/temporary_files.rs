@@ -1,0 +1,115 @@
+//! Temporary files beside the files that they replace: new content before it is renamed, and second
+//! names of existing files.
+//!
+//! Each is locked while its process runs. A temporary file without a lock is the leftover of a killed
+//! run, and is removed by the next write into its directory.
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, ErrorKind, Write};
+use std::path::Path;
+
+use tempfile::NamedTempFile;
+
+/// Start and end of the names of temporary files.
+pub(super) const PREFIX: &str = ".gdcm-";
+pub(super) const SUFFIX: &str = ".tmp";
+
+/// Writes a temporary file, flushed to the disk, that will replace `target`.
+pub(super) fn write_temporary_file(
+    target: &Path,
+    directory: &Path,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<NamedTempFile> {
+    let mut temporary = temporary_file(target, directory)?;
+    let mut buffered = BufWriter::new(temporary.as_file_mut());
+    write(&mut buffered)?;
+    buffered.flush()?;
+    drop(buffered);
+    temporary.as_file().sync_all()?;
+    Ok(temporary)
+}
+
+/// Creates a temporary file, locked as long as it is open. The system releases the lock when the
+/// process ends, for whatever reason.
+fn temporary_file(target: &Path, directory: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = temporary_name();
+    // Use the permissions of the replaced file; for a new file, reading and writing for all,
+    // reduced by the process's mask.
+    #[cfg(unix)]
+    builder.permissions(
+        fs::metadata(target)
+            .map(|found| found.permissions())
+            .unwrap_or_else(|_| {
+                use std::os::unix::fs::PermissionsExt;
+                fs::Permissions::from_mode(0o666)
+            }),
+    );
+    loop {
+        // Keep only the kind of the error: the builder's message would name the temporary file.
+        let temporary = builder
+            .tempfile_in(directory)
+            .map_err(|error| io::Error::from(error.kind()))?;
+        // Ignore a failure: on a file system without locks, `remove_leftovers` cannot lock a file
+        // either and removes nothing.
+        let _ = temporary.as_file().lock();
+        // Try again if another process removed the file as a leftover before it was locked.
+        if temporary.path().exists() {
+            return Ok(temporary);
+        }
+    }
+}
+
+/// Creates a second name for a file, or a copy if the file system has no hard links; removed when
+/// dropped.
+pub(super) fn kept_aside(target: &Path) -> io::Result<NamedTempFile> {
+    temporary_name().make_in(directory_of(target), |path| {
+        match fs::hard_link(target, path) {
+            Err(error) if error.kind() != ErrorKind::AlreadyExists => drop(fs::copy(target, path)?),
+            linked => linked?,
+        }
+        // Before the lock is taken, another process may remove the file as a leftover. Its absence
+        // is returned as `AlreadyExists`, so that `make_in` tries another name.
+        let removed = ErrorKind::AlreadyExists;
+        let file = match File::open(path) {
+            Err(error) if error.kind() == ErrorKind::NotFound => return Err(removed.into()),
+            opened => opened?,
+        };
+        let _ = file.try_lock();
+        if path.exists() {
+            Ok(file)
+        } else {
+            Err(removed.into())
+        }
+    })
+}
+
+fn temporary_name() -> tempfile::Builder<'static, 'static> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(PREFIX).suffix(SUFFIX);
+    builder
+}
+
+/// Returns the directory of a file; a file name alone is in the current directory.
+pub(super) fn directory_of(file: &Path) -> &Path {
+    match file.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    }
+}
+
+/// Removes temporary files of killed runs, recognised by the missing lock.
+pub(super) fn remove_leftovers(directory: &Path) {
+    for entry in fs::read_dir(directory).into_iter().flatten().flatten() {
+        let is_ours = entry
+            .file_name()
+            .to_str()
+            .is_some_and(|name| name.starts_with(PREFIX) && name.ends_with(SUFFIX));
+        if is_ours
+            && entry.file_type().is_ok_and(|kind| kind.is_file())
+            && let Ok(file) = File::options().write(true).open(entry.path())
+            && file.try_lock().is_ok()
+        {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}

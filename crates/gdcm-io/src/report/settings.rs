@@ -1,0 +1,55 @@
+//! Report section on the settings of the study.
+
+use gdcm_model::dataset::{Dataset, PairTable};
+use gdcm_study::Study;
+use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting::SETTINGS;
+
+use super::page::Page;
+use super::wording::{capital, names};
+
+/// Adds the section on the settings: constrained and ignored responses, then every setting that
+/// affects the results.
+pub(super) fn add_settings(page: &mut Page, study: &Study) {
+    page.section("Settings");
+    let settings = &study.settings;
+    let dataset = &study.dataset;
+    page.facts([
+        ("On-axis responses", pair_names(dataset, dataset.on_axis())),
+        ("Held exactly", pair_names(dataset, &settings.constrained)),
+        (
+            "Ignored in the objective",
+            pair_names(dataset, &settings.ignored),
+        ),
+    ]);
+    let mut facts: Vec<(String, String)> = Vec::new();
+    for row in SETTINGS {
+        if !(row.control.applies)(study) {
+            continue;
+        }
+        let words = if *row == setting::GAIN_SOURCE {
+            settings.gain_source_words()
+        } else {
+            row.words(settings)
+        };
+        facts.push((capital(row.name), words));
+    }
+    page.facts(
+        facts
+            .iter()
+            .map(|(name, words)| (name.as_str(), words.clone())),
+    );
+}
+
+/// Lists the marked responses by name.
+fn pair_names(dataset: &Dataset, marked: &PairTable<bool>) -> String {
+    let pairs: Vec<String> = marked
+        .marked()
+        .map(|pair| dataset.pair_name(pair))
+        .collect();
+    if pairs.is_empty() {
+        "none".to_owned()
+    } else {
+        names(&pairs)
+    }
+}

@@ -1,0 +1,72 @@
+//! The limit `alpha -> 0+` of the regularisation weight: step 4 of `solve` (M8, M9).
+//!
+//! With `alpha = 0`, the objective does not depend on a common shift of the scales in a *floating
+//! piece*, a group of components that fitted entries connect with one another, but not with the
+//! ground ([`Objective::floating_pieces`]). With a positive `alpha`, every component with a
+//! regularised channel is connected with the ground.
+
+use gdcm_model::statistics::mean;
+
+use super::branch_and_bound::objective::Objective;
+use super::components::{ChannelCoordinates, Components, Placement};
+use super::quantity::{GainObjective, Quantity};
+
+/// Takes the limit `alpha -> 0+`: the fit does not determine a common shift of the scales in a
+/// floating piece, which is therefore set to the value that minimises the regularised deviations
+/// from neutral.
+pub(super) fn take_alpha_limit(
+    quantity: Quantity,
+    components: &Components,
+    objective: &Objective,
+    scales: &mut [f64],
+) {
+    objective.shift_floating_pieces(scales, |piece, scales| {
+        let channels = components.channels(scales);
+        let nodes = components.nodes();
+        let in_piece = ChannelCoordinates {
+            inputs: select_piece(piece, nodes.inputs, &channels.inputs),
+            outputs: select_piece(piece, nodes.outputs, &channels.outputs),
+        };
+        least_departure_shift(quantity, &in_piece)
+    });
+}
+
+/// Selects the values of the nodes that belong to a group of components.
+fn select_piece(piece: &[usize], nodes: &[Placement], values: &[f64]) -> Vec<f64> {
+    let mut selected = Vec::new();
+    for (node, &value) in nodes.iter().zip(values) {
+        if piece.contains(&node.component) {
+            selected.push(value);
+        }
+    }
+    selected
+}
+
+/// Returns the shift of a group's scales that minimises the regularised deviations from neutral; it
+/// raises the coordinates of the inputs and lowers those of the outputs by the same amount. The
+/// outputs are regularised (the inputs, if the group has no output); for signed delays, both.
+fn least_departure_shift(quantity: Quantity, channels: &ChannelCoordinates) -> f64 {
+    let ChannelCoordinates { inputs, outputs } = channels;
+    if quantity.regularises_inputs() {
+        let apart = outputs.iter().sum::<f64>() - inputs.iter().sum::<f64>();
+        return apart / (inputs.len() + outputs.len()).max(1) as f64;
+    }
+    if outputs.is_empty() {
+        return if inputs.is_empty() {
+            0.0
+        } else {
+            -mean(inputs)
+        };
+    }
+    if quantity != Quantity::Gain(GainObjective::Ratio) {
+        return mean(outputs);
+    }
+    // sum (k e^-shift - 1)^2 is minimal at e^shift = sum k^2 / sum k.
+    let mut sum = 0.0;
+    let mut square = 0.0;
+    for logarithm in outputs {
+        sum += logarithm.exp();
+        square += (2.0 * logarithm).exp();
+    }
+    (square / sum).ln()
+}

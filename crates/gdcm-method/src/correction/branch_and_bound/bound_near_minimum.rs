@@ -1,0 +1,87 @@
+//! Lower bound of the objective over a region that contains a minimum or lies beside it, from the
+//! gradient and the Hessian at the minimum (line 8 of the algorithm in [`super`]).
+
+use super::convex_bound::quadratic_bound;
+use super::expansion::Expansion;
+use super::node_exclusion::NodeExclusion;
+use crate::correction::interval::Interval;
+
+/// Distance from the minimum, much larger than the error of the scales, much smaller than a distance
+/// over which the curvature changes.
+const WITHIN: f64 = 0.01;
+
+impl NodeExclusion<'_> {
+    /// Bounds the objective from below over a region on which it is convex, from its gradient and
+    /// Hessian at `minimum`. `None` if the gradient is too large for such a bound.
+    pub(super) fn bound_at(&self, minimum: &[f64], at: &Expansion) -> Option<f64> {
+        // A difference of two scales changes by up to twice the distance.
+        let least = self.least_hessian(|term| {
+            let u = term.difference(minimum);
+            Interval {
+                low: u - 2.0 * WITHIN,
+                high: u + 2.0 * WITHIN,
+            }
+        });
+        let pressures: Vec<f64> = (0..minimum.len())
+            .map(|scale| self.pressure(minimum, at, scale))
+            .collect();
+        let anchors = self.anchors(at, &pressures)?;
+        let lower = &self.objective.lower;
+        let upper = &self.objective.upper;
+        let free: Vec<usize> = (0..self.objective.ground())
+            .filter(|scale| lower[*scale] < upper[*scale] && !anchors.contains(scale))
+            .collect();
+        let inverse = least.reduced(&free).cholesky()?.inverse();
+        let mut reach = vec![0.0; minimum.len()];
+        for (position, &scale) in free.iter().enumerate() {
+            reach[scale] = inverse[(position, position)].sqrt();
+        }
+        quadratic_bound(at, &reach, WITHIN, |scale| pressures[scale] > 0.0)
+    }
+
+    /// Returns the magnitude of the slope that certainly presses the scale against its active
+    /// bound; 0 without an active bound or a certain sign.
+    fn pressure(&self, minimum: &[f64], at: &Expansion, scale: usize) -> f64 {
+        let slope = at.gradient[scale];
+        let is_stopped = if slope > 0.0 {
+            minimum[scale] <= self.objective.lower[scale]
+        } else {
+            minimum[scale] >= self.objective.upper[scale]
+        };
+        if is_stopped {
+            (slope.abs() - at.gradient_error[scale]).max(0.0)
+        } else {
+            0.0
+        }
+    }
+
+    /// Chooses a reference for each floating piece: a fixed scale or, if bounds are active, the
+    /// scale with the largest pressure. Returns `None` if this pressure is less than the sum of the
+    /// slope magnitudes of the scales in the piece without pressure.
+    fn anchors(&self, at: &Expansion, pressures: &[f64]) -> Option<Vec<usize>> {
+        let mut anchors = Vec::new();
+        for piece in &self.floating {
+            let fixed = piece
+                .iter()
+                .find(|&&scale| self.objective.lower[scale] >= self.objective.upper[scale]);
+            if let Some(&fixed) = fixed {
+                anchors.push(fixed);
+                continue;
+            }
+            let hardest = piece
+                .iter()
+                .copied()
+                .max_by(|a, b| pressures[*a].total_cmp(&pressures[*b]))?;
+            let free_slopes: f64 = piece
+                .iter()
+                .filter(|&&scale| pressures[scale] == 0.0)
+                .map(|&scale| at.gradient[scale].abs() + at.gradient_error[scale])
+                .sum();
+            if pressures[hardest] > 0.0 && pressures[hardest] < free_slopes {
+                return None;
+            }
+            anchors.push(hardest);
+        }
+        Some(anchors)
+    }
+}

@@ -1,0 +1,86 @@
+//! Bounds on the channel gains and delays, from the spread over the band of what the responses need
+//! (M7).
+//!
+//! ```text
+//! gains    LB = min(1, q-quantile),  UB = max(1, (1-q)-quantile)    of |H_ref| / |H_sim|
+//! delays                             UB = max(0, (1-q)-quantile)    of Delta phi(H_sim, H_ref) / omega
+//! ```
+//!
+//! The quantiles are taken over all frequencies of the pooled responses together. The lower bound on
+//! a signed delay follows from the lead filters instead (`lead_design`).
+
+use serde::{Deserialize, Serialize};
+
+use gdcm_model::dataset::{Pair, PairTable};
+use gdcm_model::statistics::quantile;
+
+use super::delta::{delays, ratios};
+use crate::fidelity::Mismatch;
+
+/// Minimum and maximum value of every channel (M7): gains `0 < lower <= upper`; delays \[s\], with
+/// `lower` zero; signed delays \[s\], `lower <= 0 <= upper` (M15.4).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(from = "[f64; 2]", into = "[f64; 2]")]
+pub struct Bounds {
+    pub lower: f64,
+    pub upper: f64,
+}
+
+impl From<[f64; 2]> for Bounds {
+    fn from([lower, upper]: [f64; 2]) -> Self {
+        Self { lower, upper }
+    }
+}
+
+impl From<Bounds> for [f64; 2] {
+    fn from(bounds: Bounds) -> Self {
+        [bounds.lower, bounds.upper]
+    }
+}
+
+/// Computes the gain bounds `LB = min(1, q-quantile)` and `UB = max(1, (1-q)-quantile)` of
+/// `|H_ref| / |H_sim|`, pooled over frequencies and responses (M7).
+pub fn gain_bounds(
+    mismatch: &PairTable<Option<Mismatch>>,
+    measuring: &PairTable<bool>,
+    q: f64,
+) -> Bounds {
+    let mut pool: Vec<f64> = pooled(mismatch, measuring).flat_map(ratios).collect();
+    let lower = quantile(&mut pool, q).min(1.0);
+    let upper = quantile(&mut pool, 1.0 - q).max(1.0);
+    Bounds { lower, upper }
+}
+
+/// Computes the upper delay bound `UB = max(0, (1-q)-quantile)` \[s\] of `Delta phi / omega`,
+/// pooled over frequencies and responses (M7).
+pub fn delay_upper_s(
+    mismatch: &PairTable<Option<Mismatch>>,
+    measuring: &PairTable<bool>,
+    omega: &[f64],
+    q: f64,
+) -> f64 {
+    let mut pool = Vec::new();
+    for mismatch in pooled(mismatch, measuring) {
+        let phase = mismatch.phase_difference(omega);
+        pool.extend(delays(&phase, mismatch.omega(omega)));
+    }
+    quantile(&mut pool, 1.0 - q).max(0.0)
+}
+
+/// Selects the mismatches to be pooled: those of the responses in `measuring`, or all if none of
+/// these is defined.
+fn pooled<'a>(
+    mismatch: &'a PairTable<Option<Mismatch>>,
+    measuring: &PairTable<bool>,
+) -> impl Iterator<Item = &'a Mismatch> + use<'a> {
+    let marked: Vec<Pair> = measuring
+        .marked()
+        .filter(|&pair| mismatch[pair].is_some())
+        .collect();
+    let pairs = if marked.is_empty() {
+        mismatch.pairs().collect()
+    } else {
+        marked
+    };
+    pairs.into_iter().filter_map(|pair| mismatch[pair].as_ref())
+}

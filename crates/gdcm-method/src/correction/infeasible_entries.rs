@@ -1,0 +1,138 @@
+//! Constrained entries whose delta is infeasible, each with the conflict behind it: step 5 of `solve`.
+//!
+//! Stage 1 (`reachable_targets`) has replaced the prescribed sum of such an entry by a target, the
+//! nearest feasible sum.
+
+use super::branch_and_bound::effort::{Effort, SearchStopped};
+use super::conflict::{Conflict, ConflictKind};
+use super::conflict_search::entry_conflicts;
+use super::constraints::{ConstrainedSum, Constraints};
+use super::problem::Problem;
+use super::quantity::Coordinate;
+use super::reachable_targets::Reached;
+use super::solution::Unmatched;
+
+/// Residual in natural logarithms, or as a fraction of the problem's longest delay, up to which a
+/// constrained entry meets its delta (M8).
+const MATCHED: f64 = 1e-8;
+
+/// Residual \[s\] up to which a constrained delay meets its delta, however short the delays of the
+/// problem are: the difference between equal phases has rounding errors. At the highest band
+/// frequency, 1e5 rad/s, it is 0.006 degrees.
+const MATCHED_DELAY_S: f64 = 1e-9;
+
+/// The constrained entries whose delta is infeasible.
+pub(super) struct Misses {
+    /// Entries in loops whose deviation is within the tolerance of the problem.
+    pub(super) agreeing: Vec<Unmatched>,
+    /// All others.
+    pub(super) unmatched: Vec<Unmatched>,
+}
+
+/// Finds the constrained entries whose delta was infeasible in stage 1, each with its conflict.
+pub(super) fn misses(
+    problem: &Problem,
+    constraints: &Constraints,
+    reached: &Reached,
+    effort: &Effort<'_>,
+) -> Result<Misses, SearchStopped> {
+    let tolerance = matching_tolerance(problem.coordinate());
+    let conflicts = entry_conflicts(problem, constraints, reached, tolerance, effort)?;
+    let mut misses = Misses {
+        agreeing: Vec::new(),
+        unmatched: Vec::new(),
+    };
+    for (asked, target) in constraints.entries.iter().zip(&reached.targets) {
+        if (target.sum - asked.sum).abs() > tolerance {
+            let known = conflicts.iter().find(|found| found.missed == asked.pair);
+            let why = match known {
+                Some(found) => found.conflict.clone(),
+                None => unclear_conflict(problem, constraints),
+            };
+            let miss = unmatched(problem, asked, target, why);
+            if miss.why.agrees_within(problem.agreement) && miss.excess.abs() <= problem.agreement {
+                misses.agreeing.push(miss);
+            } else {
+                misses.unmatched.push(miss);
+            }
+        }
+    }
+    Ok(misses)
+}
+
+/// Returns the residual, in the coordinate of the problem, up to which a constrained entry meets
+/// its delta.
+fn matching_tolerance(coordinate: Coordinate) -> f64 {
+    match coordinate {
+        Coordinate::Logarithm => MATCHED,
+        Coordinate::Time { unit_s } => MATCHED.max(MATCHED_DELAY_S / unit_s),
+    }
+}
+
+/// Returns the conflict that contains all constrained entries; used if no smaller conflict is
+/// found.
+fn unclear_conflict(problem: &Problem, constraints: &Constraints) -> Conflict {
+    Conflict {
+        quantity: problem.quantity,
+        entries: constraints.entries.iter().map(|entry| entry.pair).collect(),
+        bounds: problem.bounds,
+        kind: ConflictKind::Unclear,
+    }
+}
+
+/// Converts an infeasible entry from coordinates to gains or delays.
+fn unmatched(
+    problem: &Problem,
+    asked: &ConstrainedSum,
+    reached: &ConstrainedSum,
+    why: Conflict,
+) -> Unmatched {
+    let quantity = problem.quantity;
+    let coordinate = problem.coordinate();
+    let delta = coordinate.value(asked.sum);
+    let target = coordinate.value(reached.sum);
+    let excess = if quantity.is_gain() {
+        quantity.difference(reached.sum - asked.sum, coordinate)
+    } else {
+        target - delta
+    };
+    Unmatched {
+        quantity,
+        pair: asked.pair,
+        delta,
+        target,
+        excess,
+        why,
+    }
+}
+
+/// Returns the constraints, in which the entries of accepted loops are replaced by their targets.
+pub(super) fn settled_loops(
+    constraints: &Constraints,
+    reached: &Reached,
+    agreeing: &[Unmatched],
+) -> Constraints {
+    let mut entries = constraints.entries.clone();
+    for (entry, target) in entries.iter_mut().zip(&reached.targets) {
+        if agreeing.iter().any(|miss| miss.pair == entry.pair) {
+            *entry = *target;
+        }
+    }
+    constraints.with_entries(entries)
+}
+
+/// Collects the distinct conflicts of the infeasible entries: loops first, then by number of
+/// entries.
+pub(super) fn distinct_conflicts(misses: &[Unmatched]) -> Vec<Conflict> {
+    let mut conflicts: Vec<Conflict> = Vec::new();
+    for miss in misses {
+        let is_known = conflicts
+            .iter()
+            .any(|known| known.has_entries_of(&miss.why));
+        if !is_known {
+            conflicts.push(miss.why.clone());
+        }
+    }
+    conflicts.sort_by_key(|conflict| (!conflict.is_loop(), conflict.entries.len()));
+    conflicts
+}

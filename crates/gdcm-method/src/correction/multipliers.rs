@@ -1,0 +1,191 @@
+//! Multipliers of the constrained entries and of the active bounds at the minimum.
+//!
+//! With the objective `F` as a function of the channels `x` (logarithms of the gains, or delays),
+//! the solution satisfies the Karush-Kuhn-Tucker conditions
+//!
+//! ```text
+//! dF/dx_c = mu_c + sum of lambda_e over the constrained entries e of channel c
+//! ```
+//!
+//! The multiplier `lambda_e` is the derivative of the minimum with respect to the entry's
+//! constrained sum of two channels, `mu_c` that with respect to the active bound of channel `c`: at
+//! most 0 for an upper bound, at least 0 for a lower bound, and 0 without an active bound.
+
+use nalgebra::{DMatrix, DVector};
+
+use gdcm_model::dataset::Pair;
+
+use super::connected_pieces::connected_pieces;
+use super::problem::{Entry, Problem};
+use super::solution::Solution;
+
+/// Whether the value of a channel equals its lower and its upper bound.
+#[derive(Clone, Copy)]
+struct AtBounds {
+    lower: bool,
+    upper: bool,
+}
+
+/// Slope of the objective along the common movement of a group of connected channels.
+pub(super) struct Push {
+    pub(super) slope: f64,
+    /// Channels whose active bounds stop the movement.
+    pub(super) stopping: Vec<usize>,
+}
+
+/// The minimum, with the channels as variables: inputs first, then outputs.
+pub(super) struct ConstrainedMinimum {
+    /// Number of inputs.
+    pub(super) inputs: usize,
+    /// Slope of the objective in the value of each channel.
+    slopes: Vec<f64>,
+    /// By channel.
+    at_bounds: Vec<AtBounds>,
+    /// Constrained entries; each fixes the sum of an input and an output.
+    pub(super) constrained: Vec<Pair>,
+}
+
+impl ConstrainedMinimum {
+    pub(super) fn new(problem: &Problem, solution: &Solution) -> Self {
+        let at_bounds = solution
+            .inputs
+            .iter()
+            .chain(&solution.outputs)
+            .map(|&value| AtBounds {
+                lower: value == problem.bounds.lower,
+                upper: value == problem.bounds.upper,
+            })
+            .collect();
+        let constrained = problem
+            .constrained_entries()
+            .map(|entry| entry.pair)
+            .collect();
+        Self {
+            inputs: solution.inputs.len(),
+            slopes: channel_slopes(problem, solution),
+            at_bounds,
+            constrained,
+        }
+    }
+
+    /// Groups the channels that are connected by constrained entries.
+    pub(super) fn pieces(&self) -> Vec<Vec<usize>> {
+        let ties = self
+            .constrained
+            .iter()
+            .map(|pair| [pair.input, self.inputs + pair.output]);
+        connected_pieces(self.slopes.len(), ties)
+    }
+
+    /// Returns 1 for an input and -1 for an output: in a common movement, an output decreases when
+    /// the inputs connected with it increase, because the sums are constrained.
+    fn sign(&self, channel: usize) -> f64 {
+        if channel < self.inputs { 1.0 } else { -1.0 }
+    }
+
+    /// Computes the slope of the objective along the common movement of a group of connected
+    /// channels.
+    pub(super) fn push(&self, piece: &[usize]) -> Push {
+        let slope: f64 = piece
+            .iter()
+            .map(|&channel| self.sign(channel) * self.slopes[channel])
+            .sum();
+        let mut stopping = Vec::new();
+        for &channel in piece {
+            // The group would move downhill: an input on its upper bound prevents a rise, and so
+            // does an output on its lower bound.
+            let rises = self.sign(channel) * slope < 0.0;
+            let at = self.at_bounds[channel];
+            if (rises && at.upper) || (!rises && at.lower) {
+                stopping.push(channel);
+            }
+        }
+        Push { slope, stopping }
+    }
+}
+
+/// Derivatives of the minimum objective.
+pub(super) struct Multipliers {
+    /// `lambda_e`, in the order of [`ConstrainedMinimum::constrained`].
+    pub(super) entries: Vec<f64>,
+    /// `mu_c` by channel, inputs first.
+    pub(super) channels: Vec<f64>,
+}
+
+impl Multipliers {
+    /// Solves the conditions `dF/dx_c = mu_c + sum lambda_e` for the multipliers.
+    ///
+    /// The slope that pushes a group of connected channels against a bound is divided equally among
+    /// the channels on that bound. The multipliers of the constrained entries balance the
+    /// remainder; in a loop, where they are not unique, their sum of squares is minimal.
+    pub(super) fn new(minimum: &ConstrainedMinimum) -> Self {
+        let mut channels = vec![0.0; minimum.slopes.len()];
+        for piece in minimum.pieces() {
+            let push = minimum.push(&piece);
+            for &channel in &push.stopping {
+                channels[channel] = minimum.sign(channel) * push.slope / push.stopping.len() as f64;
+            }
+        }
+        Self {
+            entries: entry_multipliers(minimum, &channels),
+            channels,
+        }
+    }
+}
+
+/// Solves for the multipliers `lambda_e` of the constrained entries, given the multipliers `mu_c`
+/// of the bounds.
+fn entry_multipliers(minimum: &ConstrainedMinimum, bounds: &[f64]) -> Vec<f64> {
+    if minimum.constrained.is_empty() {
+        return Vec::new();
+    }
+    let channels = bounds.len();
+    let balanced = DVector::from_fn(channels, |channel, _| {
+        minimum.slopes[channel] - bounds[channel]
+    });
+    // Incidence matrix: 1 where an entry contains a channel.
+    let ties = DMatrix::from_fn(channels, minimum.constrained.len(), |channel, entry| {
+        let pair = minimum.constrained[entry];
+        if channel == pair.input || channel == minimum.inputs + pair.output {
+            1.0
+        } else {
+            0.0
+        }
+    });
+    // Tolerance of the singular values: their squares are the Laplacian eigenvalues of a bipartite
+    // graph with n channels: 0, or at least 4 / n^2 (Mohar, "Eigenvalues, diameter and mean
+    // distance in graphs", 1991). Half of `2 / n`, the lower bound on nonzero singular values,
+    // separates them.
+    match ties.svd(true, true).solve(&balanced, 1.0 / channels as f64) {
+        Ok(multipliers) => multipliers.iter().copied().collect(),
+        Err(_) => Vec::new(),
+    }
+}
+
+/// Computes `dF/dx_c`, the slope of the objective in the logarithm of each gain, or in each delay;
+/// inputs first.
+fn channel_slopes(problem: &Problem, solution: &Solution) -> Vec<f64> {
+    let quantity = problem.quantity;
+    let inputs = solution.inputs.len();
+    let mut slopes = vec![0.0; inputs + solution.outputs.len()];
+    for Entry { pair, delta } in problem.fit_entries() {
+        let slope = quantity.squared_residual_slope(
+            delta,
+            solution.outputs[pair.output],
+            solution.inputs[pair.input],
+        );
+        slopes[pair.input] += slope;
+        slopes[inputs + pair.output] += slope;
+    }
+    let neutral = quantity.neutral();
+    let first_regularised = if quantity.regularises_inputs() {
+        0
+    } else {
+        inputs
+    };
+    let values = solution.inputs.iter().chain(&solution.outputs);
+    for (slope, value) in slopes.iter_mut().zip(values).skip(first_regularised) {
+        *slope += problem.alpha * quantity.squared_residual_slope(neutral, *value, neutral);
+    }
+    slopes
+}

@@ -1,0 +1,175 @@
+//! The constrained entries that stage 1 could not meet, as a directed graph of pulls between nodes, and
+//! the shortest walks in it.
+//!
+//! The nodes and their values `s` are those of [`super::constraints`]. A *pull* requires
+//! `s_to - s_from >= weight`, but stage 1 has reached less.
+
+use std::collections::VecDeque;
+
+use gdcm_model::dataset::Pair;
+
+use super::constraints::{Constraints, PairNodes};
+use super::reachable_targets::Reached;
+
+/// Residual relative to `1 + |sum|` up to which it is a rounding error of stage 1.
+const RESIDUAL_ROUNDING: f64 = 1e-11;
+
+/// A constrained entry that stage 1 missed: it requires `s_to - s_from >= weight`, but the actual
+/// difference is smaller.
+#[derive(Clone, Copy)]
+pub(super) struct Pull {
+    /// Node `from`, too high.
+    pub(super) from: usize,
+    /// Node `to`, too low.
+    pub(super) to: usize,
+    /// Prescribed difference `s_to - s_from`.
+    pub(super) weight: f64,
+    pub(super) pair: Pair,
+}
+
+impl Pull {
+    /// Returns the node from which a walk in this direction takes the pull.
+    fn start(&self, direction: Direction) -> usize {
+        match direction {
+            Direction::Along => self.from,
+            Direction::Against => self.to,
+        }
+    }
+
+    /// Returns the node to which the pull leads a walk in this direction.
+    fn end(&self, direction: Direction) -> usize {
+        match direction {
+            Direction::Along => self.to,
+            Direction::Against => self.from,
+        }
+    }
+
+    /// Returns the entry in the opposite direction, which is equivalent because the constraint is
+    /// an equality.
+    pub(super) fn reversed(&self) -> Self {
+        Self {
+            from: self.to,
+            to: self.from,
+            weight: -self.weight,
+            pair: self.pair,
+        }
+    }
+}
+
+/// The missed entries, as a directed graph of pulls between nodes.
+pub(super) struct Flow {
+    pub(super) pulls: Vec<Pull>,
+    /// For each node, whether its lower bound balances the pulls.
+    at_lower: Vec<bool>,
+    /// For each node, whether its upper bound balances the pulls.
+    at_upper: Vec<bool>,
+}
+
+impl Flow {
+    /// Collects the entries missed at `point`, the result of stage 1.
+    pub(super) fn new(constraints: &Constraints, reached: &Reached, point: &[f64]) -> Self {
+        let mut pulls = Vec::new();
+        // Sum of the pulls on each node: negative downwards, positive upwards.
+        let mut net = vec![0.0; constraints.nodes()];
+        for (asked, target) in constraints.entries.iter().zip(&reached.targets) {
+            let missing = asked.sum - target.sum;
+            if missing.abs() <= RESIDUAL_ROUNDING * (1.0 + asked.sum.abs()) {
+                continue;
+            }
+            let PairNodes { input, output } = constraints.nodes_of(asked.pair);
+            let upwards = Pull {
+                from: output,
+                to: input,
+                weight: asked.sum,
+                pair: asked.pair,
+            };
+            let pull = if missing > 0.0 {
+                upwards
+            } else {
+                upwards.reversed()
+            };
+            net[pull.from] -= missing.abs();
+            net[pull.to] += missing.abs();
+            pulls.push(pull);
+        }
+        let mut at_lower = Vec::new();
+        let mut at_upper = Vec::new();
+        for (node, &net) in net.iter().enumerate() {
+            let range = constraints.node_range(node);
+            at_lower.push(point[node] <= range.low && net < 0.0);
+            at_upper.push(point[node] >= range.high && net > 0.0);
+        }
+        Self {
+            pulls,
+            at_lower,
+            at_upper,
+        }
+    }
+
+    /// Returns the shortest way along the flow from the end of `pull` back to its start.
+    pub(super) fn way_back(&self, pull: &Pull) -> Option<Vec<Pull>> {
+        self.shortest_walk(pull.to, Direction::Along, |node| node == pull.from)
+    }
+
+    /// Returns the shortest path from a lower bound through `pull` to an upper bound.
+    pub(super) fn path_through(&self, pull: &Pull) -> Option<Vec<Pull>> {
+        let onward = self.shortest_walk(pull.to, Direction::Along, |node| self.at_upper[node])?;
+        let mut path =
+            self.shortest_walk(pull.from, Direction::Against, |node| self.at_lower[node])?;
+        path.reverse();
+        path.push(*pull);
+        path.extend(onward);
+        Some(path)
+    }
+
+    /// Finds the shortest walk from `start` to a node for which `is_end` holds, by breadth-first
+    /// search. Returns its pulls in the order of the walk; `None` if there is no such walk.
+    fn shortest_walk(
+        &self,
+        start: usize,
+        direction: Direction,
+        is_end: impl Fn(usize) -> bool,
+    ) -> Option<Vec<Pull>> {
+        let mut came_by: Vec<Option<Pull>> = vec![None; self.at_lower.len()];
+        let mut queue = VecDeque::from([start]);
+        while let Some(node) = queue.pop_front() {
+            if is_end(node) {
+                return walk_back(&came_by, start, node, direction);
+            }
+            for pull in &self.pulls {
+                let next = pull.end(direction);
+                if pull.start(direction) == node && next != start && came_by[next].is_none() {
+                    came_by[next] = Some(*pull);
+                    queue.push_back(next);
+                }
+            }
+        }
+        None
+    }
+}
+
+/// Direction of a walk relative to the pulls.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Direction {
+    Along,
+    Against,
+}
+
+/// Collects the pulls from `start` to `end`; `came_by` holds the pull by which each node was
+/// reached.
+fn walk_back(
+    came_by: &[Option<Pull>],
+    start: usize,
+    end: usize,
+    direction: Direction,
+) -> Option<Vec<Pull>> {
+    let mut walked = Vec::new();
+    let mut node = end;
+    while node != start {
+        let pull = came_by[node]?;
+        node = pull.start(direction);
+        walked.push(pull);
+    }
+    walked.reverse();
+    Some(walked)
+}

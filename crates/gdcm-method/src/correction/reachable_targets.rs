@@ -1,0 +1,97 @@
+//! Stage 1: the feasible sums nearest to the prescribed sums of the constrained entries (M8, M9).
+//!
+//! ```text
+//! min sum (x_i + y_o - sum_oi)^2     over the constrained entries of infeasible components, subject to the box
+//! ```
+//!
+//! The symbols are defined in [`super::constraints`].
+
+use super::branch_and_bound::objective::Objective;
+use super::branch_and_bound::rounded::Rounded;
+use super::branch_and_bound::term::{Function, Term};
+use super::components::Components;
+use super::constraints::{ConstrainedSum, Constraints};
+
+/// Result of stage 1.
+#[derive(Clone, Debug)]
+pub(crate) struct Reached {
+    /// The constrained entries with their targets, the feasible sums nearest to the prescribed
+    /// sums, in the order of [`Constraints::entries`].
+    pub(crate) targets: Vec<ConstrainedSum>,
+    /// Components for the constrained entries at their targets.
+    pub(crate) components: Components,
+    /// A point in the box that attains the targets, one value per node; `None` if every entry is
+    /// feasible.
+    pub(crate) point: Option<Vec<f64>>,
+}
+
+/// Finds the targets.
+///
+/// Feasible components keep their prescribed sums exactly. `minimise` returns the minimum of a sum
+/// of squares over a box; it is called only if an entry is infeasible.
+pub(crate) fn reach<E>(
+    constraints: &Constraints,
+    minimise: impl FnOnce(&Objective) -> Result<Vec<f64>, E>,
+) -> Result<Reached, E> {
+    let asked = Components::new(constraints);
+    if asked.are_possible() {
+        return Ok(Reached {
+            targets: constraints.entries.clone(),
+            components: asked,
+            point: None,
+        });
+    }
+    let point = minimise(&nearest_sums(constraints, &asked))?;
+    let mut targets = constraints.entries.clone();
+    for target in &mut targets {
+        if asked.is_infeasible(target.pair) {
+            let nodes = constraints.nodes_of(target.pair);
+            target.sum = point[nodes.input] - point[nodes.output];
+        }
+    }
+    let components = Components::new(&constraints.with_entries(targets.clone()));
+    Ok(Reached {
+        targets,
+        components,
+        point: Some(point),
+    })
+}
+
+/// Builds the least-squares problem of stage 1 for the infeasible components. Its variables, the
+/// scales of an [`Objective`], are the values of the nodes, followed by the ground.
+fn nearest_sums(constraints: &Constraints, asked: &Components) -> Objective {
+    let mut lower = Vec::new();
+    let mut upper = Vec::new();
+    for node in 0..constraints.nodes() {
+        let range = constraints.node_range(node);
+        lower.push(range.low);
+        upper.push(range.high);
+    }
+    lower.push(0.0);
+    upper.push(0.0);
+    let mut terms = Vec::new();
+    for entry in &constraints.entries {
+        if asked.is_infeasible(entry.pair) {
+            let nodes = constraints.nodes_of(entry.pair);
+            let centre = Rounded {
+                value: entry.sum,
+                error: 0.0,
+            };
+            terms.push(Term {
+                from: nodes.output,
+                to: nodes.input,
+                function: Function::Quadratic {
+                    weight: 1.0,
+                    centre,
+                    relative: 0.0,
+                },
+            });
+        }
+    }
+    Objective {
+        lower,
+        upper,
+        terms,
+        constant: Rounded::default(),
+    }
+}

@@ -1,0 +1,71 @@
+//! Shifts of the poles by mixing and feedback (M16.4).
+
+use nalgebra::Complex;
+
+use gdcm_model::dataset::StateSpace;
+use gdcm_model::response::mode::ModesError;
+use gdcm_model::response::modes;
+
+use super::coupled_model::CoupledModelError;
+use super::coupling_matrices::CouplingMatrices;
+use crate::correction::Pade;
+use crate::fidelity::mode_tracks;
+
+impl CouplingMatrices {
+    /// Returns the poles of a physics model with mixing and feedback, in ascending `|lambda|`. They
+    /// are matched to the poles without coupling so that the sum of distances is minimal.
+    /// Discrete-time poles are converted by `s = ln z / T`.
+    ///
+    /// # Errors
+    /// [`PoleShiftError`] if the coupled model or its eigenvalues are unavailable.
+    pub fn pole_shifts(
+        &self,
+        physics: &StateSpace,
+        airspeed_kt: f64,
+        pade: Pade,
+    ) -> Result<Vec<PoleShift>, PoleShiftError> {
+        let before = modes(physics)?;
+        let after = modes(&self.model(physics, airspeed_kt, pade)?)?;
+        let tracks = mode_tracks(&[&before, &after], 1);
+        let shifts = tracks
+            .into_iter()
+            .map(|track| PoleShift {
+                before: track.modes[0].map(|mode| before[mode].pole),
+                after: after[track.reference].pole,
+            })
+            .collect();
+        Ok(shifts)
+    }
+}
+
+/// A pole of a coupled model and its counterpart in the physics model; conjugate pairs are counted
+/// once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PoleShift {
+    /// Pole without coupling \[rad/s\]; `None` for an additional state (delays inside the loop).
+    pub before: Option<Complex<f64>>,
+    /// Pole with coupling \[rad/s\].
+    pub after: Complex<f64>,
+}
+
+/// Reasons why the poles of a coupled model are unavailable.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PoleShiftError {
+    #[error(transparent)]
+    Model(#[from] CoupledModelError),
+    #[error(transparent)]
+    Modes(#[from] ModesError),
+}
+
+impl PoleShift {
+    /// Returns the distance between both poles \[rad/s\]; `None` for an additional state.
+    pub fn distance_rad_s(&self) -> Option<f64> {
+        Some((self.after - self.before?).norm())
+    }
+
+    /// Returns whether coupling moved the pole into the right half-plane.
+    pub fn is_newly_unstable(&self) -> bool {
+        let was_unstable = self.before.is_some_and(|before| before.re > 0.0);
+        self.after.re > 0.0 && !was_unstable
+    }
+}

@@ -1,0 +1,299 @@
+//! Models beyond a discontinuity of the physics bundle: models that are further from the others
+//! than their perturbation of the trim explains (M5).
+
+use std::collections::BTreeMap;
+
+use gdcm_model::statistics::median;
+
+use super::absolute_deviations::{FitError, least_absolute_deviations};
+use super::distance::BundleDistance;
+
+/// Discontinuity ratio above which a model is suggested as an outlier.
+pub const SUGGESTION_RATIO: f64 = 2.5;
+/// Minimum number of models in a bundle for the outlier search.
+const LEAST_MODELS: usize = 5;
+
+/// The name and the trim of a physics model.
+#[derive(Clone, Copy, Debug)]
+pub struct PerturbedModel<'a> {
+    pub name: &'a str,
+    /// Offset of each perturbed coordinate of the trim from the nominal trim, by name; `None` if
+    /// unknown.
+    pub perturbation: Option<&'a BTreeMap<String, f64>>,
+}
+
+/// Each physics model's distance from the others, relative to the distance explained by its
+/// perturbation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Discontinuity {
+    /// `r_a` for each model: near 1 in a smooth bundle. `None` for a model set aside, and where no
+    /// two models have a fitted distance.
+    pub ratios: Vec<Option<f64>>,
+    /// Fitted weight of each perturbed coordinate.
+    pub weights: Vec<CoordinateWeight>,
+}
+
+impl Discontinuity {
+    /// Computes the ratios in a whole bundle, including rejected models but not those set aside;
+    /// `bundle` lists the models in bundle order.
+    ///
+    /// ```text
+    /// 1  p_ak: perturbation coordinate k of model a, divided by the coordinate's maximum magnitude in the bundle;
+    ///    0 where the model lacks it
+    /// 2  fit d(a,b)^2 ~ sum_k w_k (p_ak - p_bk)^2, w >= 0, by least absolute deviations over all model pairs
+    /// 3  r_ab = d(a,b) / sqrt(fitted), r_a = median over b of r_ab; pairs with zero fitted distance are skipped
+    /// ```
+    ///
+    /// Among equally good fits, the fit with the minimum sum of squared differences between fitted
+    /// and computed distances is taken. A thousand models make half a million pairs: the fit ends
+    /// without a result once it is `cancelled`.
+    ///
+    /// # Errors
+    /// [`DiscontinuityError`] if the bundle is too small, a model has no perturbation, every
+    /// perturbation is zero, or the fit fails or is cancelled.
+    pub fn fit(
+        distance: &BundleDistance,
+        bundle: &[PerturbedModel<'_>],
+        cancelled: &dyn Fn() -> bool,
+    ) -> Result<Self, DiscontinuityError> {
+        let compared = distance.measured().compared_models();
+        if compared.len() < LEAST_MODELS {
+            return Err(DiscontinuityError::TooFewModels {
+                found: compared.len(),
+            });
+        }
+        let models: Vec<_> = compared.iter().map(|&model| bundle[model]).collect();
+        let trims = ScaledTrims::new(&models)?;
+        let weights = fit_weights(distance, &compared, &trims, cancelled)?;
+        let mut ratios = vec![None; distance.measured().lacks.len()];
+        for (place, &model) in compared.iter().enumerate() {
+            ratios[model] = ratio(distance, &compared, &trims, &weights, place);
+        }
+        Ok(Self {
+            ratios,
+            weights: trims.coordinate_weights(weights),
+        })
+    }
+
+    /// Returns `sqrt(sum_k w_k (p_ak - p_bk)^2)` for two trims: the distance explained by their
+    /// perturbations.
+    pub fn fitted_distance(&self, a: &BTreeMap<String, f64>, b: &BTreeMap<String, f64>) -> f64 {
+        self.weights
+            .iter()
+            .map(|coordinate| {
+                let offset = coordinate.value(a) - coordinate.value(b);
+                coordinate.weight * (offset / coordinate.largest).powi(2)
+            })
+            .sum::<f64>()
+            .sqrt()
+    }
+
+    /// Returns the models whose ratio exceeds [`SUGGESTION_RATIO`], in bundle order.
+    pub fn suggested(&self) -> Vec<usize> {
+        let mut suggested = Vec::new();
+        for (model, ratio) in self.ratios.iter().enumerate() {
+            if ratio.is_some_and(|ratio| ratio > SUGGESTION_RATIO) {
+                suggested.push(model);
+            }
+        }
+        suggested
+    }
+}
+
+/// Step 2: fits the weights `w_k` to the squared distances of all pairs of compared models.
+fn fit_weights(
+    distance: &BundleDistance,
+    compared: &[usize],
+    trims: &ScaledTrims<'_>,
+    cancelled: &dyn Fn() -> bool,
+) -> Result<Vec<f64>, FitError> {
+    let mut rows = Vec::new();
+    let mut squares = Vec::new();
+    // `a`, `b`: places in `compared`, each pair of models once.
+    for a in 0..compared.len() {
+        for b in a + 1..compared.len() {
+            if let Some(distance) = distance.between(compared[a], compared[b]) {
+                squares.push(distance.powi(2));
+                rows.push(trims.squared_offsets(a, b));
+            }
+        }
+    }
+    least_absolute_deviations(&rows, &squares, cancelled)
+}
+
+/// Step 3: computes `r_a` of the compared model at place `a`; `None` if it has no fitted distance
+/// from any other model.
+fn ratio(
+    distance: &BundleDistance,
+    compared: &[usize],
+    trims: &ScaledTrims<'_>,
+    weights: &[f64],
+    a: usize,
+) -> Option<f64> {
+    let mut to_others = Vec::new();
+    for (b, &other) in compared.iter().enumerate() {
+        let fitted = trims.fitted_square(a, b, weights);
+        if b != a
+            && fitted > 0.0
+            && let Some(distance) = distance.between(compared[a], other)
+        {
+            to_others.push(distance / fitted.sqrt());
+        }
+    }
+    if to_others.is_empty() {
+        None
+    } else {
+        Some(median(&mut to_others))
+    }
+}
+
+/// A perturbation coordinate's contribution to the squared distance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CoordinateWeight {
+    /// Coordinate name ("airspeed_kt").
+    pub name: String,
+    /// Maximum magnitude of the coordinate in the bundle; the coordinate is divided by this value.
+    pub largest: f64,
+    /// Fitted weight `w_k`.
+    pub weight: f64,
+}
+
+impl CoordinateWeight {
+    /// Returns the coordinate in a perturbation; 0 where it is missing.
+    fn value(&self, perturbation: &BTreeMap<String, f64>) -> f64 {
+        perturbation.get(&self.name).copied().unwrap_or_default()
+    }
+}
+
+/// Reasons for a missing discontinuity ratio.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum DiscontinuityError {
+    /// The bundle is too small for a fit.
+    #[error(
+        "outliers are suggested only in bundles of at least {LEAST_MODELS} physics models; this \
+        bundle has {found}"
+    )]
+    TooFewModels {
+        /// Number of models in the bundle.
+        found: usize,
+    },
+    /// A model has no perturbation data.
+    #[error("outliers cannot be suggested: model \"{model}\" has no perturbation data")]
+    NoPerturbation { model: String },
+    /// Every perturbation coordinate is zero: all models were linearised at the same trim.
+    #[error(
+        "outliers cannot be suggested: every perturbation is zero, so all models have the \
+        same trim"
+    )]
+    AllZero,
+    #[error("outliers cannot be suggested: {0}")]
+    Fit(#[from] FitError),
+}
+
+/// The perturbation coordinates of the compared models, scaled to at most 1 (step 1).
+#[derive(Debug)]
+struct ScaledTrims<'a> {
+    /// Maximum magnitude of each coordinate, by name; none is zero.
+    largest: BTreeMap<&'a str, f64>,
+    /// `p_ak`: the coordinates `k` of each model `a`, in the order of `largest`.
+    scaled: Vec<Vec<f64>>,
+}
+
+impl<'a> ScaledTrims<'a> {
+    fn new(models: &[PerturbedModel<'a>]) -> Result<Self, DiscontinuityError> {
+        let mut perturbations = Vec::new();
+        for model in models {
+            let Some(perturbation) = model.perturbation else {
+                return Err(DiscontinuityError::NoPerturbation {
+                    model: model.name.to_owned(),
+                });
+            };
+            perturbations.push(perturbation);
+        }
+        let mut largest: BTreeMap<&str, f64> = BTreeMap::new();
+        for perturbation in &perturbations {
+            for (name, value) in *perturbation {
+                let entry = largest.entry(name).or_default();
+                *entry = entry.max(value.abs());
+            }
+        }
+        largest.retain(|_, magnitude| *magnitude > 0.0);
+        if largest.is_empty() {
+            return Err(DiscontinuityError::AllZero);
+        }
+        let mut scaled = Vec::with_capacity(perturbations.len());
+        for perturbation in perturbations {
+            let mut coordinates = Vec::with_capacity(largest.len());
+            for (name, magnitude) in &largest {
+                coordinates.push(match perturbation.get(*name) {
+                    Some(value) => value / magnitude,
+                    None => 0.0,
+                });
+            }
+            scaled.push(coordinates);
+        }
+        Ok(Self { largest, scaled })
+    }
+
+    /// Returns `(p_ak - p_bk)^2` for each coordinate `k`.
+    fn squared_offsets(&self, a: usize, b: usize) -> Vec<f64> {
+        self.scaled[a]
+            .iter()
+            .zip(&self.scaled[b])
+            .map(|(a, b)| (a - b).powi(2))
+            .collect()
+    }
+
+    /// Returns `sum_k w_k (p_ak - p_bk)^2`.
+    fn fitted_square(&self, a: usize, b: usize, weights: &[f64]) -> f64 {
+        self.squared_offsets(a, b)
+            .iter()
+            .zip(weights)
+            .map(|(offset, weight)| offset * weight)
+            .sum()
+    }
+
+    /// Joins the fitted weights with the names and magnitudes of their coordinates.
+    fn coordinate_weights(self, weights: Vec<f64>) -> Vec<CoordinateWeight> {
+        let mut joined = Vec::with_capacity(weights.len());
+        for ((name, largest), weight) in self.largest.into_iter().zip(weights) {
+            joined.push(CoordinateWeight {
+                name: name.to_owned(),
+                largest,
+                weight,
+            });
+        }
+        joined
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_coordinate_no_model_is_perturbed_in_does_not_count() {
+        let still = BTreeMap::from([("roll_deg".to_owned(), 0.0)]);
+        let nominal = PerturbedModel {
+            name: "nominal",
+            perturbation: Some(&still),
+        };
+        let error = ScaledTrims::new(&[nominal]).unwrap_err();
+        assert_eq!(error, DiscontinuityError::AllZero);
+    }
+
+    #[test]
+    fn a_model_without_perturbation_is_named() {
+        let model = PerturbedModel {
+            name: "V+5kt",
+            perturbation: None,
+        };
+        let error = ScaledTrims::new(&[model]).unwrap_err();
+        assert_eq!(
+            error,
+            DiscontinuityError::NoPerturbation {
+                model: "V+5kt".to_owned()
+            }
+        );
+    }
+}

@@ -1,0 +1,115 @@
+//! Error bars of all conditions (M13.2, M13.3).
+//!
+//! ```text
+//! s_phys^2, s_own^2 <- mean square changes if other models are substituted (spread)
+//! s_id^2            <- s_own^2 pooled with the other conditions (variance_component), or the reported s^2 if that is larger
+//! ```
+
+use super::bar::{Bar, IdentificationSource};
+use super::scalar::{Figures, Scalar, ScalarTable};
+use super::spread::ConditionSpread;
+use super::variance_component::{VarianceComponent, pooled};
+
+/// Data of a condition from which its bars are computed.
+#[derive(Clone, Debug)]
+pub struct BarSource<'a> {
+    /// Scalars with both representatives.
+    pub figures: Figures,
+    /// Changes of the scalars if other models are substituted.
+    pub spread: &'a ConditionSpread,
+    /// Standard errors of the identified representative; `None` where unavailable.
+    pub reported: ScalarTable<Option<ReportedUncertainty>>,
+    /// Lower and upper bound on a channel delay \[s\].
+    pub delay_bounds_s: [f64; 2],
+}
+
+/// Computes the bars by condition (M13.2, M13.3). Each scalar's identification part is pooled over
+/// the conditions. A scalar that does not exist has no bar.
+pub fn bars(conditions: &[BarSource<'_>], prior_degrees: f64) -> Vec<ScalarTable<Option<Bar>>> {
+    let Some(first) = conditions.first() else {
+        return Vec::new();
+    };
+    let identification = first.figures.map(|scalar, _| {
+        let own: Vec<Option<VarianceComponent>> = conditions
+            .iter()
+            .map(|condition| condition.spread.changes[scalar].own)
+            .collect();
+        pooled(&own, prior_degrees)
+    });
+    let mut bars = Vec::with_capacity(conditions.len());
+    for (index, condition) in conditions.iter().enumerate() {
+        bars.push(condition.figures.map(|scalar, value| {
+            let spread = identification[scalar][index];
+            Some(condition.bar(scalar, (*value)?, spread))
+        }));
+    }
+    bars
+}
+
+impl BarSource<'_> {
+    /// Returns a scalar's bar with the pooled identification part `spread`.
+    fn bar(&self, scalar: Scalar, value: f64, spread: Option<VarianceComponent>) -> Bar {
+        let changes = self.spread.changes[scalar];
+        let (identification, source) = match self.reported[scalar] {
+            Some(reported) if reported.replaces(spread) => (Some(reported.part), reported.source),
+            _ => (spread, IdentificationSource::Spread),
+        };
+        let range = match scalar {
+            Scalar::ChannelDelay(_) => self.delay_bounds_s,
+            _ => [f64::NEG_INFINITY, f64::INFINITY],
+        };
+        Bar {
+            value,
+            trim: changes.trim,
+            identification,
+            source,
+            left_out: changes.left_out,
+            range,
+        }
+    }
+}
+
+/// Standard error of an identified representative, from its confidence band or its coherence.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReportedUncertainty {
+    pub part: VarianceComponent,
+    /// Source of the standard error: coherence or confidence band.
+    pub source: IdentificationSource,
+}
+
+impl ReportedUncertainty {
+    /// Returns whether the standard error replaces the spread: if it is larger, or if there is no
+    /// spread. The spread of leave-one-record-out models underestimates the error of a single model
+    /// by a factor of about the square root of the number of records (Efron's jackknife); the
+    /// standard error does not.
+    fn replaces(&self, spread: Option<VarianceComponent>) -> bool {
+        spread.is_none_or(|spread| self.part.variance > spread.variance)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn component(variance: f64) -> VarianceComponent {
+        VarianceComponent {
+            variance,
+            degrees_of_freedom: 3.0,
+        }
+    }
+
+    #[test]
+    fn a_reported_error_replaces_a_smaller_spread() {
+        for source in [
+            IdentificationSource::ModelBand,
+            IdentificationSource::Coherence,
+        ] {
+            let reported = ReportedUncertainty {
+                part: component(0.04),
+                source,
+            };
+            assert!(reported.replaces(None) && reported.replaces(Some(component(0.01))));
+            assert!(!reported.replaces(Some(component(0.09))));
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! Models of the dataset's draft, converted to the dataset's channels and units, with notes on the
+//! conversions.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::channel_conversion::{ChannelUses, convert_model};
+use super::measured_parts::{join_part, note_unmeasured};
+use super::part::Part;
+use super::rules::Rules;
+use crate::dataset::dataset_draft::ModelDraft;
+use crate::dataset::model::{Origin, Provenance};
+use crate::names::RowRole;
+use crate::number_format::number;
+
+/// Builds a physics model. Coordinates that are perturbed only in other models of the bundle get a
+/// zero offset.
+pub(super) fn physics_model(part: &Part, coordinates: &BTreeSet<&String>) -> ModelDraft {
+    let mut offsets = BTreeMap::new();
+    for coordinate in coordinates {
+        let offset = part.row.perturbation.get(*coordinate).copied();
+        offsets.insert((*coordinate).clone(), offset.unwrap_or(0.0));
+    }
+    let perturbation = if offsets.is_empty() {
+        None
+    } else {
+        Some(offsets)
+    };
+    let origin = match part.row.role {
+        Some(RowRole::Nominal) => Origin::Nominal { perturbation },
+        _ => Origin::Perturbed { perturbation },
+    };
+    ModelDraft {
+        origin,
+        ..converted_model(part)
+    }
+}
+
+/// Builds the identified models; measured responses with the same name form a single model.
+pub(super) fn identified_models(parts: &[&Part], rules: &Rules) -> Vec<ModelDraft> {
+    let mut models: Vec<ModelDraft> = Vec::new();
+    for part in parts {
+        let model = ModelDraft {
+            origin: identified_origin(part),
+            ..converted_model(part)
+        };
+        let same = models
+            .iter_mut()
+            .find(|other| other.name == model.name && other.response.is_some());
+        match (same, &model.response) {
+            (Some(earlier), Some(response)) => join_part(earlier, response, part),
+            _ => models.push(model),
+        }
+    }
+    for model in &mut models {
+        note_unmeasured(model, rules);
+    }
+    models
+}
+
+/// Returns the origin of an identified model. Only a measured response keeps a stated order: the
+/// order of a model with matrices is its state count.
+fn identified_origin(part: &Part) -> Origin {
+    let order = match &part.found.draft.origin {
+        Origin::Identified { order, .. } if part.found.response().is_some() => *order,
+        _ => None,
+    };
+    Origin::Identified {
+        method: part.row.method.clone(),
+        order,
+    }
+}
+
+/// Converts a model to the dataset's channels and units, and notes the conversions in its
+/// provenance.
+fn converted_model(part: &Part) -> ModelDraft {
+    let uses = ChannelUses {
+        inputs: &part.inputs.uses,
+        outputs: &part.outputs.uses,
+    };
+    let mut model = convert_model(&part.found.draft, uses);
+    model.name.clone_from(&part.row.name);
+    if let Some(sample_time_s) = part.sample_time_s
+        && sample_time_s > 0.0
+    {
+        model.timing.sample_time_s = Some(sample_time_s);
+    }
+    let notes = conversion_notes(part);
+    if !notes.is_empty() {
+        let source = model.source.get_or_insert_with(Provenance::default);
+        source.note = Some(notes.join("; "));
+    }
+    let by_position = part.sides_by_position();
+    if !by_position.is_empty() {
+        let source = model.source.get_or_insert_with(Provenance::default);
+        source.by_position = by_position;
+    }
+    model
+}
+
+/// Returns the existing note of the model's provenance, then the notes on its channels, sample time
+/// and unit conversions.
+fn conversion_notes(part: &Part) -> Vec<String> {
+    let mut notes = Vec::new();
+    if let Some(source) = &part.found.draft.source {
+        notes.extend(source.note.clone());
+    }
+    notes.extend_from_slice(&part.inputs.notes);
+    notes.extend_from_slice(&part.outputs.notes);
+    if let Some(sample_time_s) = part.sample_time_s {
+        notes.push(format!(
+            "sample time {} s, as declared",
+            number(sample_time_s)
+        ));
+    }
+    for used in part.inputs.uses.iter().chain(&part.outputs.uses).flatten() {
+        notes.extend(used.words.clone());
+    }
+    notes
+}

@@ -1,0 +1,75 @@
+//! Possible faults of a dataset draft, each with its location.
+
+use super::band::BandError;
+use super::condition::ConditionError;
+use super::dataset::DatasetError;
+use super::location::Location;
+use super::measured_response::MeasuredResponseError;
+use super::state_space::StateSpaceError;
+
+/// A fault in a dataset draft.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum DraftFault {
+    #[error("expected at most {most} entries, found {found}")]
+    TooMany { most: usize, found: usize },
+    /// A table or matrix whose shape contradicts the number of channels or states.
+    #[error("expected {expected}, found {found}")]
+    Shape { expected: String, found: String },
+    #[error("the dataset has no {kind} \"{name}\"; a pair is written [output, input]")]
+    UnknownChannel {
+        /// "output" or "input".
+        kind: &'static str,
+        name: String,
+    },
+    #[error("duplicate pair [\"{output}\", \"{input}\"]; remove one")]
+    DuplicatePair { output: String, input: String },
+    #[error("matrix {0} is missing; a model needs A, B, C and D")]
+    MissingMatrix(char),
+    #[error("both matrices and a measured response are given; keep one of them")]
+    BothDynamics,
+    #[error("neither matrices A, B, C, D nor a measured response is given; add one of them")]
+    NoDynamics,
+    #[error(
+        "a measured response includes its delays: remove sample_time_s, input_delays_s and output_delays_s, which belong to matrices \
+         A, B, C, D"
+    )]
+    TimedResponse,
+    #[error(
+        "a physics model needs matrices A, B, C, D; only an identified model can be a measured \
+        response"
+    )]
+    MeasuredPhysics,
+    #[error(transparent)]
+    Band(#[from] BandError),
+    #[error(transparent)]
+    StateSpace(#[from] StateSpaceError),
+    #[error(transparent)]
+    MeasuredResponse(#[from] MeasuredResponseError),
+    #[error(transparent)]
+    Condition(#[from] ConditionError),
+    #[error(transparent)]
+    Dataset(#[from] DatasetError),
+}
+
+/// A fault in a dataset draft, with its location; boxed to keep `Result` small.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DraftError {
+    pub place: Box<Location>,
+    pub fault: Box<DraftFault>,
+}
+
+impl DraftError {
+    pub(super) fn new(place: Location, fault: impl Into<DraftFault>) -> Self {
+        Self {
+            place: Box::new(place),
+            fault: Box::new(fault.into()),
+        }
+    }
+}
+
+/// An unusual but harmless property of a dataset draft.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Warning {
+    pub place: Location,
+    pub words: String,
+}

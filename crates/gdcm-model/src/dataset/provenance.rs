@@ -1,0 +1,48 @@
+//! Source of a model: file, variable, flight records, and the notes added when it was read.
+
+use super::channel::ChannelSide;
+
+/// Source of a model, as far as its author gives it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Provenance {
+    /// Path relative to the dataset's file.
+    pub file: Option<String>,
+    /// SHA-256 of the file, in hexadecimal.
+    pub sha256: Option<String>,
+    /// Variable in the file, or flight record.
+    pub variable: Option<String>,
+    /// Creation date, in any format.
+    pub made: Option<String>,
+    /// Notes added when the file was read.
+    pub note: Option<String>,
+    /// Names of the flight records from which an identified model was estimated; empty if unknown.
+    pub records: Vec<String>,
+    /// Unused variables of the file; listed only in the first model of each file.
+    pub unused: Vec<String>,
+    /// Sides (inputs, outputs) whose channels have no names in the file and were matched by
+    /// position.
+    pub by_position: Vec<ChannelSide>,
+}
+
+impl Provenance {
+    /// Describes the provenance: "models/roll+5.mat, variable sys, made 2026-03-01".
+    pub fn words(&self) -> String {
+        let mut parts: Vec<String> = Vec::new();
+        parts.extend(self.file.clone());
+        parts.extend(
+            self.variable
+                .as_ref()
+                .map(|name| format!("variable {name}")),
+        );
+        parts.extend(self.made.as_ref().map(|date| format!("made {date}")));
+        parts.extend(self.sha256.as_ref().map(|hash| format!("SHA-256 {hash}")));
+        if !self.records.is_empty() {
+            parts.push(format!("from the records {}", self.records.join(", ")));
+        }
+        parts.extend(self.note.clone());
+        if !self.unused.is_empty() {
+            parts.push(format!("not used: {}", self.unused.join(", ")));
+        }
+        parts.join(", ")
+    }
+}

@@ -1,0 +1,120 @@
+//! Balancing of a model: a diagonal similarity that removes the influence of state units.
+
+use nalgebra::DMatrix;
+
+/// Balances A: for each state k, the norms of row k and column k then differ by less than a factor
+/// of two. The diagonal similarity `S` consists of powers of two, so that nothing is rounded:
+/// `a <- S^-1 a S`, `b <- S^-1 b`, `c <- c S`.
+///
+/// Balancing of Parlett and Reinsch with 2-norms (James, Langou & Lowery, arXiv:1401.5766,
+/// algorithm 3). The number of sweeps is limited (the model remains similar after each sweep), and
+/// so is the scale, to prevent overflow in B and C; both limits take effect only for entries far
+/// beyond those of any aircraft.
+pub(super) fn balance(a: &mut DMatrix<f64>, b: &mut DMatrix<f64>, c: &mut DMatrix<f64>) {
+    /// Maximum number of sweeps; a helicopter model needs three to six.
+    const MOST_SWEEPS: usize = 100;
+    /// Maximum scale, about 1e30 in either direction.
+    const LARGEST_SCALE: f64 = (1_u128 << 100) as f64;
+    let mut scales = vec![1.0; a.nrows()];
+    for _ in 0..MOST_SWEEPS {
+        let mut balanced = true;
+        for (state, scale) in scales.iter_mut().enumerate() {
+            let Some(factor) = balancing_factor(a, state) else {
+                continue;
+            };
+            if (LARGEST_SCALE.recip()..=LARGEST_SCALE).contains(&(*scale * factor)) {
+                balanced = false;
+                *scale *= factor;
+                a.column_mut(state).scale_mut(factor);
+                a.row_mut(state).unscale_mut(factor);
+            }
+        }
+        if balanced {
+            break;
+        }
+    }
+    for (state, &scale) in scales.iter().enumerate() {
+        b.row_mut(state).scale_mut(1.0 / scale);
+        c.column_mut(state).scale_mut(scale);
+    }
+}
+
+/// Returns the power of two that makes the norms of a column and its row most nearly equal; `None`
+/// if it reduces the sum of their squares by less than 5 %.
+fn balancing_factor(a: &DMatrix<f64>, state: usize) -> Option<f64> {
+    let column = a.column(state).norm_squared();
+    let row = a.row(state).norm_squared();
+    let whole = column + row;
+    let mut column = column.sqrt();
+    let mut row = row.sqrt();
+    let mut factor = 1.0;
+    if column == 0.0 || row == 0.0 {
+        return None;
+    }
+    while column < row / 2.0 {
+        column *= 2.0;
+        row /= 2.0;
+        factor *= 2.0;
+    }
+    while column >= row * 2.0 {
+        column /= 2.0;
+        row *= 2.0;
+        factor /= 2.0;
+    }
+    if column * column + row * row < 0.95 * whole {
+        Some(factor)
+    } else {
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::dmatrix;
+    use nalgebra::linalg::balancing::balance_parlett_reinsch;
+
+    use super::*;
+
+    #[test]
+    fn it_gives_the_bits_of_the_textbook_where_no_limit_is_met() {
+        let a = DMatrix::from_fn(7, 7, |row, column| {
+            (1.0 + 7.3 * row as f64 + 2.9 * column as f64).sin() * 10_f64.powi(3 * row as i32)
+        });
+        let mut ours = a.clone();
+        let mut theirs = a;
+        let mut b = DMatrix::from_element(7, 1, 1.0);
+        let mut c = DMatrix::from_element(1, 7, 1.0);
+        balance(&mut ours, &mut b, &mut c);
+        let scales = balance_parlett_reinsch(&mut theirs);
+        assert_eq!(ours, theirs);
+        assert!(
+            c.iter().eq(scales.iter()) && b.iter().zip(&scales).all(|(b, scale)| b * scale == 1.0)
+        );
+    }
+
+    #[test]
+    fn a_chain_of_couplings_of_1e_minus_60_does_not_carry_the_scales_away() {
+        let mut a = DMatrix::from_fn(60, 60, |row, column| match column as i32 - row as i32 {
+            1 => 1e-60,
+            -1 => 1.0,
+            _ => 0.0,
+        });
+        let mut b = DMatrix::from_element(60, 1, 1.0);
+        let mut c = DMatrix::from_element(1, 60, 1.0);
+        balance(&mut a, &mut b, &mut c);
+        assert!(
+            b.iter()
+                .chain(c.iter())
+                .all(|entry| (1e-31..=1e31).contains(entry))
+        );
+    }
+
+    #[test]
+    fn a_state_that_nothing_leads_to_is_left_as_it_is() {
+        let mut a = dmatrix![-1.0, 0.0; 1e9, 0.0];
+        let mut b = dmatrix![1.0; 1.0];
+        let mut c = dmatrix![1.0, 1.0];
+        balance(&mut a, &mut b, &mut c);
+        assert!(a[(1, 0)] != 0.0 && b[1] == 1.0, "the second column is zero");
+    }
+}

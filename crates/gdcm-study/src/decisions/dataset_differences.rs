@@ -1,0 +1,167 @@
+//! Differences between two states of a dataset.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::{Deserialize, Serialize};
+
+use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId};
+
+use super::edit_refusal::EditRefusal;
+
+/// A difference between a dataset and the dataset with which a study was made, or a decision that
+/// does not apply to the dataset.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Difference {
+    /// The file has changed since the study was saved, and the study has no inventory of its former
+    /// content.
+    AnotherFile {
+        /// SHA-256 of the file at the time the study was saved.
+        expected: String,
+        /// SHA-256 of the file now.
+        found: String,
+    },
+    ConditionAdded(ConditionId),
+    ConditionRemoved(ConditionId),
+    /// The airspeed of a condition has changed.
+    AirspeedChanged {
+        condition: ConditionId,
+        /// Former airspeed \[kt\].
+        before_kt: f64,
+        /// Present airspeed \[kt\].
+        now_kt: f64,
+    },
+    /// A bundle has a new model.
+    ModelAdded(ModelId),
+    ModelRemoved(ModelId),
+    /// The matrices, bands or trim of a model have changed.
+    ModelChanged(ModelId),
+    /// A decision no longer applies.
+    NotApplied {
+        /// Label of the decision: "reject nominal (condition 10)".
+        decision: String,
+        why: NotApplied,
+    },
+}
+
+/// Why a decision does not apply to a dataset.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NotApplied {
+    Refused(EditRefusal),
+    /// The dataset lacks a channel of a requirement setting, which the study keeps.
+    KeptForAnotherDataset,
+    NoResponse,
+    NoChannel,
+}
+
+impl NotApplied {
+    /// Returns the stable code, for programs and tests.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Refused(_) => "edit-refused",
+            Self::KeptForAnotherDataset => "kept-for-another-dataset",
+            Self::NoResponse => "no-response",
+            Self::NoChannel => "no-channel",
+        }
+    }
+}
+
+/// Inventory of a dataset, small enough to be stored in a study file. It is compared with the
+/// present dataset to report changes.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Inventory(pub Vec<ConditionInventory>);
+
+impl Inventory {
+    /// Creates the inventory of a dataset, with a fingerprint of every model.
+    pub fn from_dataset(dataset: &Dataset) -> Self {
+        let conditions = dataset.conditions().iter();
+        Self(
+            conditions
+                .map(|condition| ConditionInventory::new(condition))
+                .collect(),
+        )
+    }
+
+    /// Returns the conditions by their id.
+    fn by_id(&self) -> BTreeMap<ConditionId, &ConditionInventory> {
+        self.0
+            .iter()
+            .map(|condition| (condition.id, condition))
+            .collect()
+    }
+
+    /// Lists the differences between the dataset of this inventory and `dataset`.
+    pub fn differences(&self, dataset: &Dataset) -> Vec<Difference> {
+        let inventory_now = Inventory::from_dataset(dataset);
+        let before = self.by_id();
+        let now = inventory_now.by_id();
+        let ids: BTreeSet<ConditionId> = before.keys().chain(now.keys()).copied().collect();
+        let mut differences = Vec::new();
+        for id in ids {
+            match (before.get(&id), now.get(&id)) {
+                (Some(before), Some(now)) => differences.extend(before.differences(now)),
+                (Some(_), None) => differences.push(Difference::ConditionRemoved(id)),
+                (None, _) => differences.push(Difference::ConditionAdded(id)),
+            }
+        }
+        differences
+    }
+}
+
+/// Models of a condition: for each name, a fingerprint of matrices, bands and trim.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ConditionInventory {
+    pub id: ConditionId,
+    /// True airspeed \[kt\].
+    pub airspeed_kt: f64,
+    pub physics: BTreeMap<String, String>,
+    pub identified: BTreeMap<String, String>,
+}
+
+impl ConditionInventory {
+    fn new(condition: &Condition) -> Self {
+        let fingerprints = |kind| {
+            let models = condition.bundle(kind).iter();
+            models
+                .map(|model| (model.name.clone(), model.fingerprint()))
+                .collect()
+        };
+        Self {
+            id: condition.id(),
+            airspeed_kt: condition.flight_state().airspeed_kt,
+            physics: fingerprints(BundleKind::Physics),
+            identified: fingerprints(BundleKind::Identified),
+        }
+    }
+
+    /// Returns the models of a bundle: their fingerprints by name.
+    pub fn bundle(&self, kind: BundleKind) -> &BTreeMap<String, String> {
+        kind.pick(&self.physics, &self.identified)
+    }
+
+    /// Lists the differences in airspeed and models.
+    fn differences(&self, now: &Self) -> Vec<Difference> {
+        let mut differences = Vec::new();
+        if self.airspeed_kt != now.airspeed_kt {
+            differences.push(Difference::AirspeedChanged {
+                condition: self.id,
+                before_kt: self.airspeed_kt,
+                now_kt: now.airspeed_kt,
+            });
+        }
+        for kind in BundleKind::BOTH {
+            let before = self.bundle(kind);
+            let now = now.bundle(kind);
+            let names: BTreeSet<&String> = before.keys().chain(now.keys()).collect();
+            for name in names {
+                let id = ModelId::new(self.id, kind, name);
+                match (before.get(name), now.get(name)) {
+                    (Some(before), Some(now)) if before == now => {}
+                    (Some(_), Some(_)) => differences.push(Difference::ModelChanged(id)),
+                    (Some(_), None) => differences.push(Difference::ModelRemoved(id)),
+                    (None, _) => differences.push(Difference::ModelAdded(id)),
+                }
+            }
+        }
+        differences
+    }
+}

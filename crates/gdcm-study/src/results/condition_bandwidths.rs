@@ -1,0 +1,386 @@
+//! Computes bandwidth and phase delay of a condition's models, with intervals (M17.1).
+//!
+//! ```text
+//! physics     each other kept physics model instead of the representative, uncorrected   (M13.1)
+//! corrected   each swap of a physics or identified model, with the resulting correction  (M13.1)
+//! identified  standard deviations of the response in the model, to first order           (M14)
+//! ```
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+use gdcm_method::correction::channel_leads::ChannelLeads;
+use gdcm_method::correction::{Channel, ChannelCorrection, Pade};
+use gdcm_method::requirements::AttitudeOutput;
+use gdcm_method::requirements::attitude_response::{
+    AttitudeResponse, AttitudeResponseError, ResponseAt, search_frequencies,
+};
+use gdcm_method::requirements::bandwidth::{
+    AboveBand, Bandwidth, BandwidthSettings, PairBand, substitution_bar,
+};
+use gdcm_method::requirements::sampled_response::SampledResponse;
+use gdcm_method::uncertainty::Scalar;
+use gdcm_method::uncertainty::scalar::Figures;
+use gdcm_model::dataset::model::ModelBands;
+use gdcm_model::dataset::{Band, BundleKind, Dynamics, Pair};
+use gdcm_model::response::GainDelay;
+
+use super::asked_condition::AskedCondition;
+use super::model_swap::ModelSwap;
+use super::required_bandwidth::{
+    BandwidthFinding, METRICS, MetricValues, NoBandwidth, metric_values, metrics,
+};
+use super::requirement_role::RequirementRole;
+
+/// Computes the on-axis bandwidths of a condition for every role; a response without a bandwidth
+/// has the reason instead.
+pub(crate) fn bandwidth_findings(asked: &AskedCondition<'_>) -> Vec<BandwidthFinding> {
+    let models = ConditionBandwidths::new(asked);
+    let mut findings = Vec::new();
+    for pair in asked.analysis.study.dataset.measuring_pairs().marked() {
+        for role in asked.roles() {
+            findings.push(models.finding(pair, role));
+        }
+    }
+    findings
+}
+
+/// A model prepared for the evaluation of its responses.
+struct EvaluatedModel<'a> {
+    dynamics: Cow<'a, Dynamics>,
+    /// The standard deviations that the model contains, if any.
+    bands: Option<&'a ModelBands>,
+    sampled: SampledResponse,
+}
+
+impl<'a> EvaluatedModel<'a> {
+    fn new(dynamics: Cow<'a, Dynamics>, bands: Option<&'a ModelBands>, band: Band) -> Self {
+        let sampled = SampledResponse::new(&dynamics, band);
+        Self {
+            dynamics,
+            bands,
+            sampled,
+        }
+    }
+}
+
+/// How a model is evaluated between the grid frequencies.
+#[derive(Clone, Copy, PartialEq)]
+enum Evaluation {
+    Exact,
+    /// By interpolation, for models that only contribute to the scatter of a metric.
+    Interpolated,
+}
+
+/// A correction's effect on a response.
+#[derive(Clone, Copy)]
+struct PairCorrection {
+    multiplier: GainDelay,
+    /// Whether a lead filter is included; the corrected response then does not represent the
+    /// aircraft above the band.
+    has_leads: bool,
+}
+
+impl PairCorrection {
+    const NONE: Self = Self {
+        multiplier: GainDelay::NONE,
+        has_leads: false,
+    };
+
+    /// Returns the effect of a correction on a response; `None` where the net gain is not positive.
+    fn from_correction(correction: &ChannelCorrection, pair: Pair) -> Option<Self> {
+        let has_leads = Channel::of_pair(pair)
+            .into_iter()
+            .any(|channel| correction.lead(channel).is_some());
+        Some(Self {
+            multiplier: correction.on(pair)?,
+            has_leads,
+        })
+    }
+
+    /// Returns the effect of the correction after a swap; `None` where a gain or delay is missing.
+    fn from_figures(figures: &Figures, pair: Pair, leads: Option<&ChannelLeads>) -> Option<Self> {
+        let gain = figures[Scalar::NetGain(pair)]?.exp();
+        let [output, input] = Channel::of_pair(pair);
+        let taus_s = [
+            figures[Scalar::ChannelDelay(output)]?,
+            figures[Scalar::ChannelDelay(input)]?,
+        ];
+        let filters = taus_s.map(|tau_s| leads.and_then(|leads| leads.design.filter(tau_s)));
+        let delay_s = taus_s.iter().map(|tau_s| tau_s.max(0.0)).sum();
+        let has_leads = filters.iter().any(Option::is_some);
+        Some(Self {
+            multiplier: GainDelay::new(gain, delay_s).with_leads(filters),
+            has_leads,
+        })
+    }
+}
+
+/// A response's bandwidth, and its phase \[deg\] where that indicates a reversed channel.
+struct MeasuredBandwidth {
+    bandwidth: Bandwidth,
+    reversed_phase_deg: Option<f64>,
+}
+
+/// A condition's models, prepared for bandwidths.
+struct ConditionBandwidths<'a> {
+    asked: &'a AskedCondition<'a>,
+    /// Index of the physics representative.
+    physics: usize,
+    /// The physics representative and the models that replace it in swaps.
+    plain: BTreeMap<usize, EvaluatedModel<'a>>,
+    /// The models in `plain` with the couplings, where they have matrices; empty without couplings.
+    coupled: BTreeMap<usize, EvaluatedModel<'a>>,
+    identified: EvaluatedModel<'a>,
+    swaps: &'a [ModelSwap],
+}
+
+impl<'a> ConditionBandwidths<'a> {
+    fn new(asked: &'a AskedCondition<'a>) -> Self {
+        let band = asked.analysis.study.settings.band;
+        let physics = asked.result.comparison.physics.model;
+        let swaps = swaps_of(asked);
+        let mut used = vec![physics];
+        for swap in swaps {
+            if swap.bundle == BundleKind::Physics {
+                used.push(swap.model);
+            }
+        }
+        let models = asked.result.condition.bundle(BundleKind::Physics);
+        let mut plain = BTreeMap::new();
+        let mut coupled = BTreeMap::new();
+        for index in used {
+            let dynamics = &models[index].dynamics;
+            plain.insert(
+                index,
+                EvaluatedModel::new(Cow::Borrowed(dynamics), None, band),
+            );
+            if let Some(dynamics) = coupled_dynamics(asked, index) {
+                coupled.insert(index, EvaluatedModel::new(Cow::Owned(dynamics), None, band));
+            }
+        }
+        let flight = asked.result.representative_model(BundleKind::Identified);
+        let identified = EvaluatedModel::new(
+            Cow::Borrowed(&flight.dynamics),
+            flight.bands.as_deref(),
+            band,
+        );
+        Self {
+            asked,
+            physics,
+            plain,
+            coupled,
+            identified,
+            swaps,
+        }
+    }
+
+    fn finding(&self, pair: Pair, role: RequirementRole) -> BandwidthFinding {
+        let (output, input) = self.asked.analysis.study.dataset.channel_names(pair);
+        let mut finding = BandwidthFinding {
+            condition: self.asked.id(),
+            airspeed_kt: self.asked.airspeed_kt(),
+            pair,
+            output,
+            input,
+            role,
+            model: self.asked.model_name(role),
+            ..BandwidthFinding::default()
+        };
+        match self.bandwidth(pair, role) {
+            Err(why) => {
+                for (name, _) in finding.quantities() {
+                    finding.absent.insert(name, why.clone());
+                }
+            }
+            Ok(measured) => {
+                finding.reversed_phase_deg = measured.reversed_phase_deg;
+                finding.store(&measured.bandwidth);
+                self.add_intervals(&mut finding, &measured.bandwidth);
+            }
+        }
+        finding
+    }
+
+    /// Returns a role's bandwidth, or why it has none.
+    fn bandwidth(
+        &self,
+        pair: Pair,
+        role: RequirementRole,
+    ) -> Result<MeasuredBandwidth, NoBandwidth> {
+        let correction = match self.asked.correction(role) {
+            None => PairCorrection::NONE,
+            Some(correction) => PairCorrection::from_correction(correction, pair)
+                .ok_or(NoBandwidth::NetGainNotPositive)?,
+        };
+        let model = match role {
+            RequirementRole::Identified => &self.identified,
+            _ => self.physics_model(role, self.physics)?,
+        };
+        self.measure(model, pair, correction, Evaluation::Exact)
+            .map_err(NoBandwidth::NoAttitudeResponse)
+    }
+
+    /// Returns the physics model for a role: with the couplings, if the role has a correction.
+    fn physics_model(
+        &self,
+        role: RequirementRole,
+        index: usize,
+    ) -> Result<&EvaluatedModel<'a>, NoBandwidth> {
+        if role == RequirementRole::Physics || self.asked.result.coupled.is_none() {
+            return Ok(&self.plain[&index]);
+        }
+        self.coupled.get(&index).ok_or(NoBandwidth::NotCoupled)
+    }
+
+    /// Computes a response's bandwidth and phase delay under a correction.
+    fn measure(
+        &self,
+        model: &EvaluatedModel<'_>,
+        pair: Pair,
+        correction: PairCorrection,
+        evaluation: Evaluation,
+    ) -> Result<MeasuredBandwidth, AttitudeResponseError> {
+        let study = &self.asked.analysis.study;
+        let band = study.settings.band;
+        let channel = &study.dataset.outputs()[pair.output];
+        let output = AttitudeOutput::classify(channel)?;
+        let exact = model.sampled.exact(pair, correction.multiplier);
+        let interpolated = model.sampled.interpolated(pair, correction.multiplier);
+        let attitude = match &*model.dynamics {
+            Dynamics::Measured(measured) => {
+                AttitudeResponse::new(&exact, output, measured.omega(), band)?
+            }
+            Dynamics::StateSpace(_) => {
+                let response: &ResponseAt<'_> = match evaluation {
+                    Evaluation::Exact => &exact,
+                    Evaluation::Interpolated => &interpolated,
+                };
+                // Of the 400 points of the line for the phase delay, only the end points are
+                // evaluated by `response`, like the crossings; the points between them are always
+                // interpolated.
+                AttitudeResponse::new(response, output, &search_frequencies(band), band)?
+                    .sampled_by(&interpolated)
+            }
+        };
+        let settings = BandwidthSettings {
+            command: study.requirements.command_of(&channel.name),
+            band,
+            above_band: if correction.has_leads {
+                AboveBand::Refused
+            } else {
+                AboveBand::Marked
+            },
+        };
+        let deviation = model.bands.map(|bands| PairBand { bands, pair });
+        Ok(MeasuredBandwidth {
+            bandwidth: Bandwidth::read(&attitude, &settings, deviation),
+            reversed_phase_deg: attitude.reversed_phase_deg(),
+        })
+    }
+
+    /// Adds the intervals of the metrics, or why there are none.
+    fn add_intervals(&self, finding: &mut BandwidthFinding, bandwidth: &Bandwidth) {
+        let level = self.asked.analysis.study.settings.uncertainty.level;
+        let why = match finding.role {
+            RequirementRole::Physics | RequirementRole::Corrected => {
+                self.add_swap_intervals(finding, bandwidth, level);
+                NoBandwidth::NoOtherModel
+            }
+            RequirementRole::Scheduled => NoBandwidth::ScheduleNotRefitted,
+            RequirementRole::Identified => {
+                finding.add_deviation_intervals(bandwidth, level);
+                match (&*self.identified.dynamics, self.identified.bands) {
+                    (_, Some(_)) => NoBandwidth::DeviationsTooNarrow,
+                    (Dynamics::Measured(_), None) => NoBandwidth::MeasuredWithoutDeviations,
+                    (Dynamics::StateSpace(_), None) => NoBandwidth::ModelWithoutDeviations,
+                }
+            }
+        };
+        if finding.interval.is_empty() && metrics(bandwidth).iter().any(Result::is_ok) {
+            finding.absent.insert("interval", why);
+        }
+    }
+
+    /// Adds the intervals from swapped models.
+    fn add_swap_intervals(
+        &self,
+        finding: &mut BandwidthFinding,
+        bandwidth: &Bandwidth,
+        level: f64,
+    ) {
+        let physics = self.swapped_values(finding, BundleKind::Physics);
+        let identified = match finding.role {
+            RequirementRole::Corrected => self.swapped_values(finding, BundleKind::Identified),
+            _ => Vec::new(),
+        };
+        for (index, value) in metric_values(bandwidth).into_iter().enumerate() {
+            let Some(value) = value else { continue };
+            let of_physics: Vec<Option<f64>> = physics.iter().map(|swap| swap[index]).collect();
+            let of_identified: Vec<Option<f64>> =
+                identified.iter().map(|swap| swap[index]).collect();
+            let bar = substitution_bar(value, &of_physics, &of_identified);
+            if let Some(interval) = bar.interval(level) {
+                finding.interval.insert(METRICS[index], interval);
+            }
+            if bar.left_out > 0 {
+                finding.swaps_left_out.insert(METRICS[index], bar.left_out);
+            }
+        }
+    }
+
+    /// Computes the metrics of a response after each swap in a bundle.
+    fn swapped_values(&self, finding: &BandwidthFinding, bundle: BundleKind) -> Vec<MetricValues> {
+        let mut values = Vec::new();
+        for swap in self.swaps {
+            if swap.bundle == bundle {
+                let swapped = self.swapped(swap, finding.pair, finding.role);
+                values.push(swapped.unwrap_or_default());
+            }
+        }
+        values
+    }
+
+    /// Computes the metrics of a response after a swap; `None` where that is impossible.
+    fn swapped(&self, swap: &ModelSwap, pair: Pair, role: RequirementRole) -> Option<MetricValues> {
+        let correction = match role {
+            RequirementRole::Corrected => {
+                let leads = self.asked.result.correction.leads.as_ref();
+                PairCorrection::from_figures(swap.figures.as_deref()?, pair, leads)?
+            }
+            _ => PairCorrection::NONE,
+        };
+        let index = match swap.bundle {
+            BundleKind::Physics => swap.model,
+            BundleKind::Identified => self.physics,
+        };
+        let model = self.physics_model(role, index).ok()?;
+        let measured = self
+            .measure(model, pair, correction, Evaluation::Interpolated)
+            .ok()?;
+        Some(metric_values(&measured.bandwidth))
+    }
+}
+
+/// Returns a condition's swaps; empty without error bars.
+fn swaps_of<'a>(asked: &AskedCondition<'a>) -> &'a [ModelSwap] {
+    let Some(uncertainty) = asked.analysis.uncertainty.as_deref() else {
+        return &[];
+    };
+    match uncertainty.conditions.get(&asked.id()) {
+        Some(condition) => &condition.swaps.swaps,
+        None => &[],
+    }
+}
+
+/// Returns a physics model with the couplings; `None` without couplings, and where they cannot be
+/// applied to it.
+fn coupled_dynamics(asked: &AskedCondition<'_>, index: usize) -> Option<Dynamics> {
+    asked.result.coupled.as_ref()?;
+    let model = &asked.result.condition.bundle(BundleKind::Physics)[index];
+    let coupled = asked
+        .result
+        .coupled_model(model.state_space()?, Pade::default())
+        .ok()?;
+    Some(Dynamics::StateSpace(coupled.into_owned()))
+}

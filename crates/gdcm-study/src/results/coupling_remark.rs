@@ -1,0 +1,200 @@
+//! Remarks on couplings as typed facts (diagnosis, benefit and cost, M16.4), each with a stable
+//! code. The sentences are in the crate of words.
+
+use nalgebra::Complex;
+
+use gdcm_method::couplings::coupling_shares::{FeedbackShare, MixingShare};
+use gdcm_method::couplings::problem::CouplingError;
+use gdcm_method::couplings::{LoopMargin, Unknown};
+use gdcm_model::dataset::{ConditionId, Pair};
+
+use super::couplings_assessment::{AxisCost, CouplingCost, NoPoles, UnstablePole};
+use super::remark_kind::RemarkKind;
+use crate::decisions::settings::CouplingCorrection;
+
+/// A remark on couplings; `coupling_remark_search` finds them.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CouplingRemark {
+    /// The requested couplings are unavailable; all results are computed without couplings.
+    Unavailable(CouplingError),
+    /// A significant entry of the mixing.
+    Mixing(MixingShare),
+    /// A significant entry of the feedback.
+    Feedback {
+        share: FeedbackShare,
+        meaning: FeedbackMeaning,
+    },
+    /// J without and with the couplings.
+    Costs(OffAxisBenefit),
+    /// The couplings reduce the off-axis J by less than a tenth.
+    NotWorthwhile {
+        couplings: CouplingCorrection,
+        source: CostSource,
+    },
+    /// Off-axis J without and with worthwhile couplings, which are not in use.
+    Offered {
+        couplings: CouplingCorrection,
+        without: f64,
+        with: f64,
+    },
+    /// The largest relative change \[dB\] of an on-axis response at a frequency above the band.
+    ChangeAboveBand {
+        condition: ConditionId,
+        pair: Pair,
+        change_db: f64,
+        omega_rad_s: f64,
+    },
+    /// The largest shift of a pole within the band \[rad/s\].
+    PolesMoved {
+        condition: ConditionId,
+        before: Complex<f64>,
+        after: Complex<f64>,
+        distance_rad_s: f64,
+    },
+    /// The error bars are computed with fixed couplings, which are not fitted again for each swap of
+    /// models.
+    BarsKeepCouplings,
+    /// Newly unstable poles of the representatives, or of the other kept physics models.
+    NewlyUnstable {
+        is_representative: bool,
+        poles: Vec<UnstablePole>,
+    },
+    /// The minimum singular value of the loop over all conditions is small.
+    CloseToRinging {
+        condition: ConditionId,
+        margin: LoopMargin,
+    },
+    /// The number of conditions in which the feedback compensates for a missing lead.
+    FeedbackAsLead { conditions: usize },
+    /// The couplings are fitted to too few conditions for error bars.
+    FewConditions { conditions: usize },
+    /// Outputs (by index) that cannot be fed back, because their response to some input is missing
+    /// in every condition.
+    NotFedBack { outputs: Vec<usize> },
+    /// Entries that the data do not determine.
+    EntriesUndetermined(Vec<Unknown>),
+    /// The poles of a condition are unavailable.
+    PolesUnknown {
+        condition: ConditionId,
+        why: NoPoles,
+    },
+    /// The couplings cannot be applied to a model.
+    ModelRefused {
+        condition: ConditionId,
+        model: String,
+        why: NoPoles,
+    },
+    /// Only `fits` of the `conditions` can be left out of the fit.
+    PartlyLeftOut { fits: usize, conditions: usize },
+}
+
+/// Physical meaning of a feedback entry, derived from the units of the channels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FeedbackMeaning {
+    DirectionalStiffness,
+    Damping,
+    Coupling,
+}
+
+/// Source of the J by which the benefit of couplings is judged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CostSource {
+    /// Conditions left out of the fit.
+    LeftOut,
+    Schedule,
+}
+
+/// J without and with couplings; off-axis J is known for both.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OffAxisBenefit {
+    pub couplings: CouplingCorrection,
+    pub source: CostSource,
+    pub without: f64,
+    pub with: f64,
+    /// On-axis J without and with couplings, if both are known.
+    pub on_axis: Option<OnAxisCosts>,
+}
+
+/// On-axis J without and with couplings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OnAxisCosts {
+    pub without: f64,
+    pub with: f64,
+}
+
+impl OffAxisBenefit {
+    /// Returns the benefit according to J from a source; `None` where off-axis J is unknown.
+    pub(super) fn new(
+        couplings: CouplingCorrection,
+        source: CostSource,
+        cost: CouplingCost,
+    ) -> Option<Self> {
+        let AxisCost { on_axis, others } = cost.with;
+        let on_axis = match (cost.without.on_axis, on_axis) {
+            (Some(without), Some(with)) => Some(OnAxisCosts { without, with }),
+            _ => None,
+        };
+        Some(Self {
+            couplings,
+            source,
+            without: cost.without.others?,
+            with: others?,
+            on_axis,
+        })
+    }
+}
+
+impl CouplingRemark {
+    /// Returns the stable code, for programs and tests.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Unavailable(_) => "no-couplings",
+            Self::Mixing(_) | Self::Feedback { .. } => "coupling-entry",
+            Self::Costs(_) => "coupling-costs",
+            Self::NotWorthwhile { .. } => "couplings-not-worthwhile",
+            Self::Offered { .. } => "couplings-offered",
+            Self::ChangeAboveBand { .. } => "change-above-band",
+            Self::PolesMoved { .. } => "poles-moved",
+            Self::BarsKeepCouplings => "bars-under-couplings",
+            Self::NewlyUnstable { .. } => "newly-unstable",
+            Self::CloseToRinging { .. } => "close-to-ringing",
+            Self::FeedbackAsLead { .. } => "feedback-as-lead",
+            Self::FewConditions { .. } => "few-conditions",
+            Self::NotFedBack { .. } => "not-fed-back",
+            Self::EntriesUndetermined(_) => "entries-undetermined",
+            Self::PolesUnknown { .. } => "poles-unknown",
+            Self::ModelRefused { .. } => "model-refused",
+            Self::PartlyLeftOut { .. } => "partly-left-out",
+        }
+    }
+
+    /// Returns whether the remark reports a success, a caution or a failure.
+    pub fn kind(&self) -> RemarkKind {
+        match self {
+            Self::Mixing(_)
+            | Self::Feedback { .. }
+            | Self::Costs(_)
+            | Self::Offered { .. }
+            | Self::ChangeAboveBand { .. }
+            | Self::PolesMoved { .. }
+            | Self::BarsKeepCouplings => RemarkKind::Good,
+            Self::Unavailable(_) => RemarkKind::Trouble,
+            Self::NewlyUnstable { poles, .. } => {
+                if poles.iter().any(|pole| pole.is_in_band) {
+                    RemarkKind::Trouble
+                } else {
+                    RemarkKind::Caution
+                }
+            }
+            Self::NotWorthwhile { .. }
+            | Self::CloseToRinging { .. }
+            | Self::FeedbackAsLead { .. }
+            | Self::FewConditions { .. }
+            | Self::NotFedBack { .. }
+            | Self::EntriesUndetermined(_)
+            | Self::PolesUnknown { .. }
+            | Self::ModelRefused { .. }
+            | Self::PartlyLeftOut { .. } => RemarkKind::Caution,
+        }
+    }
+}

@@ -1,0 +1,293 @@
+//! Finds the remarks on couplings: diagnosis, benefit and cost, cautions (M16.4).
+
+use gdcm_method::couplings::coupling_shares::{
+    FeedbackShare, cyclic_inputs, feedback_shares, mixing_shares,
+};
+use gdcm_method::couplings::{LEAST_CONDITIONS, LoopMargin};
+use gdcm_model::dataset::{Channel, ConditionId, Dataset, Pair};
+
+use super::analysis::Analysis;
+use super::coupling_remark::{CostSource, CouplingRemark, FeedbackMeaning, OffAxisBenefit};
+use super::couplings_assessment::{CouplingCost, CouplingsAssessment, UnstablePole};
+use crate::decisions::settings::CouplingCorrection;
+
+/// Maximum number of entries reported per matrix; the largest come first.
+const MOST_REPORTED: usize = 3;
+/// Smaller shares \[-\] are not reported.
+const NOTHING: f64 = 0.005;
+
+/// Returns the remarks on the couplings of an analysis: the reason why requested couplings are
+/// unavailable, or the remarks of [`coupling_remarks`]; empty if none were requested.
+pub fn analysis_coupling_remarks(analysis: &Analysis) -> Vec<CouplingRemark> {
+    match (&analysis.couplings, &analysis.coupling_assessment) {
+        (Some(Err(error)), _) => vec![CouplingRemark::Unavailable(error.clone())],
+        (Some(Ok(_)), Some(assessment)) => coupling_remarks(assessment, &analysis.study.dataset),
+        _ => Vec::new(),
+    }
+}
+
+/// Returns the largest entries, then the remarks of [`coupling_consequences`].
+pub fn coupling_remarks(
+    assessment: &CouplingsAssessment,
+    dataset: &Dataset,
+) -> Vec<CouplingRemark> {
+    let mut remarks = diagnosis(assessment, dataset);
+    remarks.extend(coupling_consequences(assessment, dataset));
+    remarks
+}
+
+/// Returns remarks on the benefit and the cost of the couplings, and cautions about them.
+pub fn coupling_consequences(
+    assessment: &CouplingsAssessment,
+    dataset: &Dataset,
+) -> Vec<CouplingRemark> {
+    let mut remarks = verdict(assessment);
+    remarks.extend(largest_change_above_band(assessment, dataset));
+    remarks.extend(farthest_pole(assessment));
+    remarks.push(CouplingRemark::BarsKeepCouplings);
+    remarks.extend(coupling_cautions(assessment));
+    remarks
+}
+
+/// Returns the largest entries outside their error bars: those of the mixing, then those of the
+/// feedback.
+fn diagnosis(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<CouplingRemark> {
+    let airspeed_kt = assessment.mean_airspeed_kt();
+    let matrices = assessment.fitted.matrices();
+    let mixing = assessment.mixing(airspeed_kt);
+    let cyclic = cyclic_inputs(dataset.on_axis(), |output| {
+        is_rate(&dataset.outputs()[output])
+    });
+    let mixed = mixing_shares(&matrices.normalised_mixing(airspeed_kt), cyclic)
+        .into_iter()
+        .filter(|share| {
+            !mixing[(share.to, share.from)].is_within_bar && share.share.abs() >= NOTHING
+        })
+        .take(MOST_REPORTED);
+    let mut remarks: Vec<CouplingRemark> = mixed.map(CouplingRemark::Mixing).collect();
+    let feedback = assessment.feedback();
+    let fed = feedback_shares(&assessment.fitted.problem, matrices)
+        .into_iter()
+        .filter(|share| {
+            !feedback[(share.input, share.output)].is_within_bar && share.share >= NOTHING
+        })
+        .take(MOST_REPORTED);
+    for share in fed {
+        remarks.push(CouplingRemark::Feedback {
+            share,
+            meaning: feedback_meaning(dataset, &share),
+        });
+    }
+    remarks
+}
+
+/// Derives the physical meaning of a feedback entry from the unit of its output.
+fn feedback_meaning(dataset: &Dataset, feedback: &FeedbackShare) -> FeedbackMeaning {
+    let is_on_axis = |output: usize| dataset.on_axis()[Pair::new(output, feedback.input)];
+    if !is_on_axis(feedback.output) {
+        return FeedbackMeaning::Coupling;
+    }
+    let output = &dataset.outputs()[feedback.output];
+    let input_has_rate = dataset
+        .outputs()
+        .iter()
+        .enumerate()
+        .any(|(index, output)| is_on_axis(index) && is_rate(output));
+    if input_has_rate && is_acceleration(output) {
+        FeedbackMeaning::DirectionalStiffness
+    } else if is_rate(output) {
+        FeedbackMeaning::Damping
+    } else {
+        FeedbackMeaning::Coupling
+    }
+}
+
+/// Returns whether the channel has a unit of angular rate.
+fn is_rate(channel: &Channel) -> bool {
+    ["deg/s", "rad/s", "°/s"].contains(&channel.unit.trim())
+}
+
+/// Returns whether the channel has a unit of acceleration.
+fn is_acceleration(channel: &Channel) -> bool {
+    matches!(
+        channel.unit.trim(),
+        "g" | "m/s^2" | "m/s²" | "m/s2" | "ft/s^2" | "ft/s²" | "ft/s2"
+    )
+}
+
+/// Compares J without and with couplings, for conditions left out of the fit or, if none was left
+/// out, under the schedule. Adds a caution if the couplings are not worthwhile.
+fn verdict(assessment: &CouplingsAssessment) -> Vec<CouplingRemark> {
+    let couplings = assessment.couplings;
+    let source = if assessment.costs.left_out.is_some() {
+        CostSource::LeftOut
+    } else {
+        CostSource::Schedule
+    };
+    let cost = assessment.deciding_cost();
+    let Some(benefit) = OffAxisBenefit::new(couplings, source, cost) else {
+        return Vec::new();
+    };
+    let mut remarks = vec![CouplingRemark::Costs(benefit)];
+    if !cost.is_worth_it() {
+        remarks.push(CouplingRemark::NotWorthwhile { couplings, source });
+    }
+    remarks
+}
+
+/// Returns the hint that recommends these couplings to a study that does not use them; `None` if
+/// they are not worthwhile, or if no condition was left out of the fit.
+pub fn coupling_offer(assessment: &CouplingsAssessment) -> Option<CouplingRemark> {
+    let cost = assessment
+        .costs
+        .left_out
+        .filter(CouplingCost::is_worth_it)?;
+    Some(CouplingRemark::Offered {
+        couplings: assessment.couplings,
+        without: cost.without.others?,
+        with: cost.with.others?,
+    })
+}
+
+/// Returns the largest change of an on-axis response above the band.
+fn largest_change_above_band(
+    assessment: &CouplingsAssessment,
+    dataset: &Dataset,
+) -> Option<CouplingRemark> {
+    let changes = assessment.conditions.iter().filter_map(|(id, condition)| {
+        let (pair, change_db) = condition.most_changed_above_band(dataset.on_axis())?;
+        Some((*id, pair, change_db))
+    });
+    let (condition, pair, change_db) = changes.max_by(|a, b| a.2.total_cmp(&b.2))?;
+    if !change_db.is_finite() {
+        return None;
+    }
+    Some(CouplingRemark::ChangeAboveBand {
+        condition,
+        pair,
+        change_db,
+        omega_rad_s: assessment.omega.last().copied().unwrap_or_default(),
+    })
+}
+
+/// Returns the pole in the band with the largest shift; `None` if no pole moves.
+fn farthest_pole(assessment: &CouplingsAssessment) -> Option<CouplingRemark> {
+    let band = assessment.band.min()..=assessment.band.max();
+    let mut farthest = None;
+    let mut farthest_rad_s = 0.0;
+    for (&condition, effect) in &assessment.conditions {
+        for shift in effect.poles.iter().flatten() {
+            let (Some(before), Some(distance_rad_s)) = (shift.before, shift.distance_rad_s())
+            else {
+                continue;
+            };
+            if !band.contains(&before.norm()) {
+                continue;
+            }
+            if farthest.is_none() || distance_rad_s.total_cmp(&farthest_rad_s).is_ge() {
+                farthest_rad_s = distance_rad_s;
+                farthest = Some(CouplingRemark::PolesMoved {
+                    condition,
+                    before,
+                    after: shift.after,
+                    distance_rad_s,
+                });
+            }
+        }
+    }
+    if farthest_rad_s > 0.0 { farthest } else { None }
+}
+
+/// Returns the cautions to consider before couplings are used, such as newly unstable poles, a loop
+/// that is close to ringing, and entries that the data do not determine.
+pub fn coupling_cautions(assessment: &CouplingsAssessment) -> Vec<CouplingRemark> {
+    let mut remarks = newly_unstable(assessment);
+    remarks.extend(close_to_ringing(assessment));
+    let has_feedback = assessment.couplings == CouplingCorrection::MixingAndFeedback;
+    if assessment.want_leads > 0 && has_feedback {
+        remarks.push(CouplingRemark::FeedbackAsLead {
+            conditions: assessment.want_leads,
+        });
+    }
+    let conditions = assessment.fitted.problem.conditions.len();
+    if conditions < LEAST_CONDITIONS {
+        remarks.push(CouplingRemark::FewConditions { conditions });
+    }
+    let fit = &assessment.fitted.fit;
+    if !fit.not_fed_back.is_empty() {
+        remarks.push(CouplingRemark::NotFedBack {
+            outputs: fit.not_fed_back.clone(),
+        });
+    }
+    if !fit.undetermined.is_empty() {
+        remarks.push(CouplingRemark::EntriesUndetermined(
+            fit.undetermined.clone(),
+        ));
+    }
+    remarks.extend(unknown_poles(assessment));
+    let fits = assessment.left_out_fits.len();
+    if conditions >= LEAST_CONDITIONS && fits < conditions {
+        remarks.push(CouplingRemark::PartlyLeftOut { fits, conditions });
+    }
+    remarks
+}
+
+/// Returns a caution for each condition whose poles could not be computed, then a caution for each
+/// model to which the couplings cannot be applied.
+fn unknown_poles(assessment: &CouplingsAssessment) -> Vec<CouplingRemark> {
+    let mut remarks = Vec::new();
+    for (&condition, effect) in &assessment.conditions {
+        if let Err(why) = &effect.poles {
+            remarks.push(CouplingRemark::PolesUnknown {
+                condition,
+                why: why.clone(),
+            });
+        }
+    }
+    for (&condition, effect) in &assessment.conditions {
+        for refused in &effect.refused {
+            remarks.push(CouplingRemark::ModelRefused {
+                condition,
+                model: refused.model.clone(),
+                why: refused.why.clone(),
+            });
+        }
+    }
+    remarks
+}
+
+/// Returns a remark on newly unstable poles of the physics representatives, then a remark on newly
+/// unstable poles of the other kept physics models.
+fn newly_unstable(assessment: &CouplingsAssessment) -> Vec<CouplingRemark> {
+    let mut remarks = Vec::new();
+    for is_representative in [true, false] {
+        let poles: Vec<UnstablePole> = assessment
+            .unstable
+            .iter()
+            .filter(|pole| pole.is_representative == is_representative)
+            .cloned()
+            .collect();
+        if !poles.is_empty() {
+            remarks.push(CouplingRemark::NewlyUnstable {
+                is_representative,
+                poles,
+            });
+        }
+    }
+    remarks
+}
+
+/// Returns the minimum singular value of the loop over all conditions; `None` unless it is close to
+/// ringing.
+fn close_to_ringing(assessment: &CouplingsAssessment) -> Option<CouplingRemark> {
+    let margins = assessment
+        .conditions
+        .iter()
+        .filter_map(|(id, condition)| Some((*id, condition.margin?)));
+    let (condition, margin): (ConditionId, LoopMargin) =
+        margins.min_by(|a, b| a.1.least.total_cmp(&b.1.least))?;
+    if !margin.is_close_to_ringing() {
+        return None;
+    }
+    Some(CouplingRemark::CloseToRinging { condition, margin })
+}

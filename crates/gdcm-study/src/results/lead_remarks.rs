@@ -1,0 +1,121 @@
+//! Finds the remarks on lead: the lead that the responses need, whether they get it, and the checks
+//! to make before leads are used (M15).
+
+use gdcm_model::statistics::median;
+use gdcm_model::units::ratio_to_db;
+
+use super::analysis::ConditionAnalysis;
+use super::remark::{DelaysApart, MissedTargets, Remark};
+use crate::decisions::settings::PhaseCorrection;
+use crate::decisions::study::Study;
+
+/// Maximum difference \[s\] between the two values of D, by eq. (9) and over the band, at which the
+/// missing phase can be due to a delay.
+const APART_S: f64 = 0.02;
+/// Minimum absolute signed delay \[s\] that needs a correction.
+const NOTHING_S: f64 = 2e-3;
+/// Minimum gain increase \[dB\] that is reported.
+const NOTHING_DB: f64 = 0.05;
+
+/// Returns the remarks on leads, including the checks to make before they are used. For a study
+/// without leads, they only report whether leads would help.
+pub fn lead_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
+    let mut remarks: Vec<Remark> = common_lead(result).into_iter().collect();
+    if study.settings.phase == PhaseCorrection::Lead {
+        remarks.extend(achieved(study, result));
+        remarks.extend(raised_gain(result));
+    }
+    remarks.extend(not_a_delay(study, result));
+    remarks.extend(result.offer.map(Remark::LeadsOffered));
+    remarks
+}
+
+/// Reports that all constrained responses need about the same lead: the median of their values of
+/// D, if these differ by at most half of it.
+fn common_lead(result: &ConditionAnalysis) -> Option<Remark> {
+    let mut wanted_s: Vec<f64> = result
+        .held()
+        .marked()
+        .filter_map(|pair| result.comparison.delta.band_delay_s[pair])
+        .collect();
+    let least = wanted_s.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = wanted_s.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let middle = median(&mut wanted_s);
+    let is_common = wanted_s.len() > 1
+        && most < 0.0
+        && most - least <= 0.5 * middle.abs()
+        && -middle >= NOTHING_S;
+    if !is_common {
+        return None;
+    }
+    Some(Remark::CommonLead { lead_s: -middle })
+}
+
+/// Reports whether every constrained response gets the lead that it needs; otherwise the responses
+/// that do not, with the reason.
+fn achieved(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
+    let delays = &result.delays;
+    let is_negligible = delays
+        .inputs
+        .iter()
+        .chain(&delays.outputs)
+        .all(|tau_s| tau_s.abs() < NOTHING_S);
+    if is_negligible {
+        return vec![Remark::LeadsNegligible];
+    }
+    if delays.unmatched.is_empty() {
+        return vec![Remark::LeadsMatched {
+            held: result.held().marked().count(),
+        }];
+    }
+    MissedTargets::find(delays, study.settings.band)
+        .into_iter()
+        .map(Remark::LeadsMissed)
+        .collect()
+}
+
+/// Reports the gain increase within the band due to the lead filters, for which the channel gains
+/// compensate.
+fn raised_gain(result: &ConditionAnalysis) -> Option<Remark> {
+    let compensated = result.compensated.as_ref()?;
+    let rises = result.held().marked().filter_map(|pair| {
+        let rise = result.comparison.delta.gain[pair]? / compensated.gain[pair]?;
+        Some((pair, ratio_to_db(rise)))
+    });
+    let (pair, rise_db) = rises.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+    if rise_db.abs() < NOTHING_DB || rise_db.is_nan() {
+        return None;
+    }
+    Some(Remark::GainRaised { rise_db, pair })
+}
+
+/// Reports the constrained responses whose two values of D are far apart, which indicates a zero or
+/// a mode in the band. Responses with a suspected sign difference are excepted, because their half
+/// turn of phase has another cause.
+fn not_a_delay(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
+    let delta = &result.comparison.delta;
+    let mut responses = Vec::new();
+    for pair in result.held().marked() {
+        let has_doubtful_sign = result
+            .doubts
+            .iter()
+            .any(|doubt| doubt.turns().is_some() && doubt.pairs.contains(&pair));
+        let (Some(median_s), Some(band_s)) = (delta.delay_s[pair], delta.band_delay_s[pair]) else {
+            continue;
+        };
+        if !has_doubtful_sign && (median_s - band_s).abs() > APART_S {
+            responses.push(DelaysApart {
+                pair,
+                median_s,
+                band_s,
+            });
+        }
+    }
+    if responses.is_empty() {
+        return None;
+    }
+    Some(Remark::NotADelay {
+        responses,
+        by_leads: study.settings.phase == PhaseCorrection::Lead,
+    })
+}

@@ -1,0 +1,92 @@
+//! Responses of the models of a condition to a test input, for plots (M17.2); there is no measurement
+//! to compare them with.
+
+use nalgebra::DMatrix;
+
+use gdcm_method::requirements::TestInput;
+use gdcm_method::requirements::test_input::TestInputError;
+use gdcm_model::dataset::ConditionId;
+use gdcm_model::executor::{Executor, each};
+
+use super::analysis::{Analysis, NoResult};
+use super::requirement_role::{RequirementRole, RoleModelError};
+
+/// Displayed time, as a multiple of the duration of the test input.
+const SHOWN: f64 = 5.0;
+
+/// Minimum displayed time \[s\].
+const LEAST_SHOWN_S: f64 = 10.0;
+
+/// Number of samples in the displayed time.
+const STEPS: usize = 1000;
+
+/// Why a model has no response to a test input.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NoTestAnswer {
+    NoModel(RoleModelError),
+    NotSimulated(TestInputError),
+}
+
+impl NoTestAnswer {
+    /// Returns the stable code, for programs and tests.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NoModel(_) => "no-role-model",
+            Self::NotSimulated(_) => "not-simulated",
+        }
+    }
+}
+
+/// Responses of a condition's models to a test input, starting from rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TestAnswers {
+    pub condition: ConditionId,
+    pub input: usize,
+    /// Test input: shape, amplitude and duration.
+    pub test: TestInput,
+    /// Sample time \[s\]; the first sample is at 0 s.
+    pub sample_time_s: f64,
+    /// The input at every sample, in its unit.
+    pub signal: Vec<f64>,
+    /// Outputs of each model, samples x outputs, in their units.
+    pub models: Vec<(RequirementRole, Result<DMatrix<f64>, NoTestAnswer>)>,
+}
+
+impl TestAnswers {
+    /// Simulates a condition's models with a test input in an input channel.
+    ///
+    /// # Errors
+    /// [`NoResult`] without a result of the condition.
+    pub(crate) fn new(
+        analysis: &Analysis,
+        condition: ConditionId,
+        input: usize,
+        test: TestInput,
+        executor: &dyn Executor,
+    ) -> Result<Self, NoResult> {
+        let result = analysis.result(condition)?;
+        let sample_time_s = LEAST_SHOWN_S.max(SHOWN * test.duration_s) / STEPS as f64;
+        let answers = each(executor, &RequirementRole::ALL, |role| {
+            let model = analysis
+                .role_model(result, *role)
+                .map_err(NoTestAnswer::NoModel)?;
+            test.simulate(&model, input, sample_time_s, STEPS + 1)
+                .map_err(NoTestAnswer::NotSimulated)
+        });
+        Ok(Self {
+            condition,
+            input,
+            test,
+            sample_time_s,
+            signal: test.signal(sample_time_s, STEPS + 1),
+            models: RequirementRole::ALL.into_iter().zip(answers).collect(),
+        })
+    }
+
+    /// Returns the samples' times \[s\].
+    pub fn time_s(&self) -> Vec<f64> {
+        (0..self.signal.len())
+            .map(|sample| sample as f64 * self.sample_time_s)
+            .collect()
+    }
+}

@@ -1,0 +1,112 @@
+//! Cautions about the representatives of a condition: gains outside the computable range, frequencies
+//! without coherence, numerically zero responses.
+
+use gdcm_method::correction::delta::Delta;
+use gdcm_model::dataset::{BundleKind, Dynamics, Model, Pair};
+
+use super::compared_model::ComparedModel;
+use super::comparison_input::ComparisonInput;
+use crate::results::caution::{BundleModel, Caution, GainOutOfRange};
+
+/// The two representatives, prepared for comparison.
+pub(super) struct ComparedPair<'a> {
+    pub(super) physics: &'a ComparedModel,
+    pub(super) physics_index: usize,
+    pub(super) identified: &'a ComparedModel,
+    pub(super) identified_index: usize,
+}
+
+impl ComparisonInput<'_> {
+    /// Returns the caution about gains between the representatives that are outside the computable
+    /// range.
+    pub(super) fn out_of_range(
+        &self,
+        compared: &ComparedPair<'_>,
+        delta: &Delta,
+    ) -> Option<Caution> {
+        let mut responses =
+            GainOutOfRange::of_models(&compared.physics.polar, &compared.identified.polar);
+        // If coherence excludes all frequencies with such a gain, G is defined and no caution is
+        // needed.
+        responses.retain(|gain| delta.gain[gain.pair].is_none());
+        if responses.is_empty() {
+            return None;
+        }
+        let physics = self.model(BundleKind::Physics, compared.physics_index);
+        let identified = self.model(BundleKind::Identified, compared.identified_index);
+        Some(Caution::GainsOutOfRange {
+            physics: physics.name.clone(),
+            identified: identified.name.clone(),
+            responses,
+        })
+    }
+
+    /// Returns the caution about the frequencies of the identified representative that coherence
+    /// excludes from the comparison (M4a).
+    pub(super) fn coherence_caution(
+        &self,
+        compared: &ComparedModel,
+        identified: &Model,
+    ) -> Option<Caution> {
+        let Dynamics::Measured(response) = &identified.dynamics else {
+            return None;
+        };
+        response.coherence()?;
+        let Some(threshold) = self.grid.coherence else {
+            return Some(Caution::CoherenceNotUsed);
+        };
+        let points = self.grid.grid.len();
+        let mut weighed = 0;
+        let mut left_out: Vec<(Pair, usize)> = Vec::new();
+        for (pair, curve) in compared.polar.curves().iter() {
+            if curve.is_none() {
+                continue;
+            }
+            let Some(count) = compared.weighted_frequencies(pair) else {
+                continue;
+            };
+            if count > 0 {
+                weighed += 1;
+            }
+            if count < points {
+                left_out.push((pair, points - count));
+            }
+        }
+        if left_out.is_empty() {
+            return None;
+        }
+        left_out.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+        Some(Caution::NotCoherent {
+            threshold,
+            weighed,
+            left_out,
+            points,
+        })
+    }
+
+    /// Returns the cautions about the representatives' numerically zero responses (M6a).
+    pub(super) fn nothing_cautions(&self, compared: &ComparedPair<'_>) -> Vec<Caution> {
+        let mut cautions = Vec::new();
+        for (kind, index, model) in [
+            (
+                BundleKind::Physics,
+                compared.physics_index,
+                compared.physics,
+            ),
+            (
+                BundleKind::Identified,
+                compared.identified_index,
+                compared.identified,
+            ),
+        ] {
+            let responses: Vec<Pair> = model.nothing.marked().collect();
+            if !responses.is_empty() {
+                cautions.push(Caution::NumericallyNothing {
+                    model: BundleModel::new(self.condition, kind, index),
+                    responses,
+                });
+            }
+        }
+        cautions
+    }
+}

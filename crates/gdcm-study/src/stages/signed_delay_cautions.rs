@@ -1,0 +1,63 @@
+//! Cautions about signed delays that no schedule can reproduce (M15.6).
+
+use gdcm_method::correction::Channel;
+use gdcm_method::correction::channel_leads::ChannelLeads;
+use gdcm_method::schedule::ScheduleCaution;
+use gdcm_model::dataset::ConditionId;
+
+use crate::decisions::study::Study;
+use crate::results::analysis::Outcomes;
+use crate::results::scheduled_conditions::in_schedule;
+
+/// Maximum distance \[s\] of a signed delay from the mean over the conditions that a schedule can
+/// reproduce.
+const APART_S: f64 = 0.02;
+/// Signed delays smaller than this \[s\] have no significant sign.
+const NOTHING_S: f64 = 2e-3;
+
+/// Returns cautions about the channels for which no schedule can reproduce the signed delays of all
+/// conditions.
+pub(crate) fn signed_delays_apart(study: &Study, outcomes: &Outcomes) -> Vec<ScheduleCaution> {
+    let mut leads = Vec::new();
+    for result in in_schedule(study, outcomes) {
+        if let Some(compensated) = &result.compensated {
+            leads.push((result.condition.id(), &compensated.leads));
+        }
+    }
+    Channel::of_dataset(&study.dataset)
+        .filter_map(|channel| signed_delay_apart(&leads, channel))
+        .collect()
+}
+
+/// Returns the caution about a channel, which names the condition farthest from the mean: the
+/// distance is too large, or some conditions need a lead and others a delay.
+fn signed_delay_apart(
+    leads: &[(ConditionId, &ChannelLeads)],
+    channel: Channel,
+) -> Option<ScheduleCaution> {
+    if leads.len() < 2 {
+        return None;
+    }
+    let taus_s: Vec<f64> = leads
+        .iter()
+        .map(|(_, leads)| leads.taus_s[channel])
+        .collect();
+    let sum_s: f64 = taus_s.iter().sum();
+    let mean_s = sum_s / taus_s.len() as f64;
+    let distance_s = |tau_s: f64| (tau_s - mean_s).abs();
+    let farthest = (0..taus_s.len())
+        .max_by(|a, b| distance_s(taus_s[*a]).total_cmp(&distance_s(taus_s[*b])))?;
+    let tau_s = taus_s[farthest];
+    let has_delay = taus_s.iter().any(|tau_s| *tau_s > NOTHING_S);
+    let has_lead = taus_s.iter().any(|tau_s| -*tau_s > NOTHING_S);
+    if distance_s(tau_s) > APART_S || (has_delay && has_lead) {
+        Some(ScheduleCaution::SignedDelayApart {
+            channel,
+            condition: leads[farthest].0,
+            tau_s,
+            elsewhere_s: (sum_s - tau_s) / (taus_s.len() as f64 - 1.0),
+        })
+    } else {
+        None
+    }
+}

@@ -1,0 +1,39 @@
+//! Units of channels, taken from the columns of the first record.
+
+use gdcm_model::dataset::channel::ChannelSide;
+
+use super::column_use::ColumnUse;
+use super::record_channels::{RecordChannels, SaidConversion};
+use super::record_layout::RecordLayout;
+use super::record_table::RecordTable;
+
+impl RecordChannels {
+    /// Gives channels without a unit the unit of their column in this layout, so that further
+    /// records are converted to it.
+    pub fn take_units(&mut self, layout: &RecordLayout, table: &RecordTable) {
+        for side in [ChannelSide::Input, ChannelSide::Output] {
+            let rules = side.pick(&mut self.inputs, &mut self.outputs);
+            let uses = side.pick(&layout.inputs, &layout.outputs);
+            for (rule, used) in rules.iter_mut().zip(uses) {
+                if rule.unit.is_empty() {
+                    let conversion = self.said.get(&rule.name);
+                    rule.unit = unit_of_samples(conversion, *used, table).unwrap_or_default();
+                }
+            }
+        }
+    }
+}
+
+/// Returns the unit of a channel's samples: given by the user, or else by the file; `None` if
+/// unknown, as after a user-defined factor other than ±1.
+fn unit_of_samples(
+    conversion: Option<&SaidConversion>,
+    used: Option<ColumnUse>,
+    table: &RecordTable,
+) -> Option<String> {
+    match conversion {
+        Some(SaidConversion::Unit(unit)) => Some(unit.clone()),
+        Some(SaidConversion::Factor(factor)) if factor.abs() != 1.0 => None,
+        _ => table.columns.get(used?.column)?.unit.clone(),
+    }
+}

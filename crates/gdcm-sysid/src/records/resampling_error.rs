@@ -1,0 +1,39 @@
+//! Reasons why channels with separate clocks cannot be resampled to a common clock (M14.11).
+
+/// Why channels cannot be resampled to a common clock.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ResamplingError {
+    #[error("{topic} has {samples} samples with a stamp; at least 3 are needed")]
+    TooFew { topic: String, samples: usize },
+    /// A topic has fewer than 2.5 samples per period of the highest line.
+    #[error(
+        "{topic} is sampled at {rate_hz:.1} Hz, and a band to {band_end:.3} rad/s needs {needed_hz:.1} Hz: log it faster, or end \
+         the band at {possible:.2} rad/s"
+    )]
+    TooSlow {
+        topic: String,
+        rate_hz: f64,
+        /// Minimum sample rate for the band \[Hz\].
+        needed_hz: f64,
+        /// Requested upper band end \[rad/s\].
+        band_end: f64,
+        /// Maximum upper band end at the sample rate \[rad/s\].
+        possible: f64,
+    },
+    #[error(
+        "{first} ends at {first_end_s:.1} s, before {second} begins at {second_start_s:.1} s: they come from different flights, or their \
+         clocks differ"
+    )]
+    NoCommonTime {
+        /// Name of the topic that ends first.
+        first: String,
+        first_end_s: f64,
+        /// Name of the topic that begins last.
+        second: String,
+        second_start_s: f64,
+    },
+    #[error(
+        "the joined record would have {0:.0} samples: a stamp is wrong, or the requested rate is too high"
+    )]
+    TooMany(f64),
+}

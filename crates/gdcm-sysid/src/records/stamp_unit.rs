@@ -1,0 +1,96 @@
+//! Unit of the stamps of a record: from the file, the column's name, or the size of the steps.
+
+use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit};
+use gdcm_model::units::telling;
+
+use super::record_table::RecordColumn;
+use super::sample_step::{LONGEST_STEP_S, median_step};
+
+/// Minimum plausible time between two samples of a flight recorder \[s\].
+const SHORTEST_STEP_S: f64 = 5e-5;
+/// Minimum step accepted for a guessed unit \[s\].
+const SHORTEST_GUESSED_STEP_S: f64 = 2e-4;
+const SECONDS_A_DAY: f64 = 86_400.0;
+
+/// Unit of a stamp column.
+pub(super) struct StampUnit {
+    pub(super) name: &'static str,
+    /// Seconds per unit.
+    pub(super) seconds: f64,
+    /// Reason in parentheses, for a note; empty if the file gives the unit.
+    pub(super) reason: String,
+}
+
+impl StampUnit {
+    /// Units shorter than a second, tried in this order until the median step is plausible.
+    const SHORT: [(&str, f64); 3] = [("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9)];
+
+    /// Determines the unit: the one in the file, else the last word in the column's name
+    /// (`time_ms`), else a unit that makes the median step plausible, else the second.
+    pub(super) fn new(stamps: &RecordColumn) -> Self {
+        if let Some(unit) = stamps.unit.as_deref().and_then(Self::from_name) {
+            return unit;
+        }
+        if let Some(unit) = last_word(&stamps.name).and_then(Self::from_name) {
+            return unit;
+        }
+        let step = median_step(&stamps.values).unwrap_or(f64::NAN);
+        if step > LONGEST_STEP_S {
+            for (name, seconds) in Self::SHORT {
+                if is_plausible_step(step * seconds) {
+                    return Self::from_steps(name, seconds, step);
+                }
+            }
+            return Self::seconds(String::new());
+        }
+        if step > 0.0 && step < SHORTEST_STEP_S && is_plausible_step(step * SECONDS_A_DAY) {
+            return Self::from_steps("days", SECONDS_A_DAY, step);
+        }
+        Self::seconds(" (the file does not state the unit)".to_owned())
+    }
+
+    /// Returns the time unit with this name, in its usual spelling; `None` if the name is not a
+    /// time unit.
+    fn from_name(name: &str) -> Option<Self> {
+        let unit = PhysicalUnit::parse(name)?;
+        if unit.dimension != Dimension::Time {
+            return None;
+        }
+        Some(Self {
+            name: unit.name,
+            seconds: unit.size,
+            reason: String::new(),
+        })
+    }
+
+    /// Returns a unit that was chosen because a median step of `step`, taken in seconds, is
+    /// implausible: it is over [`LONGEST_STEP_S`] or far below a second.
+    fn from_steps(name: &'static str, seconds: f64, step: f64) -> Self {
+        let fault = if step > 1.0 { "long" } else { "short" };
+        let step = telling(step, 3);
+        Self {
+            name,
+            seconds,
+            reason: format!(" (its steps are {step}: seconds would be too {fault})"),
+        }
+    }
+
+    fn seconds(reason: String) -> Self {
+        Self {
+            name: "s",
+            seconds: 1.0,
+            reason,
+        }
+    }
+}
+
+/// Returns the last word of a name; `None` if the name is a single word.
+fn last_word(name: &str) -> Option<&str> {
+    name.rsplit(|c: char| !c.is_alphanumeric())
+        .next()
+        .filter(|word| *word != name)
+}
+
+fn is_plausible_step(step_s: f64) -> bool {
+    (SHORTEST_GUESSED_STEP_S..=LONGEST_STEP_S).contains(&step_s)
+}

@@ -1,0 +1,215 @@
+//! Joins the tables of topics into one record: their columns side by side, each with the stamps of
+//! its topic.
+//!
+//! The name of a table becomes part of the names of its columns. A dataset keeps the name of the
+//! joined record, from which it is joined again.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::record_table::{RecordColumn, RecordSource, RecordTable, TopicClock, shortened_list};
+use super::sample_step::median_step;
+use super::time_base::TimeBase;
+use super::topic_names::{are_from_one_file, common_prefix, logs_of_topics, topic_names};
+
+/// Uninformative names for the only value column of a topic.
+const PLAIN: [&str; 8] = [
+    "value", "values", "data", "signal", "signals", "x", "y", "val",
+];
+
+impl RecordTable {
+    /// Name of the record that all topics in a file or folder form together.
+    pub const TOPICS: &'static str = "its topics";
+
+    /// Returns the record that topics form under this name: all of them as [`Self::TOPICS`], or
+    /// the topics in one log as "its topics, log_7".
+    pub fn of_topics_called(tables: &[RecordTable], variable: &str) -> Option<RecordTable> {
+        if variable == Self::TOPICS {
+            return Some(join_topics(tables));
+        }
+        let log = variable.strip_prefix(Self::TOPICS)?.strip_prefix(", ")?;
+        let mut topics = Vec::new();
+        for (table, own_log) in tables.iter().zip(logs_of_topics(&topic_names(tables))) {
+            if own_log == log {
+                topics.push(table.clone());
+            }
+        }
+        if topics.is_empty() {
+            return None;
+        }
+        Some(join_topics_of_log(&topics, log))
+    }
+}
+
+/// Combines a log's topics side by side.
+pub(super) fn join_topics_of_log(tables: &[RecordTable], log: &str) -> RecordTable {
+    let mut joined = join_topics(tables);
+    joined.name = log.to_owned();
+    joined.source.variable = Some(format!("{}, {log}", RecordTable::TOPICS));
+    joined
+}
+
+/// Combines the topics of a record side by side; tables without a time are omitted and listed in a
+/// note.
+pub(super) fn join_topics(tables: &[RecordTable]) -> RecordTable {
+    let source = common_source(tables);
+    let mut joined = RecordTable {
+        source,
+        ..RecordTable::new(common_name(tables), Vec::new())
+    };
+    let names = topic_names(tables);
+    let prefix = common_prefix(&names);
+    let seconds = seconds_by_name(tables);
+    let mut taken = Vec::new();
+    let mut left_out = Vec::new();
+    for (table, name) in tables.iter().zip(&names) {
+        let name = name.get(prefix..).unwrap_or(name);
+        match topic_columns(table, name, &seconds) {
+            Some(columns) => {
+                joined.columns.extend(columns);
+                taken.push(name);
+            }
+            None => left_out.push(name),
+        }
+        joined.modes.extend(table.modes.iter().cloned());
+    }
+    joined.notes.push(format!(
+        "one record of {} topics: {}",
+        taken.len(),
+        shortened_list(&taken)
+    ));
+    if !left_out.is_empty() {
+        joined.notes.push(format!(
+            "left out, because they have no time: {}",
+            shortened_list(&left_out)
+        ));
+    }
+    joined
+}
+
+/// Returns the file or folder of the topics, as the source of their record.
+fn common_source(tables: &[RecordTable]) -> RecordSource {
+    let mut source = RecordSource {
+        variable: Some(RecordTable::TOPICS.to_owned()),
+        ..RecordSource::default()
+    };
+    if let Some(first) = tables.first() {
+        source.file = common_file(tables).to_owned();
+        if are_from_one_file(tables) {
+            source.sha256 = first.source.sha256.clone();
+        }
+    }
+    source
+}
+
+/// Returns the path to the topics' file, or to their folder.
+fn common_file(tables: &[RecordTable]) -> &str {
+    let Some(first) = tables.first() else {
+        return "";
+    };
+    let file = first.source.file.as_str();
+    if are_from_one_file(tables) {
+        return file;
+    }
+    match file.rsplit_once('/') {
+        Some((folder, _)) => folder,
+        None => "",
+    }
+}
+
+/// Returns the name of the file without its extension, or the name of the folder.
+fn common_name(tables: &[RecordTable]) -> &str {
+    let file = common_file(tables);
+    let mut name = file.rsplit('/').next().unwrap_or_default();
+    if are_from_one_file(tables)
+        && let Some((stem, _)) = name.rsplit_once('.')
+    {
+        name = stem;
+    }
+    if name.is_empty() { "topics" } else { name }
+}
+
+/// Returns the seconds per stamp unit, by column name. The topics of a log share the unit, which
+/// only the short steps of fast topics reveal.
+fn seconds_by_name(tables: &[RecordTable]) -> BTreeMap<String, f64> {
+    struct Fastest {
+        step: f64,
+        seconds: f64,
+    }
+    let mut fastest: BTreeMap<String, Fastest> = BTreeMap::new();
+    for table in tables {
+        let Some(column) = TimeBase::find(table) else {
+            continue;
+        };
+        let TimeBase::Column { seconds, .. } = TimeBase::from_column(table, column) else {
+            continue;
+        };
+        let stamps = &table.columns[column];
+        let step = median_step(&stamps.values)
+            .filter(|step| *step > 0.0)
+            .unwrap_or(f64::INFINITY);
+        let known = fastest
+            .entry(stamps.name.clone())
+            .or_insert(Fastest { step, seconds });
+        if step < known.step {
+            *known = Fastest { step, seconds };
+        }
+    }
+    fastest
+        .into_iter()
+        .map(|(name, fastest)| (name, fastest.seconds))
+        .collect()
+}
+
+/// Returns a topic's columns with its stamps; `None` without sample times.
+fn topic_columns(
+    table: &RecordTable,
+    name: &str,
+    seconds: &BTreeMap<String, f64>,
+) -> Option<Vec<RecordColumn>> {
+    let stamps = TimeBase::find(table);
+    let time = match stamps {
+        Some(column) => TimeBase::Column {
+            column,
+            seconds: *seconds.get(&table.columns[column].name)?,
+        },
+        None => TimeBase::SampleTime(table.sample_time_s?),
+    };
+    let clock = Arc::new(TopicClock {
+        name: name.to_owned(),
+        time_s: time.times_s(table),
+    });
+    let is_single = table.columns.len() - usize::from(stamps.is_some()) == 1;
+    let mut columns = Vec::new();
+    for (index, column) in table.columns.iter().enumerate() {
+        if Some(index) != stamps {
+            columns.push(RecordColumn {
+                name: column_name(name, &column.name, is_single),
+                topic: Some(Arc::clone(&clock)),
+                ..column.clone()
+            });
+        }
+    }
+    Some(columns)
+}
+
+/// Returns the name of a topic's column: "acc.1" for "value_1", the name of the topic for a single
+/// "value", else "acc.x".
+fn column_name(topic: &str, column: &str, is_single: bool) -> String {
+    if let Some((stem, number)) = column.rsplit_once('_')
+        && is_plain(stem)
+        && number.parse::<usize>().is_ok()
+    {
+        return format!("{topic}.{number}");
+    }
+    if is_single && is_plain(column) {
+        topic.to_owned()
+    } else {
+        format!("{topic}.{column}")
+    }
+}
+
+/// Whether a name is uninformative.
+fn is_plain(name: &str) -> bool {
+    PLAIN.contains(&name.to_lowercase().as_str())
+}

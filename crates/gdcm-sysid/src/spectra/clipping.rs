@@ -1,0 +1,92 @@
+//! Channels at their limit, as a saturated sensor or actuator is (M14.18).
+//!
+//! ```text
+//! flat: consecutive |dx| <= 1e-3 mean |dx|
+//! run: a stretch of flat samples, or a single sample
+//! at its limit: share of the samples in runs of at least max(5, 3 q) samples whose mean lies in
+//!     the outer 5 % of the range, with the 90 % quantile q of the flat runs elsewhere; a caution
+//!     above 0.5 %, or above 10 % where flat runs elsewhere hold over 20 % of all samples
+//! ```
+
+use gdcm_model::statistics::quantile;
+
+use super::value_range::ValueRange;
+
+/// Maximum step between two samples of a flat run, relative to the mean step.
+const FLAT: f64 = 1e-3;
+/// Minimum length of a run at a limit, in samples.
+const SHORTEST: f64 = 5.0;
+/// Minimum length of a run at a limit, relative to the usual length of flat runs elsewhere.
+const OVER_USUAL: f64 = 3.0;
+/// Quantile that gives the usual length of the flat runs elsewhere.
+const USUAL: f64 = 0.9;
+/// Share of the range, at each end, that belongs to a limit.
+const OUTER: f64 = 0.05;
+/// Maximum acceptable share of samples at a limit in a smooth channel.
+const MOST_AT_LIMIT: f64 = 0.005;
+/// Maximum acceptable share of samples at a limit in a coarse channel or one with stairs.
+const MOST_AT_LIMIT_HELD: f64 = 0.1;
+/// A channel counts as held if flat runs away from the limits hold more than this share of its
+/// samples.
+const HELD_SHARE: f64 = 0.2;
+
+/// Share of a channel's samples at its limit, with the acceptable maximum.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Clipping {
+    pub(crate) share: f64,
+    /// Maximum acceptable share.
+    pub(crate) most: f64,
+}
+
+impl Clipping {
+    /// Measures the share of the samples at a limit.
+    pub(crate) fn measure(samples: &[f64]) -> Self {
+        let steps = samples.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+        let flat = FLAT * steps.sum::<f64>() / samples.len().saturating_sub(1).max(1) as f64;
+        let range = ValueRange::new(samples);
+        let outer = OUTER * (range.greatest - range.least);
+        let mut at_ends = Vec::new();
+        let mut elsewhere = Vec::new();
+        for run in samples.chunk_by(|a, b| (b - a).abs() <= flat) {
+            let mean = run.iter().sum::<f64>() / run.len() as f64;
+            if mean >= range.greatest - outer || mean <= range.least + outer {
+                at_ends.push(run.len());
+            } else {
+                elsewhere.push(run.len());
+            }
+        }
+        let flat_elsewhere: Vec<usize> =
+            elsewhere.into_iter().filter(|length| *length > 1).collect();
+        let shortest = SHORTEST.max(OVER_USUAL * usual_length(&flat_elsewhere));
+        let at_limit: usize = at_ends
+            .into_iter()
+            .filter(|length| *length as f64 >= shortest)
+            .sum();
+        let held = share_of(flat_elsewhere.iter().sum(), samples);
+        Self {
+            share: share_of(at_limit, samples),
+            most: if held > HELD_SHARE {
+                MOST_AT_LIMIT_HELD
+            } else {
+                MOST_AT_LIMIT
+            },
+        }
+    }
+
+    pub(crate) fn is_excessive(&self) -> bool {
+        self.share > self.most
+    }
+}
+
+/// Returns the usual length of flat runs; 1 if there are none.
+fn usual_length(runs: &[usize]) -> f64 {
+    if runs.is_empty() {
+        return 1.0;
+    }
+    let mut lengths: Vec<f64> = runs.iter().map(|length| *length as f64).collect();
+    quantile(&mut lengths, USUAL)
+}
+
+fn share_of(count: usize, samples: &[f64]) -> f64 {
+    count as f64 / samples.len().max(1) as f64
+}

@@ -1,0 +1,109 @@
+//! Search for the gaps of a record: missing rows, stamps and samples, frozen outputs (M14.1).
+//!
+//! A gap lies between two stamps or, in a channel, between two valid samples. Gaps up to the length
+//! that the settings allow are bridged by straight lines (`valid_samples`), others are cut out
+//! (`preparation`), which also adds the parts that are too short to be used.
+
+use std::collections::BTreeMap;
+
+use gdcm_model::simulation::Signal;
+
+use super::gap::{Cause, Gap, Treatment};
+use super::record_clock::{Clock, StampRange};
+use super::valid_samples::ValidSamples;
+
+/// Maximum step between two stamps without a missing row, in sample times.
+const LONGEST_STEP: f64 = 1.5;
+
+/// Finds the gaps in the channels, then the gaps between the stamps.
+pub(crate) fn record_gaps(clock: &Clock, channels: &[ValidSamples]) -> Vec<Gap> {
+    let mut gaps = channel_gaps(clock, channels);
+    gaps.extend(stamp_gaps(clock));
+    gaps
+}
+
+/// A gap in a channel. Gaps are sorted by these fields, in this order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct ChannelGap {
+    stamps: StampRange,
+    is_frozen: bool,
+    treatment: Treatment,
+}
+
+/// Returns the gaps in the channels; channels with the same gap share it.
+fn channel_gaps(clock: &Clock, channels: &[ValidSamples]) -> Vec<Gap> {
+    let mut signals_by_gap: BTreeMap<ChannelGap, Vec<Signal>> = BTreeMap::new();
+    for channel in channels {
+        for run in &channel.invalid {
+            let gap = ChannelGap {
+                stamps: run.stamps,
+                is_frozen: run.is_frozen,
+                treatment: treatment(channel, clock, run.stamps),
+            };
+            let signals = signals_by_gap.entry(gap).or_default();
+            signals.push(channel.signal.clone());
+        }
+    }
+    let mut gaps = Vec::new();
+    for (gap, signals) in signals_by_gap {
+        let interval = Interval::surrounding(gap.stamps, clock);
+        gaps.push(Gap {
+            start_s: clock.start_s + interval.start_s,
+            end_s: clock.start_s + interval.end_s,
+            cause: if gap.is_frozen {
+                Cause::Frozen(signals)
+            } else {
+                Cause::SamplesMissing(signals)
+            },
+            treatment: gap.treatment,
+        });
+    }
+    gaps
+}
+
+/// Returns the treatment of a gap in a channel; a gap at an end of the record is cut out.
+fn treatment(channel: &ValidSamples, clock: &Clock, stamps: StampRange) -> Treatment {
+    let interval = Interval::surrounding(stamps, clock);
+    let is_inside = stamps.from > 0 && stamps.to < clock.times.len();
+    Treatment::for_gap(is_inside && interval.end_s - interval.start_s <= channel.longest_step_s)
+}
+
+/// Times relative to the first stamp of the record.
+struct Interval {
+    start_s: f64,
+    end_s: f64,
+}
+
+impl Interval {
+    /// Returns the interval between the samples before and after `stamps`, or up to an end of the
+    /// record.
+    fn surrounding(stamps: StampRange, clock: &Clock) -> Self {
+        Self {
+            start_s: clock.times[stamps.from.saturating_sub(1)],
+            end_s: clock.times[stamps.to.min(clock.times.len() - 1)],
+        }
+    }
+}
+
+/// Returns the gaps between the stamps.
+fn stamp_gaps(clock: &Clock) -> Vec<Gap> {
+    let mut gaps = Vec::new();
+    for k in 1..clock.times.len() {
+        let step = clock.times[k] - clock.times[k - 1];
+        let stamp_missing = clock.rows[k] > clock.rows[k - 1] + 1;
+        if !stamp_missing && step <= LONGEST_STEP * clock.sample_time_s {
+            continue;
+        }
+        gaps.push(Gap {
+            start_s: clock.start_s + clock.times[k - 1],
+            end_s: clock.start_s + clock.times[k],
+            cause: if stamp_missing {
+                Cause::StampsMissing
+            } else {
+                Cause::RowsMissing
+            },
+            treatment: Treatment::for_gap(step <= clock.longest_step_s),
+        });
+    }
+    gaps
+}

@@ -1,0 +1,28 @@
+//! Reasons why the frequency response cannot be measured.
+
+/// Why the frequency response cannot be measured.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum LocalPolynomialError {
+    /// No lines, inputs or outputs.
+    #[error(
+        "a frequency response needs spectral lines, inputs, outputs and frequencies; at least one \
+        of these is missing"
+    )]
+    Nothing,
+    /// A segment has other channel counts than the first; index of its record, counted from 0.
+    #[error("record {} differs from the first in its number of channels", .0 + 1)]
+    ChannelsDiffer(usize),
+    /// A line or a frequency is not finite, or a frequency is not greater than 0.
+    #[error("the spectra contain values that are not finite")]
+    NotFinite,
+    /// Fewer lines than first-degree polynomials need.
+    #[error(
+        "the records have {lines} spectral lines in the band, but {needed} are needed: log \
+        longer, or leave out channels"
+    )]
+    TooFewLines {
+        /// Number of lines in all records.
+        lines: usize,
+        needed: usize,
+    },
+}

@@ -1,0 +1,61 @@
+//! Use of a record in an identification: its parts, gaps, and inputs at their limit.
+
+use gdcm_model::simulation::{FlightRecord, Signal};
+
+use super::gap::{Gap, Treatment};
+
+/// The parts of a record that are used, and its gaps.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordUse {
+    /// Record name.
+    pub record: String,
+    /// Median sample time \[s\], 0 for fewer than two stamps.
+    pub sample_time_s: f64,
+    /// Time between the first and the last stamp \[s\].
+    pub logged_s: f64,
+    /// Total segment length \[s\].
+    pub used_s: f64,
+    /// Gaps, sorted by their start.
+    pub gaps: Vec<Gap>,
+    /// Inputs at their limit, each with its share of samples there \[%\]. They need no caution: a
+    /// saturated actuator position is a valid input.
+    pub inputs_at_limit: Vec<(Signal, f64)>,
+}
+
+impl RecordUse {
+    /// Returns sentences about the record that are not cautions: the inputs at their limit.
+    pub fn facts(&self) -> impl Iterator<Item = String> {
+        self.inputs_at_limit.iter().map(|(signal, percent)| {
+            format!(
+                "{}: {signal} is at its limit for {percent:.1} % of the record and is used as \
+                logged",
+                self.record
+            )
+        })
+    }
+
+    /// Returns the first and the last time \[s\] of each part that remains after the gaps are cut
+    /// out.
+    pub fn spans(&self, record: &FlightRecord) -> Vec<[f64; 2]> {
+        let mut stamps = record
+            .time_s
+            .iter()
+            .copied()
+            .filter(|time| time.is_finite());
+        let Some(first) = stamps.next() else {
+            return Vec::new();
+        };
+        let last = stamps.next_back().unwrap_or(first);
+        let mut spans = Vec::new();
+        let mut start = first;
+        for gap in &self.gaps {
+            if gap.treatment == Treatment::CutOut {
+                spans.push([start, gap.start_s]);
+                start = gap.end_s;
+            }
+        }
+        spans.push([start, last]);
+        spans.retain(|[start, end]| start < end);
+        spans
+    }
+}

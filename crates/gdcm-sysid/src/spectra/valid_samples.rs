@@ -1,0 +1,200 @@
+//! Valid samples of each channel, and the straight lines between them (M14.1).
+//!
+//! A sample is valid if it is finite and not frozen, and of a slow sensor only if it is fresh. The
+//! straight lines bridge short gaps.
+
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::simulation::{FlightRecord, Signal};
+use gdcm_model::statistics::median;
+
+use super::frozen_outputs::frozen_runs;
+use super::preparation_settings::{ChannelPreparation, Hold, Preparation};
+use super::record_clock::{Clock, StampRange, StampedValues};
+
+/// Tolerance of a time beyond the last sample, relative to the sample time.
+const ROUNDING: f64 = 1e-6;
+
+/// Finds the valid samples of each channel in `record`: inputs, then outputs.
+pub(crate) fn valid_samples(
+    record: &FlightRecord,
+    clock: &Clock,
+    preparation: &Preparation,
+) -> Vec<ValidSamples> {
+    let channels: Vec<StampedValues> = preparation
+        .channels()
+        .map(|(signal, _)| StampedValues::new(record, clock, signal))
+        .collect();
+    let mut found = Vec::with_capacity(channels.len());
+    for ((signal, settings), channel) in preparation.channels().zip(&channels) {
+        let frozen = if signal.role == ChannelSide::Output && !preparation.keep_frozen {
+            frozen_runs(channel, &channels, clock)
+        } else {
+            Vec::new()
+        };
+        found.push(ValidSamples::new(channel, &frozen, clock, settings));
+    }
+    found
+}
+
+/// Valid samples of a channel, at times relative to the first stamp of the record.
+pub(crate) struct ValidSamples {
+    pub signal: Signal,
+    /// Runs of samples that are not finite or frozen.
+    pub invalid: Vec<InvalidRun>,
+    /// Maximum time between two samples \[s\] that is no gap, or a gap that is bridged.
+    pub longest_step_s: f64,
+    times: Vec<f64>,
+    values: Vec<f64>,
+    /// Delay of the stamps \[s\].
+    shift_s: f64,
+    rounding_s: f64,
+}
+
+impl ValidSamples {
+    fn new(
+        channel: &StampedValues,
+        frozen: &[StampRange],
+        clock: &Clock,
+        settings: &ChannelPreparation,
+    ) -> Self {
+        let is_valid = validity(&channel.values, frozen);
+        let mut places: Vec<usize> = (0..is_valid.len()).filter(|&k| is_valid[k]).collect();
+        let mut longest_step_s = clock.longest_step_s;
+        if settings.hold == Hold::FreshSamples {
+            let held_s = keep_fresh_samples(channel, clock, &mut places);
+            longest_step_s *= (held_s / clock.sample_time_s).max(1.0);
+        }
+        Self {
+            signal: channel.signal.clone(),
+            invalid: invalid_runs(&is_valid, frozen),
+            longest_step_s,
+            times: places.iter().map(|&k| clock.times[k]).collect(),
+            values: places.iter().map(|&k| channel.values[k]).collect(),
+            shift_s: settings.shift_s(),
+            rounding_s: ROUNDING * clock.sample_time_s,
+        }
+    }
+
+    /// Returns a reader, which must be called with ascending times.
+    pub fn reader(&self) -> SampleReader<'_> {
+        SampleReader {
+            samples: self,
+            next: 0,
+        }
+    }
+}
+
+/// Reads the samples of a channel at ascending times.
+pub(crate) struct SampleReader<'a> {
+    samples: &'a ValidSamples,
+    /// Index of the first sample after the last time read.
+    next: usize,
+}
+
+impl SampleReader<'_> {
+    /// Returns the value of the channel at `t` \[s\], on the straight line between two samples;
+    /// `None` in a gap that is cut out, and beyond the ends.
+    pub fn at(&mut self, t: f64) -> Option<f64> {
+        let ValidSamples { times, values, .. } = self.samples;
+        let t = t + self.samples.shift_s;
+        while times.get(self.next).is_some_and(|&time| time <= t) {
+            self.next += 1;
+        }
+        let before = self.next.checked_sub(1)?;
+        let time = times[before];
+        let value = values[before];
+        let Some(&after) = times.get(self.next) else {
+            let is_last = t - time <= self.samples.rounding_s;
+            return if is_last { Some(value) } else { None };
+        };
+        if t == time {
+            return Some(value);
+        }
+        if after - time > self.samples.longest_step_s {
+            return None;
+        }
+        let share = (t - time) / (after - time);
+        Some(value + share * (values[self.next] - value))
+    }
+}
+
+/// Reads all channels at `t` \[s\] into `row`; returns whether every channel has a value.
+pub(crate) fn read_row(readers: &mut [SampleReader<'_>], t: f64, row: &mut [f64]) -> bool {
+    let mut is_complete = true;
+    for (reader, value) in readers.iter_mut().zip(row) {
+        match reader.at(t) {
+            Some(read) => *value = read,
+            None => {
+                *value = 0.0;
+                is_complete = false;
+            }
+        }
+    }
+    is_complete
+}
+
+/// Returns, for each stamp, whether the value is finite and outside the frozen runs.
+fn validity(values: &[f64], frozen: &[StampRange]) -> Vec<bool> {
+    let mut is_valid: Vec<bool> = values.iter().map(|value| value.is_finite()).collect();
+    for run in frozen {
+        is_valid[run.from..run.to].fill(false);
+    }
+    is_valid
+}
+
+/// A run of invalid samples.
+pub(crate) struct InvalidRun {
+    pub stamps: StampRange,
+    /// Whether some of the samples are frozen.
+    pub is_frozen: bool,
+}
+
+/// Finds the runs of invalid samples.
+fn invalid_runs(is_valid: &[bool], frozen: &[StampRange]) -> Vec<InvalidRun> {
+    let mut runs = Vec::new();
+    let mut from = 0;
+    for run in is_valid.chunk_by(|a, b| a == b) {
+        let to = from + run.len();
+        if !run[0] {
+            // The last frozen run that begins before the end of this run; they overlap if it also
+            // ends after its beginning.
+            let before = frozen[..frozen.partition_point(|run| run.from < to)].last();
+            runs.push(InvalidRun {
+                stamps: StampRange { from, to },
+                is_frozen: before.is_some_and(|run| from < run.to),
+            });
+        }
+        from = to;
+    }
+    runs
+}
+
+/// Keeps in `places` the fresh samples of a slow sensor, and returns its sample time \[s\].
+///
+/// A sample is fresh if it differs from the preceding sample, or if the sample time of the sensor
+/// (the median time between changes) has passed since the last fresh sample: a sensor may read the
+/// same value twice.
+fn keep_fresh_samples(channel: &StampedValues, clock: &Clock, places: &mut Vec<usize>) -> f64 {
+    let mut changes = Vec::new();
+    for pair in places.windows(2) {
+        if channel.values[pair[0]] != channel.values[pair[1]] {
+            changes.push(clock.times[pair[1]]);
+        }
+    }
+    let mut holds: Vec<f64> = changes.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    // Without holds the median is NaN, which `max` ignores.
+    let held_s = median(&mut holds).max(clock.sample_time_s);
+    let mut previous: Option<usize> = None;
+    let mut last_fresh_s = f64::NEG_INFINITY;
+    places.retain(|&k| {
+        let time = clock.times[k];
+        let has_changed = previous.is_none_or(|place| channel.values[place] != channel.values[k]);
+        previous = Some(k);
+        let is_fresh = has_changed || time - last_fresh_s >= held_s - 0.5 * clock.sample_time_s;
+        if is_fresh {
+            last_fresh_s = time;
+        }
+        is_fresh
+    });
+    held_s
+}

@@ -1,0 +1,62 @@
+//! Conversion of a model of the Laguerre projections to continuous time (M14.3).
+
+use nalgebra::DMatrix;
+
+use gdcm_model::dataset::StateSpace;
+
+/// Returns the continuous-time model that corresponds to the model `law` of the Laguerre
+/// projections with the pole `pole` \[rad/s\]; `None` if `Ao` has the eigenvalue -1.
+///
+/// ```text
+/// xi_{k+1} = Ao xi_k + Bo u~_k + Ko e~_k,   y~_k = Co xi_k + Do u~_k + e~_k,   k = 0, 1, ...
+/// M = (Ao + I)^-1
+/// A = a M (Ao - I),   B = sqrt(2a) M Bo,   C = sqrt(2a) Co M,   D = Do - Co M Bo
+/// ```
+pub(crate) fn continuous(pole: f64, law: &StateSpace) -> Option<StateSpace> {
+    let a = law.a();
+    let b = law.b();
+    let c = law.c();
+    let d = law.d();
+    let identity = DMatrix::identity(a.nrows(), a.nrows());
+    let m = (a + &identity).try_inverse()?;
+    let mb = &m * b;
+    let cm = c * &m;
+    let root = (2.0 * pole).sqrt();
+    StateSpace::new(
+        &m * (a - &identity) * pole,
+        &mb * root,
+        cm * root,
+        d - c * mb,
+    )
+    .ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identification::known_answers_tests::{answers, matrix, number};
+
+    #[test]
+    fn the_continuous_model_is_that_of_independent_code() {
+        let known = &answers()["laguerre_to_ct"];
+        let [a, b, c, d] = ["Ao", "Bo", "Co", "Do"].map(|name| matrix(&known[name]));
+        let matrices = StateSpace::new(a, b, c, d).unwrap();
+        let model = continuous(number(&known["a"]), &matrices).unwrap();
+        for (found, name) in [
+            (model.a(), "A"),
+            (model.b(), "B"),
+            (model.c(), "C"),
+            (model.d(), "D"),
+        ] {
+            // Expected values from independent numpy code; their file states the tolerance.
+            assert!((found - matrix(&known[name])).amax() < 1e-12, "{name}");
+        }
+    }
+
+    #[test]
+    fn an_eigenvalue_of_minus_one_has_no_continuous_model() {
+        let one = DMatrix::from_element(1, 1, 1.0);
+        let matrices = StateSpace::new(-&one, one.clone(), one.clone(), one).unwrap();
+        assert_eq!(continuous(2.0, &matrices), None);
+    }
+}

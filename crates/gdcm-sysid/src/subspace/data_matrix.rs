@@ -1,0 +1,117 @@
+//! The data matrix of CT-PBSID: Laguerre projections of inputs and outputs, and its triangular
+//! factor (M14.3).
+
+use nalgebra::{DMatrix, DVector};
+
+use gdcm_model::executor::{Executor, each};
+use gdcm_model::simulation::Segment;
+
+use super::laguerre::LaguerreBank;
+use super::triangular_factor::TriangularFactor;
+
+/// Maximum share of a segment that is lost to the incomplete projections at its end.
+const LARGEST_END: f64 = 0.3;
+/// Number of parts whose rows are factored in parallel. Two parts keep two cores busy with three
+/// poles; merging a further part costs as much as a segment of 6 s.
+const PARTS: usize = 2;
+
+/// Settings of the data matrix in CT-PBSID (M14.3).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Projections {
+    /// Laguerre pole `a` \[rad/s\].
+    pub(crate) pole: f64,
+    /// `p`: every channel has the projections 0 to `past`.
+    pub(crate) past: usize,
+    /// Time between the instants at which rows are taken \[s\].
+    pub(crate) spacing_s: f64,
+}
+
+impl Projections {
+    /// Computes the rows of a segment, including its trim and drift.
+    ///
+    /// ```text
+    /// row t_i = [z_0(t_i) | z_1(t_i) | ... | z_p(t_i)]
+    /// z_k = [u~_k; y~_k] the projected inputs and outputs
+    /// instants t_i every `spacing_s`, except for the last min((2p + 4)/a, 0.3 T) s
+    /// ```
+    pub(crate) fn rows(&self, segment: &Segment) -> DMatrix<f64> {
+        let instants = self.instants(segment);
+        let channels = segment.inputs.ncols() + segment.outputs.ncols();
+        let mut rows = DMatrix::zeros(instants.len(), (self.past + 1) * channels);
+        let bank = LaguerreBank::new(self.pole, segment.sample_time_s);
+        let signals = segment
+            .inputs
+            .column_iter()
+            .chain(segment.outputs.column_iter());
+        for (channel, signal) in signals.enumerate() {
+            let end = signal.iter().next_back().copied().unwrap_or_default();
+            let signal: Vec<f64> = signal.iter().map(|sample| sample - end).collect();
+            let projections = bank.projections(&signal, self.past);
+            for (k, projection) in projections.column_iter().enumerate() {
+                // Block k holds the projections z_k of all channels.
+                let mut column = rows.column_mut(k * channels + channel);
+                for (to, &instant) in column.iter_mut().zip(&instants) {
+                    *to = projection[instant];
+                }
+            }
+        }
+        rows
+    }
+
+    /// Returns the indices of the samples at which the rows of a segment are taken.
+    fn instants(&self, segment: &Segment) -> Vec<usize> {
+        let samples = segment.inputs.nrows();
+        let duration = samples as f64 * segment.sample_time_s;
+        let end = ((2.0 * self.past as f64 + 4.0) / self.pole).min(LARGEST_END * duration);
+        let step = ((self.spacing_s / segment.sample_time_s).round() as usize).max(1);
+        let last = samples.saturating_sub((end / segment.sample_time_s).ceil() as usize);
+        (0..last).step_by(step).collect()
+    }
+
+    /// Computes the triangular factor of the data matrix of all segments.
+    ///
+    /// Trim and drift are projected out of each segment first. The result is bit for bit the same
+    /// with any number of threads: they do not decide which segments are factored together.
+    pub(crate) fn factor(&self, segments: &[Segment], executor: &dyn Executor) -> TriangularFactor {
+        let parts = segments.chunks(segments.len().div_ceil(PARTS).max(1));
+        let factors = each(executor, parts, |part| self.factor_part(part));
+        let mut factors = factors.into_iter();
+        let Some(mut factor) = factors.next() else {
+            return TriangularFactor::empty(0);
+        };
+        for other in factors {
+            factor.append(other.matrix());
+        }
+        factor
+    }
+
+    /// Computes the triangular factor of the data matrix of some segments.
+    fn factor_part(&self, segments: &[Segment]) -> TriangularFactor {
+        let channels = segments.first().map_or(0, |segment| {
+            segment.inputs.ncols() + segment.outputs.ncols()
+        });
+        let mut factor = TriangularFactor::empty((self.past + 1) * channels);
+        for segment in segments {
+            let mut rows = self.rows(segment);
+            remove_trend(&mut rows);
+            factor.append(&rows);
+        }
+        factor
+    }
+}
+
+/// Subtracts the projection on `[1, i]` from every column: trim and drift vanish exactly.
+fn remove_trend(rows: &mut DMatrix<f64>) {
+    let count = rows.nrows();
+    let middle = (count.max(1) - 1) as f64 / 2.0;
+    let ramp = DVector::from_fn(count, |row, _| row as f64 - middle);
+    let squared = ramp.norm_squared();
+    for mut column in rows.column_iter_mut() {
+        let mean = column.sum() / count as f64;
+        column.add_scalar_mut(-mean);
+        if squared > 0.0 {
+            let slope = ramp.dot(&column) / squared;
+            column.axpy(-slope, &ramp, 1.0);
+        }
+    }
+}

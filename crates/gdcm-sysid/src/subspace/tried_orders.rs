@@ -1,0 +1,150 @@
+//! Model orders and past windows to try, as far as the amount of data allows (M14.13).
+//!
+//! A data matrix has a block of columns for each of the `past + 1` projections, and a row for each
+//! instant; a model of order n needs a map to the future with at least n rows.
+
+use std::ops::RangeInclusive;
+
+/// Low orders, which are all tried.
+const LOW_ORDERS: RangeInclusive<usize> = 1..=8;
+/// Range of the higher orders, of which the even ones are tried.
+const HIGH_ORDERS: RangeInclusive<usize> = 10..=24;
+/// Maximum odd order that is tried for any number of channels.
+const LAST_ODD_ORDER: usize = 3;
+/// Maximum number of channels for which higher odd orders are tried.
+const ODD_ORDERS_CHANNELS: usize = 6;
+/// Past windows to try for any number of channels.
+const PASTS: [usize; 4] = [8, 10, 12, 16];
+/// Further past window to try for few channels.
+const LONG_PAST: usize = 24;
+/// Maximum number of channels for which `LONG_PAST` is tried.
+const LONG_PAST_CHANNELS: usize = 4;
+/// Minimum past window.
+const LEAST_PAST: usize = 3;
+/// Minimum ratio of rows to columns in a data matrix.
+const ROWS_PER_COLUMN: f64 = 2.0;
+/// Minimum ratio of rows to columns if no past window reaches `ROWS_PER_COLUMN`.
+const ROWS_PER_COLUMN_SHORT: f64 = 1.5;
+/// Number of states for which the map to the future has enough rows.
+const FUTURE_STATES: usize = 30;
+/// Minimum value of the maximum number of block rows in the map to the future.
+const LEAST_FUTURE: usize = 12;
+/// Time between instants (rows of the data matrix) times the upper band end \[rad\].
+pub(crate) const SPACING: f64 = 1.2;
+/// Minimum number of real values ("figures") in the spectral lines for each parameter ("unknown") of
+/// a model (M14.13).
+pub(crate) const FIGURES_AN_UNKNOWN: usize = 5;
+
+/// Counts the parameters of a model with this order, without those that only change the state
+/// basis: `n (m + l) + m l`.
+pub(crate) fn parameters_of_order(order: usize, inputs: usize, outputs: usize) -> usize {
+    order * (inputs + outputs) + inputs * outputs
+}
+
+/// The channel counts and the amount of data.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Extent {
+    pub(crate) inputs: usize,
+    pub(crate) outputs: usize,
+    /// Number of real values in all lines, less the unknowns of the transients.
+    pub(crate) figures: usize,
+    /// Total length of the records times the upper band end \[rad\].
+    pub(crate) radians: f64,
+}
+
+impl Extent {
+    fn channels(self) -> usize {
+        self.inputs + self.outputs
+    }
+
+    /// Returns the maximum number of block rows in the map to the future: enough for 30
+    /// states, and at least 12.
+    pub(crate) fn longest_future(self) -> usize {
+        FUTURE_STATES
+            .div_ceil(self.outputs.max(1))
+            .max(LEAST_FUTURE)
+    }
+
+    /// Returns the past windows that the amount of data allows.
+    pub(crate) fn pasts(self) -> Vec<usize> {
+        let rows = self.radians / SPACING;
+        let mut pasts = PASTS.to_vec();
+        if self.channels() <= LONG_PAST_CHANNELS {
+            pasts.push(LONG_PAST);
+        }
+        pasts.retain(|past| {
+            let columns = ((past + 1) * self.channels()) as f64;
+            rows >= ROWS_PER_COLUMN * columns
+        });
+        if pasts.is_empty() {
+            let block_columns = (rows / (ROWS_PER_COLUMN_SHORT * self.channels() as f64)) as usize;
+            pasts.push(block_columns.saturating_sub(1).max(LEAST_PAST));
+        }
+        pasts
+    }
+
+    /// Returns the orders that the amount of data allows, with past windows up to `longest_past`.
+    pub(crate) fn orders(self, longest_past: usize) -> Vec<usize> {
+        // A model has at most as many states as the map to the future has rows.
+        let most = longest_past.min(self.longest_future()) * self.outputs;
+        let tries_odd = self.channels() <= ODD_ORDERS_CHANNELS;
+        LOW_ORDERS
+            .chain(HIGH_ORDERS.step_by(2))
+            .filter(|order| *order <= LAST_ODD_ORDER || order.is_multiple_of(2) || tries_odd)
+            .filter(|order| *order <= most && self.carries(*order))
+            .collect()
+    }
+
+    /// Whether there are enough real values for the parameters of an order.
+    fn carries(self, order: usize) -> bool {
+        let parameters = parameters_of_order(order, self.inputs, self.outputs);
+        FIGURES_AN_UNKNOWN * parameters <= self.figures
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_axis_of_thirty_seconds_carries_orders_to_14_and_all_past_windows() {
+        // 74 lines of one output: value from independent code (identification-real.json,
+        // short_siso).
+        let extent = Extent {
+            inputs: 1,
+            outputs: 1,
+            figures: 2 * 74 - 2,
+            radians: 30.0 * 12.0,
+        };
+        assert_eq!(extent.pasts(), [8, 10, 12, 16, 24]);
+        assert_eq!(extent.orders(24), [1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14]);
+    }
+
+    #[test]
+    fn many_channels_have_even_orders_and_short_records_short_windows() {
+        let extent = Extent {
+            inputs: 8,
+            outputs: 12,
+            figures: 100_000,
+            radians: 60.0 * 12.0,
+        };
+        assert_eq!(
+            extent.orders(8),
+            [1, 2, 3, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24]
+        );
+        // 600 rows and 20 channels: the ratio of rows to columns is 1.5 for p = 19 and 2 for p =
+        // 14.
+        assert_eq!(extent.pasts(), [8, 10, 12]);
+        let short = Extent {
+            radians: 20.0 * 12.0,
+            ..extent
+        };
+        assert_eq!(short.pasts(), [5]);
+        // 340 rows: a ratio of 2 would need 360 rows for p = 8; a ratio of 1.5 allows p up to 10.
+        let between = Extent {
+            radians: 34.0 * 12.0,
+            ..extent
+        };
+        assert_eq!(between.pasts(), [10]);
+    }
+}

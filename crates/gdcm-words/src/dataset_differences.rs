@@ -1,0 +1,41 @@
+//! Sentences about differences between two states of a dataset, and about decisions that no longer
+//! apply.
+
+use gdcm_study::decisions::dataset_differences::{Difference, NotApplied};
+
+/// Describes a difference between a dataset and an earlier state of it, with which a study was
+/// made.
+pub fn dataset_difference_text(difference: &Difference) -> String {
+    match difference {
+        Difference::AnotherFile { expected, found } => format!(
+            "the dataset has changed since the study was saved, and the study does not record the \
+            earlier contents: expected SHA-256 {expected}, found {found}"
+        ),
+        Difference::ConditionAdded(id) => format!("condition {id} was added"),
+        Difference::ConditionRemoved(id) => format!("condition {id} was removed"),
+        Difference::AirspeedChanged {
+            condition,
+            before_kt,
+            now_kt,
+        } => format!("condition {condition} is at {now_kt} kt; it was at {before_kt} kt"),
+        Difference::ModelAdded(id) => format!("{id} was added"),
+        Difference::ModelRemoved(id) => format!("{id} was removed"),
+        Difference::ModelChanged(id) => format!("{id} has changed"),
+        Difference::NotApplied { decision, why } => {
+            let why = not_applied_text(why);
+            format!("a decision no longer applies: {decision}: {why}")
+        }
+    }
+}
+
+/// Returns why a decision does not apply to a dataset.
+fn not_applied_text(why: &NotApplied) -> String {
+    match why {
+        NotApplied::Refused(refusal) => refusal.to_string(),
+        NotApplied::KeptForAnotherDataset => {
+            "kept in the study for use with another dataset".to_owned()
+        }
+        NotApplied::NoResponse => "the dataset has no such response".to_owned(),
+        NotApplied::NoChannel => "the dataset has no such channel".to_owned(),
+    }
+}

@@ -1,0 +1,204 @@
+//! Differences between two sets of decisions, in words.
+
+use std::collections::BTreeSet;
+use std::fmt;
+
+use gdcm_method::correction::Channel;
+use gdcm_model::dataset::{BundleKind, ConditionId, PairTable};
+use gdcm_study::Study;
+use gdcm_study::decisions::choices::BundleChoice;
+use gdcm_study::decisions::setting::SETTINGS;
+
+/// A decision that differs between two studies.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DecisionDifference {
+    /// Subject of the decision: "α of the gains", "LON → Q", "nominal (condition 10)".
+    pub what: String,
+    /// Previous value: "1", "held", "rejected".
+    pub before: String,
+    pub after: String,
+}
+
+impl DecisionDifference {
+    fn new(what: impl Into<String>, before: impl Into<String>, after: impl Into<String>) -> Self {
+        Self {
+            what: what.into(),
+            before: before.into(),
+            after: after.into(),
+        }
+    }
+}
+
+impl fmt::Display for DecisionDifference {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{}: {} → {}", self.what, self.before, self.after)
+    }
+}
+
+/// Words for the two states of a decision.
+struct YesNo {
+    yes: &'static str,
+    no: &'static str,
+}
+
+impl YesNo {
+    fn word(&self, decision: bool) -> &'static str {
+        if decision { self.yes } else { self.no }
+    }
+}
+
+/// Lists the decisions in which `after` differs from `before`: settings, responses, then condition
+/// by condition. Both studies must have the same dataset. Variants are not compared.
+pub fn decision_differences(before: &Study, after: &Study) -> Vec<DecisionDifference> {
+    let mut differences = setting_differences(before, after);
+    let held = YesNo {
+        yes: "held",
+        no: "free",
+    };
+    let ignored = YesNo {
+        yes: "ignored",
+        no: "fitted",
+    };
+    differences.extend(pair_differences(before, after, &held, |study| {
+        &study.settings.constrained
+    }));
+    differences.extend(pair_differences(before, after, &ignored, |study| {
+        &study.settings.ignored
+    }));
+    differences.extend(sign_differences(before, after));
+    for condition in before.dataset.conditions() {
+        differences.extend(condition_differences(before, after, condition.id()));
+    }
+    differences
+}
+
+fn setting_differences(before: &Study, after: &Study) -> Vec<DecisionDifference> {
+    SETTINGS
+        .iter()
+        .filter(|setting| setting.value(&before.settings) != setting.value(&after.settings))
+        .map(|setting| {
+            DecisionDifference::new(
+                setting.name,
+                setting.words(&before.settings),
+                setting.words(&after.settings),
+            )
+        })
+        .collect()
+}
+
+fn pair_differences(
+    before: &Study,
+    after: &Study,
+    words: &YesNo,
+    marked: fn(&Study) -> &PairTable<bool>,
+) -> Vec<DecisionDifference> {
+    let mut differences = Vec::new();
+    for (pair, &was_marked) in marked(before).iter() {
+        if was_marked != marked(after)[pair] {
+            differences.push(DecisionDifference::new(
+                before.dataset.pair_name(pair),
+                words.word(was_marked),
+                words.word(!was_marked),
+            ));
+        }
+    }
+    differences
+}
+
+fn sign_differences(before: &Study, after: &Study) -> Vec<DecisionDifference> {
+    let mut differences = Vec::new();
+    for channel in Channel::of_dataset(&before.dataset) {
+        if before.signs.get(&channel) != after.signs.get(&channel) {
+            differences.push(DecisionDifference::new(
+                format!("sign of {}", channel.name_in(&before.dataset)),
+                sign_words(before, channel),
+                sign_words(after, channel),
+            ));
+        }
+    }
+    differences
+}
+
+fn sign_words(study: &Study, channel: Channel) -> String {
+    match study.signs.get(&channel) {
+        Some(role) => format!("{} turned", role.models()),
+        None => "as in the file".to_owned(),
+    }
+}
+
+fn condition_differences(
+    before: &Study,
+    after: &Study,
+    id: ConditionId,
+) -> Vec<DecisionDifference> {
+    let scheduled = YesNo {
+        yes: "in the schedule",
+        no: "left out of the schedule",
+    };
+    let held_out = YesNo {
+        yes: "held out",
+        no: "not held out",
+    };
+    let a = before.choice(id);
+    let b = after.choice(id);
+    let mut differences = Vec::new();
+    for (words, before, after) in [
+        (scheduled, a.scheduled, b.scheduled),
+        (held_out, a.held_out, b.held_out),
+    ] {
+        if before != after {
+            differences.push(DecisionDifference::new(
+                format!("condition {id}"),
+                words.word(before),
+                words.word(after),
+            ));
+        }
+    }
+    for kind in BundleKind::BOTH {
+        differences.extend(bundle_differences(id, kind, a.bundle(kind), b.bundle(kind)));
+    }
+    differences
+}
+
+fn bundle_differences(
+    condition: ConditionId,
+    kind: BundleKind,
+    before: &BundleChoice,
+    after: &BundleChoice,
+) -> Vec<DecisionDifference> {
+    let names: BTreeSet<&String> = before.rejected.iter().chain(&after.rejected).collect();
+    let mut differences: Vec<DecisionDifference> = names
+        .into_iter()
+        .map(|name| {
+            DecisionDifference::new(
+                format!("{name} (condition {condition})"),
+                rejection_words(before, name),
+                rejection_words(after, name),
+            )
+        })
+        .collect();
+    differences.push(DecisionDifference::new(
+        format!("{kind} representative (condition {condition})"),
+        representative_words(before),
+        representative_words(after),
+    ));
+    differences.retain(|difference| difference.before != difference.after);
+    differences
+}
+
+fn rejection_words(choice: &BundleChoice, model: &String) -> String {
+    if !choice.rejected.contains(model) {
+        return "kept".to_owned();
+    }
+    match choice.reasons.get(model) {
+        Some(reason) => format!("rejected ({reason})"),
+        None => "rejected".to_owned(),
+    }
+}
+
+fn representative_words(choice: &BundleChoice) -> String {
+    match &choice.pinned {
+        Some(model) => model.clone(),
+        None => "the medoid".to_owned(),
+    }
+}

@@ -1,0 +1,71 @@
+//! Sentences about the price of lead filters (M15.6).
+
+use gdcm_method::correction::LeadPrice;
+use gdcm_model::dataset::Pair;
+use gdcm_model::units::{number, signed};
+
+/// Gain \[dB\] below which the displayed value, rounded to 0.1 dB, is zero.
+const NOTHING_DB: f64 = 0.05;
+
+/// Describes the frequency limit: "not valid above 12 rad/s".
+pub fn limit_text(price: &LeadPrice) -> String {
+    format!("not valid above {} rad/s", number(price.limit_rad_s))
+}
+
+/// Describes the frequency limit, and the gain of each channel with a filter: "not valid above 12
+/// rad/s: at 120 rad/s the leads add +9.1 dB on LON, +11.3 dB on Q; the gain of a response
+/// increases by the sum for its input and output".
+pub fn price_text(price: &LeadPrice, inputs: &[String], outputs: &[String]) -> String {
+    let mut gains = Vec::new();
+    for (channel, &gain_db) in price.gains_db.iter() {
+        if gain_db > NOTHING_DB {
+            let name = channel.name(inputs, outputs);
+            gains.push(format!("{} dB on {name}", signed(gain_db, 1)));
+        }
+    }
+    if gains.is_empty() {
+        return limit_text(price);
+    }
+    format!(
+        "{}: at {} rad/s the leads add {}; the gain of a response increases by the sum for its \
+        input and output",
+        limit_text(price),
+        number(price.above_rad_s()),
+        gains.join(", ")
+    )
+}
+
+/// Describes the added gain of a response: "+18.9 dB at 120 rad/s"; `None` if it rounds to zero.
+pub fn pair_price_text(price: &LeadPrice, pair: Pair) -> Option<String> {
+    let gain_db = price.of_pair_db(pair);
+    if gain_db > NOTHING_DB {
+        let above_rad_s = number(price.above_rad_s());
+        Some(format!("{} dB at {above_rad_s} rad/s", signed(gain_db, 1)))
+    } else {
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use gdcm_method::correction::Channels;
+
+    use super::*;
+
+    #[test]
+    fn a_price_names_the_limit_and_the_channels_with_a_filter() {
+        let price = LeadPrice {
+            limit_rad_s: 12.0,
+            gains_db: Channels {
+                inputs: vec![9.1, 0.0],
+                outputs: vec![11.3],
+            },
+        };
+        let inputs = ["LON".to_owned(), "LAT".to_owned()];
+        assert_eq!(
+            price_text(&price, &inputs, &["Q".to_owned()]),
+            "not valid above 12 rad/s: at 120 rad/s the leads add +9.1 dB on LON, +11.3 dB on Q; \
+            the gain of a response increases by the sum for its input and output"
+        );
+    }
+}

@@ -1,0 +1,97 @@
+//! Sentences about the cost of constraints: by their sensitivity, and by solving without them.
+
+use gdcm_method::correction::Quantity;
+use gdcm_method::correction::channels::pair_name;
+use gdcm_method::correction::sensitivity::{ActiveConstraint, Sensitivity};
+use gdcm_method::correction::toggles::Toggle;
+use gdcm_model::units::number;
+
+/// Describes the sensitivity: the constraint, and the change that would lower the objective by
+/// how much.
+pub fn sensitivity_text(
+    sensitivity: &Sensitivity,
+    inputs: &[String],
+    outputs: &[String],
+) -> String {
+    let name = match sensitivity.constraint {
+        ActiveConstraint::Held(pair) => pair_name(pair, inputs, outputs),
+        ActiveConstraint::LowerBound(channel) | ActiveConstraint::UpperBound(channel) => {
+            let symbol = if sensitivity.quantity.is_gain() {
+                "k"
+            } else {
+                "τ"
+            };
+            format!("{symbol}_{}", channel.name(inputs, outputs))
+        }
+    };
+    let step = sensitivity.step();
+    // `min(100.0)`: an objective close to zero would become negative even for the minimum step.
+    let percent = (100.0 * step * sensitivity.share_per_unit.abs()).min(100.0);
+    let change = if sensitivity.quantity.is_gain() {
+        gain_change_words(sensitivity, &number(step))
+    } else {
+        delay_change_words(sensitivity, &number(step))
+    };
+    format!("{name} is {change} would lower the objective by about {percent:.2} %.")
+}
+
+/// Describes the constraint on a gain, and the change by `step` dB that lowers the objective.
+fn gain_change_words(sensitivity: &Sensitivity, step: &str) -> String {
+    let change = if sensitivity.per_unit > 0.0 {
+        "lowering"
+    } else {
+        "raising"
+    };
+    match sensitivity.constraint {
+        ActiveConstraint::Held(_) => format!("held: {change} its gain by {step} dB"),
+        ActiveConstraint::LowerBound(_) => {
+            format!("on its lower bound: {change} the bound by {step} dB")
+        }
+        ActiveConstraint::UpperBound(_) => {
+            format!("on its upper bound: {change} the bound by {step} dB")
+        }
+    }
+}
+
+/// Describes the constraint on a delay, and the change by `step` ms that lowers the objective.
+fn delay_change_words(sensitivity: &Sensitivity, step: &str) -> String {
+    match sensitivity.constraint {
+        ActiveConstraint::Held(_) if sensitivity.per_unit > 0.0 => {
+            format!("held: {step} ms less delay")
+        }
+        ActiveConstraint::Held(_) => format!("held: {step} ms more delay"),
+        ActiveConstraint::LowerBound(_) if sensitivity.quantity == Quantity::Delay => {
+            format!("0: {step} ms of lead")
+        }
+        ActiveConstraint::LowerBound(_) => format!("at its maximum lead: {step} ms more"),
+        ActiveConstraint::UpperBound(_) => {
+            format!("on its upper bound: raising the bound by {step} ms")
+        }
+    }
+}
+
+/// Describes the cost of constraining the entry: the present cost if it is constrained,
+/// otherwise the cost that would result.
+pub fn toggle_text(toggle: &Toggle, inputs: &[String], outputs: &[String]) -> String {
+    let pair = pair_name(toggle.pair, inputs, outputs);
+    // `+ 0.0`: no change would otherwise be formatted as -0.0.
+    let percent = 100.0 * toggle.share() + 0.0;
+    if toggle.held_now {
+        if toggle.after <= toggle.before {
+            let saved = 0.0 - percent;
+            format!("holding {pair} costs {saved:.1} % of the objective")
+        } else {
+            format!(
+                "releasing {pair} would raise the objective by {percent:.1} %, because other \
+                responses could then be held more closely"
+            )
+        }
+    } else if toggle.matched_after {
+        format!("holding {pair} would change the objective by {percent:+.1} %")
+    } else {
+        format!(
+            "{pair} cannot be held in addition to the held responses; the attempt would \
+            change the objective by {percent:+.1} %"
+        )
+    }
+}

@@ -1,0 +1,185 @@
+//! Summary printed by `gdcm analyze`.
+
+use std::path::Path;
+
+use gdcm_io::LoadedDataset;
+use gdcm_io::files::corrections_file::RESULT_FILES;
+use gdcm_io::report::assessment_sentence;
+use gdcm_method::correction::delta::GainSource;
+use gdcm_model::dataset::Dataset;
+use gdcm_model::message_text::{sanitized, sanitized_path};
+use gdcm_model::units::six_digits;
+use gdcm_study::results::convention_doubt::ConventionDoubt;
+use gdcm_study::results::coupling_remark_search::analysis_coupling_remarks;
+use gdcm_study::results::remark_kind::RemarkKind;
+use gdcm_study::{Analysis, AssessedCorrection, AssessmentTable, PhaseCorrection};
+use gdcm_words::assessment::{held_out_verdict, not_assessed_text};
+use gdcm_words::convention_doubt::doubt_text;
+use gdcm_words::coupling_remark::coupling_remark_text;
+use gdcm_words::couplings::{coupling_cost_table, coupling_matrix_tables, couplings_heading};
+
+use super::condition_summary::condition_section;
+use super::evidence_summary::evidence_section;
+use super::leave_one_out::nominal_choice;
+use super::printed_lines::{detail, indented, line};
+use super::schedule_summary::schedule_section;
+use super::shared_cautions::cautions_section;
+use super::terminal::keep_caution;
+
+/// Returns the printed summary: settings, results of each condition, schedule, assessment, and
+/// output files.
+pub(super) fn summary(analysis: &Analysis, loaded: &LoadedDataset, out: &Path) -> String {
+    let mut text = heading(analysis, loaded);
+    text += &doubts_section(analysis);
+    for condition in analysis.study.dataset.conditions() {
+        text += "\n";
+        text += &condition_section(analysis, condition);
+    }
+    text += &couplings_section(analysis);
+    text += "\n";
+    text += &cautions_section(analysis);
+    text += &schedule_section(analysis);
+    text += &assessment_lines(analysis);
+    text += &held_out_line(analysis);
+    text += &evidence_section(analysis);
+    let files = format!("{} in {}", RESULT_FILES.join(", "), sanitized_path(out));
+    text + &line("Written", &files)
+}
+
+/// Returns the doubts about signs and units, and adds them to the JSON object.
+fn doubts_section(analysis: &Analysis) -> String {
+    let mut text = String::new();
+    for doubt in &analysis.doubts {
+        let words = doubt_words(doubt, &analysis.study.dataset);
+        keep_caution(&doubt.conditions, &words);
+        text += &line("Caution", &sanitized(&words));
+    }
+    text
+}
+
+/// Describes a doubt about the sign or unit of a channel, with the option that inverts the sign.
+pub(super) fn doubt_words(doubt: &ConventionDoubt, dataset: &Dataset) -> String {
+    let mut words = doubt_text(doubt, dataset);
+    if let Some(channel) = doubt.turns() {
+        let (inputs, outputs) = dataset.names_of_channels();
+        words += &format!(" (--sign {}=-1)", channel.name(&inputs, &outputs));
+    }
+    words
+}
+
+/// Describes the dataset and the settings.
+fn heading(analysis: &Analysis, loaded: &LoadedDataset) -> String {
+    let study = &analysis.study;
+    let settings = &study.settings;
+    let dataset = format!("{}, {}", sanitized(study.dataset.name()), loaded.origin);
+    let band = format!(
+        "{} to {} rad/s, {} frequencies; alpha {} (gains), {} (delays)",
+        six_digits(settings.band.min()),
+        six_digits(settings.band.max()),
+        settings.points,
+        six_digits(settings.alpha_gain),
+        six_digits(settings.alpha_delay)
+    );
+    let mut text = line("Dataset", &dataset) + &line("Band", &band);
+    if settings.gain_source != GainSource::default() {
+        text += &line("G from", &settings.gain_source_words());
+    }
+    for turned in study.turned_channels() {
+        let channel = sanitized(&turned.channel);
+        let words = format!("{channel} of {} is inverted", turned.of.models());
+        text += &line("Sign", &words);
+    }
+    text += &line("Phase", &phase_words(analysis));
+    text + &line("Held", &held_words(analysis))
+}
+
+/// Describes the phase correction: none, delays, or delays and lead filters.
+fn phase_words(analysis: &Analysis) -> String {
+    let settings = &analysis.study.settings;
+    match settings.phase {
+        PhaseCorrection::None => "not corrected".to_owned(),
+        PhaseCorrection::Delay => {
+            format!("corrected by delays; D is the {}", settings.delay_from)
+        }
+        PhaseCorrection::Lead => format!(
+            "corrected by a delay or a lead filter per channel: order {}, n {}, R_max {}",
+            settings.lead.order.number(),
+            six_digits(settings.lead.pole),
+            six_digits(settings.lead.limit)
+        ),
+    }
+}
+
+/// Lists the constrained responses.
+fn held_words(analysis: &Analysis) -> String {
+    let study = &analysis.study;
+    let held: Vec<String> = study
+        .settings
+        .constrained
+        .marked()
+        .map(|pair| sanitized(&study.dataset.pair_name(pair)))
+        .collect();
+    if held.is_empty() {
+        "none".to_owned()
+    } else {
+        held.join(", ")
+    }
+}
+
+/// Returns the meaning, benefit and cost of the couplings; empty without couplings.
+fn couplings_section(analysis: &Analysis) -> String {
+    let remarks = analysis_coupling_remarks(analysis);
+    if remarks.is_empty() {
+        return String::new();
+    }
+    let mut text = "\n".to_owned();
+    if let Some(assessment) = &analysis.coupling_assessment {
+        text += &line("Couplings", &sanitized(&couplings_heading(assessment)));
+        text += &indented(&coupling_cost_table(assessment), 2);
+        for mut table in coupling_matrix_tables(assessment, &analysis.study.dataset) {
+            for row in &mut table.rows {
+                if let Some(name) = row.first_mut() {
+                    *name = sanitized(name);
+                }
+            }
+            for name in &mut table.columns {
+                *name = sanitized(name);
+            }
+            text += &indented(&table, 2);
+        }
+    }
+    for remark in &remarks {
+        let sentence = coupling_remark_text(remark, &analysis.study.dataset);
+        let label = match remark.kind() {
+            RemarkKind::Good => "couplings",
+            RemarkKind::Caution | RemarkKind::Trouble => {
+                keep_caution(&[], &sentence);
+                "caution"
+            }
+        };
+        text += &detail(label, &sanitized(&sentence));
+    }
+    text
+}
+
+/// Returns the change of J of the nominal models due to the scheduled correction, and the
+/// conditions that were not assessed.
+fn assessment_lines(analysis: &Analysis) -> String {
+    let mut text = line("Assessment", &sanitized(&assessment_sentence(analysis)));
+    let choice = nominal_choice(analysis, AssessedCorrection::Scheduled);
+    for left_out in AssessmentTable::assess(analysis, choice).left_out {
+        let why = sanitized(&not_assessed_text(&left_out.why, &analysis.study.dataset));
+        let words = format!("condition {}: {why}", left_out.condition);
+        text += &line("Left out", &words);
+    }
+    text
+}
+
+/// Returns the assessment of the schedule in the held-out conditions.
+fn held_out_line(analysis: &Analysis) -> String {
+    let choice = nominal_choice(analysis, AssessedCorrection::Scheduled);
+    match held_out_verdict(analysis, choice) {
+        Some(words) => line("Held out", &words),
+        None => String::new(),
+    }
+}

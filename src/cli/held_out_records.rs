@@ -1,0 +1,46 @@
+//! Records that are held out for validation (`gdcm identify --hold-out`).
+
+use gdcm_sysid::records::LaidOutRecord;
+
+use super::failure::Failure;
+use super::option_values::record_part;
+use super::record_parts::{WholeRecord, is_called, is_part};
+
+/// Holds out the requested records or parts; `wholes` are the records from which parts were cut.
+/// Without a request, the records whose names mark them as validation are held out.
+pub(super) fn hold_out(
+    names: &[String],
+    records: &mut [LaidOutRecord],
+    wholes: &[WholeRecord],
+) -> Result<(), Failure> {
+    if !names.is_empty() {
+        for record in records.iter_mut() {
+            record.guess.held_out = false;
+        }
+    }
+    for name in names {
+        let part = record_part(name).ok();
+        let mut is_found = false;
+        for record in records.iter_mut() {
+            let table = &record.table;
+            let is_held_part = match &part {
+                Some(part) => table.part_s.is_some() && is_part(table, part, wholes),
+                None => false,
+            };
+            if is_held_part || is_called(table, name) {
+                record.guess.held_out = true;
+                is_found = true;
+            }
+        }
+        if !is_found {
+            let reason =
+                format!("no record is called \"{name}\"; give its file among the records too");
+            return Err(Failure::coded_option(
+                "--hold-out",
+                "unknown-record",
+                reason,
+            ));
+        }
+    }
+    Ok(())
+}

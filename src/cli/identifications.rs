@@ -1,0 +1,228 @@
+//! Runs the identifications of `gdcm identify` and writes their results: a file for each, and the
+//! dataset that receives the models.
+
+use std::path::{Path, PathBuf};
+
+use gdcm_io::files::dataset_file::add_dataset;
+use gdcm_io::files::identified_models::{IdentifiedModels, add_identified};
+use gdcm_io::import::record_files::relative_entry;
+use gdcm_io::output_set::{OutputSet, make_directory};
+use gdcm_model::dataset::condition::ConditionRecord;
+use gdcm_model::message_text::sanitized_path;
+use gdcm_model::number_format::counted;
+use gdcm_study::decisions::adopted_models::AdoptedModels;
+use gdcm_sysid::identification::{CautionNote, Identification, IdentificationError};
+use gdcm_sysid::records::RecordChannels;
+use gdcm_sysid::spectra::record_use::RecordUse;
+
+use super::condition_messages::{ConditionMessage, shared_messages};
+use super::failure::Failure;
+use super::flight_records::Duplicate;
+use super::identification_task::IdentificationTask;
+use super::identify_arguments::IdentifyArguments;
+use super::receiving_dataset::ReceivingDataset;
+use super::terminal::{caution_for, note, print};
+
+/// Command line, channels and record messages on which all identifications are based.
+#[derive(Clone, Copy)]
+pub(super) struct IdentificationBasis<'a> {
+    pub(super) arguments: &'a IdentifyArguments,
+    pub(super) channels: &'a RecordChannels,
+    /// Notes about assumptions made while the records were read.
+    pub(super) reading: &'a [String],
+    pub(super) duplicates: &'a [Duplicate],
+}
+
+/// Results of the identifications so far, and the output files.
+pub(super) struct Identifications<'a> {
+    basis: IdentificationBasis<'a>,
+    destination: Option<ReceivingDataset>,
+    outputs: OutputSet,
+    /// Lines to be printed about the results.
+    lines: String,
+    /// Number of successful identifications.
+    count: usize,
+    /// Whether any records identify at least one input.
+    identifies_input: bool,
+    cautions: Vec<ConditionMessage>,
+}
+
+impl<'a> Identifications<'a> {
+    /// Begins without results; `destination` is the dataset that receives the models.
+    pub(super) fn new(
+        basis: IdentificationBasis<'a>,
+        destination: Option<ReceivingDataset>,
+        outputs: OutputSet,
+    ) -> Self {
+        Self {
+            basis,
+            destination,
+            outputs,
+            lines: String::new(),
+            count: 0,
+            identifies_input: false,
+            cautions: Vec::new(),
+        }
+    }
+
+    /// Runs all tasks. A failure ends the command if there is a single task; otherwise it becomes a
+    /// caution about the condition.
+    pub(super) fn run(&mut self, tasks: &[IdentificationTask]) -> Result<(), Failure> {
+        let files: Vec<PathBuf> = tasks
+            .iter()
+            .map(|task| task.output_path(self.basis.arguments))
+            .collect();
+        let mut places: Vec<&Path> = files.iter().map(PathBuf::as_path).collect();
+        places.extend(self.destination.iter().map(|place| place.path.as_path()));
+        self.outputs.check(&places)?;
+        let tables: String = tasks.iter().map(IdentificationTask::table).collect();
+        print(&tables)?;
+        for (task, file) in tasks.iter().zip(&files) {
+            match task.run() {
+                Ok(found) => self.take(task, file, &found)?,
+                Err(IdentificationError::Stopped(stopped)) => return Err(stopped.into()),
+                Err(why) if tasks.len() == 1 => {
+                    return Err(Failure::NoModels {
+                        reason: why.to_string(),
+                    });
+                }
+                Err(why) => self.cautions.push(ConditionMessage::new(
+                    task.condition,
+                    format!("no model was identified: {why}"),
+                )),
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds the result of a task to the output files, and prints its notes and cautions.
+    fn take(
+        &mut self,
+        task: &IdentificationTask,
+        file: &Path,
+        found: &Identification,
+    ) -> Result<(), Failure> {
+        let records: Vec<ConditionRecord> = task
+            .records
+            .iter()
+            .zip(&found.record_uses)
+            .map(|(record, used)| record.entry(used, self.basis.channels))
+            .collect();
+        let facts: Vec<String> = found
+            .record_uses
+            .iter()
+            .flat_map(RecordUse::facts)
+            .collect();
+        for fact in &facts {
+            note(fact);
+        }
+        let reading = [self.basis.reading, &facts].concat();
+        let cautions = self.cautions_of(task, found);
+        let channels = self.model_channels();
+        self.identifies_input |= identifies_any_input(found, &channels);
+        make_directory(&self.basis.arguments.out)?;
+        let models = IdentifiedModels {
+            found,
+            channels: &channels,
+            records: &records,
+            cautions: &cautions,
+            reading: &reading,
+        };
+        add_identified(&models, file, &mut self.outputs)?;
+        if let (Some(destination), Some(condition)) = (&mut self.destination, task.condition) {
+            let entries = records.into_iter().map(|entry| {
+                relative_entry(entry, &self.basis.arguments.records, &destination.path)
+            });
+            let offered = self.basis.arguments.take.offered();
+            let models = AdoptedModels::from_identification(found, offered, entries.collect());
+            destination.adopt(condition, &models)?;
+        }
+        self.lines += &task.outcome(file, found);
+        self.count += 1;
+        Ok(())
+    }
+
+    /// Returns the cautions of a task, and stores them to be printed at the end. Those about
+    /// duplicates are not stored: they have already been printed.
+    fn cautions_of(
+        &mut self,
+        task: &IdentificationTask,
+        found: &Identification,
+    ) -> Vec<CautionNote> {
+        let dataset = self.destination.as_ref().map(|place| &*place.dataset);
+        let mut cautions = task.cautions(found, dataset);
+        for caution in &cautions {
+            let message = ConditionMessage::new(task.condition, caution.text.clone());
+            self.cautions.push(message);
+        }
+        for duplicate in self.basis.duplicates {
+            if task.has_record(&duplicate.original) {
+                cautions.push(duplicate.caution.clone());
+            }
+        }
+        cautions
+    }
+
+    /// Returns the channels of the model, that is, without the reference channels that follow the
+    /// inputs.
+    fn model_channels(&self) -> RecordChannels {
+        let mut channels = self.basis.channels.clone();
+        let references = self.basis.arguments.references().len();
+        channels.inputs.truncate(channels.inputs.len() - references);
+        channels
+    }
+
+    /// Writes the output files and prints the cautions and the lines about the results.
+    ///
+    /// # Errors
+    /// No task has a result, or the records identify no input.
+    pub(super) fn finish(mut self, task_count: usize) -> Result<(), Failure> {
+        for message in shared_messages(self.cautions) {
+            caution_for(&message.conditions, &message.text);
+        }
+        if self.count == 0 {
+            return Err(Failure::NoModels {
+                reason: format!("all {task_count} conditions failed"),
+            });
+        }
+        if let Some(destination) = &self.destination {
+            add_dataset(&destination.dataset, &destination.path, &mut self.outputs)?;
+            self.lines += &format!(
+                "{}: identified models of {}\n",
+                sanitized_path(&destination.path),
+                counted(self.count, "condition")
+            );
+        }
+        self.outputs.persist()?;
+        print(&self.lines)?;
+        if self.identifies_input {
+            return Ok(());
+        }
+        let inputs = self
+            .basis
+            .channels
+            .inputs
+            .iter()
+            .map(|rule| rule.name.as_str());
+        let inputs: Vec<&str> = inputs.collect();
+        Err(Failure::NotIdentified {
+            inputs: inputs.join(", "),
+        })
+    }
+}
+
+/// Returns whether the records identify at least one input.
+fn identifies_any_input(found: &Identification, channels: &RecordChannels) -> bool {
+    let outputs = channels.outputs.len();
+    (0..channels.inputs.len()).any(|input| is_identified(found, input, outputs))
+}
+
+/// Returns whether the records identify an input: the other inputs do not explain it, and at least
+/// one response to it is identified (M14).
+fn is_identified(found: &Identification, input: usize, outputs: usize) -> bool {
+    let excitation = found.measured.excitation();
+    if excitation.not_identified().any(|other| other == input) {
+        return false;
+    }
+    (0..outputs).any(|output| !found.not_identified.contains(&(output, input)))
+}

@@ -1,0 +1,74 @@
+//! Printed assessment of the schedule by leaving each condition in turn out of its fit.
+
+use gdcm_model::message_text::sanitized;
+use gdcm_study::results::assessment_table::{AssessedModel, AssessmentChoice};
+use gdcm_study::{Analysis, AssessedCorrection, AssessmentTable};
+use gdcm_words::Table;
+use gdcm_words::assessment::not_assessed_text;
+
+use super::printed_lines::{detail, fixed_digits, indented, line};
+
+/// Returns the change in J of each condition's nominal model when the schedule is fitted to the
+/// other conditions only.
+pub(super) fn leave_one_out_section(analysis: &Analysis) -> String {
+    let seen = assessment(analysis, AssessedCorrection::Scheduled);
+    let unseen = assessment(analysis, AssessedCorrection::ScheduleOfOthers);
+    let mut text = line(
+        "Left out",
+        "change of J in each condition with a schedule fitted to the others, on-axis mean:",
+    );
+    let mut table = Table::new("", ["condition", "kt", "schedule of all", "of the others"]);
+    for condition in &unseen.conditions {
+        let id = condition.condition;
+        let mean_change = |table: &AssessmentTable| {
+            let mut changes: Vec<f64> = Vec::new();
+            for pair in analysis.study.dataset.measuring_pairs().marked() {
+                changes.extend(table.change(id, pair).map(|change| change.total()));
+            }
+            mean(&changes)
+        };
+        table.row([
+            id.to_string(),
+            fixed_digits(Some(condition.airspeed_kt), 0),
+            fixed_digits(mean_change(&seen), 1),
+            fixed_digits(mean_change(&unseen), 1),
+        ]);
+    }
+    text += &indented(&table, 2);
+    for left_out in &unseen.left_out {
+        let why = sanitized(&not_assessed_text(&left_out.why, &analysis.study.dataset));
+        text += &detail("", &format!("condition {}: {why}", left_out.condition));
+    }
+    if analysis.fitted_couplings().is_some() {
+        let words = "these couplings are fitted to all conditions; for J with couplings fitted \
+            without each condition, see Couplings";
+        text += &detail("", words);
+    }
+    text
+}
+
+/// Returns the default choice for assessing a correction: the nominal models, with the average of J
+/// that the study sets.
+pub(super) fn nominal_choice(
+    analysis: &Analysis,
+    correction: AssessedCorrection,
+) -> AssessmentChoice {
+    AssessmentChoice {
+        model: AssessedModel::Nominal,
+        correction,
+        average: analysis.study.settings.cost_average,
+    }
+}
+
+fn assessment(analysis: &Analysis, correction: AssessedCorrection) -> AssessmentTable {
+    AssessmentTable::assess(analysis, nominal_choice(analysis, correction))
+}
+
+/// Returns the mean of some values; `None` if there are none.
+fn mean(values: &[f64]) -> Option<f64> {
+    if values.is_empty() {
+        None
+    } else {
+        Some(values.iter().sum::<f64>() / values.len() as f64)
+    }
+}

@@ -1,0 +1,214 @@
+//! The dataset that receives identified models (`gdcm identify --into`).
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use gdcm_io::reading_budget::ReadingBudget;
+use gdcm_io::relative_folder::relative_folder;
+use gdcm_io::{Opened, load_any};
+use gdcm_model::dataset::condition::ConditionRecord;
+use gdcm_model::dataset::{ConditionId, Dataset};
+use gdcm_study::decisions::adopted_models::AdoptedModels;
+use gdcm_sysid::records::LaidOutRecord;
+
+use super::condition_messages::listed_conditions;
+use super::dataset_lookup::{condition_ids, condition_of};
+use super::failure::Failure;
+use super::identify_arguments::IdentifyArguments;
+use super::terminal::{caution, note};
+
+/// Records from which models are identified jointly.
+pub(super) struct RecordGroup {
+    /// Condition of the records; `None` without a dataset.
+    pub(super) condition: Option<ConditionId>,
+    pub(super) records: Vec<LaidOutRecord>,
+}
+
+/// A dataset that receives identified models.
+pub(super) struct ReceivingDataset {
+    pub(super) dataset: Arc<Dataset>,
+    /// Path of the extended dataset.
+    pub(super) path: PathBuf,
+    /// Condition that receives all records; `None` if each record goes to the condition in its
+    /// name.
+    condition: Option<ConditionId>,
+}
+
+impl ReceivingDataset {
+    /// Opens the dataset given by `--into`; `None` without this option.
+    pub(super) fn open(arguments: &IdentifyArguments) -> Result<Option<Self>, Failure> {
+        let Some(path) = arguments.into.as_deref() else {
+            return Ok(None);
+        };
+        let Opened::Dataset(loaded) = load_any(path, &ReadingBudget::default())? else {
+            let reason = "expected a dataset, found a study; give the study's dataset";
+            return Err(Failure::option("--into", reason));
+        };
+        let condition = match arguments.condition {
+            Some(id) => Some(condition_of(&loaded.dataset, id)?),
+            None => None,
+        };
+        let written = arguments.out.join(path.file_name().unwrap_or_default());
+        let folder = relative_folder(path.parent().unwrap_or(Path::new("")), &written);
+        let dataset = moved_dataset(&loaded.dataset, &folder, arguments.description.as_deref())?;
+        Ok(Some(Self {
+            dataset: Arc::new(dataset),
+            path: written,
+            condition,
+        }))
+    }
+
+    /// Groups the records by condition, in the order of the dataset. Omitted records are reported
+    /// on standard error.
+    pub(super) fn groups(&self, records: Vec<LaidOutRecord>) -> Result<Vec<RecordGroup>, Failure> {
+        match self.condition {
+            Some(condition) => Ok(vec![group_for_condition(condition, records)?]),
+            None => self.groups_by_name(records),
+        }
+    }
+
+    /// Groups the records by the conditions given in their names.
+    fn groups_by_name(&self, records: Vec<LaidOutRecord>) -> Result<Vec<RecordGroup>, Failure> {
+        let mut groups: Vec<RecordGroup> = Vec::new();
+        for condition in self.dataset.conditions() {
+            groups.push(RecordGroup {
+                condition: Some(condition.id()),
+                records: Vec::new(),
+            });
+        }
+        for record in records {
+            let condition = record.guess.condition_of(&self.dataset);
+            let group = groups.iter_mut().find(|group| group.condition == condition);
+            match group {
+                Some(group) => group.records.push(record),
+                None => caution(&format!(
+                    "{}: left out, because its name gives no condition of the dataset",
+                    record.table.name
+                )),
+            }
+        }
+        let without: Vec<ConditionId> = groups
+            .iter()
+            .filter(|group| group.records.is_empty())
+            .filter_map(|group| group.condition)
+            .collect();
+        if !without.is_empty() {
+            note(&format!(
+                "{}: no records; the identified models remain unchanged",
+                listed_conditions(&without)
+            ));
+        }
+        groups.retain(|group| !group.records.is_empty());
+        if groups.is_empty() {
+            let reason = format!(
+                "no record name gives a condition of the dataset ({}); a name with cond03 gives \
+                condition 3",
+                condition_ids(&self.dataset)
+            );
+            return Err(Failure::coded_option(
+                "--every-condition",
+                "no-records",
+                reason,
+            ));
+        }
+        Ok(groups)
+    }
+
+    /// Adds identified models and their records to a condition.
+    pub(super) fn adopt(
+        &mut self,
+        condition: ConditionId,
+        models: &AdoptedModels,
+    ) -> Result<(), Failure> {
+        let dataset =
+            models
+                .put_into(&self.dataset, condition)
+                .map_err(|error| Failure::NoModels {
+                    reason: format!("the models cannot be added to the dataset: {error}"),
+                })?;
+        self.dataset = Arc::new(dataset);
+        Ok(())
+    }
+}
+
+/// Returns the group of a condition. Records whose names give another condition are omitted and
+/// reported on standard error.
+fn group_for_condition(
+    condition: ConditionId,
+    records: Vec<LaidOutRecord>,
+) -> Result<RecordGroup, Failure> {
+    let count = records.len();
+    let mut own = Vec::new();
+    let mut others = Vec::new();
+    for record in records {
+        match record.guess.condition {
+            Some(id) if ConditionId(id) != condition => others.push(record),
+            _ => own.push(record),
+        }
+    }
+    if !others.is_empty() {
+        caution(&format!(
+            "{} of {count} records left out: their names give condition {}, not {condition}",
+            others.len(),
+            named_conditions(&others)
+        ));
+    }
+    if own.is_empty() {
+        let reason = format!(
+            "no record is left for condition {condition}; rename the records that belong to it"
+        );
+        return Err(Failure::coded_option("--condition", "no-records", reason));
+    }
+    Ok(RecordGroup {
+        condition: Some(condition),
+        records: own,
+    })
+}
+
+/// Lists the conditions given in record names: "3, 7".
+pub(super) fn named_conditions(records: &[LaidOutRecord]) -> String {
+    let named: BTreeSet<i64> = records
+        .iter()
+        .filter_map(|record| record.guess.condition)
+        .collect();
+    let named: Vec<String> = named.iter().map(i64::to_string).collect();
+    named.join(", ")
+}
+
+/// Adapts a dataset to a file in another folder: prefixes the paths of records with `folder`, and
+/// replaces the description if a new one is given.
+fn moved_dataset(
+    dataset: &Dataset,
+    folder: &str,
+    description: Option<&str>,
+) -> Result<Dataset, Failure> {
+    const OPTION: &str = "--description";
+    let mut header = dataset.header();
+    if let Some(description) = description {
+        header.description = description.to_owned();
+    }
+    let mut conditions = Vec::new();
+    for condition in dataset.conditions() {
+        let mut records: Vec<ConditionRecord> = condition.records().to_vec();
+        for record in &mut records {
+            record.file = moved_file(&record.file, folder);
+        }
+        let condition = condition
+            .as_ref()
+            .clone()
+            .with_records(records)
+            .map_err(|error| Failure::option(OPTION, error))?;
+        conditions.push(condition);
+    }
+    Dataset::new(header, conditions).map_err(|error| Failure::option(OPTION, error))
+}
+
+/// Returns the path prefixed with `folder`; an absolute path is unchanged.
+fn moved_file(file: &str, folder: &str) -> String {
+    if folder.is_empty() || folder == "." || Path::new(file).is_absolute() {
+        file.to_owned()
+    } else {
+        format!("{folder}/{file}")
+    }
+}

@@ -1,0 +1,97 @@
+//! The analysis of a study by a command.
+
+use std::sync::Arc;
+
+use gdcm_study::{Analysis, Edit, Engine, Study};
+use gdcm_words::caution::failure_text;
+
+use super::condition_messages::{ConditionMessage, SharedMessage, shared_messages};
+use super::failure::Failure;
+use super::progress::TerminalProgress;
+use super::study_arguments::StudyArguments;
+use super::study_options::apply;
+use super::terminal::coded_caution;
+use crate::executor::Pool;
+
+/// Whether an analysis computes error bars.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum ErrorBars {
+    Computed,
+    Omitted,
+}
+
+/// An analysis with the engine that computed it.
+pub(super) struct StudyAnalysis {
+    pub(super) analysis: Analysis,
+    pub(super) engine: Engine,
+}
+
+/// Analyses a study; if requested, the suggested outliers are first rejected. With error bars, the
+/// couplings are assessed too. Conditions without a result are reported on standard error.
+///
+/// # Errors
+/// No condition has a result.
+pub(super) fn analyze_study(
+    mut study: Study,
+    arguments: &StudyArguments,
+    bars: ErrorBars,
+) -> Result<StudyAnalysis, Failure> {
+    let mut engine = Engine::with_executor(Box::new(Pool));
+    let progress = TerminalProgress::new("analysing");
+    let mut analysis = engine.analyze(&study, &progress)?;
+    if arguments.reject_suggested && reject_suggested(&mut study, &analysis)? {
+        analysis = engine.analyze(&study, &progress)?;
+    }
+    if bars == ErrorBars::Computed {
+        analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, &progress)?));
+        let assessed = engine.assess_couplings(&study, study.settings.couplings, &progress)?;
+        analysis.coupling_assessment = assessed.and_then(Result::ok);
+    }
+    drop(progress);
+    report_failed_conditions(&analysis)?;
+    Ok(StudyAnalysis { analysis, engine })
+}
+
+/// Reports conditions without a result on standard error.
+///
+/// # Errors
+/// No condition has a result.
+fn report_failed_conditions(analysis: &Analysis) -> Result<(), Failure> {
+    let mut failures = Vec::new();
+    for (id, outcome) in &analysis.conditions {
+        if let Err(failure) = outcome {
+            failures.push((*id, failure));
+        }
+    }
+    let messages = failures.iter().map(|(id, failure)| {
+        ConditionMessage::new(*id, failure_text(failure, &analysis.study.dataset))
+    });
+    let shared = shared_messages(messages);
+    if let Some(first) = shared.first()
+        && failures.len() == analysis.conditions.len()
+    {
+        return Err(Failure::NoResult {
+            reason: first.words(),
+        });
+    }
+    for SharedMessage { conditions, text } in &shared {
+        let failure = failures.iter().find(|(id, _)| conditions.contains(id));
+        let code = failure.map(|(_, failure)| failure.code());
+        coded_caution(code, conditions, text);
+    }
+    Ok(())
+}
+
+/// Rejects the suggested outliers; returns whether any was not yet rejected.
+fn reject_suggested(study: &mut Study, analysis: &Analysis) -> Result<bool, Failure> {
+    let before = study.clone();
+    for (&condition, outcome) in &analysis.conditions {
+        let models = match outcome {
+            Ok(result) => result.suggested(),
+            Err(_) => Default::default(),
+        };
+        let edit = Edit::reject_physics(condition, &models);
+        apply(study, "--reject-suggested", &edit)?;
+    }
+    Ok(*study != before)
+}

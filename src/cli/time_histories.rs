@@ -1,0 +1,185 @@
+//! Flight records with which models are compared in the time domain (M17.2).
+
+use gdcm_io::import::record_files::FoundRecords;
+use gdcm_model::dataset::{Band, ConditionId, Dataset};
+use gdcm_model::message_text::{sanitized, sanitized_path};
+use gdcm_study::results::record_simulations::time_histories_of;
+use gdcm_study::results::time_histories::{HistoryRecords, TimeHistories};
+use gdcm_study::{Analysis, Execution};
+use gdcm_sysid::identification::Preparation;
+use gdcm_sysid::records::record_channels::SaidConversion;
+use gdcm_sysid::records::{
+    LaidOutRecord, LayoutProblem, RecordChannels, RecordTable, TimeWish, leave_out_copies,
+    with_topics_joined,
+};
+
+use super::failure::Failure;
+use super::flight_records::{found_records, report_duplicates};
+use super::progress::TerminalProgress;
+use super::requested_channels::declare_conversions;
+use super::result_arguments::HistoryArguments;
+use super::terminal::{caution, note};
+use crate::executor::Pool;
+
+/// Flight records of each condition, and those that could not be read.
+#[derive(Default)]
+pub(super) struct ReadHistories {
+    pub(super) conditions: Vec<HistoryRecords>,
+    /// Requested records that could not be read completely.
+    unread: Vec<String>,
+}
+
+impl ReadHistories {
+    /// Returns the outcome of a command that used these records: a failure if some of them were not
+    /// read completely.
+    pub(super) fn into_outcome(self) -> Result<(), Failure> {
+        if self.unread.is_empty() {
+            return Ok(());
+        }
+        Err(Failure::Unread {
+            paths: self.unread.join(", "),
+        })
+    }
+}
+
+/// Reads the records of each condition. Topics are resampled to a sample rate suitable for `band`;
+/// omitted records are reported on standard error.
+pub(super) fn read_histories(
+    arguments: &HistoryArguments,
+    dataset: &Dataset,
+    band: Band,
+) -> Result<ReadHistories, Failure> {
+    if arguments.records.is_empty() {
+        return Ok(ReadHistories::default());
+    }
+    let FoundRecords { tables, unread, .. } = found_records(&arguments.records)?;
+    let mut unread: Vec<String> = unread.iter().map(|path| sanitized_path(path)).collect();
+    let mut channels = RecordChannels::of_dataset(dataset);
+    channels.resampling.band_end = Some(band.max());
+    declare_conversions(
+        "--unit",
+        &arguments.unit,
+        SaidConversion::Unit,
+        &mut channels,
+    )?;
+    // The records, and at the same index the condition of each.
+    let mut records: Vec<LaidOutRecord> = Vec::new();
+    let mut ids: Vec<ConditionId> = Vec::new();
+    for table in with_topics_joined(tables, &channels, &TimeWish::default()) {
+        let laid_out = laid_out_record(table, dataset, &channels);
+        report_record(&laid_out);
+        if laid_out.lacks_unit() {
+            unread.push(sanitized(&laid_out.record.table.name));
+        }
+        if let Some(id) = laid_out.condition
+            && laid_out.record.used_flight().is_some()
+        {
+            ids.push(id);
+            records.push(laid_out.record);
+        }
+    }
+    leave_out_copies(&mut records);
+    for record in &records {
+        report_duplicates(record);
+    }
+    let preparation = unchanged_channels(dataset);
+    let mut conditions = Vec::new();
+    for condition in dataset.conditions() {
+        let own = ids
+            .iter()
+            .zip(&records)
+            .filter(|(id, _)| **id == condition.id())
+            .map(|(_, record)| record);
+        let histories = HistoryRecords::from_used(condition.id(), own, preparation.clone());
+        if !histories.records.is_empty() {
+            conditions.push(histories);
+        }
+    }
+    Ok(ReadHistories { conditions, unread })
+}
+
+/// Computes the responses of the models to the records; shows the progress on a terminal.
+pub(super) fn simulated_histories(
+    analysis: &Analysis,
+    records: &ReadHistories,
+) -> Result<TimeHistories, Failure> {
+    let records = records.conditions.as_slice();
+    let progress = TerminalProgress::new("simulating records");
+    let execution = Execution::new(&Pool, &progress, HistoryRecords::steps(records));
+    let tolerances = &analysis.study.requirements.tolerances;
+    Ok(time_histories_of(
+        analysis, records, tolerances, &execution,
+    )?)
+}
+
+/// A record and its condition; `None` if the condition is unknown.
+struct ConditionRecord {
+    condition: Option<ConditionId>,
+    record: LaidOutRecord,
+}
+
+impl ConditionRecord {
+    /// Returns whether the record is unusable because a unit is unknown.
+    fn lacks_unit(&self) -> bool {
+        self.condition.is_some()
+            && self
+                .record
+                .problems
+                .iter()
+                .any(|problem| matches!(problem, LayoutProblem::UnsaidUnit { .. }))
+    }
+}
+
+/// Assigns the columns of a record, as stated in the dataset if it lists the record, and determines
+/// the condition.
+fn laid_out_record(
+    table: RecordTable,
+    dataset: &Dataset,
+    channels: &RecordChannels,
+) -> ConditionRecord {
+    if let Some((condition, entry)) = table.entry_of_dataset(dataset) {
+        let channels = channels.clone().of_named_records();
+        let (record, _) = LaidOutRecord::proposed(table, &channels, &TimeWish::default());
+        return ConditionRecord {
+            condition: Some(condition),
+            record: record.as_said(entry, &channels),
+        };
+    }
+    let (record, _) = LaidOutRecord::proposed(table, channels, &TimeWish::default());
+    let condition = match dataset.conditions() {
+        [only] => Some(only.id()),
+        _ => record.guess.condition_of(dataset),
+    };
+    ConditionRecord { condition, record }
+}
+
+/// Reports the cautions and problems of a record, and why it is omitted.
+fn report_record(laid_out: &ConditionRecord) {
+    let record = &laid_out.record;
+    let name = &record.table.name;
+    if laid_out.condition.is_none() {
+        caution(&format!(
+            "{name}: left out, because its name gives no condition of the dataset"
+        ));
+        return;
+    }
+    for words in &record.cautions {
+        caution(&format!("{name}: {words}"));
+    }
+    for words in &record.problems {
+        caution(&format!("{name}: left out: {words}"));
+    }
+    if !record.used {
+        note(&format!(
+            "{name}: left out, because the dataset excludes it"
+        ));
+    }
+}
+
+/// Returns preparation settings that leave every channel unchanged.
+fn unchanged_channels(dataset: &Dataset) -> Preparation {
+    let (inputs, outputs) = dataset.names_of_channels();
+    let inputs: Vec<&str> = inputs.iter().map(String::as_str).collect();
+    let outputs: Vec<&str> = outputs.iter().map(String::as_str).collect();
+    Preparation::of(&inputs, &outputs)
+}

@@ -1,0 +1,63 @@
+//! Background work of the window: what is requested, and the replies from threads. The live
+//! analysis is in `live_analysis.rs`, the list of all kinds of jobs in `background_jobs.rs`.
+
+use std::sync::Arc;
+use std::sync::mpsc::Receiver;
+
+use gdcm_model::dataset::ConditionId;
+use gdcm_study::Study;
+
+use super::GdcmApp;
+use super::analysis_job::{AnalysisJob, Proof};
+use super::background_jobs::BackgroundJobs;
+use super::report_job::ReportJob;
+use super::threads::{Reply, ReplySender};
+use crate::gui::state::notices::MessageBar;
+use crate::gui::views::need::Need;
+
+/// Background work of the window, and the requests from which it follows.
+pub(super) struct BackgroundWork {
+    /// Job of the live analysis that is running, waiting or complete.
+    pub(super) live_job: Option<AnalysisJob>,
+    pub(super) jobs: BackgroundJobs,
+    /// Proofs that are not yet part of the results; each live analysis receives all of them.
+    pub(super) new_proofs: Vec<Proof>,
+    /// Jobs needed by the visible views in addition to the live analysis.
+    pub(super) needs: Vec<Need>,
+    /// Study and condition in the newest request.
+    pub(super) newest_request: Option<(Study, ConditionId)>,
+    /// Report that is being written.
+    pub(super) report_job: Option<ReportJob>,
+    pub(super) replies: ReplySender,
+    /// Replies from threads.
+    pub(super) reply_receiver: Receiver<Reply>,
+}
+
+impl GdcmApp {
+    /// Applies the replies from the threads.
+    pub(super) fn receive_replies(&mut self) {
+        while let Ok(reply) = self.work.reply_receiver.try_recv() {
+            reply(self);
+        }
+        let now = self.now();
+        let results = &mut self.state.results;
+        results.background = self.work.jobs.running_work();
+        for proof in &self.work.new_proofs {
+            results.background.proofs.push(Arc::clone(&proof.problem));
+        }
+        if results.background.is_busy() {
+            results.background_since.get_or_insert(now);
+        } else {
+            results.background_since = None;
+        }
+    }
+
+    /// Requests a stopped computation again.
+    pub(super) fn compute_again(&mut self) {
+        self.work.newest_request = None;
+        self.state
+            .message_bars
+            .retain(|bar| !matches!(bar, MessageBar::Fault { .. }));
+        self.work.jobs.resume();
+    }
+}

@@ -1,0 +1,129 @@
+//! Copies and saves the figures and the tables of the views.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use gdcm_io::csv_text::{csv_text, save_tables};
+use gdcm_io::export::figure_file::{figure_format, write_figure};
+use gdcm_model::message_text::sanitized_path;
+use gdcm_plot::figure::{ColumnWidth, Figure, FigureFormat, FigureKind};
+use gdcm_words::Table;
+
+use super::GdcmApp;
+use crate::gui::commands::command::Command;
+use crate::gui::commands::output::OutputCommand;
+use crate::gui::state::forms::FormKind;
+use crate::gui::state::view::View;
+use crate::gui::views::figure_button::tables_in_place;
+use crate::gui::views::figures::{figure_name, figure_of};
+
+impl GdcmApp {
+    /// Copies the values shown by a view to the clipboard.
+    pub(super) fn copy_figure(&mut self, view: View) {
+        let tables = match tables_in_place(&self.state, view) {
+            Some(tables) => tables,
+            None => match self.figure_of(view) {
+                Some(figure) => figure.tables(),
+                None => return,
+            },
+        };
+        self.ctx.copy_text(csv_text(&tables));
+        self.notify_done(format!(
+            "copied the numbers of {}{}",
+            view.name(),
+            self.absent_bars_of(view)
+        ));
+    }
+
+    /// Asks where to save a view; proposes the folder in which the previous figure was saved.
+    pub(super) fn ask_save_figure(&mut self, view: View, format: FigureFormat) {
+        // Tables are saved as CSV, whatever the figure format.
+        let format = if tables_in_place(&self.state, view).is_some() {
+            FigureFormat::Csv
+        } else {
+            format
+        };
+        let name = format!("{}.{}", figure_name(&self.state, view), format.extension());
+        self.state.forms.figure = Some(view);
+        let path = self.state.forms.typed_in(FormKind::SaveFigure);
+        *path = Path::new(path.trim())
+            .with_file_name(name)
+            .display()
+            .to_string();
+        self.state.forms.shown = Some(FormKind::SaveFigure);
+    }
+
+    /// Saves a view; asks before overwriting.
+    pub(super) fn save_figure(&mut self, view: View, width: ColumnWidth, path: PathBuf) {
+        let path = self.files.at_home(path);
+        let written = match tables_in_place(&self.state, view) {
+            Some(tables) if matches!(figure_format(&path), Ok(FigureFormat::Csv)) => {
+                save_tables(&tables, &path, self.outputs())
+            }
+            Some(_) => {
+                let found = sanitized_path(&path);
+                return self.notify_error(format!(
+                    "{} shows tables here: expected a name that ends in .csv, found {found}",
+                    view.name()
+                ));
+            }
+            None => {
+                let Some(figure) = self.figure_of(view) else {
+                    return;
+                };
+                write_figure(&figure, width, &path, self.outputs())
+            }
+        };
+        let message = format!(
+            "saved {}{}",
+            sanitized_path(&path),
+            self.absent_bars_of(view)
+        );
+        let again = Command::Output(OutputCommand::SaveFigure(view, width, path.clone()));
+        self.notify_written(written.map(|()| message), FormKind::SaveFigure, again);
+    }
+
+    /// Returns the figure of a view; reports an error if the view has none yet.
+    fn figure_of(&mut self, view: View) -> Option<Figure> {
+        let figure = figure_of(&self.state, view);
+        if figure.is_none() {
+            self.notify_error(format!(
+                "{} has no figure yet: {}",
+                view.name(),
+                self.state.results.absence()
+            ));
+        }
+        figure
+    }
+
+    /// Returns the end of a message about a view's figure, as [`Self::absent_bars`] does; empty if
+    /// the view shows no error bars.
+    fn absent_bars_of(&self, view: View) -> &'static str {
+        let shows_bars = view.figure().is_some_and(FigureKind::takes_bars)
+            && !self.state.display.gains.hide_bars;
+        self.absent_bars(!shows_bars || self.state.uncertainty().is_some())
+    }
+
+    /// Asks where to save a table in its current state.
+    pub(super) fn ask_save_table(&mut self, name: &str, table: Arc<Table>) {
+        let name: String = name
+            .chars()
+            .filter(|letter| letter.is_alphanumeric() || *letter == ' ')
+            .collect();
+        self.state.forms.table = Some(table);
+        *self.state.forms.typed_in(FormKind::SaveTable) = format!("{}.csv", name.replace(' ', "-"));
+        self.state.forms.shown = Some(FormKind::SaveTable);
+    }
+
+    /// Saves a table as CSV; asks before overwriting.
+    pub(super) fn save_table(&mut self, table: Arc<Table>, path: PathBuf) {
+        let path = self.files.at_home(path);
+        let written = save_tables(std::slice::from_ref(&*table), &path, self.outputs());
+        self.notify_saved(
+            written,
+            &path,
+            FormKind::SaveTable,
+            Command::Output(OutputCommand::SaveTable(table, path.clone())),
+        );
+    }
+}

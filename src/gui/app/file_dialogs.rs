@@ -1,0 +1,121 @@
+//! File dialogs of the desktop, each in a thread, and what follows the engineer's choice.
+
+use std::path::PathBuf;
+
+use gdcm_io::Existing;
+
+use super::GdcmApp;
+use super::document_files::with_study_extension;
+use super::faults::caught;
+use crate::gui::commands::assembling::AssemblingCommand;
+use crate::gui::commands::records::RecordsCommand;
+use crate::gui::state::forms::{FormKind, RequirementTable};
+
+/// Purpose for which a file dialog is open.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum DialogPurpose {
+    Open,
+    SaveStudy,
+    ExportFolder,
+    ModelFolder,
+    RecordFolder,
+    RequirementTable(RequirementTable),
+}
+
+impl GdcmApp {
+    /// Opens a desktop file dialog unless a dialog is open; a save dialog proposes `file_name`.
+    pub(super) fn ask_path(&mut self, purpose: DialogPurpose, file_name: String) {
+        if self.is_dialog_open {
+            return;
+        }
+        self.is_dialog_open = true;
+        // Without desktop dialogs, the call fails or panics; this counts as a dialog closed without
+        // a choice.
+        let ask = move || caught(|| show_dialog(purpose, &file_name)).ok().flatten();
+        self.in_thread("the dialog", ask, move |app, chosen| {
+            app.is_dialog_open = false;
+            match chosen.flatten() {
+                Some(path) => app.path_chosen(purpose, path),
+                None => app.nothing_chosen(purpose),
+            }
+        });
+    }
+
+    fn path_chosen(&mut self, purpose: DialogPurpose, path: PathBuf) {
+        match purpose {
+            DialogPurpose::Open => self.open(path, None),
+            DialogPurpose::SaveStudy => {
+                // The dialog has asked only about the chosen name, not about the name with the
+                // extension that is added here.
+                let existing = if with_study_extension(path.clone()) == path {
+                    Existing::Replace
+                } else {
+                    Existing::Keep
+                };
+                self.save_as(path, existing);
+            }
+            DialogPurpose::ExportFolder => {
+                *self.state.forms.typed_in(FormKind::Export) = path.display().to_string()
+            }
+            DialogPurpose::ModelFolder => {
+                self.carry_out_assembling(AssemblingCommand::Add(vec![path]))
+            }
+            DialogPurpose::RecordFolder => self.carry_out_records(RecordsCommand::Add(vec![path])),
+            DialogPurpose::RequirementTable(table) => self.read_requirement_table(table, path),
+        }
+    }
+
+    /// Handles a dialog without a choice. A cancelled dialog and a desktop without dialogs look
+    /// alike, so the path can be typed instead.
+    fn nothing_chosen(&mut self, purpose: DialogPurpose) {
+        match purpose {
+            DialogPurpose::Open => self.state.forms.shown = Some(FormKind::Open),
+            DialogPurpose::SaveStudy => {
+                *self.state.forms.typed_in(FormKind::Save) = self.files.proposed_name();
+                self.state.forms.shown = Some(FormKind::Save);
+            }
+            DialogPurpose::RequirementTable(table) => {
+                self.state.forms.shown = Some(FormKind::ReadRequirementTable(table));
+            }
+            DialogPurpose::ExportFolder
+            | DialogPurpose::ModelFolder
+            | DialogPurpose::RecordFolder => {}
+        }
+    }
+}
+
+/// Shows a desktop file dialog; returns `None` if nothing was chosen.
+fn show_dialog(purpose: DialogPurpose, file_name: &str) -> Option<PathBuf> {
+    let dialog = rfd::FileDialog::new();
+    match purpose {
+        DialogPurpose::Open => dialog
+            .set_title("Open a dataset or a study")
+            .add_filter("datasets and studies", &["json", "gz"])
+            .add_filter("all files", &["*"])
+            .pick_file(),
+        DialogPurpose::SaveStudy => dialog
+            .set_title("Save the study")
+            .add_filter("studies", &["json"])
+            .set_file_name(file_name)
+            .save_file(),
+        DialogPurpose::ModelFolder => dialog
+            .set_title("Choose a folder with model files")
+            .pick_folder(),
+        DialogPurpose::RecordFolder => dialog
+            .set_title("Choose a folder with flight records")
+            .pick_folder(),
+        DialogPurpose::RequirementTable(table) => {
+            let title = match table {
+                RequirementTable::Levels => "Open levels of bandwidth and phase delay",
+                RequirementTable::Tolerances => "Open tolerances of time histories",
+            };
+            dialog
+                .set_title(title)
+                .add_filter("tables", &["json"])
+                .pick_file()
+        }
+        DialogPurpose::ExportFolder => dialog
+            .set_title("Export corrections to a folder")
+            .pick_folder(),
+    }
+}

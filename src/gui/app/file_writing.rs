@@ -1,0 +1,66 @@
+//! Writes files without overwriting others unasked, and reports the outcome.
+
+use std::path::Path;
+
+use gdcm_io::FileError;
+use gdcm_io::output_set::OutputSet;
+use gdcm_model::message_text::sanitized_path;
+
+use super::GdcmApp;
+use crate::gui::commands::command::Command;
+use crate::gui::state::forms::FormKind;
+
+impl GdcmApp {
+    /// Creates an output set that never overwrites input files, and overwrites other files only
+    /// after confirmation.
+    pub(super) fn outputs(&self) -> OutputSet {
+        OutputSet::new(self.postponed.existing, self.files.inputs())
+    }
+
+    /// Writes all files that `add` adds to the set, or none. First checks that none of `paths`
+    /// would be overwritten without consent.
+    pub(super) fn write_all(
+        &self,
+        paths: &[&Path],
+        add: impl FnOnce(&mut OutputSet) -> Result<(), FileError>,
+    ) -> Result<(), FileError> {
+        let mut outputs = self.outputs();
+        outputs.check(paths)?;
+        add(&mut outputs)?;
+        outputs.persist()
+    }
+
+    /// Reports the written files, or why none was written. If files exist, asks whether the command
+    /// `again` may overwrite them.
+    pub(super) fn notify_written(
+        &mut self,
+        written: Result<String, FileError>,
+        form: FormKind,
+        again: Command,
+    ) {
+        match written {
+            Ok(message) => {
+                self.state.forms.shown = None;
+                self.notify_done(message);
+            }
+            Err(FileError::Exists { paths }) => self.ask_to_overwrite(&paths, form, again),
+            Err(error) => self.notify_error(error.to_string()),
+        }
+    }
+
+    /// Reports a single saved file, or the error. If the file exists, asks whether the command
+    /// `again` may overwrite it.
+    pub(super) fn notify_saved(
+        &mut self,
+        saved: Result<(), FileError>,
+        path: &Path,
+        form: FormKind,
+        again: Command,
+    ) {
+        self.notify_written(
+            saved.map(|()| format!("saved {}", sanitized_path(path))),
+            form,
+            again,
+        );
+    }
+}

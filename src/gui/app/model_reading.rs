@@ -1,0 +1,166 @@
+//! Reads models from files in a thread, and adds them to the import.
+
+use std::cell::Cell;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use gdcm_io::files::rules_file::rules_path;
+use gdcm_io::import::model_files::FoundModels;
+use gdcm_io::{FolderProgress, read_models};
+use gdcm_model::number_format::counted;
+
+use super::GdcmApp;
+use super::threads::ReplySender;
+use crate::gui::state::assembling::ReadingProgress;
+
+/// Files to read: additional files, or all files again with other column headings.
+#[derive(Clone, Debug)]
+pub(super) enum Sources {
+    More(Vec<PathBuf>),
+    Again(Vec<PathBuf>),
+}
+
+impl Sources {
+    fn paths(&self) -> &[PathBuf] {
+        let (Sources::More(paths) | Sources::Again(paths)) = self;
+        paths
+    }
+}
+
+impl GdcmApp {
+    /// Reads models in a thread; tables are read with the column headings declared in the rules.
+    pub(super) fn read_models(&mut self, sources: Sources) {
+        let headings = match self.import_rules() {
+            Some(rules) => rules.headings,
+            None => Default::default(),
+        };
+        let reading = self.readers.models.begin();
+        let number = reading.number;
+        let report = ReadingReport {
+            number,
+            replies: self.work.replies.clone(),
+            stop: reading.stop,
+            reported: Cell::new(0),
+        };
+        let read = move || {
+            let found = read_models(sources.paths(), &headings, &report);
+            (sources, found)
+        };
+        if let Some(import) = &mut self.state.assembling {
+            import.reading = Some(ReadingProgress::default());
+        }
+        self.in_thread("the reading of models", read, move |app, read| {
+            if !app.readers.models.is_newest(number) {
+                return;
+            }
+            let Some(import) = &mut app.state.assembling else {
+                return;
+            };
+            import.reading = None;
+            let Some((sources, found)) = read else { return };
+            if let Some(found) = app.value_or_notify(found) {
+                app.take_models(sources, found);
+            }
+        });
+    }
+
+    /// Adds the models that were read to the import.
+    fn take_models(&mut self, sources: Sources, found: FoundModels) {
+        let Some(import) = &mut self.state.assembling else {
+            return;
+        };
+        let paths = match sources {
+            Sources::More(paths) => paths,
+            Sources::Again(_) if self.readers.models.is_stopped() => {
+                return self.notify_done("stopped: the models read before are kept".to_owned());
+            }
+            Sources::Again(paths) => {
+                import.forget_models();
+                paths
+            }
+        };
+        let name = match paths.first().and_then(|path| path.file_name()) {
+            Some(name) => name.to_string_lossy().into_owned(),
+            None => String::new(),
+        };
+        let models = found.models.len();
+        let files = found.files;
+        import.unused.extend(found.unused_words());
+        import.add(&name, found.models);
+        import.faults.extend(found.faults);
+        import.ignored.extend(found.ignored);
+        import.tables.extend(found.tables);
+        import.unsaid.extend(found.unsaid);
+        if import.dataset_path.is_empty()
+            && let Some(first) = paths.first()
+        {
+            import.dataset_path = format!("{}.json.gz", first.with_extension("").display());
+            import.rules_path = rules_path(Path::new(&import.dataset_path))
+                .display()
+                .to_string();
+        }
+        let mut new = paths;
+        new.retain(|path| !import.sources.contains(path));
+        import.sources.extend(new);
+        self.notify_done(format!(
+            "{} in {}",
+            counted(models, "model"),
+            counted(files, "file")
+        ));
+    }
+}
+
+/// Number of bytes read between two progress reports.
+const REPORT_EVERY: u64 = 16 << 20;
+
+/// Informs the window which file is being read.
+struct ReadingReport {
+    number: u64,
+    replies: ReplySender,
+    stop: Arc<AtomicBool>,
+    /// Bytes read at the last progress report.
+    reported: Cell<u64>,
+}
+
+impl ReadingReport {
+    /// Changes the displayed progress, unless a newer reading has begun.
+    fn send(&self, change: impl FnOnce(&mut Option<ReadingProgress>) + Send + 'static) {
+        let number = self.number;
+        self.replies.send(move |app| {
+            if app.readers.models.is_newest(number)
+                && let Some(import) = &mut app.state.assembling
+            {
+                change(&mut import.reading);
+            }
+        });
+    }
+}
+
+impl FolderProgress for ReadingReport {
+    fn reading(&self, number: usize, total: usize, name: &str) {
+        self.reported.set(0);
+        let reading = ReadingProgress {
+            number,
+            total,
+            name: name.to_owned(),
+            taken: 0,
+        };
+        self.send(|shown| *shown = Some(reading));
+    }
+
+    fn taken(&self, taken: u64) {
+        if taken >= self.reported.get() + REPORT_EVERY {
+            self.reported.set(taken);
+            self.send(move |shown| {
+                if let Some(reading) = shown {
+                    reading.taken = taken;
+                }
+            });
+        }
+    }
+
+    fn stop(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.stop)
+    }
+}

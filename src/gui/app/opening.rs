@@ -1,0 +1,174 @@
+//! Opening of datasets and studies. Files are read in threads, so the window never blocks.
+//!
+//! 1. `open` chooses the purpose: to show the file, or to restore lost decisions. `recovery.rs` and
+//!    `reload.rs` start with their own purposes.
+//! 2. `read` reads in a thread.
+//! 3. `answer_opened` asks first if unsaved decisions would be lost, and reports an error.
+//! 4. `show_read` shows what was read, as its purpose requires; for a new study, by `show`.
+
+use std::path::PathBuf;
+
+use gdcm_io::files::opened_file::holds_models;
+use gdcm_io::files::study_file::open_study_of;
+use gdcm_io::reading_budget::ReadingBudget;
+use gdcm_io::{FileError, LoadedDataset, Opened, embedded_example, load_any};
+use gdcm_model::message_text::sanitized_path;
+use gdcm_study::decisions::dataset_differences::Difference;
+
+use super::GdcmApp;
+use super::document_files::{ReadFor, SavedStudy, study_name};
+use super::postponed_actions::PendingAction;
+use crate::gui::state::forms::FormKind;
+use crate::gui::state::notices::MessageBar;
+use crate::gui::state::preferences::Preferences;
+use crate::gui::state::window_state::State;
+
+impl GdcmApp {
+    /// Returns the initial window state, the dataset and the saved study for an opened file.
+    pub(super) fn parts_of(opened: Opened) -> (State, LoadedDataset, SavedStudy) {
+        let path = match &opened {
+            Opened::Dataset(_) => None,
+            Opened::Study(opened) => Some(opened.path.clone()),
+        };
+        let (study, loaded, differences) = opened.into_study();
+        let mut state = State::new(
+            study.clone(),
+            study_name(path.as_deref()),
+            loaded.cautions.clone(),
+        );
+        // Decisions that do not apply to the dataset would be lost by saving, so the study counts
+        // as unsaved.
+        state.unsaved = differences
+            .iter()
+            .any(|difference| matches!(difference, Difference::NotApplied { .. }));
+        if !differences.is_empty() {
+            state.forms.shown = Some(FormKind::Differences);
+        }
+        state.differences = differences;
+        state.is_example = loaded.path().is_none();
+        let study = if state.unsaved { None } else { Some(study) };
+        let saved = SavedStudy { path, study };
+        (state, loaded, saved)
+    }
+
+    /// Replaces the open study with `opened`.
+    pub(super) fn show(&mut self, opened: Opened) {
+        let (mut state, loaded, saved) = Self::parts_of(opened);
+        let requested = self.state.results.requested;
+        let name = loaded.origin.to_string();
+        state.recent = std::mem::take(&mut self.state.recent);
+        Preferences::from_display(&self.state.display).apply(&mut state.display);
+        // Keep the offers to restore lost decisions; the other bars concern the previous study.
+        state.message_bars = std::mem::take(&mut self.state.message_bars);
+        state
+            .message_bars
+            .retain(|bar| matches!(bar, MessageBar::Recovery { .. }));
+        self.state = state;
+        self.readers.record_reader.give_up();
+        // Request numbers continue, so that late replies about the old dataset can be recognised.
+        self.state.results.requested = requested;
+        self.state.results.received = requested;
+        self.files.loaded = loaded;
+        self.files.earlier.clear();
+        self.files.saved = saved;
+        self.keep_unsaved();
+        self.notify_done(format!("opened {name}"));
+    }
+
+    /// Opens a dataset or a study; the open study remains until the file is read. `moved` is the
+    /// new path of a study's dataset.
+    pub(super) fn open(&mut self, path: PathBuf, moved: Option<PathBuf>) {
+        let path = self.files.at_home(path);
+        let moved = moved.map(|dataset| self.files.at_home(dataset));
+        if path.extension().is_some() && holds_models(&path) {
+            let path = sanitized_path(&path);
+            return self.notify_error(format!(
+                "{path}: neither a dataset nor a study; to make a dataset from model files, use \
+                Import models in the menu File"
+            ));
+        }
+        let purpose = match self.recovery.offer_of(&path) {
+            Some(offer) => ReadFor::Restoring(offer),
+            None => ReadFor::Opening,
+        };
+        self.state.forms.shown = None;
+        let name = sanitized_path(&path);
+        self.read(purpose, name, move |budget| match moved {
+            Some(dataset) => open_study_of(&path, &dataset, budget).map(Opened::Study),
+            None => load_any(&path, budget),
+        });
+    }
+
+    /// Reads a file in a separate thread, within the size limit of a file. Replaces a reading in
+    /// progress.
+    pub(super) fn read(
+        &mut self,
+        purpose: ReadFor,
+        name: String,
+        read: impl FnOnce(&ReadingBudget<'_>) -> Result<Opened, FileError> + Send + 'static,
+    ) {
+        self.state.opening = Some(name);
+        let reading = self.readers.opener.begin();
+        let number = reading.number;
+        let read = move || read(&ReadingBudget::default().stopped_by(reading.stop));
+        self.in_thread("the reading of a file", read, move |app, opened| {
+            if !app.readers.opener.is_newest(number) {
+                return;
+            }
+            app.state.opening = None;
+            if let Some(opened) = opened {
+                app.answer_opened(purpose, opened);
+            }
+        });
+    }
+
+    /// Opens the embedded example.
+    pub(super) fn open_example(&mut self) {
+        self.answer_opened(ReadFor::Opening, embedded_example().map(Opened::Dataset));
+    }
+
+    /// Closes the study: shows the start page, with the example behind it.
+    pub(super) fn close_study(&mut self) {
+        let Some(example) = self.value_or_notify(embedded_example()) else {
+            return;
+        };
+        self.show(Opened::Dataset(example));
+        self.state.on_start_page = true;
+        self.state.notice = None;
+        self.read_recent(None);
+    }
+
+    fn answer_opened(&mut self, purpose: ReadFor, opened: Result<Opened, FileError>) {
+        match opened {
+            Ok(opened) if purpose != ReadFor::Reloading && self.state.unsaved => {
+                self.ask_to_lose(PendingAction::Show(purpose, Box::new(opened)));
+            }
+            Ok(opened) => self.show_read(purpose, opened),
+            Err(error) => self.open_failed(error),
+        }
+    }
+
+    pub(super) fn show_read(&mut self, purpose: ReadFor, opened: Opened) {
+        match purpose {
+            ReadFor::Opening => {
+                self.show(opened);
+                self.look_for_recent();
+            }
+            ReadFor::Reloading => self.show_reloaded(opened.into_study().1),
+            ReadFor::Restoring(offer) => self.show_restored(offer, opened),
+        }
+    }
+
+    /// Reports why a file was not opened, or asks for the dataset of a study; the open study
+    /// remains.
+    fn open_failed(&mut self, error: FileError) {
+        self.read_recent(None);
+        match error {
+            FileError::StudyDataset { path, dataset } => {
+                self.state.forms.lost_dataset = Some((path, dataset.to_string()));
+                self.state.forms.shown = Some(FormKind::FindDataset);
+            }
+            error => self.notify_error(error.to_string()),
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! Edits of record layouts, the assignment of columns to channels. An edit of one record also
+//! changes similar records, in all conditions where it applies.
+
+use std::sync::Arc;
+
+use gdcm_model::dataset::{ConditionId, Dataset};
+use gdcm_sysid::records::{
+    LaidOutRecord, RecordChannels, RecordLayout, RecordTable, leave_out_copies,
+};
+
+use super::GdcmApp;
+use crate::gui::state::records::RecordsBefore;
+
+impl GdcmApp {
+    /// Sets the layout of a record, and changes similar records in the same way.
+    pub(super) fn set_layout(
+        &mut self,
+        condition: ConditionId,
+        index: usize,
+        layout: RecordLayout,
+    ) {
+        let Some(records) = self.state.records.conditions.get(&condition) else {
+            return;
+        };
+        let Some(row) = records.rows.get(index) else {
+            return;
+        };
+        let dataset = Arc::clone(&self.state.study.dataset);
+        let change = LayoutChange {
+            condition,
+            is_listed: row.table.entry_of_dataset(&dataset).is_some(),
+            table: Arc::clone(&row.table),
+            former: row.layout.clone(),
+            layout,
+            dataset,
+        };
+        let label = format!("columns of {}", change.table.name);
+        self.edit_layouts(label, |id, row| change.layout_for(id, row));
+    }
+
+    /// Assumes the units of the dataset's channels for columns whose file states none.
+    pub(super) fn take_dataset_units(&mut self) {
+        let label = "units of the dataset's channels".to_owned();
+        self.edit_layouts(label, |_, row| Some(row.layout.in_units_of_channels()));
+    }
+
+    /// Changes record layouts in all conditions; this can be undone. `layout_for` returns `None`
+    /// for a record that keeps its layout.
+    fn edit_layouts(
+        &mut self,
+        label: String,
+        layout_for: impl Fn(ConditionId, &LaidOutRecord) -> Option<RecordLayout>,
+    ) {
+        let ids: Vec<ConditionId> = self.state.records.conditions.keys().copied().collect();
+        let mut changed = RecordsBefore::default();
+        for id in ids {
+            let channels = self.record_channels(id);
+            let before = self.state.records.conditions.get(&id).cloned();
+            let Some(records) = self.state.records.conditions.get_mut(&id) else {
+                continue;
+            };
+            let is_changed =
+                change_layouts(&mut records.rows, &channels, |row| layout_for(id, row));
+            if is_changed {
+                records.changed = true;
+                changed.conditions.insert(id, before);
+            }
+        }
+        if !changed.conditions.is_empty() {
+            self.record_edited(label, changed);
+        }
+    }
+}
+
+/// New layout of a record, also for similar records.
+struct LayoutChange {
+    /// Condition with the edited record.
+    condition: ConditionId,
+    /// The edited record.
+    table: Arc<RecordTable>,
+    former: RecordLayout,
+    layout: RecordLayout,
+    /// Whether the dataset lists the record.
+    is_listed: bool,
+    dataset: Arc<Dataset>,
+}
+
+impl LayoutChange {
+    /// Returns the new layout of a record; `None` if it keeps its layout. The layout of records
+    /// that the dataset lists is stored there, so a change applies only to listed records of the
+    /// same condition, or only to unlisted records.
+    fn layout_for(&self, id: ConditionId, row: &LaidOutRecord) -> Option<RecordLayout> {
+        if Arc::ptr_eq(&row.table, &self.table) && row.layout == self.former {
+            return Some(self.layout.clone());
+        }
+        let is_listed = row.table.entry_of_dataset(&self.dataset).is_some();
+        let is_reached = id == self.condition || !self.is_listed;
+        if !is_reached || is_listed != self.is_listed {
+            return None;
+        }
+        let change = [&self.former, &self.layout];
+        Some(row.layout.following(&row.table, change, &self.table))
+    }
+}
+
+/// Changes the layouts of `rows`; returns whether a layout has changed. Records that become
+/// readable may turn out to be copies of others, which are then left out.
+fn change_layouts(
+    rows: &mut [LaidOutRecord],
+    channels: &RecordChannels,
+    layout_for: impl Fn(&LaidOutRecord) -> Option<RecordLayout>,
+) -> bool {
+    let mut is_changed = false;
+    let mut is_any_clear_now = false;
+    for row in &mut *rows {
+        let Some(layout) = layout_for(row) else {
+            continue;
+        };
+        if layout == row.layout {
+            continue;
+        }
+        let was_clear = row.flight.is_some();
+        *row = row.laid_out(layout, channels);
+        is_changed = true;
+        is_any_clear_now |= !was_clear && row.flight.is_some();
+    }
+    if is_any_clear_now {
+        leave_out_copies(rows);
+    }
+    is_changed
+}

@@ -1,0 +1,183 @@
+//! Arrangement of the window: bars at the top and at the foot, side panels, views in the middle,
+//! and sheets over the views.
+
+use egui::{CentralPanel, Frame, Margin, Panel, Rect, ScrollArea, Ui, UiBuilder};
+
+use gdcm_model::dataset::BundleKind;
+
+use crate::gui::commands::command::Command;
+use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::commands::selection::SelectionCommand;
+use crate::gui::panels::menu_bar::menu_bar_ui;
+use crate::gui::panels::message_bars::message_bars_ui;
+use crate::gui::panels::sheet_frame::sheet_ui;
+use crate::gui::panels::{
+    centre, conditions_panel, derivation_sheet, models_panel, rail, reasons, right_panel,
+    start_page, status_bar,
+};
+use crate::gui::state::sheet::Sheet;
+use crate::gui::state::window_state::State;
+use crate::gui::views::assembling::assembling_ui;
+use crate::gui::widgets::palette::Palette;
+use crate::gui::widgets::panel_layout::restore_panel_size;
+
+/// Minimum window width \[pt\] for full names and the full left panel.
+const WIDE: f32 = 1400.0;
+
+/// Draws the bars, the side panels and the middle, or the page that covers them.
+pub(super) fn panels_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let bar = Frame::new()
+        .fill(palette.panel)
+        .inner_margin(Margin::symmetric(12, 0));
+    state.display.layout.is_wide = ui.ctx().content_rect().width() >= WIDE;
+    let top = Panel::top("menu bar").frame(bar).exact_size(36.0);
+    top.show(ui, |ui| menu_bar_ui(ui, state, palette, commands));
+    if !state.message_bars.is_empty() {
+        let frame = bar.inner_margin(Margin::symmetric(12, 4));
+        Panel::top("bars").frame(frame).show(ui, |ui| {
+            message_bars_ui(ui, &state.message_bars, palette, commands)
+        });
+    }
+    let status = Panel::bottom("status bar").frame(bar).exact_size(24.0);
+    status.show(ui, |ui| {
+        status_bar::status_bar_ui(ui, state, palette, commands)
+    });
+    if let Some(import) = &mut state.assembling {
+        return assembling_ui(ui, import, palette, commands);
+    }
+    if state.on_start_page {
+        CentralPanel::default()
+            .frame(Frame::new())
+            .show(ui, |ui| start_page::start_ui(ui, state, palette, commands));
+        return;
+    }
+    left_ui(ui, state, palette, commands);
+    right_ui(ui, state, palette, commands);
+    let centre = ui.available_rect_before_wrap();
+    CentralPanel::default()
+        .frame(Frame::new())
+        .show(ui, |ui| centre::centre_ui(ui, state, palette, commands));
+    sheets_ui(ui, centre, state, palette, commands);
+}
+
+/// Draws the left panel with conditions and models, in full or as a narrow rail.
+fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let side = Frame::new().fill(palette.panel);
+    let layout = &state.display.layout;
+    if !layout.left_open.unwrap_or(layout.is_wide) {
+        let frame = side.inner_margin(Margin {
+            left: 4,
+            right: 2,
+            top: 2,
+            bottom: 4,
+        });
+        let panel = Panel::left("rail").frame(frame).exact_size(104.0);
+        panel.show(ui, |ui| {
+            ScrollArea::vertical()
+                .id_salt("rail")
+                .auto_shrink(false)
+                .show(ui, |ui| {
+                    ui.set_width(ui.available_width());
+                    rail::rail_ui(ui, state, palette, commands);
+                });
+        });
+        return;
+    }
+    restore_panel_size(ui, "conditions and models");
+    let panel = Panel::left("conditions and models")
+        .frame(side)
+        .default_size(272.0)
+        .size_range(240.0..=420.0);
+    panel.show(ui, |ui| {
+        steady_ui(ui, |ui| {
+            let frame = Frame::new().inner_margin(Margin {
+                left: 12,
+                right: 12,
+                top: 4,
+                bottom: 0,
+            });
+            frame.show(ui, |ui| {
+                ui.spacing_mut().item_spacing.y = 0.0;
+                let most = 0.45 * ui.available_height();
+                ScrollArea::vertical()
+                    .id_salt("conditions")
+                    .max_height(most)
+                    .auto_shrink([false, true])
+                    .show(ui, |ui| {
+                        conditions_panel::conditions_ui(ui, state, palette, commands);
+                    });
+                ui.separator();
+                models_panel::models_ui(ui, state, palette, commands);
+            });
+        });
+    });
+}
+
+/// Draws the right panel: verdict, result, matrix, and export.
+fn right_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+    // Panel widths are stored by name: with two names, wide and narrow windows keep separate
+    // widths.
+    let (name, width) = if state.display.layout.is_wide {
+        ("answer", 352.0)
+    } else {
+        ("answer beside the rail", 320.0)
+    };
+    restore_panel_size(ui, name);
+    let panel = Panel::right(name)
+        .frame(Frame::new().fill(palette.panel))
+        .default_size(width)
+        .size_range(300.0..=520.0);
+    panel.show(ui, |ui| {
+        steady_ui(ui, |ui| {
+            right_panel::right_panel_ui(ui, state, palette, commands)
+        })
+    });
+}
+
+/// Draws content within the available space without growing it, so that a panel keeps its dragged
+/// width.
+fn steady_ui(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
+    let room = ui.available_rect_before_wrap();
+    let mut content = ui.new_child(UiBuilder::new().max_rect(room).layout(*ui.layout()));
+    content.set_clip_rect(room.intersect(ui.clip_rect()));
+    add(&mut content);
+    ui.advance_cursor_after_rect(room);
+}
+
+/// Draws the open sheet, if any, over the views.
+fn sheets_ui(ui: &Ui, centre: Rect, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let sheet = if state.display.selection.explained.is_some() {
+        Sheet::Derivation
+    } else if let Some(sheet) = state.display.layout.sheet {
+        sheet
+    } else {
+        return;
+    };
+    let is_closed = sheet_ui(ui, centre, sheet, palette, |ui| match sheet {
+        Sheet::Derivation => derivation_sheet::derivation_sheet_ui(ui, state, palette, commands),
+        Sheet::Reasons => reasons::reasons_ui(ui, state, palette, commands),
+        Sheet::Models => {
+            models_panel::bundle_sheet_ui(ui, state, BundleKind::Physics, palette, commands)
+        }
+        Sheet::Identified => {
+            models_panel::bundle_sheet_ui(ui, state, BundleKind::Identified, palette, commands)
+        }
+    });
+    // A click outside closes the sheet, unless it asks for the derivation of another value.
+    let asks = commands
+        .iter()
+        .any(|command| matches!(command, Command::Selection(SelectionCommand::Explain(_))));
+    if is_closed && !asks {
+        let close = if sheet == Sheet::Derivation {
+            Command::Selection(SelectionCommand::Explain(None))
+        } else {
+            Command::Layout(LayoutCommand::ShowSheet(None))
+        };
+        commands.push(close);
+    }
+}

@@ -1,0 +1,350 @@
+//! Rows of conditions: number, mark, airspeed, and the cells of the cost map. The list and the rail
+//! lay them out differently; `cost_picture.rs` paints some of them as a picture.
+
+use egui::{
+    Align2, Color32, CornerRadius, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Ui, pos2, vec2,
+};
+
+use gdcm_method::fidelity::Cost;
+use gdcm_model::dataset::condition::FlightState;
+use gdcm_model::dataset::{Condition, ConditionId};
+use gdcm_model::number_format::counted;
+use gdcm_model::number_format::decimals;
+use gdcm_plot::figure::gains::Classes;
+
+use super::condition_marks::Marks;
+use super::cost_map::{ColumnCost, CostColumn, columns, cost_of_column};
+use crate::gui::commands::command::Command;
+use crate::gui::commands::display::DisplayCommand;
+use crate::gui::commands::selection::SelectionCommand;
+use crate::gui::state::mapped_cost::MappedCost;
+use crate::gui::state::window_state::State;
+use crate::gui::widgets::controls::{Asks, entries_ui, named};
+use crate::gui::widgets::list_row::RowLook;
+use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
+use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium, small};
+
+/// Rows of conditions with their cells of the cost map, as laid out in the current frame.
+pub(super) struct ConditionRows<'a> {
+    state: &'a State,
+    classes: Classes,
+    columns: Vec<CostColumn>,
+    /// Distance between the columns of cells \[pt\].
+    pitch: f32,
+    layout: RowLayout,
+    /// Whether these are the narrow rows of the rail, which do not mark the response in focus.
+    is_rail: bool,
+}
+
+/// Positions in a row \[pt from the row's left edge\].
+struct RowLayout {
+    /// Right edge of the condition number.
+    number_end: f32,
+    /// Centre of the mark of the flight state; `None` without marks.
+    mark_center: Option<f32>,
+    /// Right edge of the airspeed.
+    airspeed_end: f32,
+    /// Left edge of the cells.
+    cells_left: f32,
+    /// Height of the row \[pt\].
+    height: f32,
+}
+
+const LIST: RowLayout = RowLayout {
+    number_end: 20.0,
+    mark_center: Some(33.0),
+    airspeed_end: 70.0,
+    cells_left: 88.0,
+    height: 20.0,
+};
+
+const RAIL: RowLayout = RowLayout {
+    number_end: 20.0,
+    mark_center: None,
+    airspeed_end: 50.0,
+    cells_left: 60.0,
+    height: 24.0,
+};
+
+/// Maximum distance between the columns of cells \[pt\].
+const MOST_PITCH: f32 = 26.0;
+/// Half the width of a cell \[pt\].
+pub(super) const HALF_CELL_WIDTH: f32 = 10.0;
+/// Height of a cell \[pt\].
+pub(super) const CELL_HEIGHT: f32 = 12.0;
+/// Space at the right end of a row, for the mark of open tasks \[pt\].
+const MARK_ROOM: f32 = 16.0;
+
+impl<'a> ConditionRows<'a> {
+    /// Lays out rows of `width` \[pt\].
+    pub(super) fn list(state: &'a State, width: f32) -> Self {
+        Self::new(state, LIST, width - LIST.cells_left - MARK_ROOM)
+    }
+
+    /// Lays out the cells of rows of `width` \[pt\] from `cells_left` on; the caller paints the rest.
+    pub(super) fn picture(state: &'a State, cells_left: f32, width: f32) -> Self {
+        let layout = RowLayout { cells_left, ..LIST };
+        Self::new(state, layout, width - cells_left)
+    }
+
+    /// Returns the columns of the cost map.
+    pub(super) fn columns(&self) -> &[CostColumn] {
+        &self.columns
+    }
+
+    /// Lays out the columns of cells within a width of `room` \[pt\].
+    fn new(state: &'a State, layout: RowLayout, room: f32) -> Self {
+        let columns = columns(state);
+        let pitch = (room / columns.len().max(1) as f32).min(MOST_PITCH);
+        Self {
+            state,
+            classes: Classes::from_dataset(state.dataset()),
+            columns,
+            pitch,
+            layout,
+            is_rail: false,
+        }
+    }
+
+    /// Lays out narrow rows with a single cell: the greatest cost of all constrained responses.
+    pub(super) fn rail(state: &'a State) -> Self {
+        let pairs = state.study.settings.constrained.marked().collect();
+        let columns = vec![CostColumn {
+            head: "J".to_owned(),
+            pairs,
+            is_mean: false,
+        }];
+        Self {
+            state,
+            classes: Classes::from_dataset(state.dataset()),
+            columns,
+            pitch: MOST_PITCH,
+            layout: RAIL,
+            is_rail: true,
+        }
+    }
+
+    /// Returns the horizontal centre of the column at `place`.
+    pub(super) fn center(&self, row: Rect, place: usize) -> f32 {
+        row.left() + self.layout.cells_left + self.pitch * place as f32 + HALF_CELL_WIDTH
+    }
+
+    /// Paints the mark of a condition as in the Net gain view: the shape shows the altitude class,
+    /// the fill the weight class.
+    pub(super) fn paint_mark(
+        &self,
+        ui: &Ui,
+        at: Pos2,
+        flight_state: &FlightState,
+        palette: &Palette,
+    ) {
+        let is_filled = self.classes.is_first_weight(flight_state);
+        let (fill, stroke) = if is_filled {
+            (palette.perturbed, Stroke::NONE)
+        } else {
+            (Color32::TRANSPARENT, Stroke::new(1.6, palette.perturbed))
+        };
+        if self.classes.is_first_altitude(flight_state) {
+            ui.painter()
+                .circle(at, if is_filled { 4.2 } else { 3.5 }, fill, stroke);
+        } else {
+            let reach = if is_filled { 5.2 } else { 4.4 };
+            let corners = [
+                vec2(0.0, -reach),
+                vec2(reach, 0.0),
+                vec2(0.0, reach),
+                vec2(-reach, 0.0),
+            ]
+            .map(|offset| at + offset);
+            ui.painter()
+                .add(egui::Shape::convex_polygon(corners.to_vec(), fill, stroke));
+        }
+    }
+
+    /// Draws the headings of the columns; a right-click selects the mapped cost.
+    pub(super) fn heads_ui(&self, ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
+        let (row, heading) = ui.allocate_exact_size(vec2(ui.available_width(), 18.0), Sense::CLICK);
+        for (end, words) in [
+            (self.layout.number_end, "no."),
+            (self.layout.airspeed_end, "kt"),
+        ] {
+            painted_text(
+                ui,
+                row.with_max_x(row.left() + end),
+                AT_RIGHT_END,
+                words,
+                small(),
+                palette.dim_text,
+            );
+        }
+        for (place, column) in self.columns.iter().enumerate() {
+            let is_focused = column.pairs.contains(&self.state.display.selection.pair);
+            let (color, font) = if is_focused {
+                (palette.text, medium(SMALL_SIZE))
+            } else {
+                (palette.dim_text, small())
+            };
+            let at = pos2(self.center(row, place), row.center().y);
+            ui.painter()
+                .text(at, Align2::CENTER_CENTER, &column.head, font, color);
+        }
+        let heading = named(heading, Role::Label, "Heading of the map of costs");
+        heading.context_menu(|ui| {
+            let entries = MappedCost::ALL.map(|mapped| {
+                (
+                    format!("Map J of {}", mapped.name()),
+                    Command::Display(DisplayCommand::MapCost(mapped)),
+                )
+            });
+            entries_ui(ui, entries, commands);
+        });
+    }
+
+    /// Draws the row of a condition; a click shows the condition.
+    pub(super) fn row_ui(
+        &self,
+        ui: &mut Ui,
+        condition: &Condition,
+        palette: &Palette,
+        commands: &mut Vec<Command>,
+    ) {
+        let state = self.state;
+        let id = condition.id();
+        let marks = Marks::new(state, id);
+        let flight_state = condition.flight_state();
+        let name = format!(
+            "Condition {id}: {}{}",
+            flight_state_words(flight_state),
+            marks.after_name()
+        );
+        let look = RowLook {
+            is_selected: id == state.condition().id(),
+            is_pointed: state.display.selection.hovered_condition == Some(id),
+            height: self.layout.height,
+        };
+        let (row, response) = look.row_ui(ui, palette, &name);
+        if response.contains_pointer() {
+            commands.push(SelectionCommand::HoverCondition(id).into());
+        }
+        let color = if marks.left_out {
+            palette.quiet_text
+        } else {
+            palette.text
+        };
+        painted_text(
+            ui,
+            row.with_max_x(row.left() + self.layout.number_end),
+            AT_RIGHT_END,
+            &id.to_string(),
+            medium(BODY_SIZE),
+            color,
+        );
+        painted_text(
+            ui,
+            row.with_max_x(row.left() + self.layout.airspeed_end),
+            AT_RIGHT_END,
+            &flight_state.airspeed_kt.to_string(),
+            body(),
+            color,
+        );
+        if let Some(center) = self.layout.mark_center {
+            let at = pos2(row.left() + center, row.center().y);
+            self.paint_mark(ui, at, flight_state, palette);
+        }
+        self.cells_ui(ui, row, &marks, palette, commands);
+        marks.paint(ui, row, palette);
+        response.asks(SelectionCommand::SelectCondition(id), commands);
+        response.context_menu(|ui| marks.menu_ui(ui, commands));
+        response.on_hover_ui(|ui| marks.tooltip_ui(ui, condition, palette));
+    }
+
+    /// Draws a condition's cells; a click on a cell shows the condition and the response.
+    fn cells_ui(
+        &self,
+        ui: &mut Ui,
+        row: Rect,
+        marks: &Marks,
+        palette: &Palette,
+        commands: &mut Vec<Command>,
+    ) {
+        let id = marks.condition;
+        for (place, column) in self.columns.iter().enumerate() {
+            let Some(worst) = cost_of_column(self.state, id, column) else {
+                continue;
+            };
+            let corner = pos2(
+                self.center(row, place) - HALF_CELL_WIDTH,
+                row.center().y - 0.5 * CELL_HEIGHT,
+            );
+            // Narrow columns leave a gap of 2 pt between their cells.
+            let width = HALF_CELL_WIDTH.min(0.5 * self.pitch - 1.5);
+            let cell = Rect::from_min_size(corner, vec2(2.0 * width + 1.0, CELL_HEIGHT));
+            paint_cost(ui, cell, worst.cost, palette);
+            let is_focus = column.pairs.contains(&self.state.display.selection.pair)
+                && id == self.state.condition().id();
+            if is_focus && !self.is_rail {
+                ui.painter().rect_stroke(
+                    cell.expand(2.0),
+                    4.0,
+                    Stroke::new(1.5, palette.accent),
+                    StrokeKind::Outside,
+                );
+            }
+            let response = ui.interact(cell, ui.scope_id().with(("cost", id, place)), Sense::CLICK);
+            let words = cost_words(self.state, id, column, &worst);
+            let response = named(response, Role::Button, words.clone());
+            response.context_menu(|ui| marks.menu_ui(ui, commands));
+            if response.on_hover_text(words).clicked() {
+                commands.extend([
+                    Command::Selection(SelectionCommand::SelectCondition(id)),
+                    Command::Selection(SelectionCommand::FocusPair(worst.pair)),
+                ]);
+            }
+        }
+    }
+}
+
+/// Paints a cell: the magnitude part of the cost in the left half, the phase part in the right
+/// half.
+pub(super) fn paint_cost(ui: &Ui, cell: Rect, cost: Cost, palette: &Palette) {
+    let middle = cell.center().x;
+    let halves = [
+        (cell.with_max_x(middle - 0.5), cost.magnitude),
+        (cell.with_min_x(middle + 0.5), cost.phase),
+    ];
+    for (half, cost) in halves {
+        ui.painter()
+            .rect_filled(half, CornerRadius::same(2), palette.heat_color(cost));
+    }
+}
+
+fn cost_words(
+    state: &State,
+    condition: ConditionId,
+    column: &CostColumn,
+    worst: &ColumnCost,
+) -> String {
+    let magnitude = decimals(worst.cost.magnitude, 1);
+    let phase = decimals(worst.cost.phase, 1);
+    let name = state.dataset().pair_name(worst.pair);
+    if column.is_mean {
+        let responses = counted(column.pairs.len(), "response");
+        return format!(
+            "{responses} not held, condition {condition}: mean J of magnitude \
+            {magnitude}, of phase {phase}; largest: {name}"
+        );
+    }
+    format!("{name} of condition {condition}: J of magnitude {magnitude}, of phase {phase}")
+}
+
+/// "60 kt, low altitude, high weight".
+fn flight_state_words(state: &FlightState) -> String {
+    let mut words = format!("{} kt", state.airspeed_kt);
+    if let Some(altitude) = &state.altitude {
+        words.push_str(&format!(", {altitude} altitude"));
+    }
+    if let Some(weight) = &state.weight {
+        words.push_str(&format!(", {weight} weight"));
+    }
+    words
+}

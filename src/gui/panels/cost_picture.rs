@@ -1,0 +1,78 @@
+//! Picture of the cost map on the start page: the first conditions, without interaction.
+
+use egui::{Align2, Rect, Ui, pos2, vec2};
+
+use super::condition_rows::{CELL_HEIGHT, ConditionRows, HALF_CELL_WIDTH, paint_cost};
+use super::cost_map::cost_of_column;
+use crate::gui::state::window_state::State;
+use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
+use crate::gui::widgets::palette::{Palette, small};
+
+/// Maximum number of conditions in the picture of the start page.
+const MOST_PICTURED: usize = 12;
+
+/// Height of the headings in the picture \[pt\].
+pub(super) const PICTURE_HEAD: f32 = 18.0;
+
+/// Height of a row in the picture \[pt\].
+const PICTURE_ROW: f32 = 17.0;
+
+/// Left edge of the cells in the picture \[pt\].
+const PICTURE_CELLS_LEFT: f32 = 48.0;
+
+/// Returns the height of the picture drawn by [`cost_picture_ui`] \[pt\].
+pub(super) fn cost_picture_height(state: &State) -> f32 {
+    let rows = state.dataset().conditions().len().min(MOST_PICTURED);
+    PICTURE_HEAD + PICTURE_ROW * rows as f32
+}
+
+/// Paints the first conditions as a picture without interaction: marks, airspeeds and costs.
+pub fn cost_picture_ui(ui: &Ui, area: Rect, state: &State, palette: &Palette) {
+    let map = ConditionRows::picture(state, PICTURE_CELLS_LEFT, area.width());
+    for (place, column) in map.columns().iter().enumerate() {
+        let at = pos2(map.center(area, place), area.top() + 8.0);
+        ui.painter().text(
+            at,
+            Align2::CENTER_CENTER,
+            &column.head,
+            small(),
+            palette.dim_text,
+        );
+    }
+    for (number, condition) in state
+        .dataset()
+        .conditions()
+        .iter()
+        .take(MOST_PICTURED)
+        .enumerate()
+    {
+        let row = Rect::from_min_size(
+            area.min + vec2(0.0, PICTURE_HEAD + PICTURE_ROW * number as f32),
+            vec2(area.width(), PICTURE_ROW),
+        );
+        let flight_state = condition.flight_state();
+        map.paint_mark(
+            ui,
+            pos2(row.left() + 6.0, row.center().y),
+            flight_state,
+            palette,
+        );
+        let airspeed = flight_state.airspeed_kt.to_string();
+        painted_text(
+            ui,
+            row.with_max_x(row.left() + 40.0),
+            AT_RIGHT_END,
+            &airspeed,
+            small(),
+            palette.dim_text,
+        );
+        for (place, column) in map.columns().iter().enumerate() {
+            let Some(worst) = cost_of_column(state, condition.id(), column) else {
+                continue;
+            };
+            let at = pos2(map.center(row, place), row.center().y);
+            let cell = Rect::from_center_size(at, vec2(2.0 * HALF_CELL_WIDTH + 1.0, CELL_HEIGHT));
+            paint_cost(ui, cell, worst.cost, palette);
+        }
+    }
+}

@@ -1,0 +1,208 @@
+//! Right side of the window, from top to bottom: verdict, result, constraint matrix, card of the
+//! focused response, settings line, export.
+
+use egui::{Button, Frame, Margin, Panel, Rect, RichText, Role, ScrollArea, Sense, Ui, pos2, vec2};
+
+use gdcm_method::correction::delta::GainSource;
+use gdcm_model::number_format::counted;
+use gdcm_model::units::number;
+use gdcm_study::PhaseCorrection;
+use gdcm_study::decisions::setting;
+
+use super::advice::export;
+use super::verdict::{Verdict, band_words};
+use super::verdict_view::verdict_ui;
+use super::{matrix_panel, response_card, result_panel, settings_panel};
+use crate::gui::commands::command::Command;
+use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::state::window_state::State;
+use crate::gui::widgets::controls::{Asks, named_switch};
+use crate::gui::widgets::elision::elided;
+use crate::gui::widgets::escape_key::take_escape;
+use crate::gui::widgets::painted_text::{AT_RIGHT_END, chevron, painted_text};
+use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium, small};
+use crate::gui::widgets::window_regions::{Region, region_ui};
+
+/// Space around everything \[pt\].
+const PADDING: f32 = 12.0;
+/// Settings line height \[pt\].
+const LINE: f32 = 36.0;
+/// Height of the export row \[pt\].
+const FOOT: f32 = 48.0;
+/// Minimum window height that shows the card of the focused response \[pt\].
+const LEAST_WITH_CARD: f32 = 860.0;
+/// Minimum window height that shows the full result; in lower windows the result takes a single
+/// line \[pt\].
+const LEAST_WITH_RESULT: f32 = 600.0;
+
+/// Draws verdict, result and matrix, or the open settings, above the export row.
+pub fn right_panel_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let verdict = Verdict::new(state);
+    let foot = Frame::new().inner_margin(Margin::ZERO);
+    Panel::bottom("export")
+        .frame(foot)
+        .exact_size(LINE + FOOT)
+        .show(ui, |ui| {
+            region_ui(ui, Region::Settings, |ui| {
+                settings_line_ui(ui, state, palette, commands)
+            });
+            export_ui(ui, state, &verdict, palette, commands);
+        });
+    let window = ui.ctx().content_rect().height();
+    let frame = Frame::new().inner_margin(Margin {
+        left: PADDING as i8,
+        right: PADDING as i8,
+        top: 8,
+        bottom: 4,
+    });
+    frame.show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        // The width is fixed here, so that wide content of one part does not widen the next part.
+        let width = ui.available_width();
+        region_ui(ui, Region::Verdict, |ui| {
+            verdict_ui(ui, &verdict, palette, commands)
+        });
+        ui.add_space(8.0);
+        if state.display.layout.settings_open {
+            ScrollArea::vertical()
+                .id_salt("settings")
+                .auto_shrink([false, false])
+                .show(ui, |ui| {
+                    settings_panel::settings_ui(ui, state, palette, commands);
+                });
+            return;
+        }
+        ui.set_max_width(width);
+        let is_folded = window < LEAST_WITH_RESULT;
+        region_ui(ui, Region::Result, |ui| {
+            result_panel::result_ui(ui, state, is_folded, palette, commands)
+        });
+        ui.add_space(8.0);
+        let card = if window >= LEAST_WITH_CARD {
+            response_card::CARD_HEIGHT + 12.0
+        } else {
+            0.0
+        };
+        matrix_panel::matrix_ui(ui, state, ui.available_height() - card, palette, commands);
+        if card > 0.0 {
+            ui.add_space(12.0);
+            response_card::card_ui(ui, state, palette);
+        }
+    });
+}
+
+/// Draws the settings in a single line; a click unfolds them over matrix and card.
+fn settings_line_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let is_open = state.display.layout.settings_open;
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), LINE), Sense::click());
+    ui.painter().hline(
+        rect.x_range(),
+        rect.top(),
+        ui.visuals().widgets.noninteractive.bg_stroke,
+    );
+    if response.hovered() {
+        ui.painter()
+            .rect_filled(rect.shrink2(vec2(0.0, 1.0)), 0.0, palette.raised);
+    }
+    let inner = rect.shrink2(vec2(PADDING, 0.0));
+    let title = painted_text(ui, inner, 0.0, "Settings", medium(BODY_SIZE), palette.text);
+    let words = settings_words(state);
+    let shown = elided(ui, &words, inner.right() - title.right() - 32.0, SMALL_SIZE);
+    painted_text(
+        ui,
+        inner,
+        title.right() - inner.left() + 10.0,
+        &shown,
+        small(),
+        palette.dim_text,
+    );
+    chevron(
+        ui,
+        pos2(inner.right() - 5.0, inner.center().y),
+        is_open,
+        palette,
+    );
+    let response = named_switch(response, Role::Button, is_open, "Settings");
+    if response.clicked() || (is_open && take_escape(ui.ctx())) {
+        commands.push(LayoutCommand::ShowSettings(!is_open).into());
+    }
+    let action = if is_open { "Fold" } else { "Open" };
+    response.on_hover_text(format!("{words}\n{action} with Ctrl+comma"));
+}
+
+/// "α 1 · 0.5–12 rad/s · delays · representatives".
+fn settings_words(state: &State) -> String {
+    let settings = &state.study.settings;
+    let gains = number(settings.alpha_gain);
+    let delays = number(settings.alpha_delay);
+    let alpha = if gains == delays {
+        format!("α {gains}")
+    } else {
+        format!("α {gains}, {delays}")
+    };
+    let phase = match settings.phase {
+        PhaseCorrection::None => "gains alone",
+        PhaseCorrection::Delay => "delays",
+        PhaseCorrection::Lead => "leads",
+    };
+    let mut words = format!("{alpha} · {} · {phase}", band_words(state));
+    if settings.gain_source == GainSource::MeanOfPairs || state.display.layout.is_wide {
+        words.push_str(" · ");
+        words.push_str(&setting::GAIN_SOURCE.text(setting::GAIN_SOURCE.value(settings)));
+    }
+    words
+}
+
+/// Draws the export button, which is always visible, and primary if no other step is left.
+fn export_ui(
+    ui: &mut Ui,
+    state: &State,
+    verdict: &Verdict,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), FOOT), Sense::hover());
+    ui.painter().hline(
+        rect.x_range(),
+        rect.top(),
+        ui.visuals().widgets.noninteractive.bg_stroke,
+    );
+    let inner = rect.shrink2(vec2(PADDING, 10.0));
+    let is_ready = state.analysis().is_some();
+    let is_primary = verdict
+        .steps
+        .first()
+        .is_some_and(|step| step.command == export());
+    let color = if is_primary {
+        palette.on_accent()
+    } else {
+        palette.text
+    };
+    let button = Button::new(
+        RichText::new("Export corrections…")
+            .font(medium(BODY_SIZE))
+            .color(color),
+    );
+    let button = if is_primary {
+        button.fill(palette.accent)
+    } else {
+        button
+    };
+    let place = Rect::from_min_size(inner.min, vec2(140.0, 28.0));
+    region_ui(ui, Region::Export, |ui| {
+        ui.scope_builder(egui::UiBuilder::new().max_rect(place), |ui| {
+            let export_button = ui.add_enabled(is_ready, button.min_size(place.size()));
+            let hint = "Write corrections.json, corrections.csv and assessment.csv (Ctrl+E)";
+            export_button.on_hover_text(hint).asks(export(), commands);
+        });
+    });
+    let count = state.dataset().conditions().len();
+    let mut content = counted(count, "condition");
+    let has_schedule = state
+        .analysis()
+        .is_some_and(|analysis| analysis.schedule.is_ok());
+    if has_schedule {
+        content.push_str(", schedule");
+    }
+    painted_text(ui, inner, AT_RIGHT_END, &content, body(), palette.dim_text);
+}

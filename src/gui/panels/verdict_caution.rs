@@ -1,0 +1,102 @@
+//! Caution beside the verdict: the fact to know before the result is used, in a few words.
+
+use gdcm_method::correction::LeadPrice;
+use gdcm_method::schedule::ScheduleCaution;
+use gdcm_model::number_format::counted;
+use gdcm_model::units::{number, signed, told_apart};
+use gdcm_study::ConditionAnalysis;
+use gdcm_study::results::coupling_remark_search::coupling_cautions;
+use gdcm_study::results::remark_kind::RemarkKind;
+
+use crate::gui::state::window_state::State;
+use crate::gui::views::used_couplings;
+
+/// Returns the most important caution: couplings that are requested but missing or that make poles
+/// unstable; else the lead price; else any other caution about couplings; else the cost of the
+/// schedule in this condition.
+pub(super) fn caution(state: &State, shown: &ConditionAnalysis) -> Option<String> {
+    let couplings = coupling_caution(state);
+    if let Some(caution) = &couplings
+        && caution.kind == RemarkKind::Trouble
+    {
+        return Some(caution.words.clone());
+    }
+    lead_caution(shown)
+        .or(couplings.map(|caution| caution.words))
+        .or_else(|| schedule_caution(state, shown))
+}
+
+/// Caution about the couplings in use, in a few words.
+struct CouplingCaution {
+    kind: RemarkKind,
+    words: String,
+}
+
+/// Returns the most serious remark on the couplings in use, in a few words; the sheet of reasons
+/// contains every remark.
+fn coupling_caution(state: &State) -> Option<CouplingCaution> {
+    if state.analysis()?.asked_couplings().is_err() {
+        return Some(CouplingCaution {
+            kind: RemarkKind::Trouble,
+            words: "No couplings could be found".to_owned(),
+        });
+    }
+    let cautions = coupling_cautions(used_couplings(state)?).len();
+    let unstable = unstable_in_band(state);
+    if unstable > 0 {
+        let poles = counted(unstable, "pole");
+        return Some(CouplingCaution {
+            kind: RemarkKind::Trouble,
+            words: format!("Couplings: {poles} unstable in the band"),
+        });
+    }
+    if cautions == 0 {
+        return None;
+    }
+    Some(CouplingCaution {
+        kind: RemarkKind::Caution,
+        words: format!("Couplings: {}", counted(cautions, "caution")),
+    })
+}
+
+/// Returns the number of poles within the band that the couplings in use make unstable.
+pub(super) fn unstable_in_band(state: &State) -> usize {
+    match used_couplings(state) {
+        Some(used) => used.unstable_in_band(),
+        None => 0,
+    }
+}
+
+/// Returns the lead price: the maximum magnitude that the filters of a constrained response add
+/// above the band (M15.6); `None` up to 0.05 dB.
+fn lead_caution(shown: &ConditionAnalysis) -> Option<String> {
+    let price = LeadPrice::new(&shown.compensated.as_ref()?.leads)?;
+    let most_db = shown
+        .held()
+        .marked()
+        .map(|pair| price.of_pair_db(pair))
+        .fold(0.0, f64::max);
+    if most_db <= 0.05 {
+        return None;
+    }
+    let top = number(price.limit_rad_s);
+    Some(format!(
+        "Price: {} dB above {top} rad/s",
+        signed(most_db, 0)
+    ))
+}
+
+/// Returns a caution if the schedule costs more than twice the J of the condition's own correction
+/// (M12).
+fn schedule_caution(state: &State, shown: &ConditionAnalysis) -> Option<String> {
+    let schedule = state.analysis()?.schedule.as_ref().ok()?;
+    for caution in &schedule.cautions {
+        if let ScheduleCaution::CostsMore(cost) = caution
+            && cost.condition == shown.condition.id()
+        {
+            let (scheduled, own) = told_apart(cost.scheduled, cost.own, 0);
+            return Some(format!("Scheduled: J {scheduled}, own {own}"));
+        }
+    }
+    None
+}

@@ -1,0 +1,143 @@
+//! Frame of a view: its title at the left and its tools at the right, above the clipped content.
+
+use egui::{Align, AsIdSalt, Frame, Label, Layout, Margin, Rect, RichText, Ui, UiBuilder, vec2};
+
+use crate::gui::commands::command::Command;
+use crate::gui::state::view::View;
+use crate::gui::state::window_state::State;
+use crate::gui::views::figure_button::figure_button_ui;
+use crate::gui::views::{ViewTitle, view_content};
+use crate::gui::widgets::palette::{Palette, TITLE_SIZE, medium};
+use crate::gui::widgets::panel_layout::in_line_ui;
+use crate::gui::widgets::window_regions::{Region, region_ui};
+
+/// Draws a view with its title and tools into an area.
+pub(super) fn view_frame_ui(
+    ui: &mut Ui,
+    area: Rect,
+    state: &mut State,
+    view: View,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let top = if state.is_example { 0 } else { 6 };
+    let padding = Margin {
+        left: PADDING,
+        right: PADDING,
+        top,
+        bottom: 4,
+    };
+    clipped_ui(ui, ("view", view), area, padding, |ui| {
+        title_row_ui(ui, state, view, palette, commands);
+        let draw = view_content(view).draw;
+        region_ui(ui, Region::Plots, |ui| draw(ui, state, palette, commands));
+    });
+}
+
+/// Horizontal padding \[pt\].
+pub(super) const PADDING: i8 = 16;
+/// Title row height \[pt\].
+const TITLE: f32 = 28.0;
+
+/// Draws content clipped to an area.
+pub(super) fn clipped_ui(
+    ui: &mut Ui,
+    id: impl AsIdSalt,
+    area: Rect,
+    padding: Margin,
+    add: impl FnOnce(&mut Ui),
+) {
+    ui.scope_builder(UiBuilder::new().id_salt(id).max_rect(area), |ui| {
+        ui.set_clip_rect(area.intersect(ui.clip_rect()));
+        Frame::new().inner_margin(padding).show(ui, add);
+    });
+    ui.advance_cursor_after_rect(area);
+}
+
+/// Draws the title of the view at the left and its tools at the right; if they do not fit, the
+/// tools move to a line below.
+fn title_row_ui(
+    ui: &mut Ui,
+    state: &State,
+    view: View,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    /// Minimum title width \[pt\].
+    const LEAST: f32 = 200.0;
+    let content = view_content(view);
+    let width = ui.available_width();
+    let is_titled = !matches!(content.title, ViewTitle::None);
+    if is_titled && width - content.tools_width < LEAST && content.tools_width > 0.0 {
+        row_ui(ui, width, |ui| title_ui(ui, state, content.title, palette));
+        row_ui(ui, width, |ui| tools_ui(ui, state, view, palette, commands));
+    } else if is_titled || content.tools_width > 0.0 {
+        row_ui(ui, width, |ui| {
+            tools_ui(ui, state, view, palette, commands);
+            let rest = ui.available_rect_before_wrap();
+            in_line_ui(ui, rest, false, |ui| {
+                title_ui(ui, state, content.title, palette)
+            });
+        });
+    }
+}
+
+fn row_ui(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui)) {
+    ui.allocate_ui_with_layout(
+        vec2(width, TITLE),
+        Layout::right_to_left(Align::Center).with_main_wrap(false),
+        |ui| {
+            ui.set_min_size(vec2(width, TITLE));
+            add(ui);
+        },
+    );
+}
+
+pub(super) fn tools_ui(
+    ui: &mut Ui,
+    state: &State,
+    view: View,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    // Skip the front view: its figure button is in the view bar.
+    if view != state.display.layout.arrangement.view() {
+        figure_button_ui(ui, state, view, commands);
+    }
+    (view_content(view).tools)(ui, state, palette, commands);
+    if view.facts().is_of_all_conditions && state.others_are_older() {
+        let text = palette.small_warning("of older settings");
+        ui.label(text)
+            .on_hover_text("The displayed condition is up to date; the others are being computed");
+    }
+}
+
+/// Draws a title such as "LON → Q  condition 10: 60 kt, low altitude, high weight"; some views omit
+/// the response or the condition.
+pub(super) fn title_ui(ui: &mut Ui, state: &State, title: ViewTitle, palette: &Palette) {
+    let condition = state.condition();
+    let id = condition.id();
+    let flight_state = &condition.flight_state().name;
+    let response = state.dataset().pair_name(state.display.selection.pair);
+    match title {
+        ViewTitle::ResponseAndCondition => {
+            heading_ui(ui, &response);
+            dim_ui(ui, palette, format!("condition {id}: {flight_state}"));
+        }
+        ViewTitle::ResponseOnly => heading_ui(ui, &response),
+        ViewTitle::Condition => {
+            heading_ui(ui, &format!("Condition {id}"));
+            dim_ui(ui, palette, flight_state.clone());
+        }
+        ViewTitle::Words(words) => dim_ui(ui, palette, words(state)),
+        ViewTitle::None => {}
+    }
+}
+
+fn heading_ui(ui: &mut Ui, text: &str) {
+    ui.label(RichText::new(text).font(medium(TITLE_SIZE)));
+}
+
+fn dim_ui(ui: &mut Ui, palette: &Palette, text: String) {
+    ui.add(Label::new(palette.dim(text)).truncate());
+}

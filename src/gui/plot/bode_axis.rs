@@ -1,0 +1,150 @@
+//! Bode axes: names and units, and the limits typed by the engineer.
+
+use gdcm_model::number_format::compact;
+use gdcm_plot::figure::Range;
+
+use super::bode_scene::BodeScene;
+use super::drawn_curves::Pane;
+use super::ticks::Ticks;
+
+/// Axis of a Bode plot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum BodeAxis {
+    /// Frequency axis, shared by both panes.
+    Frequency,
+    /// A pane's vertical axis.
+    Values(Pane),
+}
+
+impl BodeAxis {
+    /// Returns the accessible name: "Frequency axis, magnitude plot".
+    pub(super) fn name(self, scene: &BodeScene<'_>, pane: Pane) -> String {
+        let kind = match self {
+            Self::Frequency => "Frequency",
+            Self::Values(_) => "Value",
+        };
+        format!("{kind} axis, {}", scene.quantity.name_in_sentence(pane))
+    }
+
+    /// Returns the unit in brackets; empty without a unit.
+    pub(super) fn unit(self, scene: &BodeScene<'_>) -> String {
+        let symbol = match self {
+            Self::Frequency => scene.unit.symbol(),
+            Self::Values(pane) => scene.quantity.unit(pane).suffix().trim(),
+        };
+        if symbol.is_empty() {
+            String::new()
+        } else {
+            format!(" [{symbol}]")
+        }
+    }
+
+    fn ticks(self, scene: &BodeScene<'_>) -> Ticks {
+        match self {
+            Self::Frequency => Ticks::Frequency(scene.unit),
+            Self::Values(pane) => scene.quantity.unit(pane).ticks(),
+        }
+    }
+
+    /// Formats both limits as editable text.
+    pub(super) fn texts(self, scene: &BodeScene<'_>, range: Range) -> [String; 2] {
+        [range.min, range.max].map(|place| compact(self.ticks(scene).number(place)))
+    }
+
+    /// Parses the range between two typed limits, or returns the reason why it cannot be shown.
+    pub(super) fn range(self, scene: &BodeScene<'_>, texts: &[String; 2]) -> Result<Range, String> {
+        let min = self.place(scene, &texts[0])?;
+        let max = self.place(scene, &texts[1])?;
+        if min < max {
+            Ok(Range { min, max })
+        } else {
+            Err("the lower limit must be below the upper limit".to_owned())
+        }
+    }
+
+    /// Converts a typed number, with an ASCII or a typographic minus sign, to an axis coordinate.
+    fn place(self, scene: &BodeScene<'_>, text: &str) -> Result<f64, String> {
+        let text = text.trim();
+        let kind = match self {
+            Self::Frequency => "frequency",
+            Self::Values(_) => "value",
+        };
+        let refusal = || format!("\"{text}\" is not a {kind}");
+        let number: f64 = text
+            .replace('\u{2212}', "-")
+            .parse()
+            .map_err(|_| refusal())?;
+        let place = self.ticks(scene).place(number);
+        if place.is_finite() {
+            Ok(place)
+        } else {
+            Err(refusal())
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use gdcm_plot::figure::axis::FrequencyUnit;
+
+    use super::*;
+
+    fn texts(min: &str, max: &str) -> [String; 2] {
+        [min.to_owned(), max.to_owned()]
+    }
+
+    #[test]
+    fn typed_frequencies_are_places_on_the_logarithmic_axis() {
+        let scene = BodeScene::new("", &[], (0.5, 12.0));
+        let range = BodeAxis::Frequency
+            .range(&scene, &texts("0.1", " 100 "))
+            .unwrap();
+        assert_eq!(
+            range,
+            Range {
+                min: -1.0,
+                max: 2.0
+            }
+        );
+        assert_eq!(
+            BodeAxis::Frequency.texts(&scene, range),
+            texts("0.1", "100")
+        );
+        let hertz = BodeScene {
+            unit: FrequencyUnit::Hertz,
+            ..scene
+        };
+        let range = BodeAxis::Frequency.range(&hertz, &texts("1", "2")).unwrap();
+        assert!((10f64.powf(range.min) - std::f64::consts::TAU).abs() < 1e-12);
+    }
+
+    #[test]
+    fn invalid_limits_are_refused_with_a_message() {
+        let scene = BodeScene::new("", &[], (0.5, 12.0));
+        let frequencies = |min, max| {
+            BodeAxis::Frequency
+                .range(&scene, &texts(min, max))
+                .unwrap_err()
+                .to_string()
+        };
+        assert_eq!(
+            frequencies("3", "2"),
+            "the lower limit must be below the upper limit"
+        );
+        assert_eq!(
+            frequencies("2", "2"),
+            "the lower limit must be below the upper limit"
+        );
+        assert_eq!(frequencies("0", "2"), "\"0\" is not a frequency");
+        assert_eq!(frequencies("1", "two"), "\"two\" is not a frequency");
+        let values = BodeAxis::Values(Pane::Magnitude);
+        assert_eq!(
+            values.range(&scene, &texts("\u{2212}20", "5")),
+            Ok(Range {
+                min: -20.0,
+                max: 5.0
+            })
+        );
+        assert!(values.range(&scene, &texts("NaN", "5")).is_err());
+    }
+}

@@ -1,0 +1,141 @@
+//! Pointer in a Bode plot: the curve under it, clicks on curves, and the subject of the context
+//! menu.
+
+use egui::{Pos2, Response, Ui};
+use egui_plot::PlotTransform;
+
+use super::bode_event::BodeEvent;
+use super::bode_scene::BodeScene;
+use super::bode_view::{BodeView, MenuSubject};
+use super::drawn_curves::{CurveId, PANES, Pane};
+use super::nearest_curve::{Hit, nearest_curve};
+use super::reference_lines::PaneLines;
+
+/// Distance from a reference line within which the pointer counts as on the line, even over a curve
+/// \[pt\].
+const ON_LINE: f32 = 1.0;
+
+/// Pointer position in the plots as drawn in the last frame.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pointing {
+    /// `log10 omega` under the pointer.
+    pub(super) log_omega: f64,
+    /// Curve under the pointer, if any.
+    pub(super) hit: Option<Hit>,
+}
+
+impl Pointing {
+    /// Finds the pane and the curve under the pointer; `None` outside the panes.
+    pub(super) fn find(ui: &Ui, scene: &BodeScene<'_>, view: &BodeView) -> Option<Self> {
+        let pointer = ui.input(|input| input.pointer.hover_pos())?;
+        let is_dragging = ui.input(|input| input.pointer.is_decidedly_dragging());
+        for pane in PANES {
+            let Some(transform) = view.transform(pane) else {
+                continue;
+            };
+            let frame = *transform.frame();
+            if !frame.contains(pointer) || !ui.rect_contains_pointer(frame) {
+                continue;
+            }
+            // During dragging, curves that pass under the pointer are ignored.
+            let mut hit = None;
+            if !is_dragging {
+                hit = curve_at(scene, pane, pointer, transform);
+            }
+            let log_omega = transform.value_from_position(pointer).x;
+            return Some(Self { log_omega, hit });
+        }
+        None
+    }
+}
+
+/// Returns the curve under the pointer: the nearest curve; `None` if a reference line is as near or
+/// within [`ON_LINE`], because reference lines are drawn on top.
+fn curve_at(
+    scene: &BodeScene<'_>,
+    pane: Pane,
+    pointer: Pos2,
+    transform: &PlotTransform,
+) -> Option<Hit> {
+    let hit = nearest_curve(scene.curves, pane, pointer, transform)?;
+    let lines = PaneLines {
+        lines: scene.rules,
+        pane,
+        transform,
+    };
+    match lines.distance(pointer) {
+        Some(distance) if distance <= hit.distance.max(ON_LINE) => None,
+        _ => Some(hit),
+    }
+}
+
+/// Returns whether a click on the curve has an effect: on every curve except the reference.
+pub(super) fn takes_clicks(scene: &BodeScene<'_>, hit: Hit) -> bool {
+    scene.reference != Some(&scene.curves[hit.curve].id)
+}
+
+/// Returns the event of a click on the nearest curve; a click on the reference has no effect.
+///
+/// egui reports both clicks of a double click, so the first has already taken effect. The second
+/// click undoes the first if the first was on a curve; on empty ground, it fits the plot.
+pub(super) fn handle_click(
+    pane: Pane,
+    scene: &BodeScene<'_>,
+    response: &Response,
+    view: &mut BodeView,
+) -> Option<BodeEvent> {
+    if !response.clicked() {
+        return None;
+    }
+    let clicked = clicked_curve(pane, scene, response, view);
+    let before = view.last_clicked.take();
+    if response.double_clicked() {
+        if before.is_none() && clicked.is_none() {
+            view.request_fit();
+            response.ctx.request_repaint();
+        }
+        return before.map(BodeEvent::ClickUndone);
+    }
+    let id = clicked?;
+    if response.ctx.input(|input| input.modifiers.alt) {
+        Some(BodeEvent::Isolated(id))
+    } else {
+        view.last_clicked = Some(id.clone());
+        Some(BodeEvent::Clicked(id))
+    }
+}
+
+/// Returns the clicked curve; `None` for the reference, on which a click has no effect.
+fn clicked_curve(
+    pane: Pane,
+    scene: &BodeScene<'_>,
+    response: &Response,
+    view: &BodeView,
+) -> Option<CurveId> {
+    let pointer = response.interact_pointer_pos()?;
+    let hit = curve_at(scene, pane, pointer, view.transform(pane)?)?;
+    if takes_clicks(scene, hit) {
+        Some(scene.curves[hit.curve].id.clone())
+    } else {
+        None
+    }
+}
+
+/// Opens the menu for the curve, or for the empty ground, on a secondary click.
+pub(super) fn open_menu(
+    response: &Response,
+    scene: &BodeScene<'_>,
+    pointing: Option<Pointing>,
+    view: &mut BodeView,
+) {
+    if response.secondary_clicked()
+        && let Some(pointing) = pointing
+    {
+        let curve = pointing.hit.map(|hit| scene.curves[hit.curve].id.clone());
+        view.menu_subject = Some(MenuSubject {
+            curve,
+            omega: 10f64.powf(pointing.log_omega),
+            reason: String::new(),
+        });
+    }
+}

@@ -1,0 +1,113 @@
+//! Content of the overview, its state between frames, and its events.
+
+use std::collections::BTreeMap;
+
+use egui::Pos2;
+use egui_plot::{PlotPoint, PlotTransform};
+
+use gdcm_model::dataset::Pair;
+
+use super::bode_event::CurveAction;
+use super::drawn_curves::{BodeCurve, CurveId, PANES, Pane};
+use super::drawn_pane::DrawnPane;
+use super::nearest_curve::{Hit, nearest_curve};
+
+/// Response shown in a cell of the overview.
+#[derive(Clone, Debug)]
+pub struct OverviewCell<'a> {
+    pub pair: Pair,
+    pub curves: &'a [BodeCurve],
+    pub constrained: bool,
+    /// Whether the pair is in focus.
+    pub selected: bool,
+    /// Short text in the corner, such as J; may be empty.
+    pub note: String,
+}
+
+/// Content of the overview.
+#[derive(Clone, Copy, Debug)]
+pub struct OverviewScene<'a> {
+    /// Input names: the columns.
+    pub inputs: &'a [String],
+    /// Output names: the rows.
+    pub outputs: &'a [String],
+    /// Responses, in any order.
+    pub cells: &'a [OverviewCell<'a>],
+    /// Lower and upper end of the comparison band \[rad/s\].
+    pub band: (f64, f64),
+    /// Message shown if there is nothing to draw.
+    pub message: Option<&'a str>,
+}
+
+/// Event in the overview.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum OverviewEvent {
+    PairClicked(Pair),
+    /// A curve is under the pointer.
+    Hovered(CurveId),
+    /// Status text for the element under the pointer.
+    StatusText(String),
+    /// A curve was clicked with Alt pressed.
+    Isolated(CurveId),
+    /// An entry of a curve's menu was chosen.
+    ActionChosen(CurveId, CurveAction),
+}
+
+/// Curve whose menu is open, and its cell.
+#[derive(Clone, Debug)]
+pub(super) struct MenuCurve {
+    pub(super) pair: Pair,
+    pub(super) curve: CurveId,
+}
+
+/// State of the overview between frames.
+#[derive(Clone, Debug, Default)]
+pub struct OverviewView {
+    /// Whether phases are shown below magnitudes.
+    pub show_phase: bool,
+    /// Panes as last drawn.
+    pub(super) sketches: BTreeMap<(Pair, Pane), DrawnPane>,
+    pub(super) menu_curve: Option<MenuCurve>,
+}
+
+impl OverviewView {
+    /// Returns the transform of a cell as last drawn.
+    fn transform(&self, pair: Pair, pane: Pane) -> Option<&PlotTransform> {
+        self.sketches.get(&(pair, pane))?.transform.as_ref()
+    }
+
+    /// Returns the cell's curve under the pointer, if any.
+    pub(super) fn curve_at<'c>(
+        &self,
+        cell: &OverviewCell<'c>,
+        pointer: Pos2,
+    ) -> Option<&'c BodeCurve> {
+        let mut best: Option<Hit> = None;
+        for pane in PANES {
+            let Some(transform) = self.transform(cell.pair, pane) else {
+                continue;
+            };
+            if !transform.frame().contains(pointer) {
+                continue;
+            }
+            if let Some(hit) = nearest_curve(cell.curves, pane, pointer, transform)
+                && best.is_none_or(|best| hit.distance < best.distance)
+            {
+                best = Some(hit);
+            }
+        }
+        cell.curves.get(best?.curve)
+    }
+
+    /// Returns the screen position of a magnitude, given as `log10 omega` and decibels.
+    pub fn position_in(&self, pair: Pair, log_omega: f64, magnitude_db: f64) -> Option<Pos2> {
+        let transform = self.transform(pair, Pane::Magnitude)?;
+        Some(transform.position_from_point(&PlotPoint::new(log_omega, magnitude_db)))
+    }
+
+    /// Returns the screen position of the centre of a cell's magnitude plot.
+    pub fn screen_position(&self, pair: Pair) -> Option<Pos2> {
+        let transform = self.transform(pair, Pane::Magnitude)?;
+        Some(transform.frame().center())
+    }
+}

@@ -1,0 +1,66 @@
+//! Display options of the assessment: model, correction, responses, bars or table.
+
+use gdcm_method::fidelity::CostAverage;
+use gdcm_method::schedule::CostChange;
+use gdcm_study::AssessedCorrection;
+use gdcm_study::results::assessment_table::AssessedModel;
+
+/// Responses shown by an assessment.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AssessedPairs {
+    /// On-axis responses (Figures 8 to 12 of the paper).
+    #[default]
+    OnAxis,
+    /// Off-axis responses (Figures 13 to 19 of the paper).
+    OffAxis,
+    /// Response in focus.
+    Focused,
+    All,
+}
+
+/// Part of J in the assessment table.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CostPart {
+    /// `Delta J`.
+    #[default]
+    Total,
+    /// `Delta J_mag`.
+    Magnitude,
+    /// `Delta J_phase`.
+    Phase,
+}
+
+impl CostPart {
+    /// Returns the symbol: "ΔJ", "ΔJ mag" or "ΔJ phase".
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Total => "ΔJ",
+            Self::Magnitude => "ΔJ mag",
+            Self::Phase => "ΔJ phase",
+        }
+    }
+
+    /// Returns the function that extracts this part from a change in J.
+    pub fn extractor(self) -> fn(CostChange) -> f64 {
+        match self {
+            Self::Total => CostChange::total,
+            Self::Magnitude => CostChange::magnitude,
+            Self::Phase => CostChange::phase,
+        }
+    }
+}
+
+/// Display options of the assessment.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct AssessmentDisplay {
+    pub model: AssessedModel,
+    /// Correction applied to the model.
+    pub correction: AssessedCorrection,
+    /// Average of the squared errors over frequency; `None` follows the settings.
+    pub average: Option<CostAverage>,
+    pub pairs: AssessedPairs,
+    /// Whether a table is shown instead of bars.
+    pub as_table: bool,
+    /// Part of J in the table.
+    pub part: CostPart,
+}

@@ -1,0 +1,71 @@
+//! Background work in progress, as the status bar shows it.
+
+use std::sync::Arc;
+
+use gdcm_method::correction::Problem;
+
+/// Progress of a job. The total is 0 until the job reports it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Steps {
+    pub done: usize,
+    pub total: usize,
+}
+
+impl Steps {
+    /// Returns the completed share as a whole percentage; 0 without a total.
+    pub fn percent(self) -> usize {
+        100 * self.done / self.total.max(1)
+    }
+}
+
+/// Background work in progress, including the analysis of the current settings.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Background {
+    /// Progress of the analysis of the current settings.
+    pub analysis: Option<Steps>,
+    /// Problems whose optimality proof is running or waiting.
+    pub proofs: Vec<Arc<Problem>>,
+    /// Whether the costs of constraining and releasing responses are being computed.
+    pub toggles: bool,
+    /// Progress of the response curves, by model.
+    pub curves: Option<Steps>,
+    /// Progress of the error bars. Each model contributes its response, and the
+    /// analysis with this model as the representative.
+    pub error_bars: Option<Steps>,
+    /// Progress of the responses to all records.
+    pub time_histories: Option<Steps>,
+    /// Progress of the couplings.
+    pub couplings: Option<Steps>,
+    /// Number of jobs that the visible views wait for.
+    pub views: usize,
+    /// Progress of the report, by condition.
+    pub report: Option<Steps>,
+    /// Progress of the identification.
+    pub identification: Option<Steps>,
+    /// Whether some work was stopped, by the engineer or by a fault.
+    pub stopped: bool,
+}
+
+impl Background {
+    /// Returns whether any work other than the live analysis is in progress.
+    pub fn is_busy(&self) -> bool {
+        !self.proofs.is_empty()
+            || self.toggles
+            || self.curves.is_some()
+            || self.error_bars.is_some()
+            || self.time_histories.is_some()
+            || self.couplings.is_some()
+            || self.views > 0
+            || self.report.is_some()
+            || self.identification.is_some()
+    }
+}
+
+/// Describes the progress of the error bars.
+pub fn error_bar_progress(steps: Steps) -> String {
+    if steps.total == 0 {
+        "error bars …".to_owned()
+    } else {
+        format!("error bars, {} of {} steps …", steps.done, steps.total)
+    }
+}

@@ -1,0 +1,164 @@
+//! Computed results with their jobs, and the state of the requests for them.
+//!
+//! Each change of the study or of the displayed condition is a request with a new, greater number.
+//! Its analysis arrives later: until `received` equals `requested`, the displayed results are older
+//! than the settings. If the request was stopped meanwhile, `stopped` is set, and no analysis is on
+//! its way. A stop of other jobs is in `Background::stopped`.
+//!
+//! Most results may be older than the displayed study: read them through the methods of `State` in
+//! `shown_results.rs`, which return a result only where it is still valid.
+
+use std::sync::Arc;
+
+use gdcm_model::dataset::{ConditionId, Dataset};
+use gdcm_model::simulation::Validation;
+use gdcm_study::jobs::analysis_jobs::{
+    AssessmentJob, CouplingsJob, Toggles, TogglesJob, UncertaintyJob, VariantJob,
+};
+use gdcm_study::jobs::curve_jobs::{AcrossCurves, AcrossJob, ConditionModes, CurvesJob, ModesJob};
+use gdcm_study::jobs::identification_jobs::{SimulationFailure, SimulationJob};
+use gdcm_study::jobs::requirement_jobs::{
+    RecordHistoryJob, RequirementsJob, TestAnswersJob, TimeHistoriesJob,
+};
+use gdcm_study::results::analysis::{ConditionFailure, NoResult};
+use gdcm_study::results::couplings_assessment::AssessedCouplings;
+use gdcm_study::results::record_history::{NoRecordHistory, RecordHistory};
+use gdcm_study::results::requirements::Requirements;
+use gdcm_study::results::test_input_responses::TestAnswers;
+use gdcm_study::results::time_histories::TimeHistories;
+use gdcm_study::results::uncertainty::Uncertainty;
+use gdcm_study::stages::condition_curves::ConditionCurves;
+use gdcm_study::{Analysis, AssessmentTable, ConditionAnalysis};
+
+use super::background::{Background, error_bar_progress};
+
+/// Age \[s\] from which results for older settings are marked as stale.
+const STALE_AFTER_S: f64 = 0.15;
+/// Duration \[s\] after which background work is displayed: most jobs end before a display could be
+/// read.
+const BACKGROUND_AFTER_S: f64 = 0.5;
+
+/// Result of the displayed condition, available before the results of the other conditions.
+#[derive(Clone, Debug)]
+pub struct FirstResult {
+    /// Number of the request that produced the result.
+    pub request: u64,
+    /// Dataset to which the result belongs.
+    pub dataset: Arc<Dataset>,
+    pub condition: ConditionId,
+    pub outcome: Result<ConditionAnalysis, ConditionFailure>,
+}
+
+/// Computed results; never saved.
+#[derive(Debug, Default)]
+pub struct Results {
+    pub analysis: Option<Arc<Analysis>>,
+    /// Newer result of the displayed condition, while `analysis` is older.
+    pub first: Option<FirstResult>,
+    /// Costs of constraining or releasing each response, with their job; see
+    /// `State::toggles`.
+    pub toggles: Option<(TogglesJob, Arc<Toggles>)>,
+    /// Frequency responses of the displayed condition, with their job; see `State::curves`.
+    pub curves: Option<(CurvesJob, Arc<ConditionCurves>)>,
+    /// Modes by model, with their job; see `State::modes`.
+    pub modes: Option<(ModesJob, Arc<ConditionModes>)>,
+    /// Requested assessment, with its job; see `State::assessment`.
+    pub assessment: Option<(AssessmentJob, Arc<AssessmentTable>)>,
+    /// Responses across conditions, with their job; see `State::across`.
+    pub across: Option<(AcrossJob, Arc<AcrossCurves>)>,
+    /// Uncertainty, with its job; see `State::uncertainty`.
+    pub uncertainty: Option<(UncertaintyJob, Arc<Uncertainty>)>,
+    /// Assessed benefit of the couplings, whether or not they are in use, with the job; see
+    /// `State::couplings`.
+    pub couplings: Option<(CouplingsJob, AssessedCouplings)>,
+    /// Requirements, with their job; see `State::requirements`.
+    pub requirements: Option<(RequirementsJob, Arc<Requirements>)>,
+    /// Responses to the test input, with their job; see `State::test_answers`.
+    pub test_answers: Option<(TestAnswersJob, Result<Arc<TestAnswers>, NoResult>)>,
+    /// Comparison of a record with the tolerances, with its job; see `State::record_history`.
+    pub record_history: Option<(
+        RecordHistoryJob,
+        Result<Arc<RecordHistory>, NoRecordHistory>,
+    )>,
+    /// Models' responses to all records, with their job; see `State::time_histories`.
+    pub time_histories: Option<(TimeHistoriesJob, Arc<TimeHistories>)>,
+    pub variants: Vec<(VariantJob, Arc<Analysis>)>,
+    /// Comparisons of models with a record in the time domain, or the reasons for their absence.
+    pub simulations: Vec<(SimulationJob, Result<Arc<Validation>, SimulationFailure>)>,
+    pub background: Background,
+    /// Start time of the background work \[s, window clock\].
+    pub background_since: Option<f64>,
+    /// Number of the newest request.
+    pub requested: u64,
+    /// Number of the request that produced the analysis.
+    pub received: u64,
+    /// Time of the oldest request without a result \[s, window clock\].
+    pub waiting_since: Option<f64>,
+    /// Whether a frame with an analysis has been painted.
+    pub is_painted: bool,
+    /// Computing time of the newest analysis \[ms\].
+    pub elapsed_ms: f64,
+    /// Whether the newest request was stopped, by the engineer or by a fault. The displayed results
+    /// then remain older than the settings.
+    pub stopped: bool,
+}
+
+impl Results {
+    /// Returns whether results for the newest request are pending.
+    pub fn is_waiting(&self) -> bool {
+        self.is_behind() && !self.stopped
+    }
+
+    /// Returns the message that explains a missing result.
+    pub fn absence(&self) -> &'static str {
+        if self.stopped {
+            "not computed"
+        } else {
+            "computing …"
+        }
+    }
+
+    /// Returns the message that explains missing error bars.
+    pub fn absence_of_error_bars(&self) -> String {
+        match self.background.error_bars {
+            Some(steps) if !self.is_behind() => error_bar_progress(steps),
+            None if self.background.stopped => {
+                "Error bars: stopped. Choose Compute, below, to continue".to_owned()
+            }
+            _ => self.absence().to_owned(),
+        }
+    }
+
+    /// Returns whether the displayed results are older than the settings.
+    pub fn is_behind(&self) -> bool {
+        self.requested > self.received
+    }
+
+    /// Returns whether the result of the displayed condition has newer settings than the analysis
+    /// of all conditions.
+    pub fn first_is_ahead(&self) -> bool {
+        match &self.first {
+            Some(first) => self.analysis.is_some() && first.request > self.received,
+            None => false,
+        }
+    }
+
+    /// Returns whether background work has lasted long enough at `now` \[s, window clock\] to be
+    /// displayed.
+    pub fn shows_background(&self, now: f64) -> bool {
+        match self.background_since {
+            Some(since) => now - since > BACKGROUND_AFTER_S,
+            None => false,
+        }
+    }
+
+    /// Returns whether the displayed results should be marked as stale at `now` \[s, window
+    /// clock\].
+    pub fn is_stale(&self, now: f64) -> bool {
+        let is_late = match self.waiting_since {
+            Some(since) => now - since > STALE_AFTER_S,
+            None => false,
+        };
+        self.stopped || is_late
+    }
+}

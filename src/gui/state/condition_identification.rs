@@ -1,0 +1,168 @@
+//! Identification of models from the records of a condition: the job, the cautions about its
+//! result, and the models to adopt.
+//!
+//! `ConditionRecords::found` keeps the latest outcome with its job. `ConditionRecords::changed`
+//! tells that the settings have changed since; the cautions about the outcome are then no longer
+//! shown.
+
+use std::sync::Arc;
+
+use gdcm_model::dataset::ConditionId;
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::names::ChannelRule;
+use gdcm_model::simulation::Signal;
+use gdcm_study::decisions::adopted_models::{AdoptedModels, OfferedModels};
+use gdcm_study::jobs::identification_jobs::{IdentificationRequest, IdentifyJob};
+use gdcm_sysid::identification::{CautionNote, ChannelPreparation, Identification, Preparation};
+use gdcm_sysid::records::{ColumnUse, LaidOutRecord, RecordChannels};
+
+use super::condition_records::ConditionRecords;
+
+impl ConditionRecords {
+    /// Returns the latest identification if it succeeded.
+    pub fn identification(&self) -> Option<&Arc<Identification>> {
+        self.found.as_ref()?.1.as_ref().ok()
+    }
+
+    /// Creates the identification job for the current settings and a band \[rad/s\]; `channels` are
+    /// the channels of the records.
+    ///
+    /// # Errors
+    /// A message, if no record is used, if all are held out, or if a record lacks a reference.
+    pub fn identification_job(
+        &self,
+        condition: ConditionId,
+        band: [f64; 2],
+        channels: &RecordChannels,
+    ) -> Result<IdentifyJob, String> {
+        let mut preparation = self.preparation();
+        for reference in &self.references {
+            preparation
+                .inputs
+                .push(ChannelPreparation::named(reference));
+        }
+        let mut rows = Vec::new();
+        for (_, row) in self.used_rows() {
+            rows.push(self.with_references(row, channels)?);
+        }
+        let mut request = IdentificationRequest::from_used(rows.iter(), preparation, band)
+            .map_err(|error| error.to_string())?;
+        request.options.references = self.references.len();
+        self.search.set(&mut request.options);
+        Ok(IdentifyJob::new(condition, request))
+    }
+
+    /// Returns a record whose references are added after its inputs.
+    fn with_references(
+        &self,
+        row: &LaidOutRecord,
+        channels: &RecordChannels,
+    ) -> Result<LaidOutRecord, String> {
+        if self.references.is_empty() {
+            return Ok(row.clone());
+        }
+        let mut layout = row.layout.clone();
+        let mut channels = channels.clone();
+        for reference in &self.references {
+            let Some(column) = row.table.find(reference) else {
+                let name = &row.table.name;
+                return Err(format!("{name}: there is no column \"{reference}\""));
+            };
+            layout.inputs.push(Some(ColumnUse::as_it_is(column)));
+            channels.inputs.push(ChannelRule::named(reference));
+        }
+        let row = LaidOutRecord::new(Arc::clone(&row.table), layout, row.guess.clone(), &channels);
+        match row.problems.first() {
+            Some(problem) => Err(format!("{}: {problem}", row.table.name)),
+            None => Ok(row),
+        }
+    }
+
+    /// Returns the preparation of a channel, for editing.
+    pub fn channel_mut(&mut self, signal: &Signal) -> Option<&mut ChannelPreparation> {
+        match signal.role {
+            ChannelSide::Input => self.inputs.get_mut(signal.index),
+            ChannelSide::Output => self.outputs.get_mut(signal.index),
+        }
+    }
+
+    /// Returns the preparation of all channels.
+    pub fn preparation(&self) -> Preparation {
+        Preparation {
+            inputs: self.inputs.clone(),
+            outputs: self.outputs.clone(),
+            ..Preparation::of(&[], &[])
+        }
+    }
+
+    /// Returns the cautions about the identification, each with the rows that it concerns, if any;
+    /// none once the settings have changed.
+    pub fn cautions(&self) -> impl Iterator<Item = (Vec<usize>, CautionNote)> {
+        let cautions = match self.identification() {
+            Some(found) if !self.changed => found.cautions.as_slice(),
+            _ => &[],
+        };
+        cautions.iter().map(|caution| {
+            let note = caution.note();
+            (self.rows_named(&note.records), note)
+        })
+    }
+
+    /// Returns short marks, with a caution sign, for the cautions with this code.
+    pub fn marks(&self, code: &'static str) -> impl Iterator<Item = String> {
+        self.cautions()
+            .filter(move |(_, note)| note.code == code)
+            .map(|(_, note)| format!("⚠ {}", note.mark()))
+    }
+
+    /// Returns the rows with these names.
+    fn rows_named(&self, names: &[String]) -> Vec<usize> {
+        names
+            .iter()
+            .filter_map(|name| self.rows.iter().position(|row| row.table.name == *name))
+            .collect()
+    }
+
+    /// Returns the index of the row that the identification used as record `record`, counted from
+    /// 0.
+    pub fn row_of_record(&self, record: usize) -> Option<usize> {
+        self.used_rows().nth(record).map(|(index, _)| index)
+    }
+
+    /// Returns the identified models to put into the condition; `None` without a successful
+    /// identification.
+    pub fn adopted(
+        &self,
+        offered: OfferedModels,
+        channels: &RecordChannels,
+    ) -> Option<Arc<AdoptedModels>> {
+        let found = self.identification()?;
+        let mut entries = Vec::new();
+        for ((_, row), record_use) in self.used_rows().zip(&found.record_uses) {
+            entries.push(row.entry(record_use, channels));
+        }
+        Some(Arc::new(AdoptedModels::from_identification(
+            found, offered, entries,
+        )))
+    }
+
+    /// Returns these records from the history, to replace the records `now`. Models identified in
+    /// the meantime are kept, but marked as results of other settings.
+    pub(super) fn restored(mut self, now: Option<Self>) -> Self {
+        let Some(now) = now else {
+            return self;
+        };
+        if self.latest_job() != now.latest_job() {
+            self.changed = now.found.is_some();
+            self.found = now.found;
+        }
+        self.choose(now.chosen);
+        self
+    }
+
+    /// Returns the latest identification job.
+    fn latest_job(&self) -> Option<&IdentifyJob> {
+        let (job, _) = self.found.as_ref()?;
+        Some(job)
+    }
+}

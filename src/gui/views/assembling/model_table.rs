@@ -1,0 +1,161 @@
+//! Model table: a row per model, sortable by every column.
+
+use egui::{Align, Button, Color32, Layout, Rect, Role, ScrollArea, Sense, Ui, vec2};
+
+use gdcm_model::assembly::part::Part;
+
+use crate::gui::commands::assembling::AssemblingCommand;
+use crate::gui::commands::command::Command;
+use crate::gui::state::assembling::AssemblyState;
+use crate::gui::state::assembly_columns::COLUMNS;
+use crate::gui::widgets::controls::{Asks, named, named_switch};
+use crate::gui::widgets::elision::elided_among;
+use crate::gui::widgets::list_row::ROW_HEIGHT;
+use crate::gui::widgets::painted_text::painted_text;
+use crate::gui::widgets::palette::{Palette, SMALL_SIZE, small};
+
+/// Index of the column in which incomplete models are marked.
+const FILE: usize = COLUMNS.len() - 1;
+
+/// Draws the table; only visible rows are laid out.
+pub(super) fn table_ui(
+    ui: &mut Ui,
+    assembly: &AssemblyState,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let width = ui.available_width() - 12.0;
+    headings_ui(ui, assembly, width, palette, commands);
+    let table = Table {
+        assembly,
+        parts: assembly.assembly().parts(),
+        order: assembly.order(),
+        incomplete: incomplete_parts(assembly),
+        width,
+        palette,
+    };
+    ScrollArea::vertical()
+        .id_salt("models that are imported")
+        .auto_shrink(false)
+        .show_rows(ui, ROW_HEIGHT, table.order.len(), |ui, rows| {
+            ui.spacing_mut().item_spacing.y = 0.0;
+            for row in rows {
+                table.row_ui(ui, row, commands);
+            }
+        });
+}
+
+/// Draws the headings; a click sorts the table.
+fn headings_ui(
+    ui: &mut Ui,
+    assembly: &AssemblyState,
+    width: f32,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 0.0;
+        for (index, column) in COLUMNS.iter().enumerate() {
+            let sorting = assembly.sorting.mark(index);
+            let text = palette.small(format!("{}{sorting}", column.heading));
+            let size = vec2(width * column.share, ROW_HEIGHT);
+            let button =
+                ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
+                    ui.set_min_size(size);
+                    ui.add(Button::new(text).frame(false))
+                });
+            let name = format!("Sort models by {}", column.heading);
+            named(button.inner, Role::Button, &name)
+                .on_hover_text(&name)
+                .asks(AssemblingCommand::Sort(index), commands);
+        }
+    });
+}
+
+fn incomplete_parts(assembly: &AssemblyState) -> Vec<usize> {
+    let problems = assembly.assembly().problems();
+    problems.iter().filter_map(|problem| problem.part).collect()
+}
+
+struct Table<'a> {
+    assembly: &'a AssemblyState,
+    parts: &'a [Part],
+    /// Index of the model in each row.
+    order: Vec<usize>,
+    /// Indices of the models with a problem.
+    incomplete: Vec<usize>,
+    /// Row width \[pt\].
+    width: f32,
+    palette: &'a Palette,
+}
+
+impl Table<'_> {
+    /// Returns the model in a row; `None` if the row does not exist.
+    fn part(&self, row: usize) -> Option<&Part> {
+        let index = self.order.get(row)?;
+        Some(&self.parts[*index])
+    }
+
+    /// Draws a row; a click displays its model.
+    fn row_ui(&self, ui: &mut Ui, row: usize, commands: &mut Vec<Command>) {
+        let Some(part) = self.part(row) else {
+            return;
+        };
+        let index = self.order[row];
+        let size = vec2(self.width, ROW_HEIGHT);
+        let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+        let is_selected = self.assembly.selected == index;
+        let name = format!("Model {}", part.found.key());
+        let response = named_switch(response, Role::Row, is_selected, name);
+        let fill = if is_selected {
+            self.palette.selected
+        } else if response.contains_pointer() {
+            self.palette.raised
+        } else {
+            Color32::TRANSPARENT
+        };
+        ui.painter().rect_filled(rect, 2.0, fill);
+        self.paint_cells(ui, rect, row, part);
+        response.asks(AssemblingCommand::Select(index), commands);
+    }
+
+    /// Paints the texts of a row; shortened texts keep the part that distinguishes them from the
+    /// rows above and below.
+    fn paint_cells(&self, ui: &Ui, rect: Rect, row: usize, part: &Part) {
+        let is_incomplete = self.incomplete.contains(&self.order[row]);
+        let neighbours = [
+            row.checked_sub(1).and_then(|above| self.part(above)),
+            self.part(row + 1),
+        ];
+        let mut left = rect.left();
+        for (index, column) in COLUMNS.iter().enumerate() {
+            let mut text = column.text(part);
+            let is_marked = is_incomplete && index == FILE;
+            let color = self.cell_color(&text, part, is_marked);
+            if is_marked {
+                text = format!("⚠ {text}");
+            }
+            let others = neighbours.map(|other| Some(column.text(other?)));
+            let others = others.each_ref().map(Option::as_deref);
+            let room = rect.width() * column.share;
+            let text = elided_among(ui, &text, others, room - 6.0, SMALL_SIZE);
+            let place = Rect::from_x_y_ranges(left + 3.0..=left + room, rect.y_range());
+            painted_text(ui, place, 0.0, &text, small(), color);
+            left += room;
+        }
+    }
+
+    /// Returns the colour of a cell: warning for unknown values and marked files, quiet for models
+    /// that are left out.
+    fn cell_color(&self, text: &str, part: &Part, is_marked: bool) -> Color32 {
+        if text == "?" {
+            self.palette.warning
+        } else if part.row.left_out {
+            self.palette.quiet_text
+        } else if is_marked {
+            self.palette.warning
+        } else {
+            self.palette.text
+        }
+    }
+}

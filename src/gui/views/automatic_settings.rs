@@ -1,0 +1,146 @@
+//! Controls for settings that the program determines unless they are set by hand, and for ranges,
+//! which may be such settings.
+
+use egui::Role;
+
+use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_row::{Kind, Setting, Value};
+use gdcm_words::setting_words::setting_words;
+
+use super::setting_controls::{SettingControls, number_field};
+use crate::gui::commands::form::FormCommand;
+use crate::gui::state::window_state::State;
+use crate::gui::widgets::controls::named_switch;
+use crate::gui::widgets::number_field::{Entered, NumberField};
+
+/// Whether the program determines a value.
+#[derive(Clone, Copy)]
+enum Automatic {
+    On,
+    Off,
+}
+
+impl SettingControls<'_, '_> {
+    /// Draws a number that the program determines unless it is set by hand.
+    pub(super) fn automatic_number_ui(
+        &mut self,
+        setting: &'static Setting,
+        value: Value,
+        range: [f64; 2],
+    ) {
+        let Some(Value::Number(number)) = self.shown_value(setting, value) else {
+            return self.small_ui("…");
+        };
+        let field = number_field(setting, setting_words(setting).label, range);
+        let typed = field.ui(self.ui, setting.unit.scale * number);
+        let switched = self.automatic_ui(setting, value);
+        if typed.value.is_none() {
+            match switched {
+                Some(Automatic::On) => self.set(setting, None::<f64>),
+                Some(Automatic::Off) => self.set(setting, Some(number)),
+                None => {}
+            }
+        }
+        self.apply(setting, typed);
+    }
+
+    /// Returns a value set by hand, or else the value determined by the program.
+    fn shown_value(&self, setting: &Setting, value: Value) -> Option<Value> {
+        if value == Value::Nothing {
+            found_value(self.state, setting)
+        } else {
+            Some(value)
+        }
+    }
+
+    /// Draws both ends of a range. If the range is optional, the program determines it unless it is
+    /// set by hand.
+    pub(super) fn range_ui(&mut self, setting: &'static Setting, value: Value) {
+        let Kind::Range {
+            range: [least, most],
+            nothing,
+            ..
+        } = setting.kind
+        else {
+            return;
+        };
+        let Some(Value::Range([lower, upper])) = self.shown_value(setting, value) else {
+            return self.small_ui("…");
+        };
+        let [low_name, high_name] = setting_words(setting).ends;
+        let low = self.end_ui(setting, low_name, [least, upper], lower);
+        self.small_ui("–");
+        let high = self.end_ui(setting, high_name, [lower, most], upper);
+        if !setting.unit.shown.is_empty() {
+            self.small_ui(setting.unit.shown);
+        }
+        let mut switched = None;
+        if nothing.is_some() {
+            switched = self.automatic_ui(setting, value);
+        }
+        if low.value.is_some() || high.value.is_some() {
+            let ends = Value::Range([low.value.unwrap_or(lower), high.value.unwrap_or(upper)]);
+            match setting.check(ends) {
+                Ok(()) => self.set(setting, ends),
+                // A dragged end stops before the other end, without a message.
+                Err(_) if low.is_dragged || high.is_dragged => {}
+                Err(error) => self
+                    .commands
+                    .push(FormCommand::Refuse(error.to_string()).into()),
+            }
+        } else {
+            match switched {
+                Some(Automatic::On) => self.set(setting, Value::Nothing),
+                Some(Automatic::Off) => self.set(setting, Value::Range([lower, upper])),
+                None => {}
+            }
+        }
+        self.end(low);
+        self.end(high);
+    }
+
+    fn end_ui(
+        &mut self,
+        setting: &'static Setting,
+        name: &'static str,
+        limits: [f64; 2],
+        value: f64,
+    ) -> Entered {
+        let field = NumberField {
+            shows_unit: false,
+            ..number_field(setting, name, limits)
+        };
+        field.ui(self.ui, value)
+    }
+
+    /// Draws the check box that lets the program determine a value; returns its new state after a
+    /// click.
+    fn automatic_ui(&mut self, setting: &Setting, value: Value) -> Option<Automatic> {
+        let mut is_automatic = value == Value::Nothing;
+        let response = self.ui.checkbox(&mut is_automatic, "auto");
+        let name = format!("{} automatic", setting_words(setting).caption);
+        let hint = "On: from the quantiles of each condition. Off: set by hand, the same for every condition";
+        let response =
+            named_switch(response, Role::CheckBox, is_automatic, name).on_hover_text(hint);
+        if !response.changed() {
+            return None;
+        }
+        Some(if is_automatic {
+            Automatic::On
+        } else {
+            Automatic::Off
+        })
+    }
+}
+
+/// Returns the value that the program determines for an automatic setting; `None` without a result.
+fn found_value(state: &State, setting: &Setting) -> Option<Value> {
+    let shown = state.shown()?;
+    if *setting == setting::GAIN_BOUNDS {
+        Some(Value::from(Some(shown.gain_bounds())))
+    } else if *setting == setting::DELAY_UPPER {
+        Some(shown.delay_upper_s().into())
+    } else {
+        None
+    }
+}

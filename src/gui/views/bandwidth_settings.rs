@@ -1,0 +1,77 @@
+//! Settings of the bandwidth requirements: attitude commands and level boundaries.
+
+use std::collections::BTreeSet;
+
+use egui::{Button, Ui};
+
+use gdcm_method::requirements::{AttitudeOutput, LevelBoundaries};
+
+use super::requirement_limits::requirement_edit;
+use crate::gui::commands::command::Command;
+use crate::gui::commands::file::FileCommand;
+use crate::gui::state::forms::RequirementTable;
+use crate::gui::state::window_state::State;
+use crate::gui::widgets::choices::check_ui;
+use crate::gui::widgets::controls::button_ui;
+use crate::gui::widgets::palette::Palette;
+
+/// Draws the settings of the bandwidth requirements: which attitudes are commanded by a stick, and
+/// the engineer's levels.
+pub(super) fn bandwidth_inputs_ui(
+    ui: &mut Ui,
+    state: &State,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    ui.horizontal_wrapped(|ui| {
+        ui.label(palette.small("attitude command:"));
+        attitude_commands_ui(ui, state, commands);
+        ui.separator();
+        levels_ui(ui, state, palette, commands);
+    });
+}
+
+/// Draws a check box for each attitude that may be commanded by a stick.
+fn attitude_commands_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+    let mut outputs = BTreeSet::new();
+    for pair in state.dataset().measuring_pairs().marked() {
+        outputs.insert(pair.output);
+    }
+    for output in outputs {
+        let channel = &state.dataset().outputs()[output];
+        if AttitudeOutput::classify(channel).is_err() {
+            continue;
+        }
+        let name = &channel.name;
+        let is_on = state.study.requirements.attitude_command.contains(name);
+        let hint = "The stick commands the attitude instead of its rate; the phase margin alone then determines the bandwidth";
+        if let Some(is_on) = check_ui(ui, is_on, format!("attitude of {name}"), hint) {
+            commands.push(requirement_edit(state, "attitude command", |settings| {
+                if is_on {
+                    settings.attitude_command.insert(name.clone());
+                } else {
+                    settings.attitude_command.remove(name);
+                }
+            }));
+        }
+    }
+}
+
+/// Draws the number of level boundaries, and the buttons that remove them or read them from a file.
+fn levels_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let levels = state.study.requirements.levels.as_slice().len();
+    let text = if levels == 0 {
+        "levels: none".to_owned()
+    } else {
+        format!("levels: {levels}")
+    };
+    ui.label(palette.small(text));
+    if levels > 0 && ui.small_button("Remove levels").clicked() {
+        commands.push(requirement_edit(state, "levels", |settings| {
+            settings.levels = LevelBoundaries::default();
+        }));
+    }
+    let hint = "Reads levels from a file. None are built in, because they depend on the task and the category (docs/requirements.md)";
+    let ask = FileCommand::AskRequirementTable(RequirementTable::Levels);
+    button_ui(ui, Button::new("Levels…").small(), hint, ask, commands);
+}

@@ -1,0 +1,131 @@
+//! Effect of the correction in the Bode view: notes with J and the remaining error, the remaining
+//! phase error as an area, and the region above the band in which the corrected model is not valid.
+
+use gdcm_model::dataset::{Band, Pair};
+use gdcm_model::number_format::decimals;
+use gdcm_model::units::{number, ratio_to_db, s_to_ms};
+
+use crate::gui::plot::bode_scene::{BodeBand, InvalidRegion, PaneNote};
+use crate::gui::plot::{BodeCurve, Pane, Role};
+use crate::gui::state::window_state::State;
+
+/// Remaining magnitude difference \[dB\] below which the magnitudes count as matched.
+const MATCHED_DB: f64 = 0.05;
+
+/// Remaining delay \[s\] below which the phases count as matched.
+const MATCHED_S: f64 = 0.5e-3;
+
+/// Returns the notes in the magnitude and phase panes: J before and after the correction, and the
+/// gain and delay that the correction leaves uncorrected.
+pub(super) fn effect_notes(state: &State, pair: Pair) -> Option<[PaneNote; 2]> {
+    let shown = state.shown()?;
+    let change = shown.cost[pair]?;
+    let is_constrained = shown.held()[pair];
+    let left_db = ratio_to_db(shown.wanted_gain(pair)? / shown.correction.net_gain(pair));
+    let left_s = shown.wanted_delay_s(pair)? - shown.correction.net_delay_s(pair);
+    let magnitude = PaneNote {
+        cost: cost_change(change.uncorrected.magnitude, change.corrected.magnitude),
+        verdict: if left_db.abs() < MATCHED_DB {
+            "matched".to_owned()
+        } else {
+            format!("{} dB left", decimals(left_db, 1))
+        },
+        warns: is_constrained && left_db.abs() >= MATCHED_DB,
+    };
+    let phase = PaneNote {
+        cost: cost_change(change.uncorrected.phase, change.corrected.phase),
+        verdict: delay_verdict(state, left_s),
+        warns: is_constrained && left_s.abs() >= MATCHED_S,
+    };
+    Some([magnitude, phase])
+}
+
+/// Returns the area between corrected and identified phase within the band.
+pub(super) fn missing_phase(curves: &[BodeCurve], band: Band) -> Option<BodeBand> {
+    let corrected = drawn_curve(curves, Role::Corrected)?;
+    let identified = drawn_curve(curves, Role::IdentifiedRepresentative)?;
+    let mut omega = vec![band.min()];
+    for &inner in corrected.omega.iter() {
+        if (band.min()..=band.max()).contains(&inner) {
+            omega.push(inner);
+        }
+    }
+    omega.push(band.max());
+    let phase_deg = omega
+        .iter()
+        .map(|&omega| {
+            [corrected, identified]
+                .map(|curve| curve.value_at(Pane::Phase, omega).unwrap_or(f64::NAN))
+        })
+        .collect();
+    Some(BodeBand {
+        magnitude_db: vec![[f64::NAN; 2]; omega.len()],
+        omega,
+        phase_deg,
+    })
+}
+
+/// Returns the region above the band in which the corrected model is not valid and only shows the
+/// gain added by leads; `None` without leads (M15.6).
+///
+/// The words are those of `lead_price::limit_text`, but with the band that is being edited and in
+/// the displayed unit.
+pub(super) fn invalid_region(state: &State, curves: &[BodeCurve]) -> Option<InvalidRegion> {
+    let leads = &state.shown()?.compensated.as_ref()?.leads;
+    leads.filters().iter().find_map(|(_, filter)| *filter)?;
+    let corrected = drawn_curve(curves, Role::Corrected)?;
+    let up_to = *corrected.omega.last()?;
+    Some(InvalidRegion {
+        up_to,
+        words: format!(
+            "not valid above {}",
+            frequency_words(state, state.study.settings.band.max())
+        ),
+        ends_db: lead_ends_db(corrected, curves, up_to),
+    })
+}
+
+/// Returns the magnitudes \[dB\] of the corrected model with and without leads at `omega`
+/// \[rad/s\].
+fn lead_ends_db(corrected: &BodeCurve, curves: &[BodeCurve], omega: f64) -> Option<[f64; 2]> {
+    let without = drawn_curve(curves, Role::WithoutLeads)?;
+    Some([
+        corrected.value_at(Pane::Magnitude, omega)?,
+        without.value_at(Pane::Magnitude, omega)?,
+    ])
+}
+
+/// Returns the curve with this role, unless it is hidden.
+fn drawn_curve(curves: &[BodeCurve], role: Role) -> Option<&BodeCurve> {
+    curves
+        .iter()
+        .find(|curve| !curve.hidden && curve.role == role)
+}
+
+/// Formats "J 13.4 → 0.3".
+fn cost_change(before: f64, after: f64) -> String {
+    format!("J {} → {}", decimals(before, 1), decimals(after, 1))
+}
+
+/// Formats a remaining delay as "lags by 66 ms, 46° at 12 rad/s"; the corrected model lags if
+/// `left_s` is negative.
+fn delay_verdict(state: &State, left_s: f64) -> String {
+    if left_s.abs() < MATCHED_S {
+        return "matched".to_owned();
+    }
+    let verb = if left_s < 0.0 { "lags" } else { "leads" };
+    let top = state.study.settings.band.max();
+    let at_top_deg = (left_s * top).to_degrees().abs();
+    format!(
+        "{verb} by {} ms, {}° at {}",
+        decimals(s_to_ms(left_s.abs()), 0),
+        decimals(at_top_deg, 0),
+        frequency_words(state, top)
+    )
+}
+
+/// Formats a frequency \[rad/s\] in the displayed unit.
+fn frequency_words(state: &State, omega: f64) -> String {
+    let unit = state.display.curves.unit;
+    format!("{} {}", number(unit.of_omega(omega)), unit.symbol())
+}

@@ -1,0 +1,68 @@
+//! Error bars of gains and delays: whether they are shown, their description, and their switch.
+
+use egui::Ui;
+
+use gdcm_method::uncertainty::{Bar, Scalar};
+use gdcm_model::units::s_to_ms;
+use gdcm_study::results::uncertainty::Uncertainty;
+use gdcm_words::uncertainty::bar_remark_texts;
+
+use crate::gui::commands::command::Command;
+use crate::gui::commands::display::DisplayCommand;
+use crate::gui::state::window_state::State;
+use crate::gui::widgets::choices::Toggle;
+
+/// Returns the uncertainty of gains and delays; `None` if error bars are hidden or not available.
+pub fn shown_uncertainty(state: &State) -> Option<&Uncertainty> {
+    if state.display.gains.hide_bars {
+        None
+    } else {
+        state.uncertainty().map(AsRef::as_ref)
+    }
+}
+
+/// Describes an error bar: "± 3.3 % (90 %): trim 78 %, identification 22 % of the variance".
+pub fn error_bar_words(bar: &Bar, scalar: Scalar, level: f64) -> String {
+    let remarks = bar_remark_texts(bar).join(", ");
+    let Some(half) = bar.half_width(level) else {
+        return format!("no error bar: {remarks}");
+    };
+    let half = if scalar.is_delay() {
+        format!("± {:.1} ms", s_to_ms(half))
+    } else {
+        format!("± {:.1} %", 100.0 * half)
+    };
+    let trim = 100.0 * bar.trim_share().unwrap_or_default();
+    let mut words = format!(
+        "{half} ({:.0} %): trim {trim:.0} %, identification {:.0} % of the variance",
+        100.0 * level,
+        100.0 - trim
+    );
+    if !remarks.is_empty() {
+        words.push_str(&format!("; {remarks}"));
+    }
+    if bar.left_out > 0 {
+        words.push_str(&format!("; undefined in {} substitutions", bar.left_out));
+    }
+    words
+}
+
+/// Draws the switch that shows error bars and bands; `name` distinguishes it from the switches in
+/// other views.
+pub fn error_bars_switch_ui(ui: &mut Ui, state: &State, name: &str, commands: &mut Vec<Command>) {
+    let shown = !state.display.gains.hide_bars;
+    let level = 100.0 * state.study.settings.uncertainty.level;
+    let hint = format!(
+        "{level:.0} % error bars. Thick: uncertainty of the identification, for the chosen \
+        physics model. Thin: with the unknown trim of the flight. Bands: confidence of the \
+        schedule, and prediction for another condition"
+    );
+    let toggle = Toggle {
+        text: "bars",
+        name,
+        hint: &hint,
+    };
+    if toggle.ui(ui, shown) {
+        commands.push(DisplayCommand::ShowBars(!shown).into());
+    }
+}

@@ -1,0 +1,114 @@
+//! Error view: ratio and phase difference of the models to the identified model, in the response
+//! in focus.
+
+use egui::Ui;
+
+use gdcm_model::dataset::Pair;
+use gdcm_plot::figure::error::noticed;
+use gdcm_study::results::caution::Undefined;
+use gdcm_words::caution::undefined_text;
+
+use super::frequency_curves::{bode_options, condition_source, error_curves, error_reference};
+use super::frequency_plot::FrequencyPlot;
+use crate::gui::commands::command::Command;
+use crate::gui::plot::BodeScene;
+use crate::gui::plot::curve_command::CurveCommand;
+use crate::gui::plot::quantity::{BodeQuantity, PhaseErrorUnit};
+use crate::gui::state::window_state::State;
+use crate::gui::widgets::choices::choice_ui;
+use crate::gui::widgets::palette::Palette;
+
+/// Draws the ratio and phase difference of every kept physics model and of the corrected model to
+/// the identified model, in the response in focus.
+pub fn error_view_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let pair = state.display.selection.pair;
+    let mut view = std::mem::take(&mut state.display.frequency.error);
+    let options = bode_options(state);
+    let curves = error_curves(state, pair, &options);
+    let rules = match condition_source(state) {
+        Some(source) => source.error_references(pair, &options, &curves),
+        None => Vec::new(),
+    };
+    let reference = error_reference(&curves);
+    let strips = noticed(&curves, &options);
+    let title = state.dataset().pair_name(pair);
+    let message = error_message(state, pair);
+    let quantity = BodeQuantity::Error {
+        phase: options.phase_error,
+    };
+    let band = state.study.settings.band;
+    let mut omega_range = None;
+    if let Some(curves) = state.curves()
+        && let (Some(first), Some(last)) = (curves.grid.omega().first(), curves.grid.omega().last())
+    {
+        omega_range = Some((*first, *last));
+    }
+    let scene = BodeScene {
+        quantity,
+        rules: &rules,
+        reference: reference.as_ref(),
+        strips: &strips,
+        omega_range,
+        message: Some(&message),
+        ..BodeScene::new(&title, &curves, (band.min(), band.max()))
+    };
+    let plot = FrequencyPlot {
+        state,
+        scene,
+        view: &mut view,
+        palette,
+    };
+    plot.ui(ui, commands);
+    state.display.frequency.bode.share_frequencies(&view);
+    state.display.frequency.error = view;
+    state.display.frequency.drawn_errors = curves;
+}
+
+/// Draws the selector between phase differences \[deg\] and equivalent delays \[ms\].
+pub fn error_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+    let mut unit = state.display.curves.phase_error;
+    let units = [
+        (PhaseErrorUnit::Degree, "Δφ", "Phase differences [deg]"),
+        (
+            PhaseErrorUnit::Millisecond,
+            "Δφ/ω",
+            "Equivalent delay of each phase difference [ms]",
+        ),
+    ];
+    choice_ui(ui, "Phase error", &mut unit, &units);
+    if unit != state.display.curves.phase_error {
+        commands.push(CurveCommand::DrawPhaseErrors(unit).into());
+    }
+}
+
+/// Returns the message shown if there are no error curves.
+pub fn error_message(state: &State, pair: Pair) -> String {
+    let name = state.dataset().pair_name(pair);
+    let undefined = match state.shown() {
+        Some(shown) => shown.comparison.undefined[pair],
+        None => None,
+    };
+    match undefined {
+        Some(Undefined::NotCoherent) => {
+            format!(
+                "{name} is not compared: {}",
+                undefined_text(Undefined::NotCoherent)
+            )
+        }
+        Some(_) => {
+            format!(
+                "{name} is not compared: a representative has no values of this response \
+                within the band"
+            )
+        }
+        None => match state.curves_message() {
+            Some(message) => message.to_owned(),
+            None => "Nothing to compare in the band".to_owned(),
+        },
+    }
+}

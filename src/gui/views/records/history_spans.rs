@@ -1,0 +1,75 @@
+//! Time spans marked in the charts of a record: modes of the logging system, other parts of the
+//! same file, and gaps.
+
+use gdcm_sysid::records::ModeSpan;
+use gdcm_sysid::spectra::gap::{Gap, Treatment};
+
+use super::page::Page;
+use crate::gui::plot::chart::ChartSpan;
+use crate::gui::widgets::palette::Palette;
+
+/// Returns the time spans of the logging system's modes, shaded lightly and darkly in turn.
+pub(super) fn mode_spans(modes: &[ModeSpan], palette: &Palette) -> Vec<ChartSpan> {
+    let mut spans = Vec::new();
+    for (index, mode) in modes.iter().enumerate() {
+        let opacity = if index.is_multiple_of(2) { 0.06 } else { 0.14 };
+        spans.push(ChartSpan {
+            ends: mode.ends_s,
+            color: palette.dim_text.gamma_multiply(opacity),
+        });
+    }
+    spans
+}
+
+/// Returns the time spans of other records that are parts of the same file.
+pub(super) fn part_spans(page: Page<'_>) -> Vec<ChartSpan> {
+    let Page {
+        records, palette, ..
+    } = page;
+    let Some(chosen) = records.rows.get(records.chosen) else {
+        return Vec::new();
+    };
+    let mut spans = Vec::new();
+    for (index, row) in records.rows.iter().enumerate() {
+        if index != records.chosen
+            && row.table.source == chosen.table.source
+            && let Some(ends) = row.table.part_s
+        {
+            spans.push(ChartSpan {
+                ends,
+                color: palette.identified.gamma_multiply(0.15),
+            });
+        }
+    }
+    spans
+}
+
+/// Returns the gaps in the displayed record that the identification bridged or cut out.
+pub(super) fn gap_spans(page: Page<'_>) -> Vec<ChartSpan> {
+    let Page {
+        records, palette, ..
+    } = page;
+    let Some(found) = page.current_identification() else {
+        return Vec::new();
+    };
+    let record = (0..found.record_uses.len())
+        .find(|record| records.row_of_record(*record) == Some(records.chosen));
+    let Some(record) = record else {
+        return Vec::new();
+    };
+    found.record_uses[record]
+        .gaps
+        .iter()
+        .map(|gap| gap_span(gap, palette))
+        .collect()
+}
+
+fn gap_span(gap: &Gap, palette: &Palette) -> ChartSpan {
+    ChartSpan {
+        ends: [gap.start_s, gap.end_s],
+        color: match gap.treatment {
+            Treatment::Bridged => palette.accent.gamma_multiply(0.25),
+            Treatment::CutOut => palette.warning.gamma_multiply(0.35),
+        },
+    }
+}

@@ -1,0 +1,100 @@
+//! Responses over time for the requirements: the jobs that compute them, and their results.
+//! `requirement_histories` draws the results.
+
+use std::sync::Arc;
+
+use gdcm_plot::figure::{FigureKind, OverTime};
+use gdcm_study::jobs::requirement_jobs::{RecordHistoryJob, TestAnswersJob, TimeHistoriesJob};
+use gdcm_study::results::time_histories::HistoryRecord;
+use gdcm_words::missing_results::{no_record_history_text, no_result_text};
+
+use super::need::{Need, current_analysis};
+use crate::gui::state::requirements_page::RequirementsPage;
+use crate::gui::state::window_state::State;
+
+/// Returns the job of the record shown over time; `None` without a record, or if the test input is
+/// shown instead.
+pub fn record_job(state: &State) -> Option<RecordHistoryJob> {
+    let analysis = current_analysis(state)?;
+    let condition = state.condition().id();
+    if state.display.judging.shows_test {
+        return None;
+    }
+    let records = state.records.conditions.get(&condition)?;
+    let row = records.rows.get(records.chosen)?;
+    let record = HistoryRecord {
+        flight: Arc::clone(row.used_flight()?).into(),
+        held_out: row.guess.held_out,
+    };
+    let tolerances = state.study.requirements.tolerances.clone();
+    Some(RecordHistoryJob {
+        analysis: analysis.into(),
+        condition,
+        record,
+        preparation: records.preparation(),
+        tolerances,
+    })
+}
+
+/// Returns the job for all models' responses to all records; `None` without records.
+pub fn time_histories_job(state: &State) -> Option<TimeHistoriesJob> {
+    let analysis = current_analysis(state)?;
+    let records = state.records.history_records();
+    if records.is_empty() {
+        return None;
+    }
+    Some(TimeHistoriesJob {
+        analysis: analysis.into(),
+        records,
+        tolerances: state.study.requirements.tolerances.clone(),
+    })
+}
+
+/// Returns the job for the responses to the test input.
+fn test_job(state: &State) -> Option<TestAnswersJob> {
+    Some(TestAnswersJob {
+        analysis: current_analysis(state)?.into(),
+        condition: state.condition().id(),
+        input: state.display.selection.pair.input,
+        test: state.study.requirements.test,
+    })
+}
+
+/// Returns the computation needed for the responses over time.
+pub fn over_time_need(state: &State) -> Option<Need> {
+    match record_job(state) {
+        Some(job) => Some(Need::RecordHistory(job)),
+        None => test_job(state).map(Need::TestAnswers),
+    }
+}
+
+/// Returns the models' responses over time, or the reason for their absence; `None` until computed.
+pub fn over_time(state: &State) -> Option<Result<OverTime, String>> {
+    match record_job(state) {
+        Some(job) => {
+            let found = match state.record_history(&job)? {
+                Ok(history) => Ok(OverTime::Record(
+                    Arc::clone(history),
+                    state.display.selection.pair.input,
+                )),
+                Err(why) => Err(no_record_history_text(why)),
+            };
+            Some(found)
+        }
+        None => Some(match state.test_answers()? {
+            Ok(answers) => Ok(OverTime::Test(Arc::clone(answers))),
+            Err(why) => Err(no_result_text(why)),
+        }),
+    }
+}
+
+/// Returns the models' responses over time for a figure; `None` if the figure does not show them.
+pub fn shown_over_time(state: &State, kind: FigureKind) -> Option<OverTime> {
+    let is_shown = kind == FigureKind::Requirements
+        && state.display.judging.requirements_page == RequirementsPage::Histories;
+    if is_shown {
+        over_time(state)?.ok()
+    } else {
+        None
+    }
+}

@@ -1,0 +1,28 @@
+//! Escape closes the front-most thing, unless a focused control has used the key.
+//!
+//! egui removes the focus at the beginning of the frame in which Escape is pressed, so the focus of
+//! the last frame tells whether the key was meant for a control.
+
+use egui::{Context, Id, Key, Modifiers};
+
+/// Records whether a control has the focus; called after everything else in a frame is drawn.
+pub fn note_focus(ctx: &Context) {
+    let is_focused = ctx.memory(|memory| memory.focused().is_some());
+    ctx.data_mut(|data| data.insert_temp(had_focus(), is_focused));
+}
+
+/// Key, in egui's memory, of whether a control had the focus after the last frame.
+fn had_focus() -> Id {
+    Id::unique("had anything the focus")
+}
+
+/// Returns whether a control had the focus after the last frame. Such a control has already used
+/// Escape, and lost its focus.
+pub fn was_focused(ctx: &Context) -> bool {
+    ctx.data(|data| data.get_temp(had_focus()).unwrap_or(false))
+}
+
+/// Consumes Escape in order to close something, unless a focused control has used the key.
+pub fn take_escape(ctx: &Context) -> bool {
+    !was_focused(ctx) && ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape))
+}

@@ -1,0 +1,282 @@
+//! Numeric field that can be dragged and typed into, with unit, limits and accessible name.
+//!
+//! The drawing is egui's [`DragValue`]. This file adds the messages about refused entries and the
+//! restoring of the old value by Escape.
+
+use std::cell::RefCell;
+use std::ops::RangeInclusive;
+
+use egui::{Context, DragValue, Id, Key, Response, Role, Ui, WidgetInfo, vec2};
+
+use gdcm_model::number_format::{gain_text, number, significant};
+use gdcm_study::decisions::setting_row::Digits;
+
+/// Height of a number field \[pt\].
+const FIELD_HEIGHT: f32 = 18.0;
+/// Number of egui passes after Escape in which the typed text must not be committed. egui reports a
+/// loss of focus in two passes, but the key only in the first: in the second, [`DragValue`] would
+/// commit the text that Escape has given up.
+const PASSES_AFTER_ESCAPE: u64 = 2;
+
+/// Numeric input with unit, limits and accessible name.
+pub struct NumberField<'a> {
+    /// Accessible name, unique in the window.
+    pub name: &'a str,
+    /// Tooltip: meaning and unit.
+    pub hint: &'a str,
+    /// Unit of the number; empty if dimensionless.
+    pub unit: &'static str,
+    /// Whether the unit is shown after the number.
+    pub shows_unit: bool,
+    pub range: RangeInclusive<f64>,
+    pub is_whole: bool,
+    /// Change per point of dragging and per press of an arrow key.
+    pub step: f64,
+    /// Minimum width \[pt\]; 0 to fit the text.
+    pub width: f32,
+    pub digits: Digits,
+}
+
+/// Outcome of editing a field in this frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Entered {
+    /// New number, if it is valid.
+    pub value: Option<f64>,
+    /// Reason why the entry is refused.
+    pub refusal: Option<String>,
+    /// Whether the number is being dragged and may still change.
+    pub is_dragged: bool,
+    /// Whether the edit is complete: the pointer was released or the focus left the field.
+    pub is_ended: bool,
+}
+
+impl<'a> NumberField<'a> {
+    /// Creates a field for any dimensionless number in the range, as wide as its text.
+    pub fn new(name: &'a str, hint: &'a str, range: RangeInclusive<f64>) -> Self {
+        Self {
+            name,
+            hint,
+            unit: "",
+            shows_unit: false,
+            range,
+            is_whole: false,
+            step: 0.01,
+            width: 0.0,
+            digits: Digits::Significant,
+        }
+    }
+
+    /// Draws the field with `value`. Dragging stays within the range; a typed number is committed
+    /// by Enter or by a loss of focus, and Escape restores the old value.
+    pub fn ui(&self, ui: &mut Ui, value: f64) -> Entered {
+        let is_escaped = self.is_escaped(ui);
+        // The parser is a shared closure, so the text that it cannot parse leaves it in a cell.
+        let unparsed = RefCell::new(None);
+        let mut edited = value;
+        let mut field = DragValue::new(&mut edited)
+            .update_while_editing(false)
+            .speed(self.step)
+            .custom_formatter(|value, _| number_text(self.digits, value))
+            .custom_parser(|text| {
+                if is_escaped {
+                    return None;
+                }
+                let number = self.parse(text, value);
+                if number.is_none() {
+                    *unparsed.borrow_mut() = Some(text.trim().to_owned());
+                }
+                number
+            });
+        if self.shows_unit {
+            field = field.suffix(format!(" {}", self.unit));
+        }
+        let response = if self.width > 0.0 {
+            ui.add_sized(vec2(self.width, FIELD_HEIGHT), field)
+        } else {
+            ui.add(field)
+        };
+        let enabled = response.enabled();
+        response.widget_info(|| WidgetInfo::labeled(Role::SpinButton, enabled, self.name));
+        self.note_escape(ui, &response);
+        ui.data_mut(|data| data.insert_temp(field_key(self.name), response.id));
+        let outcome = self.outcome(value, edited, unparsed.into_inner(), &response);
+        response.on_hover_text(self.hint);
+        outcome
+    }
+
+    /// Key, in egui's memory, of the pass in which Escape last ended editing.
+    fn escape_key(&self) -> Id {
+        Id::unique(("escaped", self.name))
+    }
+
+    /// Records the pass in which Escape ends editing.
+    fn note_escape(&self, ui: &Ui, response: &Response) {
+        if response.lost_focus() && ui.input(|input| input.key_pressed(Key::Escape)) {
+            let pass = ui.ctx().cumulative_pass_nr();
+            ui.data_mut(|data| data.insert_temp(self.escape_key(), pass));
+        }
+    }
+
+    /// Returns whether Escape has just ended editing; see [`PASSES_AFTER_ESCAPE`].
+    fn is_escaped(&self, ui: &Ui) -> bool {
+        let pass = ui.ctx().cumulative_pass_nr();
+        let escaped = ui.data(|data| data.get_temp::<u64>(self.escape_key()));
+        escaped.is_some_and(|escaped| pass - escaped <= PASSES_AFTER_ESCAPE)
+    }
+
+    /// Parses the typed number; an unedited text returns the exact old value, which the text may
+    /// round.
+    fn parse(&self, text: &str, value: f64) -> Option<f64> {
+        if text == number_text(self.digits, value) {
+            return Some(value);
+        }
+        number_in(text, self.unit)
+    }
+
+    /// Accepts or refuses the number `after`, which replaces `before`; `unparsed` is a typed text that
+    /// is not a number. A dragged number stays within the range, and need not be whole before the
+    /// pointer is released.
+    fn outcome(
+        &self,
+        before: f64,
+        after: f64,
+        unparsed: Option<String>,
+        response: &Response,
+    ) -> Entered {
+        let is_dragged = response.dragged();
+        let after = if is_dragged {
+            after.clamp(*self.range.start(), *self.range.end())
+        } else {
+            after
+        };
+        let has_allowed_digits = !self.is_whole || after.fract() == 0.0 || is_dragged;
+        let is_allowed = self.range.contains(&after) && has_allowed_digits;
+        let mut outcome = Entered {
+            value: None,
+            refusal: None,
+            is_dragged,
+            is_ended: response.drag_stopped() || response.lost_focus(),
+        };
+        if after != before && is_allowed {
+            outcome.value = Some(after);
+        }
+        if let Some(text) = unparsed {
+            outcome.refusal = Some(self.refusal(&format!("\"{text}\""), before));
+        } else if after != before && !is_allowed {
+            outcome.refusal = Some(self.refusal(&number(after), before));
+        }
+        outcome
+    }
+
+    /// Returns the refusal, for example "Band from: expected a number from 0.0001 to 12 rad/s,
+    /// found 30; 0.500 rad/s is kept."
+    fn refusal(&self, found: &str, before: f64) -> String {
+        let kind = if self.is_whole {
+            "a whole number"
+        } else {
+            "a number"
+        };
+        let least = number(*self.range.start());
+        let most = number(*self.range.end());
+        let unit = if self.unit.is_empty() {
+            String::new()
+        } else {
+            format!(" {}", self.unit)
+        };
+        let stays = number_text(self.digits, before);
+        format!(
+            "{}: expected {kind} from {least} to {most}{unit}, found {found}; {stays}{unit} is \
+            kept",
+            self.name
+        )
+    }
+}
+
+/// Key, in egui's memory, of the id of the field with this name.
+fn field_key(name: &str) -> Id {
+    Id::unique(("field", name))
+}
+
+/// Focuses the field with this name if it is in the window.
+pub fn focus_field(ctx: &Context, name: &str) {
+    if let Some(id) = ctx.data(|data| data.get_temp::<Id>(field_key(name))) {
+        ctx.memory_mut(|memory| memory.request_focus(id));
+    }
+}
+
+/// Parses a finite number with or without its unit, which the field shows and which is therefore often
+/// typed or pasted with the number. The minus sign may be typographical, as in copied text. A single
+/// comma is a decimal separator; "1.000,5" and "1,000,000" are refused, because either mark could
+/// separate thousands.
+fn number_in(text: &str, unit: &str) -> Option<f64> {
+    let text = text.trim();
+    let text = text
+        .strip_suffix(unit)
+        .unwrap_or(text)
+        .trim()
+        .replace('−', "-");
+    let is_decimal_comma = text.matches(',').count() == 1 && !text.contains('.');
+    let text = if is_decimal_comma {
+        text.replace(',', ".")
+    } else {
+        text
+    };
+    let value: f64 = text.parse().ok()?;
+    if value.is_finite() { Some(value) } else { None }
+}
+
+/// Formats a number with the digits chosen for the field.
+fn number_text(digits: Digits, value: f64) -> String {
+    match digits {
+        Digits::Significant => significant(value),
+        Digits::Decimals(decimals) => format!("{value:.decimals$}"),
+        Digits::Gain => gain_text(value),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn alpha_is_shown_with_three_significant_digits() {
+        for (value, text) in [
+            (0.0, "0"),
+            (1.0, "1.00"),
+            (0.00123, "0.00123"),
+            (120.0, "120"),
+            (1e6, "1.00e6"),
+        ] {
+            assert_eq!(significant(value), text);
+        }
+    }
+
+    #[test]
+    fn a_gain_is_shown_with_two_or_three_digits_behind_the_point() {
+        for (value, text) in [
+            (1.0, "1.00"),
+            (1.25, "1.25"),
+            (1.2346, "1.235"),
+            (1e-6, "1.00e-6"),
+        ] {
+            assert_eq!(gain_text(value), text);
+        }
+    }
+
+    #[test]
+    fn a_number_is_read_as_engineers_type_it() {
+        let cases = [
+            ("30", 30.0),
+            (" 0,5 rad/s", 0.5),
+            ("−2e-3", -0.002),
+            ("12rad/s", 12.0),
+            ("1e6", 1e6),
+        ];
+        for (text, value) in cases {
+            assert_eq!(number_in(text, "rad/s"), Some(value), "{text}");
+        }
+        for text in ["", "three", "1,000,000", "1.000,5", "nan", "inf", "3 kt"] {
+            assert_eq!(number_in(text, "rad/s"), None, "{text}");
+        }
+    }
+}

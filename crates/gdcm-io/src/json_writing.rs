@@ -18,7 +18,8 @@ pub(super) fn write_compact(value: &impl Serialize, file: &mut dyn Write) -> io:
     file.write_all(b"\n")
 }
 
-/// Writes JSON with escaped control and invisible characters, including those that JSON permits. A
+/// Writes JSON with escaped control characters, except DEL, which has no effect on a terminal, and
+/// with escaped invisible characters, including those that JSON permits. A
 /// file shown on a terminal can thus not affect the terminal, and two different names never look
 /// alike because of invisible characters.
 struct EscapingWriter<W>(W);

@@ -239,31 +239,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn alpha_is_shown_with_three_significant_digits() {
-        for (value, text) in [
-            (0.0, "0"),
-            (1.0, "1.00"),
-            (0.00123, "0.00123"),
-            (120.0, "120"),
-            (1e6, "1.00e6"),
-        ] {
-            assert_eq!(significant(value), text);
-        }
-    }
-
-    #[test]
-    fn a_gain_is_shown_with_two_or_three_digits_behind_the_point() {
-        for (value, text) in [
-            (1.0, "1.00"),
-            (1.25, "1.25"),
-            (1.2346, "1.235"),
-            (1e-6, "1.00e-6"),
-        ] {
-            assert_eq!(gain_text(value), text);
-        }
-    }
-
-    #[test]
     fn a_number_is_read_as_engineers_type_it() {
         let cases = [
             ("30", 30.0),

@@ -3,7 +3,8 @@
 //!
 //! ```text
 //! 1  mode: a real pole, or the upper pole of a conjugate pair
-//! 2  output scale:  s_i^2 = sum_k |r_ki|^2 / max(|lambda_k|, omega_min)^2 over the flown modes,  r_k = (C v_k) |w_k B|
+//! 2  output scale:  s_i^2 = sum_k |r_ki|^2 / max(|lambda_k|, omega_min)^2 over all flown poles,
+//!    both of a pair;  r_k = (C v_k) |w_k B|
 //! 3  distance  d = |lambda - lambda'| / max(|lambda|, |lambda'|, omega_min)
 //!    likeness  c = |sum_i r_i* r'_i / s_i^2|^2 / (sum_i |r_i|^2 / s_i^2  sum_i |r'_i|^2 / s_i^2)
 //! 4  a pair has d <= 1/2 and c >= 1/2; the sum of d + 1 - c is minimised,
@@ -97,7 +98,8 @@ fn pair_cost(flown: &Mode, model: &Mode, scales: &[f64], least_rad_s: f64) -> Op
     }
 }
 
-/// Returns `s_i` for each output; zero if no flown mode has a residue in the output.
+/// Returns `s_i` for each output, over all flown poles: both of a conjugate pair count. Zero if
+/// none has a residue in the output.
 fn output_scales(flown: &[Mode], least_rad_s: f64) -> Vec<f64> {
     let mut squares: Vec<f64> = Vec::new();
     for mode in flown {

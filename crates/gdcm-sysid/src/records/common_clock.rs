@@ -194,7 +194,7 @@ mod tests {
         assert!(clock.start_s == 1.0 && clock.times_s().last().unwrap() <= &20.0);
         let part = clock.within([5.0, 10.0]);
         assert_eq!((part.samples, part.start_s), (251, 5.0));
-        // 20 · 4/3 · 3 rad/s are 12.7 Hz.
+        // At most 20 times the highest line, 4/3 of the upper band end of 3 rad/s: 12.73 Hz.
         assert!(
             (CommonClock::choose(&fast, Some(3.0), None).unwrap().rate_hz - 12.73).abs() < 0.01
         );

@@ -9,21 +9,23 @@
 //! 4  g = Re sum (V^H e) S^H at every line: exact
 //! ```
 //!
-//! Bins narrower than the spacing of the lines hold equal frequencies of records of equal length:
-//! then `G` is exact. The changes of coordinates, n^2 of the (n + l)(n + m) directions, are
-//! orthogonal to `g`.
+//! With bins of width 0.04, the largest error of a diagonal entry of `G` is below 1 %. Bins narrower
+//! than the spacing of the lines hold equal frequencies of records of equal length: then `G` is
+//! exact. The changes of coordinates, n^2 of the (n + l)(n + m) directions, are orthogonal to `g`.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use gdcm_model::executor::each;
+use gdcm_model::executor::{Executor, each};
 
 use super::cost::{Likelihood, SegmentCost, SpectralLines, multiply, whiten};
 use super::dense_model::DenseModel;
 use super::linear_model::{LinearModel, OutputResolvents};
 use super::nuisance_elimination::{NuisanceSums, VectorProducts};
 
-/// Width of a bin in ln omega: lines of the same frequency share one.
-const BIN_WIDTH: f64 = 1e-9;
+/// Width of a bin in ln omega for the steps of a descent.
+pub(crate) const BIN_WIDTH: f64 = 0.04;
+/// Width of a bin in ln omega that only lines of the same frequency share: `G` is exact.
+pub(crate) const EXACT: f64 = 1e-9;
 
 /// `G` and `g` in all entries of `[[A, B], [C, D]]`, column after column.
 pub(crate) struct DenseSystem {
@@ -35,16 +37,18 @@ pub(crate) struct DenseSystem {
     pub(crate) whole_diagonal: DVector<f64>,
 }
 
-/// Computes `G` and `g` at a model; `parts` are the segment costs there.
+/// Computes `G` and `g` at a model, with bins of this width in ln omega; `parts` are the segment
+/// costs there.
 ///
 /// `None` if an iteration does not converge.
 pub(crate) fn dense_system(
     likelihood: &Likelihood,
     model: &DenseModel,
     parts: &[SegmentCost],
+    bin_width: f64,
 ) -> Option<DenseSystem> {
     let resolvents = likelihood.resolvents(model);
-    let binning = Binning::new(likelihood);
+    let binning = Binning::new(likelihood, bin_width);
     let products = binning.vector_products(likelihood, model);
     let bins = binning.omega.len();
     let segments = likelihood.segments.iter().zip(parts).zip(&binning.places);
@@ -68,16 +72,17 @@ pub(crate) fn dense_system(
         }
         gradient += &segment.gradient;
     }
-    let mut matrix = kronecker_sum(&products, &squares);
+    let mut matrix = kronecker_sum(&products, &squares, likelihood.executor);
     let whole_diagonal = matrix.diagonal();
     let segments = likelihood.segments.iter().zip(&sums);
     let explained = each(likelihood.executor, segments, |(lines, sums)| {
         sums.nuisance.explained(&products, lines, model)
     });
+    let mut roots = Vec::with_capacity(explained.len());
     for root in explained {
-        let root = root?;
-        matrix.gemm(-1.0, &root, &root.transpose(), 1.0);
+        roots.push(root?);
     }
+    subtract_squares(&mut matrix, &roots, likelihood.executor);
     Some(DenseSystem {
         matrix,
         gradient: DVector::from_column_slice(gradient.as_slice()),
@@ -96,7 +101,7 @@ struct Binning {
 }
 
 impl Binning {
-    fn new(likelihood: &Likelihood) -> Self {
+    fn new(likelihood: &Likelihood, width: f64) -> Self {
         let mut lines: Vec<(f64, usize, usize)> = Vec::new();
         for (segment, own) in likelihood.segments.iter().enumerate() {
             for (k, omega) in own.omega.iter().enumerate() {
@@ -116,7 +121,7 @@ impl Binning {
         let mut first = 0;
         while first < lines.len() {
             let end =
-                first + lines[first..].partition_point(|line| line.0 < lines[first].0 + BIN_WIDTH);
+                first + lines[first..].partition_point(|line| line.0 < lines[first].0 + width);
             let members = &lines[first..end];
             let mean = members.iter().map(|line| line.0).sum::<f64>() / members.len() as f64;
             let nearest = members
@@ -235,7 +240,11 @@ impl SegmentAtModel<'_> {
 
 /// Computes `sum over bins of Re(P (x) Q)` for Hermitian `P` and `Q`: entry ((v, s), (v', s')) is
 /// `Re(P[v, v'] Q[s, s'])`, with v running fastest.
-fn kronecker_sum(products: &VectorProducts, squares: &[DMatrix<Complex<f64>>]) -> DMatrix<f64> {
+fn kronecker_sum(
+    products: &VectorProducts,
+    squares: &[DMatrix<Complex<f64>>],
+    executor: &dyn Executor,
+) -> DMatrix<f64> {
     let vectors = products.vectors;
     let bins = squares.len();
     let scalars = squares.first().map_or(0, DMatrix::nrows);
@@ -257,8 +266,10 @@ fn kronecker_sum(products: &VectorProducts, squares: &[DMatrix<Complex<f64>>]) -
             right_im[(bin, column)] = product.im;
         }
     }
-    let re = left_re * right_re;
-    let im = left_im * right_im;
+    let pairs_of_parts = [(&left_re, &right_re), (&left_im, &right_im)];
+    let mut parts = each(executor, pairs_of_parts, |(left, right)| left * right).into_iter();
+    let re = parts.next().unwrap_or_default();
+    let im = parts.next().unwrap_or_default();
     let mut matrix = DMatrix::zeros(vectors * scalars, vectors * scalars);
     for (column, &(s, t)) in scalar_pairs.iter().enumerate() {
         for (row, &(v, w)) in vector_pairs.iter().enumerate() {
@@ -277,6 +288,36 @@ fn kronecker_sum(products: &VectorProducts, squares: &[DMatrix<Complex<f64>>]) -
         }
     }
     matrix
+}
+
+/// Columns that are updated at a time.
+const PANEL: usize = 64;
+
+/// Subtracts `sum F F'` over the matrices F from a symmetric matrix.
+fn subtract_squares(matrix: &mut DMatrix<f64>, roots: &[DMatrix<f64>], executor: &dyn Executor) {
+    let size = matrix.nrows();
+    let panels = each(executor, (0..size).step_by(PANEL), |first| {
+        let width = PANEL.min(size - first);
+        let mut panel = matrix
+            .view((first, first), (size - first, width))
+            .into_owned();
+        for root in roots {
+            let turned = root.rows(first, width).transpose();
+            panel.gemm(-1.0, &root.rows(first, size - first), &turned, 1.0);
+        }
+        panel
+    });
+    for (number, panel) in panels.iter().enumerate() {
+        let first = number * PANEL;
+        let width = panel.ncols();
+        matrix
+            .view_mut((first, first), panel.shape())
+            .copy_from(panel);
+        let below = panel.rows(width, size - first - width).transpose();
+        matrix
+            .view_mut((first, first + width), below.shape())
+            .copy_from(&below);
+    }
 }
 
 /// Returns all pairs of indices below `count` whose second is not smaller than the first.
@@ -350,7 +391,7 @@ mod tests {
             blocks.parameters(),
             &normal_systems(&likelihood, &blocks, &parts).unwrap(),
         );
-        let found = dense_system(&likelihood, &dense, &dense_parts).unwrap();
+        let found = dense_system(&likelihood, &dense, &dense_parts, EXACT).unwrap();
         // Entry of [[A, B], [C, D]] and sign of each block parameter.
         let mut entries = vec![(1, 0, -1.0), (1, 1, -1.0), (3, 2, -1.0), (3, 3, -1.0)];
         for state in 0..4 {

@@ -19,7 +19,7 @@ use gdcm_model::progress::{Cancelled, Shares};
 use super::balancing::balanced;
 use super::cost::{Likelihood, SegmentCost};
 use super::dense_model::DenseModel;
-use super::dense_system::{DenseSystem, dense_system};
+use super::dense_system::{BIN_WIDTH, DenseSystem, dense_system};
 use super::gram_matrix::solve_positive_definite;
 use super::linear_model::LinearModel;
 use crate::subspace::tried_orders::parameters_of_order;
@@ -145,7 +145,7 @@ impl DenseFit {
             return false;
         };
         self.balance(likelihood);
-        let Some(system) = dense_system(likelihood, &self.model, &self.parts) else {
+        let Some(system) = dense_system(likelihood, &self.model, &self.parts, BIN_WIDTH) else {
             return false;
         };
         let scaled = ScaledSystem::new(system);

@@ -16,7 +16,7 @@ use nalgebra::{DMatrix, DVector};
 
 use gdcm_model::progress::{Cancelled, Shares};
 
-use super::balancing::balanced;
+use super::balancing::{Coordinates, Gramians, balancing_coordinates};
 use super::cost::{Likelihood, SegmentCost};
 use super::dense_model::DenseModel;
 use super::dense_system::{BIN_WIDTH, DenseSystem, dense_system};
@@ -82,6 +82,8 @@ pub(crate) struct DenseFit {
     /// Newton decrement over `k phi` where it was last computed; infinite before.
     pub(crate) decrement: f64,
     damping: f64,
+    /// Gramians in the present coordinates where they were last computed.
+    gramians: Option<Gramians>,
 }
 
 impl DenseFit {
@@ -98,6 +100,7 @@ impl DenseFit {
             cost,
             decrement: f64::INFINITY,
             damping: FIRST_DAMPING,
+            gramians: None,
         })
     }
 
@@ -148,6 +151,7 @@ impl DenseFit {
         let Some(system) = dense_system(likelihood, &self.model, &self.parts, BIN_WIDTH) else {
             return false;
         };
+        self.gramians = Some(system.gramians.clone());
         let scaled = ScaledSystem::new(system);
         let unit = self.parameters() as f64 * dispersion;
         let mut direction = scaled.solve(self.damping);
@@ -180,18 +184,24 @@ impl DenseFit {
         false
     }
 
-    /// Transforms the model to balanced coordinates, in which the transients have other values.
+    /// Transforms model and transients to balanced coordinates, by the Gramians at the step before.
     fn balance(&mut self, likelihood: &Likelihood) {
-        let Some(model) = balanced(likelihood, &self.model) else {
+        let gramians = self
+            .gramians
+            .take()
+            .unwrap_or_else(|| Gramians::sampled(likelihood, &self.model));
+        let Some(coordinates) = balancing_coordinates(&gramians) else {
             return;
         };
-        // The response is the same; costs that differ by more than rounding point to an
-        // ill-conditioned transformation.
-        if let Some(fit) = Self::start(likelihood, model)
-            && (fit.cost - self.cost).abs() <= 1e-6 * self.cost
-        {
-            self.model = fit.model;
-            self.parts = fit.parts;
+        let Coordinates {
+            transformation,
+            inverse,
+        } = coordinates;
+        if let Some(model) = self.model.in_coordinates(&transformation, &inverse) {
+            self.model = model;
+            for part in &mut self.parts {
+                part.transient = &inverse * &part.transient;
+            }
         }
     }
 

@@ -27,8 +27,9 @@ use crate::subspace::tried_orders::parameters_of_order;
 /// Limit on the Newton decrement over `k phi` at a minimum.
 pub(crate) const CONVERGED: f64 = 0.02;
 /// Limit on the Newton decrement over `k phi` for the comparison of orders: the cost may still fall
-/// by about 5 % of what k parameters explain of the noise.
-pub(crate) const COMPARABLE: f64 = 0.05;
+/// by about 10 % of what k parameters explain of the noise, a small part of what BIC charges for a
+/// state, `(m + l) phi ln N`.
+pub(crate) const COMPARABLE: f64 = 0.1;
 /// Limit on the Newton decrement over `k phi` before the noise is measured again.
 pub(crate) const NEARLY_CONVERGED: f64 = 0.2;
 /// Multiple of the squared Newton decrement by which the cost may at most still fall.

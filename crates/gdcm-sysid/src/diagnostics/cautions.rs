@@ -199,7 +199,8 @@ impl IdentificationCaution {
     /// Returns whether another caution is a mere consequence of this one.
     ///
     /// The residual of a contradicting record is not due to its noise; and if the sign of a channel
-    /// is reversed, no input seems to be swept in the mean over the records.
+    /// is reversed, no input seems to be swept in the mean over the records. The measured points are
+    /// means over records that contradict each other, which no model follows.
     pub(crate) fn explains(&self, other: &Self) -> bool {
         let Self::Contradiction { records, .. } = self else {
             return false;
@@ -208,7 +209,7 @@ impl IdentificationCaution {
             Self::UnlikeRecord { record, .. } => {
                 records.iter().any(|wrong| wrong.record == *record)
             }
-            Self::Reweighed(_) => true,
+            Self::Reweighed(_) | Self::LeavesPoints { .. } => true,
             Self::NotSwept { .. } => records.iter().any(has_turned_sign),
             _ => false,
         }

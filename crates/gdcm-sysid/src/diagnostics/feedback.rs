@@ -24,9 +24,8 @@ use gdcm_model::response::frequency_grid::log_spaced;
 use gdcm_model::simulation::Segment;
 use gdcm_model::statistics::median;
 
-use crate::likelihood::blocks::BlockModel;
 use crate::likelihood::gram_matrix::scale_columns;
-use crate::likelihood::linear_model::LinearModel;
+use crate::likelihood::schur_model::SchurModel;
 use crate::spectra::local_polynomial::local_polynomial;
 use crate::spectra::response_estimate::ResponseEstimate;
 use crate::spectra::spectrum::{LineRange, Spectrum};
@@ -148,7 +147,7 @@ impl Feedback {
     /// predictor.
     pub(crate) fn measure(
         records: &FeedbackRecords<'_>,
-        model: &BlockModel,
+        model: &SchurModel,
         executor: &dyn Executor,
     ) -> Option<Self> {
         let first = records.segments.first()?;
@@ -175,7 +174,7 @@ impl Feedback {
     }
 
     /// Compares `G_b` with the response of the model (step 5).
-    fn compare(model: &BlockModel, fed_back: &ResponseEstimate) -> Self {
+    fn compare(model: &SchurModel, fed_back: &ResponseEstimate) -> Self {
         let moduli: Vec<DMatrix<f64>> = fed_back
             .points
             .iter()

@@ -8,9 +8,8 @@ use gdcm_model::simulation::FlightRecord;
 
 use super::cautions::IdentificationCaution;
 use super::record_fits::{RecordFit, RecordFits};
-use crate::likelihood::blocks::BlockModel;
-use crate::likelihood::linear_model::LinearModel;
-use crate::likelihood::refinement::Fit;
+use crate::likelihood::descent::Fit;
+use crate::likelihood::schur_model::SchurModel;
 use crate::options::Options;
 use crate::spectra::local_polynomial::local_polynomial;
 use crate::spectra::response_estimate::ResponseEstimate;
@@ -123,7 +122,7 @@ impl Diagnostics<'_> {
 
     /// Returns a caution for each response that departs from its measured points.
     pub(crate) fn departures(&self) -> Vec<IdentificationCaution> {
-        let (outputs, inputs) = self.fit.model.d.shape();
+        let (outputs, inputs) = self.fit.model.d().shape();
         let predicted = predict_points(&self.fit.model, &self.data, self.options);
         let mut cautions = Vec::new();
         for input in 0..inputs {
@@ -159,7 +158,7 @@ fn place_of_greatest(values: &[f64]) -> usize {
 /// Without a reference, the model passes through the same local polynomials as the records, which
 /// flatten a peak within a window equally in both.
 pub(crate) fn predict_points(
-    model: &BlockModel,
+    model: &SchurModel,
     data: &MeasuredData<'_>,
     options: &Options,
 ) -> Vec<DMatrix<Complex<f64>>> {
@@ -190,7 +189,7 @@ pub(crate) fn predict_points(
 }
 
 /// Returns the lines with the outputs of the model, `Y = G_model U`.
-fn predict_lines(model: &BlockModel, lines: &Spectrum) -> Spectrum {
+fn predict_lines(model: &SchurModel, lines: &Spectrum) -> Spectrum {
     let mut outputs = lines.outputs.clone();
     for (k, omega) in lines.omega.iter().enumerate() {
         let predicted = model.response(*omega) * lines.inputs.column(k);

@@ -25,12 +25,11 @@ use gdcm_model::executor::each;
 use super::cautions::IdentificationCaution;
 use super::model_doubts::Diagnostics;
 use super::record_fault::{ContradictingRecord, RecordFault};
-use crate::likelihood::blocks::BlockModel;
 use crate::likelihood::cost::{Likelihood, SegmentCost, SpectralLines, whiten};
+use crate::likelihood::descent::Fit;
 use crate::likelihood::gram_matrix::pseudo_inverse_root;
-use crate::likelihood::linear_model::LinearModel;
-use crate::likelihood::normal_system::{NormalSystem, gradient_along, system_of_record};
-use crate::likelihood::refinement::Fit;
+use crate::likelihood::local_system::{LocalSystem, LocalSystems};
+use crate::likelihood::schur_model::SchurModel;
 use crate::options::Options;
 use crate::spectra::spectrum::Spectrum;
 
@@ -38,9 +37,8 @@ use crate::spectra::spectrum::Spectrum;
 const LEAST_KNOWN: f64 = 0.02;
 /// Maximum share `eps` of the information in a direction, so that the others hold some of it too.
 const MOST_KNOWN: f64 = 0.98;
-/// Eigenvalues of the information matrix `G` below this share of the largest belong to
-/// unidentifiable directions (state scaling).
-const FREE_SCALE: f64 = 1e-9;
+/// Eigenvalues of the information matrix `G` below this share of the largest are rounding errors.
+const ROUNDING: f64 = 1e-13;
 /// `F` above which a record contradicts the others.
 const CONTRADICTS: f64 = 4.0;
 /// `F` above which a record contradicts the others if gusts are fed back, because gusts differ
@@ -67,7 +65,8 @@ pub(crate) struct RecordContrasts<'a> {
     /// Lines of each segment in scaled units, not whitened.
     spectra: &'a [Spectrum],
     fit: &'a Fit,
-    whole: NormalSystem,
+    systems: LocalSystems,
+    whole: LocalSystem,
     /// `V`, with `V'GV = I`.
     root: DMatrix<f64>,
     /// Contrast of each record, in ascending order of records; empty for a single record.
@@ -99,17 +98,17 @@ impl<'a> RecordContrasts<'a> {
         spectra: &'a [Spectrum],
         fit: &'a Fit,
     ) -> Option<Self> {
-        let systems = fit.systems(likelihood)?;
-        let whole = NormalSystem::sum(fit.model.parameters(), &systems);
-        let dispersion = fit.cost / fit.spare_freedom(likelihood)? as f64;
-        let root = pseudo_inverse_root(whole.matrix.clone(), FREE_SCALE)?;
+        let systems = LocalSystems::new(likelihood, fit)?;
+        let whole = systems.whole();
+        let dispersion = fit.dispersion(likelihood)?;
+        let root = pseudo_inverse_root(whole.matrix.clone(), ROUNDING)?;
         let gradient = root.tr_mul(&whole.gradient);
         let records = likelihood.records();
         let contrasts = if records.len() < 2 {
             Vec::new()
         } else {
             each(likelihood.executor, records, |record| {
-                let own = system_of_record(likelihood, record, &systems);
+                let own = systems.of_record(record);
                 let contrast = contrast(&own, &root, &gradient, dispersion)?;
                 Some(RecordContrast { record, contrast })
             })
@@ -120,6 +119,7 @@ impl<'a> RecordContrasts<'a> {
             likelihood,
             spectra,
             fit,
+            systems,
             whole,
             root,
             contrasts,
@@ -197,7 +197,7 @@ impl<'a> RecordContrasts<'a> {
 
     /// Lists the faults that a record may have, with size zero.
     fn possible_faults(&self, options: &Options) -> Vec<RecordFault> {
-        let (outputs, inputs) = self.fit.model.d.shape();
+        let (outputs, inputs) = self.fit.model.d().shape();
         let mut faults = vec![RecordFault::OutputsLate(0.0)];
         for output in 0..outputs {
             faults.push(RecordFault::Late(
@@ -229,7 +229,7 @@ impl<'a> RecordContrasts<'a> {
         let resolvents = self.likelihood.resolvents(model);
         let mut with_residual = 0.0;
         let mut square = 0.0;
-        let mut with_parameters = DVector::zeros(model.parameters());
+        let mut with_parameters = DVector::zeros(self.systems.parameters.count());
         let segments = self.likelihood.segments.iter().zip(&self.fit.parts);
         for ((lines, part), spectrum) in segments.zip(self.spectra) {
             if lines.record != record {
@@ -243,7 +243,7 @@ impl<'a> RecordContrasts<'a> {
                 residual: column,
                 ..part.clone()
             };
-            with_parameters += gradient_along(lines, model, &along);
+            with_parameters += self.systems.gradient_along(lines, model, &along);
         }
         let known = self.root.tr_mul(&with_parameters);
         let optimum = self.root.tr_mul(&self.whole.gradient);
@@ -257,7 +257,7 @@ impl<'a> RecordContrasts<'a> {
 /// Computes `F` for a record with the normal system `own`; `root` is `V`, `gradient` is `V'g` and
 /// `dispersion` is `phi`.
 fn contrast(
-    own: &NormalSystem,
+    own: &LocalSystem,
     root: &DMatrix<f64>,
     gradient: &DVector<f64>,
     dispersion: f64,
@@ -281,7 +281,7 @@ fn residual_effect(
     fault: &RecordFault,
     lines: &SpectralLines,
     spectrum: &Spectrum,
-    model: &BlockModel,
+    model: &SchurModel,
 ) -> DMatrix<Complex<f64>> {
     let (outputs, count) = lines.outputs.shape();
     let mut effect = DMatrix::zeros(outputs, count);

@@ -2,11 +2,9 @@
 
 use nalgebra::{Complex, DMatrix};
 
-use crate::likelihood::blocks::BlockModel;
 use crate::likelihood::cost::{Likelihood, SegmentCost};
 use crate::likelihood::covariance::ParameterCovariance;
-use crate::likelihood::linear_model::LinearModel;
-use crate::subspace::tried_orders::parameters_of_order;
+use crate::likelihood::schur_model::SchurModel;
 
 /// Fit of the recommended model to a record.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,13 +46,13 @@ impl RecordFits {
     pub(crate) fn new(
         fitted: &Likelihood,
         held_out_records: &Likelihood,
-        model: &BlockModel,
+        model: &SchurModel,
         covariance: &ParameterCovariance,
     ) -> Option<Self> {
         let parts = fitted.parts(model)?;
         let held_out_parts = held_out_records.parts(model)?;
         let freedom = fitted.freedom(model.order());
-        let parameters = parameters_of_order(model.order(), model.b.ncols(), model.c.nrows());
+        let parameters = model.parameters();
         let spare = freedom.checked_sub(parameters)?;
         if spare == 0 {
             return None;
@@ -98,7 +96,7 @@ fn held_out_cost(held_out: &[RecordFit], moved: Option<f64>) -> Option<HeldOutCo
 /// Computes the fit of each record that has degrees of freedom, in record order.
 pub(crate) fn fits_of_records(
     likelihood: &Likelihood,
-    model: &impl LinearModel,
+    model: &SchurModel,
     parts: &[SegmentCost],
     held_out: bool,
 ) -> Vec<RecordFit> {
@@ -137,8 +135,8 @@ fn mean_cost(fits: &[RecordFit]) -> Option<f64> {
 
 /// Computes `J` per degree of freedom of each output: `sum |E_o|^2 / (Cv_oo / 2)` over its share of
 /// the degrees of freedom.
-fn output_costs(likelihood: &Likelihood, model: &BlockModel, parts: &[SegmentCost]) -> Vec<f64> {
-    let outputs = model.c.nrows();
+fn output_costs(likelihood: &Likelihood, model: &SchurModel, parts: &[SegmentCost]) -> Vec<f64> {
+    let outputs = model.c().nrows();
     let freedom = likelihood.freedom(model.order()) as f64 / outputs as f64;
     let mut sums = vec![0.0; outputs];
     for (segment, part) in likelihood.segments.iter().zip(parts) {

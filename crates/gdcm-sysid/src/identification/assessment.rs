@@ -19,8 +19,8 @@ use crate::diagnostics::record_contrast::{RecordContrast, RecordContrasts};
 use crate::diagnostics::record_fits::RecordFits;
 use crate::identification_error::IdentificationError;
 use crate::likelihood::covariance::ParameterCovariance;
+use crate::likelihood::local_system::LocalSystems;
 use crate::likelihood::models_without_record::{ModelWithoutRecord, without_each_record};
-use crate::likelihood::normal_system::NormalSystem;
 use crate::options::Options;
 
 /// Number of frequencies in the bands.
@@ -77,9 +77,7 @@ impl Assessment<'_> {
         let Refinement { fit, weights, .. } = self.refinement;
         let likelihood = &weights.likelihood;
         progress.next(0.8, "uncertainty")?;
-        let systems = fit
-            .systems(likelihood)
-            .ok_or_else(|| self.data.no_model())?;
+        let systems = LocalSystems::new(likelihood, fit).ok_or_else(|| self.data.no_model())?;
         let uncertainty = self.uncertainty(&systems)?;
         progress.next(0.88, "models fitted without one record each")?;
         let without = without_each_record(likelihood, fit, &systems);
@@ -112,15 +110,18 @@ impl Assessment<'_> {
     }
 
     /// Computes covariance, feedback and bands.
-    fn uncertainty(&self, systems: &[NormalSystem]) -> Result<Uncertainty, IdentificationError> {
+    fn uncertainty(&self, systems: &LocalSystems) -> Result<Uncertainty, IdentificationError> {
         let Refinement { fit, weights, .. } = self.refinement;
         let likelihood = &weights.likelihood;
         let executor = likelihood.executor;
-        let covariance = ParameterCovariance::from_systems(likelihood, fit, systems, fit.cost)
+        let covariance = fit
+            .dispersion(likelihood)
+            .and_then(|dispersion| ParameterCovariance::new(systems, dispersion))
             .ok_or_else(|| self.data.no_model())?;
         let logged = match &self.data.direct {
             Some(direct) => Some(
-                ParameterCovariance::from_lines(direct, fit).ok_or_else(|| self.data.no_model())?,
+                ParameterCovariance::from_lines(direct, &fit.model)
+                    .ok_or_else(|| self.data.no_model())?,
             ),
             None => None,
         };
@@ -209,6 +210,7 @@ impl Assessment<'_> {
         let feedback = feedback_caution(uncertainty.feedback.as_ref());
         let is_in_gusts = feedback.is_some();
         cautions.extend(feedback);
+        cautions.extend(diagnostics.departures());
         if let Some(contrasts) = contrasts {
             cautions.extend(diagnostics.adequacy(fits));
             if let Some(contradiction) = contrasts.caution(is_in_gusts, &diagnostics) {
@@ -216,7 +218,6 @@ impl Assessment<'_> {
                 cautions.push(contradiction);
             }
         }
-        cautions.extend(diagnostics.departures());
         if search.still_falls {
             cautions.push(IdentificationCaution::OrderLimit {
                 order: search.order,

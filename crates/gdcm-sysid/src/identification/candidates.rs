@@ -8,9 +8,9 @@ use gdcm_model::progress::{Cancelled, Shares};
 use gdcm_model::response::mode::poles;
 use gdcm_model::simulation::Segment;
 
-use crate::likelihood::blocks::BlockModel;
 use crate::likelihood::cost::Likelihood;
-use crate::likelihood::refinement::Fit;
+use crate::likelihood::descent::Fit;
+use crate::likelihood::schur_model::SchurModel;
 use crate::subspace::ct_pbsid::{Subspace, SubspaceShape};
 use crate::subspace::data_matrix::Projections;
 use crate::subspace::fast_modes::without_fast_modes;
@@ -92,7 +92,7 @@ impl SubspaceSettings {
         let cheapest = each(likelihood.executor, &self.orders, |&order| {
             candidates
                 .iter()
-                .filter_map(|candidate| self.block_model(&candidate.subspace, order))
+                .filter_map(|candidate| self.evaluated_model(&candidate.subspace, order))
                 .filter_map(|model| Fit::start(likelihood, model))
                 .min_by(|a, b| a.cost.total_cmp(&b.cost))
         });
@@ -126,10 +126,10 @@ impl SubspaceSettings {
         without_fast_modes(&subspace.model(order)?, FASTEST * self.highest)
     }
 
-    /// Returns the model of an order in blocks, without its modes far above the band; `None` if no
-    /// mode remains.
-    fn block_model(&self, subspace: &Subspace, order: usize) -> Option<BlockModel> {
-        BlockModel::from_state_space(&self.slow_model(subspace, order)?)
+    /// Returns the model of an order, without its modes far above the band, for evaluation; `None`
+    /// if no mode remains.
+    fn evaluated_model(&self, subspace: &Subspace, order: usize) -> Option<SchurModel> {
+        SchurModel::from_state_space(&self.slow_model(subspace, order)?)
     }
 }
 
@@ -210,7 +210,7 @@ impl<'r> Ranking<'r> {
             longest_future: self.settings.longest_future,
         };
         let subspace = Subspace::new(factor, pole, shape, RIDGE)?;
-        let model = self.settings.block_model(&subspace, self.order)?;
+        let model = self.settings.evaluated_model(&subspace, self.order)?;
         let cost = self.likelihood.cost(&model)?;
         Some(Candidate {
             pole,

@@ -17,9 +17,8 @@ use crate::diagnostics::feedback::Feedback;
 use crate::diagnostics::record_contrast::RecordContrast;
 use crate::diagnostics::record_fits::RecordFit;
 use crate::identification_error::IdentificationError;
-use crate::likelihood::blocks::BlockModel;
-use crate::likelihood::linear_model::LinearModel;
 use crate::likelihood::models_without_record::ModelWithoutRecord;
+use crate::likelihood::schur_model::SchurModel;
 use crate::options::Options;
 use crate::spectra::record_use::RecordUse;
 use crate::spectra::response_estimate::ResponseEstimate;
@@ -35,7 +34,7 @@ const UNREFINED: &str = "CT-PBSID";
 pub struct Identification {
     /// The recommended model: CT-PBSID, refined, with the standard deviations of its responses.
     pub refined: Model,
-    /// CT-PBSID without refinement, with the same order.
+    /// CT-PBSID without refinement, with the same order or, if there is none, the next lower.
     pub unrefined: Model,
     /// The bundle around the recommended model: models of neighbouring orders, then models fitted
     /// without one record each.
@@ -142,7 +141,7 @@ impl Models<'_> {
             uncertainty, fits, ..
         } = assessed;
         let model = &refinement.fit.model;
-        let unrefined = proposal.starts.get(&refinement.search.order)?;
+        let unrefined = proposal.unrefined(refinement.search.order)?;
         let poles = uncertainty.as_logged().poles(model, self.options.band[0]);
         let mut refined = self.of_order(REFINED, model)?;
         refined.bands = Some(Arc::new(uncertainty.bands));
@@ -171,7 +170,7 @@ impl Models<'_> {
     }
 
     /// Names a model after its method and order.
-    fn of_order(&self, method: &str, model: &BlockModel) -> Option<Model> {
+    fn of_order(&self, method: &str, model: &SchurModel) -> Option<Model> {
         let name = format!("{method}, order {}", model.order());
         self.model(name, method, model, None)
     }
@@ -198,7 +197,7 @@ impl Models<'_> {
         &self,
         name: String,
         method: &str,
-        model: &BlockModel,
+        model: &SchurModel,
         without: Option<usize>,
     ) -> Option<Model> {
         let dynamics = Dynamics::StateSpace(self.data.in_units(model)?);

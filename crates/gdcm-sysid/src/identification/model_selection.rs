@@ -9,15 +9,10 @@ use super::order::OrderSearch;
 use super::prepared_data::PreparedData;
 use crate::diagnostics::cautions::IdentificationCaution;
 use crate::identification_error::IdentificationError;
-use crate::likelihood::blocks::BlockModel;
-use crate::likelihood::cost::Likelihood;
-use crate::likelihood::descent::{CONVERGED, DenseFit, Limits};
-use crate::likelihood::refinement::Fit;
+use crate::likelihood::descent::{CONVERGED, Fit, Limits};
+use crate::likelihood::schur_model::SchurModel;
 use crate::options::Options;
 use crate::subspace::stabilisation::{StabilisationPoint, stabilisation};
-
-/// Maximum relative change of the cost in the conversion to blocks.
-const BLOCK_ERROR: f64 = 1e-3;
 
 /// The models that CT-PBSID proposes.
 pub(crate) struct Proposal {
@@ -31,12 +26,22 @@ pub(crate) struct Proposal {
     pub(crate) stabilisation: Vec<StabilisationPoint>,
 }
 
+impl Proposal {
+    /// Returns the unrefined model of an order or, if there is none, of the next lower or else the
+    /// lowest order.
+    pub(crate) fn unrefined(&self, order: usize) -> Option<&Fit> {
+        let lower = self.starts.range(..=order).next_back();
+        let nearest = lower.or_else(|| self.starts.iter().next());
+        nearest.map(|(_, fit)| fit)
+    }
+}
+
 /// The refined model of the chosen order, and the search for that order.
 pub(crate) struct Refinement<'a> {
     /// The orders that were compared.
     pub(crate) search: OrderSearch<'a>,
     /// Models of the nearest orders whose criterion is close to that of the chosen order.
-    pub(crate) neighbours: Vec<BlockModel>,
+    pub(crate) neighbours: Vec<SchurModel>,
     /// The recommended model.
     pub(crate) fit: Fit,
     /// The model before the reweighting, if the records were reweighted: the minimum of the cost
@@ -76,9 +81,6 @@ pub(crate) fn propose(
 }
 
 /// Chooses the order, measures the noise once more at its model, and descends to the minimum.
-///
-/// The result is in blocks; at poles too close to be separated, the unrefined model is refined in
-/// blocks instead.
 pub(crate) fn refine<'a>(
     data: &PreparedData<'a>,
     proposal: &Proposal,
@@ -98,39 +100,22 @@ pub(crate) fn refine<'a>(
         .weights
         .updated(data, &chosen)
         .ok_or_else(|| data.no_model())?;
-    let start =
-        DenseFit::start(&weights.likelihood, chosen.model).ok_or_else(|| data.no_model())?;
+    let start = Fit::start(&weights.likelihood, chosen.model).ok_or_else(|| data.no_model())?;
     let fit = start.descended(&weights.likelihood, Limits::to(CONVERGED), progress)?;
-    let equal = match weights.ratio {
+    let before_reweighing = match weights.ratio {
         Some(_) => {
-            let start = DenseFit::start(&weights.without_factors, fit.model.clone())
+            let start = Fit::start(&weights.without_factors, fit.model.clone())
                 .ok_or_else(|| data.no_model())?;
             Some(start.descended(&weights.without_factors, Limits::to(CONVERGED), progress)?)
         }
         None => None,
     };
-    let before_reweighing = match equal {
-        Some(fit) => {
-            Some(in_blocks(&fit, &weights.without_factors).ok_or_else(|| data.no_model())?)
-        }
-        None => None,
-    };
     Ok(Refinement {
         neighbours: search.neighbours(),
-        fit: in_blocks(&fit, &weights.likelihood).ok_or_else(|| data.no_model())?,
+        fit,
         before_reweighing,
         caution: weights.ratio.map(IdentificationCaution::Reweighed),
         search,
         weights,
     })
-}
-
-/// Converts a model to blocks and evaluates it; `None` if its poles cannot be separated.
-fn in_blocks(fit: &DenseFit, likelihood: &Likelihood) -> Option<Fit> {
-    let converted = Fit::start(likelihood, fit.model.blocks()?)?;
-    if (converted.cost / fit.cost - 1.0).abs() < BLOCK_ERROR {
-        Some(converted)
-    } else {
-        None
-    }
 }

@@ -4,7 +4,7 @@
 use super::prepared_data::PreparedData;
 use crate::diagnostics::record_fits::fits_of_records;
 use crate::likelihood::cost::{Likelihood, SpectralLines};
-use crate::likelihood::descent::DenseFit;
+use crate::likelihood::descent::Fit;
 use crate::likelihood::residual_noise::residual_noise;
 
 /// Maximum ratio of the largest to the smallest cost per degree of freedom at which records keep
@@ -32,25 +32,20 @@ impl<'a> NoiseWeights<'a> {
         }
     }
 
-    /// Computes the weights from the residuals of a model; with a reference, the measured noise
-    /// remains and only the factors change (M14.15). `None` if the noise cannot be computed.
-    pub(crate) fn updated(&self, data: &PreparedData<'a>, fit: &DenseFit) -> Option<Self> {
-        let without_factors = if data.direct.is_some() {
-            data.likelihood.clone()
-        } else {
-            let noise = residual_noise(&self.likelihood, &fit.model, &fit.parts)?;
-            let mut segments = Vec::with_capacity(data.spectra.len());
-            for spectrum in &data.spectra {
-                segments.push(SpectralLines::new(spectrum, &noise)?);
-            }
-            Likelihood::new(segments, self.likelihood.executor)
-        };
+    /// Computes the weights from the residuals of a model; `None` if the noise cannot be computed.
+    pub(crate) fn updated(&self, data: &PreparedData<'a>, fit: &Fit) -> Option<Self> {
+        let noise = residual_noise(&self.likelihood, &fit.model, &fit.parts)?;
+        let mut segments = Vec::with_capacity(data.spectra.len());
+        for spectrum in &data.spectra {
+            segments.push(SpectralLines::new(spectrum, &noise)?);
+        }
+        let without_factors = Likelihood::new(segments, self.likelihood.executor);
         Self::with_factors(without_factors, fit)
     }
 
     /// Multiplies the noise power of each record by its cost per degree of freedom over the
     /// geometric mean of all, if these differ by more than 1.5.
-    fn with_factors(without_factors: Likelihood<'a>, fit: &DenseFit) -> Option<Self> {
+    fn with_factors(without_factors: Likelihood<'a>, fit: &Fit) -> Option<Self> {
         let parts = without_factors.parts(&fit.model)?;
         let fits = fits_of_records(&without_factors, &fit.model, &parts, false);
         let costs: Vec<f64> = fits.iter().map(|record| record.cost).collect();

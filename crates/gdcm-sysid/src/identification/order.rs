@@ -27,13 +27,9 @@ use super::noise_weights::NoiseWeights;
 use super::prepared_data::PreparedData;
 use crate::identification_error::IdentificationError;
 use crate::likelihood::balancing::without_last_states;
-use crate::likelihood::blocks::BlockModel;
 use crate::likelihood::cost::Likelihood;
-use crate::likelihood::dense_model::DenseModel;
-use crate::likelihood::descent::{COMPARABLE, DenseFit, Limits, NEARLY_CONVERGED};
-use crate::likelihood::linear_model::LinearModel;
-use crate::likelihood::refinement::Fit;
-use crate::subspace::tried_orders::parameters_of_order;
+use crate::likelihood::descent::{COMPARABLE, Fit, Limits, NEARLY_CONVERGED};
+use crate::likelihood::schur_model::SchurModel;
 
 /// The held-out record decides between orders whose criterion exceeds the minimum by at most this
 /// share.
@@ -54,7 +50,7 @@ const SINGLE_ORDER: usize = 8;
 /// The orders that were compared.
 pub(crate) struct OrderSearch<'a> {
     /// Refined models with the weights of the top order.
-    pub(crate) fits: BTreeMap<usize, DenseFit>,
+    pub(crate) fits: BTreeMap<usize, Fit>,
     /// BIC of each order.
     pub(crate) criteria: BTreeMap<usize, f64>,
     /// The chosen order.
@@ -80,7 +76,7 @@ impl OrderSearch<'_> {
 
     /// Returns the models of the nearest order on each side whose criterion is close to that of the
     /// chosen order.
-    pub(crate) fn neighbours(&self) -> Vec<BlockModel> {
+    pub(crate) fn neighbours(&self) -> Vec<SchurModel> {
         let Some(best) = self.criteria.get(&self.order) else {
             return Vec::new();
         };
@@ -97,7 +93,7 @@ impl OrderSearch<'_> {
             .find(|order| **order > self.order && near(order));
         let mut models = Vec::new();
         for order in below.into_iter().chain(above) {
-            models.extend(self.fits[order].model.blocks());
+            models.push(self.fits[order].model.clone());
         }
         models
     }
@@ -105,14 +101,8 @@ impl OrderSearch<'_> {
 
 /// Computes the criterion of a model with this cost; `None` if the parameters leave no degrees of
 /// freedom.
-fn criterion(
-    cost: f64,
-    order: usize,
-    model: &impl LinearModel,
-    likelihood: &Likelihood,
-) -> Option<f64> {
-    let (outputs, inputs) = model.d().shape();
-    let k = parameters_of_order(order, inputs, outputs) as f64;
+fn criterion(cost: f64, order: usize, model: &SchurModel, likelihood: &Likelihood) -> Option<f64> {
+    let k = model.parameters() as f64;
     let n = likelihood.freedom(order) as f64;
     if n > k {
         Some(cost * (1.0 + k * n.ln() / (n - k)))
@@ -148,12 +138,15 @@ impl<'a> PreparedData<'a> {
                 return Ok(None);
             };
             let next = starts.range(top + 1..).next().map(|(order, _)| *order);
+            let highest = descent.fits.keys().next_back().copied();
             match next {
-                Some(next) if best == top => top = next,
+                Some(next) if Some(best) == highest => top = next,
                 _ => {
                     return Ok(Some(OrderSearch {
                         order: self.decide(&descent, best),
-                        still_falls: best == top && next.is_none() && descent.criteria.len() > 1,
+                        still_falls: Some(best) == highest
+                            && next.is_none()
+                            && descent.criteria.len() > 1,
                         fits: descent.fits,
                         criteria: descent.criteria,
                         weights: descent.weights,
@@ -178,19 +171,20 @@ impl<'a> PreparedData<'a> {
             criteria: BTreeMap::new(),
             weights,
         };
+        // A start without its fast modes has fewer states than its order.
+        let mut order = fit.order();
         descent.insert(fit);
-        let mut order = top;
         let mut rises = 0;
         while let Some(next) = self.order_below(order, starts) {
             let best = descent.least();
             let Some(fit) = descent.reduced(order, order - next, progress)? else {
                 break;
             };
+            order = fit.order();
             descent.insert(fit);
-            order = next;
             if descent
                 .criteria
-                .get(&next)
+                .get(&order)
                 .is_none_or(|value| *value > best)
             {
                 rises += 1;
@@ -221,16 +215,10 @@ impl<'a> PreparedData<'a> {
     /// Converges the model of the top order, with noise from its own residuals (step 2).
     fn converge_top(
         &self,
-        start: &BlockModel,
+        start: &SchurModel,
         progress: &Shares,
-    ) -> Result<Option<(DenseFit, NoiseWeights<'a>)>, Cancelled> {
-        let Some(model) = start
-            .state_space()
-            .and_then(|model| DenseModel::from_state_space(&model))
-        else {
-            return Ok(None);
-        };
-        let Some(mut fit) = DenseFit::start(&self.likelihood, model) else {
+    ) -> Result<Option<(Fit, NoiseWeights<'a>)>, Cancelled> {
+        let Some(mut fit) = Fit::start(&self.likelihood, start.clone()) else {
             return Ok(None);
         };
         let mut weights = NoiseWeights::measured(self);
@@ -239,7 +227,7 @@ impl<'a> PreparedData<'a> {
                 return Ok(None);
             };
             weights = updated;
-            let Some(start) = DenseFit::start(&weights.likelihood, fit.model) else {
+            let Some(start) = Fit::start(&weights.likelihood, fit.model) else {
                 return Ok(None);
             };
             fit = start.descended(&weights.likelihood, Limits::to(limit), progress)?;
@@ -288,14 +276,14 @@ impl<'a> PreparedData<'a> {
 
 /// Refined models of descending orders, with common weights.
 struct Descent<'a> {
-    fits: BTreeMap<usize, DenseFit>,
+    fits: BTreeMap<usize, Fit>,
     criteria: BTreeMap<usize, f64>,
     weights: NoiseWeights<'a>,
 }
 
 impl Descent<'_> {
     /// Adds a model and its criterion.
-    fn insert(&mut self, fit: DenseFit) {
+    fn insert(&mut self, fit: Fit) {
         let order = fit.order();
         if let Some(value) = criterion(fit.cost, order, &fit.model, &self.weights.likelihood) {
             self.criteria.insert(order, value);
@@ -318,11 +306,11 @@ impl Descent<'_> {
         order: usize,
         removed: usize,
         progress: &Shares,
-    ) -> Result<Option<DenseFit>, Cancelled> {
+    ) -> Result<Option<Fit>, Cancelled> {
         let likelihood = &self.weights.likelihood;
-        let mut cheapest: Option<DenseFit> = None;
+        let mut cheapest: Option<Fit> = None;
         for model in without_last_states(&self.fits[&order].model, removed) {
-            let Some(fit) = DenseFit::start(likelihood, model) else {
+            let Some(fit) = Fit::start(likelihood, model) else {
                 continue;
             };
             if cheapest.as_ref().is_none_or(|other| fit.cost < other.cost) {

@@ -15,9 +15,9 @@ use super::candidates::SubspaceSettings;
 use crate::diagnostics::cautions::IdentificationCaution;
 use crate::diagnostics::model_doubts::MeasuredData;
 use crate::identification_error::IdentificationError;
-use crate::likelihood::blocks::BlockModel;
 use crate::likelihood::cost::{Likelihood, SpectralLines};
 use crate::likelihood::noise_covariance::NoiseCovariance;
+use crate::likelihood::schur_model::SchurModel;
 use crate::options::Options;
 use crate::spectra::cut_off::CutOff;
 use crate::spectra::local_polynomial::local_polynomial;
@@ -191,17 +191,19 @@ impl<'a> PreparedData<'a> {
 
     /// Converts a model to record units: each response is multiplied by the ratio of its output's
     /// scale to its input's scale. `None` if the model is not finite.
-    pub(crate) fn in_units(&self, model: &BlockModel) -> Option<StateSpace> {
-        let mut scaled = model.clone();
+    pub(crate) fn in_units(&self, model: &SchurModel) -> Option<StateSpace> {
+        let mut b = model.b().clone();
+        let mut c = model.c().clone();
+        let mut d = model.d().clone();
         for (input, scale) in self.scales.inputs.iter().enumerate() {
-            scaled.b.column_mut(input).unscale_mut(*scale);
-            scaled.d.column_mut(input).unscale_mut(*scale);
+            b.column_mut(input).unscale_mut(*scale);
+            d.column_mut(input).unscale_mut(*scale);
         }
         for (output, scale) in self.scales.outputs.iter().enumerate() {
-            scaled.c.row_mut(output).scale_mut(*scale);
-            scaled.d.row_mut(output).scale_mut(*scale);
+            c.row_mut(output).scale_mut(*scale);
+            d.row_mut(output).scale_mut(*scale);
         }
-        scaled.state_space()
+        StateSpace::new(model.a().clone(), b, c, d).ok()
     }
 
     /// Returns the data for examining a model.

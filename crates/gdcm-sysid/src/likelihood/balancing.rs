@@ -17,8 +17,8 @@ use nalgebra::{DMatrix, DVector};
 use gdcm_model::executor::each;
 
 use super::cost::{Likelihood, SpectralLines, whiten};
-use super::dense_model::DenseModel;
-use super::linear_model::{LinearModel, OutputResolvents};
+use super::frequency_table::OutputResolvents;
+use super::schur_model::SchurModel;
 
 /// Share of the mean of a Gramian's diagonal that is added to it: a state that the lines do not
 /// excite or show remains in the model.
@@ -39,7 +39,7 @@ pub(crate) struct Gramians {
 
 impl Gramians {
     /// Sums over all lines of all segments.
-    pub(crate) fn sampled(likelihood: &Likelihood, model: &DenseModel) -> Self {
+    pub(crate) fn sampled(likelihood: &Likelihood, model: &SchurModel) -> Self {
         let resolvents = likelihood.resolvents(model);
         let of_segments = each(likelihood.executor, &likelihood.segments, |lines| {
             Self::of_segment(lines, model, &resolvents)
@@ -62,7 +62,7 @@ impl Gramians {
     /// Sums over the lines of a segment.
     fn of_segment(
         lines: &SpectralLines,
-        model: &DenseModel,
+        model: &SchurModel,
         resolvents: &OutputResolvents,
     ) -> Self {
         let order = model.order();
@@ -147,7 +147,7 @@ fn with_floor(mut gramian: DMatrix<f64>) -> DMatrix<f64> {
 /// without: (A11, B1, C1, D)
 /// with:    (A11 - A12 A22^-1 A21, B1 - A12 A22^-1 B2, C1 - C2 A22^-1 A21, D - C2 A22^-1 B2)
 /// ```
-pub(crate) fn without_last_states(model: &DenseModel, count: usize) -> Vec<DenseModel> {
+pub(crate) fn without_last_states(model: &SchurModel, count: usize) -> Vec<SchurModel> {
     let order = model.order();
     if count >= order {
         return Vec::new();
@@ -157,7 +157,7 @@ pub(crate) fn without_last_states(model: &DenseModel, count: usize) -> Vec<Dense
     let a11 = a.view((0, 0), (kept, kept));
     let b1 = model.b().rows(0, kept);
     let c1 = model.c().columns(0, kept);
-    let mut remaining: Vec<DenseModel> = DenseModel::new(
+    let mut remaining: Vec<SchurModel> = SchurModel::new(
         a11.into_owned(),
         b1.into_owned(),
         c1.into_owned(),
@@ -174,7 +174,7 @@ pub(crate) fn without_last_states(model: &DenseModel, count: usize) -> Vec<Dense
         let shown = model.c().columns(kept, count) * inverse;
         let to_removed = a.view((kept, 0), (count, kept));
         let driven = model.b().rows(kept, count);
-        remaining.extend(DenseModel::new(
+        remaining.extend(SchurModel::new(
             a11 - &from_removed * to_removed,
             b1 - from_removed * driven,
             c1 - &shown * to_removed,

@@ -18,11 +18,12 @@
 use nalgebra::{Complex, DMatrix, DVector};
 
 use gdcm_model::dataset::channel::ChannelSide;
-use gdcm_model::executor::{Executor, each};
+use gdcm_model::executor::{Executor, Sequential, each};
 
+use super::frequency_table::{FrequencyTable, OutputResolvents};
 use super::gram_matrix::pseudo_inverse_root;
-use super::linear_model::{FrequencyTable, LinearModel, OutputResolvents};
 use super::noise_covariance::NoiseCovariance;
+use super::schur_model::SchurModel;
 use crate::spectra::gap_hat::GapHat;
 use crate::spectra::spectrum::Spectrum;
 
@@ -116,7 +117,7 @@ impl SpectralLines {
     /// Computes the contribution of the segment to the cost; `None` if it is not finite.
     pub(crate) fn cost(
         &self,
-        model: &impl LinearModel,
+        model: &SchurModel,
         resolvents: &OutputResolvents,
     ) -> Option<SegmentCost> {
         let outputs = self.outputs.nrows();
@@ -144,7 +145,7 @@ impl SpectralLines {
     /// Returns `None` if the result is not finite.
     pub(crate) fn without_transient(
         &self,
-        model: &impl LinearModel,
+        model: &SchurModel,
         resolvents: &OutputResolvents,
         column: &DMatrix<Complex<f64>>,
     ) -> Option<DMatrix<Complex<f64>>> {
@@ -171,7 +172,7 @@ impl SpectralLines {
     /// the outputs of the share that the transient takes, between 0 and 1 (M14.20).
     pub(crate) fn transient_shares(
         &self,
-        model: &impl LinearModel,
+        model: &SchurModel,
         resolvents: &OutputResolvents,
     ) -> Option<Vec<f64>> {
         let columns = NuisanceColumns::new(self, model, resolvents);
@@ -195,11 +196,7 @@ struct NuisanceColumns<'s> {
 }
 
 impl<'s> NuisanceColumns<'s> {
-    fn new(
-        lines: &'s SpectralLines,
-        model: &impl LinearModel,
-        resolvents: &'s OutputResolvents,
-    ) -> Self {
+    fn new(lines: &'s SpectralLines, model: &SchurModel, resolvents: &'s OutputResolvents) -> Self {
         let outputs = lines.outputs.nrows();
         let order = model.order();
         let count = order + 2 * outputs + lines.hats.len();
@@ -245,7 +242,7 @@ impl<'s> NuisanceColumns<'s> {
     }
 
     /// Fills the column of a hat: `W e_o b_q` for an output, `W G_j b_q` for an input.
-    fn fill_hat(&mut self, number: usize, model: &impl LinearModel) {
+    fn fill_hat(&mut self, number: usize, model: &SchurModel) {
         let outputs = self.lines.outputs.nrows();
         let column = self.order + 2 * outputs + number;
         let hat = &self.lines.hats[number];
@@ -346,8 +343,13 @@ impl<'a> Likelihood<'a> {
         }
     }
 
+    /// Gathers the lines of a single segment.
+    pub(crate) fn of_segment(segment: SpectralLines) -> Likelihood<'static> {
+        Likelihood::new(vec![segment], &Sequential)
+    }
+
     /// Computes `C (j omega - A)^-1` of a model at all lines.
-    pub(crate) fn resolvents(&self, model: &impl LinearModel) -> OutputResolvents<'_> {
+    pub(crate) fn resolvents(&self, model: &SchurModel) -> OutputResolvents<'_> {
         self.table.output_resolvents(model, self.executor)
     }
 
@@ -361,7 +363,7 @@ impl<'a> Likelihood<'a> {
 
     /// Computes the contribution of each segment to the cost; `None` if a contribution is not
     /// finite.
-    pub(crate) fn parts(&self, model: &impl LinearModel) -> Option<Vec<SegmentCost>> {
+    pub(crate) fn parts(&self, model: &SchurModel) -> Option<Vec<SegmentCost>> {
         let resolvents = self.resolvents(model);
         each(self.executor, &self.segments, |segment| {
             segment.cost(model, &resolvents)
@@ -371,7 +373,7 @@ impl<'a> Likelihood<'a> {
     }
 
     /// Computes `J`, summed in segment order.
-    pub(crate) fn cost(&self, model: &impl LinearModel) -> Option<f64> {
+    pub(crate) fn cost(&self, model: &SchurModel) -> Option<f64> {
         Some(self.parts(model)?.iter().map(|part| part.cost).sum())
     }
 

@@ -18,11 +18,9 @@ use gdcm_model::progress::{Cancelled, Shares};
 
 use super::balancing::{Coordinates, Gramians, balancing_coordinates};
 use super::cost::{Likelihood, SegmentCost};
-use super::dense_model::DenseModel;
-use super::dense_system::{BIN_WIDTH, DenseSystem, dense_system};
 use super::gram_matrix::solve_positive_definite;
-use super::linear_model::LinearModel;
-use crate::subspace::tried_orders::parameters_of_order;
+use super::normal_equations::{BIN_WIDTH, NormalEquations};
+use super::schur_model::SchurModel;
 
 /// Limit on the Newton decrement over `k phi` at a minimum.
 pub(crate) const CONVERGED: f64 = 0.02;
@@ -74,8 +72,8 @@ impl Limits {
 
 /// A model and its cost.
 #[derive(Clone, Debug)]
-pub(crate) struct DenseFit {
-    pub(crate) model: DenseModel,
+pub(crate) struct Fit {
+    pub(crate) model: SchurModel,
     /// Contribution of each segment to the cost.
     pub(crate) parts: Vec<SegmentCost>,
     /// `J`.
@@ -87,9 +85,9 @@ pub(crate) struct DenseFit {
     gramians: Option<Gramians>,
 }
 
-impl DenseFit {
+impl Fit {
     /// Evaluates a model; `None` if its cost is not finite.
-    pub(crate) fn start(likelihood: &Likelihood, model: DenseModel) -> Option<Self> {
+    pub(crate) fn start(likelihood: &Likelihood, model: SchurModel) -> Option<Self> {
         let parts = likelihood.parts(&model)?;
         let cost = parts.iter().map(|part| part.cost).sum::<f64>();
         if !cost.is_finite() {
@@ -110,21 +108,26 @@ impl DenseFit {
         self.model.order()
     }
 
-    /// Returns `k`, the number of parameters without changes of coordinates.
-    pub(crate) fn parameters(&self) -> usize {
-        let (outputs, inputs) = self.model.d().shape();
-        parameters_of_order(self.order(), inputs, outputs)
-    }
-
     /// Returns `phi = J/(N - k)`; `None` if the parameters leave no degrees of freedom.
     pub(crate) fn dispersion(&self, likelihood: &Likelihood) -> Option<f64> {
-        let spare = likelihood
-            .freedom(self.order())
-            .checked_sub(self.parameters())?;
-        if spare == 0 {
-            return None;
+        let freedom = likelihood.freedom(self.order());
+        match freedom.checked_sub(self.model.parameters()) {
+            None | Some(0) => None,
+            Some(spare) => Some(self.cost / spare as f64),
         }
-        Some(self.cost / spare as f64)
+    }
+
+    /// Computes the Newton decrement over `k phi` with exact normal equations.
+    #[cfg(test)]
+    pub(crate) fn decrement(&self, likelihood: &Likelihood) -> Option<f64> {
+        let system = NormalEquations::new(
+            likelihood,
+            &self.model,
+            &self.parts,
+            super::normal_equations::EXACT,
+        )?;
+        let square = ScaledSystem::new(system).decrement()?;
+        Some(square / (self.model.parameters() as f64 * self.dispersion(likelihood)?))
     }
 
     /// Descends until a limit is reached, or no step lowers the cost; `Err` if cancelled.
@@ -149,12 +152,13 @@ impl DenseFit {
             return false;
         };
         self.balance(likelihood);
-        let Some(system) = dense_system(likelihood, &self.model, &self.parts, BIN_WIDTH) else {
+        let Some(system) = NormalEquations::new(likelihood, &self.model, &self.parts, BIN_WIDTH)
+        else {
             return false;
         };
         self.gramians = Some(system.gramians.clone());
         let scaled = ScaledSystem::new(system);
-        let unit = self.parameters() as f64 * dispersion;
+        let unit = self.model.parameters() as f64 * dispersion;
         let mut direction = scaled.solve(self.damping);
         // With damping, g'd is a lower bound of delta^2: the decrement is computed where it may
         // end the descent.
@@ -262,7 +266,7 @@ struct ScaledSystem {
 impl ScaledSystem {
     /// Scales the columns to unit length; columns of which the nuisance columns explain nearly all,
     /// less, because what is left of them is mostly rounding error.
-    fn new(system: DenseSystem) -> Self {
+    fn new(system: NormalEquations) -> Self {
         let scales = system
             .matrix
             .diagonal()

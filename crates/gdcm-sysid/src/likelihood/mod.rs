@@ -2,25 +2,24 @@
 //!
 //! | stage | files |
 //! |---|---|
-//! | models in blocks of one or two states | `blocks`, `mode_removal` |
-//! | cost over the spectral lines | `cost`, [`noise_covariance`] |
-//! | normal equations | `normal_system`, `gram_matrix` |
-//! | Levenberg-Marquardt | `refinement`, `models_without_record` |
-//! | covariance of parameters and poles | `covariance` |
+//! | a model, evaluated by its Schur form | `schur_model`, `frequency_table` |
+//! | cost over the spectral lines | `cost`, [`noise_covariance`], `residual_noise` |
+//! | normal equations in all entries | `normal_equations`, `nuisance_elimination`, `gram_matrix` |
+//! | Levenberg-Marquardt in balanced coordinates | `descent`, `balancing` |
+//! | independent parameters at the minimum | `local_parameters`, `local_system` |
+//! | covariance, models without a record | `covariance`, `models_without_record` |
 
 pub(crate) mod balancing;
-pub(crate) mod blocks;
 pub(crate) mod cost;
-pub(crate) mod covariance;
-pub(crate) mod dense_model;
-pub(crate) mod dense_system;
+pub mod covariance;
 pub(crate) mod descent;
+pub(crate) mod frequency_table;
 pub(crate) mod gram_matrix;
-pub(crate) mod linear_model;
-mod mode_removal;
+mod local_parameters;
+pub(crate) mod local_system;
 pub(crate) mod models_without_record;
 pub mod noise_covariance;
-pub(crate) mod normal_system;
+mod normal_equations;
 mod nuisance_elimination;
-pub(crate) mod refinement;
 pub(crate) mod residual_noise;
+pub(crate) mod schur_model;

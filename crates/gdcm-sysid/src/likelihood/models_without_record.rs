@@ -2,16 +2,23 @@
 
 use gdcm_model::executor::each;
 
-use super::blocks::BlockModel;
 use super::cost::Likelihood;
-use super::normal_system::{NormalSystem, system_of_record};
-use super::refinement::{DampedStart, FIRST_DAMPING, Fit};
+use super::descent::Fit;
+use super::local_system::{LocalSystem, LocalSystems};
+use super::schur_model::SchurModel;
+
+/// Damping of the first attempt.
+const FIRST_DAMPING: f64 = 1e-4;
+/// Damping factor after a failure.
+const DAMPING_FACTOR: f64 = 8.0;
+/// Maximum number of failures.
+const FAILURES: usize = 8;
 
 /// A model fitted to all records but one.
 pub(crate) struct ModelWithoutRecord {
     /// Index of the record, counted from 0.
     pub(crate) record: usize,
-    pub(crate) model: BlockModel,
+    pub(crate) model: SchurModel,
 }
 
 /// Computes a model for each record, fitted without that record, by a damped step with the given
@@ -19,7 +26,7 @@ pub(crate) struct ModelWithoutRecord {
 ///
 /// ```text
 /// (G - G_r + lambda diag) d = g - g_r
-/// lambda = 1e-4, times 8 until the cost over the other records falls
+/// lambda = 1e-4, times 8 until the cost over the other records falls, at most 8 times
 /// ```
 ///
 /// An undamped step diverges in weakly determined directions. Returns no models for a single
@@ -27,15 +34,15 @@ pub(crate) struct ModelWithoutRecord {
 pub(crate) fn without_each_record(
     likelihood: &Likelihood,
     fit: &Fit,
-    systems: &[NormalSystem],
+    systems: &LocalSystems,
 ) -> Vec<ModelWithoutRecord> {
     let records = likelihood.records();
     if records.len() < 2 {
         return Vec::new();
     }
-    let whole = NormalSystem::sum(fit.model.parameters(), systems);
+    let whole = systems.whole();
     each(likelihood.executor, records, |record| {
-        let system = whole.without(&system_of_record(likelihood, record, systems));
+        let system = whole.without(&systems.of_record(record));
         let cost = likelihood
             .segments
             .iter()
@@ -43,17 +50,34 @@ pub(crate) fn without_each_record(
             .filter(|(segment, _)| segment.record != record)
             .map(|(_, part)| part.cost)
             .sum();
-        let start = DampedStart {
-            model: &fit.model,
-            system: &system,
-            cost,
-            damping: FIRST_DAMPING,
-        };
+        let others = likelihood.without(record);
         // If no step lowers the cost, the full model is also the best without the record.
-        let model = match start.step(&likelihood.without(record)) {
-            Some(step) => step.model,
-            None => fit.model.clone(),
-        };
-        ModelWithoutRecord { record, model }
+        let model = stepped(&others, fit, systems, &system, cost);
+        ModelWithoutRecord {
+            record,
+            model: model.unwrap_or_else(|| fit.model.clone()),
+        }
     })
+}
+
+/// Returns the model after the first damped step that lowers the cost over `others` below `cost`.
+fn stepped(
+    others: &Likelihood,
+    fit: &Fit,
+    systems: &LocalSystems,
+    system: &LocalSystem,
+    cost: f64,
+) -> Option<SchurModel> {
+    let mut damping = FIRST_DAMPING;
+    for _ in 0..=FAILURES {
+        if let Some(step) = system.damped_step(damping)
+            && let Some(model) = fit.model.stepped(&systems.parameters.step(&step))
+            && let Some(reached) = others.cost(&model)
+            && reached < cost
+        {
+            return Some(model);
+        }
+        damping *= DAMPING_FACTOR;
+    }
+    None
 }

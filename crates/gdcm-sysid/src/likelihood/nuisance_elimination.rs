@@ -16,9 +16,8 @@ use nalgebra::{Complex, DMatrix};
 use gdcm_model::dataset::channel::ChannelSide;
 
 use super::cost::{DEPENDENT, SpectralLines};
-use super::dense_model::DenseModel;
 use super::gram_matrix::pseudo_inverse_root;
-use super::linear_model::LinearModel;
+use super::schur_model::SchurModel;
 
 /// Index of the scalar 1.
 const ONE: usize = 0;
@@ -145,7 +144,7 @@ impl NuisanceSums {
         &self,
         products: &VectorProducts,
         lines: &SpectralLines,
-        model: &DenseModel,
+        model: &SchurModel,
     ) -> Option<DMatrix<f64>> {
         let columns = nuisance_columns(lines, model);
         let with_parameters = self.with_parameters(products, &columns);
@@ -230,7 +229,7 @@ struct NuisanceColumn {
 }
 
 /// Returns the nuisance columns of a segment: tau, c0, c1, hats.
-fn nuisance_columns(lines: &SpectralLines, model: &DenseModel) -> Vec<NuisanceColumn> {
+fn nuisance_columns(lines: &SpectralLines, model: &SchurModel) -> Vec<NuisanceColumn> {
     let order = model.order();
     let outputs = model.c().nrows();
     let mut columns = Vec::with_capacity(order + 2 * outputs + lines.hats.len());

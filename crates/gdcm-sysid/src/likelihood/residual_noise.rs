@@ -23,8 +23,8 @@ use gdcm_model::executor::each;
 use gdcm_model::response::frequency_grid::log_spaced;
 
 use super::cost::{Likelihood, SegmentCost, SpectralLines};
-use super::linear_model::LinearModel;
 use super::noise_covariance::{NoiseCovariance, NoisePoint};
+use super::schur_model::SchurModel;
 use crate::subspace::tried_orders::parameters_of_order;
 
 /// Number of frequencies.
@@ -54,7 +54,7 @@ struct ResidualLine {
 /// `None` if there are no more values than parameters, or an iteration does not converge.
 pub(crate) fn residual_noise(
     likelihood: &Likelihood,
-    model: &impl LinearModel,
+    model: &SchurModel,
     parts: &[SegmentCost],
 ) -> Option<NoiseCovariance> {
     let outputs = model.c().nrows();

@@ -15,13 +15,13 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use gdcm_model::executor::{Executor, each};
+use gdcm_model::executor::{Executor, Sequential, each};
 
 use super::balancing::Gramians;
 use super::cost::{Likelihood, SegmentCost, SpectralLines, whiten};
-use super::dense_model::DenseModel;
-use super::linear_model::{LinearModel, OutputResolvents};
+use super::frequency_table::{FrequencyTable, OutputResolvents};
 use super::nuisance_elimination::{NuisanceSums, VectorProducts};
+use super::schur_model::SchurModel;
 
 /// Width of a bin in ln omega for the steps of a descent.
 pub(crate) const BIN_WIDTH: f64 = 0.04;
@@ -29,7 +29,7 @@ pub(crate) const BIN_WIDTH: f64 = 0.04;
 pub(crate) const EXACT: f64 = 1e-9;
 
 /// `G` and `g` in all entries of `[[A, B], [C, D]]`, column after column.
-pub(crate) struct DenseSystem {
+pub(crate) struct NormalEquations {
     /// `G`, with the nuisance columns eliminated.
     pub(crate) matrix: DMatrix<f64>,
     /// `g`.
@@ -40,60 +40,79 @@ pub(crate) struct DenseSystem {
     pub(crate) gramians: Gramians,
 }
 
-/// Computes `G` and `g` at a model, with bins of this width in ln omega; `parts` are the segment
-/// costs there.
-///
-/// `None` if an iteration does not converge.
-pub(crate) fn dense_system(
-    likelihood: &Likelihood,
-    model: &DenseModel,
-    parts: &[SegmentCost],
-    bin_width: f64,
-) -> Option<DenseSystem> {
-    let resolvents = likelihood.resolvents(model);
-    let binning = Binning::new(likelihood, bin_width);
-    let products = binning.vector_products(likelihood, model);
-    let bins = binning.power.len();
-    let segments = likelihood.segments.iter().zip(parts).zip(&binning.places);
-    let sums = each(likelihood.executor, segments, |((lines, part), places)| {
-        let segment = SegmentAtModel {
-            lines,
-            model,
-            part,
-            resolvents: &resolvents,
-        };
-        segment.sums(places, bins)
-    });
-    let outputs = model.d().nrows();
-    let order = model.order();
-    let size = order + model.d().ncols();
-    let mut squares = ScalarSquares::zeros(size, bins);
-    let mut gradient = DMatrix::zeros(order + outputs, size);
-    for segment in &sums {
-        squares.re += &segment.squares.re;
-        squares.im += &segment.squares.im;
-        gradient += &segment.gradient;
+impl NormalEquations {
+    /// Computes `G` and `g` at a model, with bins of this width in ln omega; `parts` are the segment
+    /// costs there.
+    ///
+    /// `None` if an iteration does not converge.
+    pub(crate) fn new(
+        likelihood: &Likelihood,
+        model: &SchurModel,
+        parts: &[SegmentCost],
+        bin_width: f64,
+    ) -> Option<Self> {
+        let resolvents = likelihood.resolvents(model);
+        let binning = Binning::new(likelihood, bin_width);
+        let products = binning.vector_products(likelihood, model);
+        let bins = binning.power.len();
+        let segments = likelihood.segments.iter().zip(parts).zip(&binning.places);
+        let sums = each(likelihood.executor, segments, |((lines, part), places)| {
+            let segment = SegmentAtModel {
+                lines,
+                model,
+                part,
+                resolvents: &resolvents,
+            };
+            segment.sums(places, bins)
+        });
+        let outputs = model.d().nrows();
+        let order = model.order();
+        let size = order + model.d().ncols();
+        let mut squares = ScalarSquares::zeros(size, bins);
+        let mut gradient = DMatrix::zeros(order + outputs, size);
+        for segment in &sums {
+            squares.re += &segment.squares.re;
+            squares.im += &segment.squares.im;
+            gradient += &segment.gradient;
+        }
+        let mut matrix = kronecker_sum(&products, &squares, likelihood.executor);
+        let whole_diagonal = matrix.diagonal();
+        let segments = likelihood.segments.iter().zip(&sums);
+        let explained = each(likelihood.executor, segments, |(lines, sums)| {
+            sums.nuisance.explained(&products, lines, model)
+        });
+        let mut roots = Vec::with_capacity(explained.len());
+        for root in explained {
+            roots.push(root?);
+        }
+        subtract_squares(&mut matrix, &roots, likelihood.executor);
+        Some(Self {
+            matrix,
+            gradient: DVector::from_column_slice(gradient.as_slice()),
+            whole_diagonal,
+            gramians: Gramians {
+                controllability: squares.controllability(order),
+                observability: products.observability(order, &binning.power),
+            },
+        })
     }
-    let mut matrix = kronecker_sum(&products, &squares, likelihood.executor);
-    let whole_diagonal = matrix.diagonal();
-    let segments = likelihood.segments.iter().zip(&sums);
-    let explained = each(likelihood.executor, segments, |(lines, sums)| {
-        sums.nuisance.explained(&products, lines, model)
-    });
-    let mut roots = Vec::with_capacity(explained.len());
-    for root in explained {
-        roots.push(root?);
-    }
-    subtract_squares(&mut matrix, &roots, likelihood.executor);
-    Some(DenseSystem {
-        matrix,
-        gradient: DVector::from_column_slice(gradient.as_slice()),
-        whole_diagonal,
-        gramians: Gramians {
-            controllability: squares.controllability(order),
-            observability: products.observability(order, &binning.power),
-        },
-    })
+}
+
+/// Computes `J'd` of a segment in all entries; `part` holds the column `d` as its residual.
+pub(super) fn gradient_along(
+    lines: &SpectralLines,
+    model: &SchurModel,
+    part: &SegmentCost,
+) -> DVector<f64> {
+    let table = FrequencyTable::new([lines.omega.as_slice()].into_iter());
+    let resolvents = table.output_resolvents(model, &Sequential);
+    let segment = SegmentAtModel {
+        lines,
+        model,
+        part,
+        resolvents: &resolvents,
+    };
+    DVector::from_column_slice(segment.gradient(&segment.scalars()).as_slice())
 }
 
 /// The bin of every line.
@@ -152,7 +171,7 @@ impl Binning {
     }
 
     /// Computes `V^H V` of every bin.
-    fn vector_products(&self, likelihood: &Likelihood, model: &DenseModel) -> VectorProducts {
+    fn vector_products(&self, likelihood: &Likelihood, model: &SchurModel) -> VectorProducts {
         let middles = self.omega.iter().zip(&self.representatives);
         let products = each(likelihood.executor, middles, |(&omega, &(segment, k))| {
             let lines = &likelihood.segments[segment];
@@ -182,7 +201,7 @@ fn vectors(cr: &[Complex<f64>], weight: &DMatrix<Complex<f64>>) -> DMatrix<Compl
 /// A segment and its cost at a model.
 struct SegmentAtModel<'s> {
     lines: &'s SpectralLines,
-    model: &'s DenseModel,
+    model: &'s SchurModel,
     part: &'s SegmentCost,
     resolvents: &'s OutputResolvents<'s>,
 }
@@ -249,18 +268,23 @@ struct SegmentSums {
     gradient: DMatrix<f64>,
 }
 
+/// S at the lines of a segment, n + inputs x lines.
+struct Scalars {
+    re: DMatrix<f64>,
+    im: DMatrix<f64>,
+}
+
 impl SegmentAtModel<'_> {
-    /// Sums over the lines; `places` holds the bin of each line.
-    fn sums(&self, places: &[usize], bins: usize) -> SegmentSums {
+    /// Computes S at each line.
+    fn scalars(&self) -> Scalars {
         let lines = self.lines;
         let order = self.model.order();
         let inputs = self.model.d().ncols();
-        let size = order + inputs;
         let completed = lines.completed_inputs(&self.part.hat_values);
         let states = self
             .model
             .states(&lines.omega, &completed, &self.part.transient);
-        let mut re = DMatrix::zeros(size, lines.omega.len());
+        let mut re = DMatrix::zeros(order + inputs, lines.omega.len());
         let mut im = re.clone();
         re.rows_mut(0, order).copy_from(&states.map(|x| x.re));
         im.rows_mut(0, order).copy_from(&states.map(|x| x.im));
@@ -268,28 +292,37 @@ impl SegmentAtModel<'_> {
             .copy_from(&completed.map(|u| u.re));
         im.rows_mut(order, inputs)
             .copy_from(&completed.map(|u| u.im));
+        Scalars { re, im }
+    }
+
+    /// Computes `g = Re sum (V^H e) S^H`, (n + outputs) x (n + inputs).
+    fn gradient(&self, scalars: &Scalars) -> DMatrix<f64> {
+        let along = self.residuals_along_vectors();
+        along.map(|v| v.re) * scalars.re.transpose() + along.map(|v| v.im) * scalars.im.transpose()
+    }
+
+    /// Sums over the lines; `places` holds the bin of each line.
+    fn sums(&self, places: &[usize], bins: usize) -> SegmentSums {
+        let lines = self.lines;
+        let scalars = self.scalars();
+        let size = scalars.re.nrows();
         let mut squares = ScalarSquares::zeros(size, bins);
         let mut nuisance = NuisanceSums::new(size, bins, lines.hats.len());
         let power = lines.scale * lines.scale;
         let mut conjugate = vec![Complex::default(); size];
         for (k, &place) in places.iter().enumerate() {
-            let parts = re.column(k).into_iter().zip(im.column(k).into_iter());
-            for (entry, (re, im)) in conjugate.iter_mut().zip(parts) {
+            let re = &scalars.re.as_slice()[k * size..(k + 1) * size];
+            let im = &scalars.im.as_slice()[k * size..(k + 1) * size];
+            for (entry, (re, im)) in conjugate.iter_mut().zip(re.iter().zip(im)) {
                 *entry = Complex::new(*re, -*im);
             }
-            squares.add(
-                place,
-                &re.as_slice()[k * size..(k + 1) * size],
-                &im.as_slice()[k * size..(k + 1) * size],
-                power,
-            );
+            squares.add(place, re, im, power);
             nuisance.add(lines, k, place, &conjugate);
         }
-        let along = self.residuals_along_vectors();
         SegmentSums {
             squares,
             nuisance,
-            gradient: along.map(|v| v.re) * re.transpose() + along.map(|v| v.im) * im.transpose(),
+            gradient: self.gradient(&scalars),
         }
     }
 
@@ -405,13 +438,14 @@ fn ordered_pairs(count: usize) -> Vec<(usize, usize)> {
 #[cfg(test)]
 mod tests {
     use nalgebra::{Complex, dmatrix};
+    use serde_json::Value;
 
     use gdcm_model::dataset::channel::ChannelSide;
 
     use super::*;
-    use crate::identification::known_answers_tests::{answers, known_records, matrix};
-    use crate::likelihood::blocks::{Block, BlockModel};
-    use crate::likelihood::normal_system::{NormalSystem, normal_systems};
+    use crate::identification::known_answers_tests::{
+        answers, known_records, matrix, number, numbers,
+    };
     use crate::spectra::gap_hat::GapHat;
 
     /// Returns records with complex weights and a missing sample in an input and an output.
@@ -439,59 +473,172 @@ mod tests {
         likelihood
     }
 
-    #[test]
-    fn the_system_matches_that_of_the_block_form() {
-        let likelihood = records();
-        let known = &answers()["likelihood_noise_free"];
+    fn start(known: &Value) -> SchurModel {
         let start = &known["blocks_at_start"];
-        let a = matrix(&start["A"]);
-        let blocks = [0, 2].map(|first| Block::Pair {
-            a0: -a[(first + 1, first)],
-            a1: -a[(first + 1, first + 1)],
-        });
-        let blocks = BlockModel {
-            blocks: blocks.to_vec(),
-            b: matrix(&start["B"]),
-            c: matrix(&start["C"]),
-            d: matrix(&known["start"]["D"]),
-        };
-        let dense = DenseModel::from_state_space(&blocks.state_space().unwrap()).unwrap();
-        let parts = likelihood.parts(&blocks).unwrap();
-        let dense_parts = likelihood.parts(&dense).unwrap();
-        let expected = NormalSystem::sum(
-            blocks.parameters(),
-            &normal_systems(&likelihood, &blocks, &parts).unwrap(),
-        );
-        let found = dense_system(&likelihood, &dense, &dense_parts, EXACT).unwrap();
-        // Entry of [[A, B], [C, D]] and sign of each block parameter.
+        SchurModel::new(
+            matrix(&start["A"]),
+            matrix(&start["B"]),
+            matrix(&start["C"]),
+            matrix(&known["start"]["D"]),
+        )
+        .unwrap()
+    }
+
+    /// Returns row and column in `[[A, B], [C, D]]`, and the sign, of each parameter of a model in
+    /// two companion blocks.
+    fn companion_entries() -> Vec<(usize, usize, f64)> {
         let mut entries = vec![(1, 0, -1.0), (1, 1, -1.0), (3, 2, -1.0), (3, 3, -1.0)];
         for state in 0..4 {
-            entries.extend((0..2).map(|input| (state, 4 + input, 1.0)));
+            entries.extend((4..6).map(|input| (state, input, 1.0)));
         }
-        for output in 0..2 {
-            entries.extend((0..4).map(|state| (4 + output, state, 1.0)));
+        for output in 4..6 {
+            entries.extend((0..4).map(|state| (output, state, 1.0)));
         }
-        for output in 0..2 {
-            entries.extend((0..2).map(|input| (4 + output, 4 + input, 1.0)));
+        for output in 4..6 {
+            entries.extend((4..6).map(|input| (output, input, 1.0)));
         }
-        assert_eq!(entries.len(), blocks.parameters());
-        let largest = expected.matrix.amax();
-        for (p, &(row, column, sign)) in entries.iter().enumerate() {
+        entries
+    }
+
+    #[test]
+    fn cost_gradient_and_diagonal_match_independent_code() {
+        let known = &answers()["likelihood_noise_free"];
+        let likelihood = known_records(known);
+        let model = start(known);
+        let parts = likelihood.parts(&model).unwrap();
+        let cost: f64 = parts.iter().map(|part| part.cost).sum();
+        // Reference results from independent numpy code; the file states the tolerance.
+        assert!(
+            (cost / number(&known["cost_at_start"]) - 1.0).abs() < 1e-8,
+            "{cost}"
+        );
+        let system = NormalEquations::new(&likelihood, &model, &parts, EXACT).unwrap();
+        let gradient = numbers(&known["g_at_start"]);
+        let diagonal = numbers(&known["G_diagonal_at_start"]);
+        let largest = DVector::from_vec(gradient.clone()).amax();
+        let entries = companion_entries();
+        assert_eq!(entries.len(), gradient.len());
+        for (p, (row, column, sign)) in entries.into_iter().enumerate() {
             let at = column * 6 + row;
-            let gradient = found.gradient[at] * sign;
+            let found = sign * system.gradient[at];
             assert!(
-                (gradient - expected.gradient[p]).abs() < 1e-9 * expected.gradient.amax(),
-                "g {p}: {gradient} {}",
-                expected.gradient[p]
+                (found - gradient[p]).abs() < 1e-8 * largest,
+                "g {p}: {found} {}",
+                gradient[p]
             );
-            for (q, &(row, column, other)) in entries.iter().enumerate() {
-                let entry = found.matrix[(at, column * 6 + row)] * sign * other;
-                let difference = (entry - expected.matrix[(p, q)]).abs();
+            assert!(
+                (system.matrix[(at, at)] / diagonal[p] - 1.0).abs() < 1e-8,
+                "G {p}"
+            );
+        }
+    }
+
+    /// A step in one entry of `[[A, B], [C, D]]`.
+    fn stepped(model: &SchurModel, place: usize, size: f64) -> SchurModel {
+        let mut step = DMatrix::zeros(6, 6);
+        step[place] = size;
+        model.stepped(&step).unwrap()
+    }
+
+    #[test]
+    fn the_gradient_matches_finite_differences() {
+        let likelihood = records();
+        let model = start(&answers()["likelihood_noise_free"]);
+        let parts = likelihood.parts(&model).unwrap();
+        let system = NormalEquations::new(&likelihood, &model, &parts, BIN_WIDTH).unwrap();
+        let scale = system.gradient.amax();
+        let step = 1e-5;
+        for place in 0..36 {
+            let [above, below] =
+                [step, -step].map(|size| likelihood.cost(&stepped(&model, place, size)).unwrap());
+            let slope = (above - below) / (2.0 * step);
+            // Central differences: the error is the third derivative times 1e-10, plus the rounding
+            // error of the cost over 1e-5.
+            assert!(
+                (slope + 2.0 * system.gradient[place]).abs() < 1e-6 * scale,
+                "{place}: {slope} {}",
+                system.gradient[place]
+            );
+        }
+    }
+
+    /// Returns the real and imaginary parts of whitened values at all lines, outputs x lines.
+    fn whitened(
+        lines: &SpectralLines,
+        value: impl Fn(usize) -> DVector<Complex<f64>>,
+    ) -> DVector<f64> {
+        let mut parts = Vec::new();
+        for (k, weight) in lines.weights.iter().enumerate() {
+            let whitened = weight * value(k);
+            parts.extend(whitened.iter().flat_map(|y| [y.re, y.im]));
+        }
+        DVector::from_vec(parts)
+    }
+
+    /// Returns the nuisance columns of a segment, in real form.
+    fn nuisance_columns(lines: &SpectralLines, model: &SchurModel) -> DMatrix<f64> {
+        let unit = |o: usize| {
+            DMatrix::<Complex<f64>>::identity(2, 2)
+                .column(o)
+                .into_owned()
+        };
+        let mut columns = Vec::new();
+        for state in 0..4 {
+            columns.push(whitened(lines, |k| {
+                let mut cr = DMatrix::zeros(2, 4);
+                model.output_resolvent(lines.omega[k], cr.as_mut_slice());
+                cr.column(state).into_owned()
+            }));
+        }
+        for o in 0..2 {
+            columns.push(whitened(lines, |_| unit(o)));
+            let integrator = |k: usize| Complex::new(0.0, -1.0 / lines.omega[k]);
+            columns.push(whitened(lines, |k| unit(o) * integrator(k)));
+        }
+        for hat in &lines.hats {
+            columns.push(whitened(lines, |k| match hat.side {
+                ChannelSide::Output => unit(hat.channel) * hat.lines[k],
+                ChannelSide::Input => {
+                    let response = model.response(lines.omega[k]);
+                    response.column(hat.channel) * hat.lines[k]
+                }
+            }));
+        }
+        DMatrix::from_columns(&columns)
+    }
+
+    #[test]
+    fn the_sums_over_bins_match_columns_of_the_jacobian() {
+        let likelihood = Likelihood::of_segment(records().segments[0].clone());
+        let lines = &likelihood.segments[0];
+        let model = start(&answers()["likelihood_noise_free"]);
+        let parts = likelihood.parts(&model).unwrap();
+        let system = NormalEquations::new(&likelihood, &model, &parts, EXACT).unwrap();
+        let completed = lines.completed_inputs(&parts[0].hat_values);
+        // W (G U + C R tau) is linear in the entries of B, C and D: differences are exact up to
+        // rounding.
+        let places = [4 * 6 + 1, 5 * 6 + 2, 4 * 6 + 5, 2 * 6 + 5, 4];
+        let columns = places.map(|place| {
+            let [after, before] = [stepped(&model, place, 1.0), model.clone()].map(|model| {
+                let states = model.states(&lines.omega, &completed, &parts[0].transient);
+                whitened(lines, |k| {
+                    model.c().map(Complex::from) * states.column(k)
+                        + model.d().map(Complex::from) * completed.column(k)
+                })
+            });
+            after - before
+        });
+        let basis = nuisance_columns(lines, &model).qr().q();
+        let left = columns.map(|column| &column - &basis * basis.tr_mul(&column));
+        let largest = system.matrix.amax();
+        for (i, &p) in places.iter().enumerate() {
+            for (j, &q) in places.iter().enumerate() {
+                let expected = left[i].dot(&left[j]);
                 // Rounding errors of a condition number of 1e4 behind the elimination.
                 assert!(
-                    difference < 1e-10 * largest,
-                    "G {p} {q}: {entry} {}",
-                    expected.matrix[(p, q)]
+                    (system.matrix[(p, q)] - expected).abs() < 1e-10 * largest,
+                    "{p} {q}: {} {expected}",
+                    system.matrix[(p, q)]
                 );
             }
         }

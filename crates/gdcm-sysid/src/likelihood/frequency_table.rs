@@ -1,38 +1,10 @@
-//! A state-space model as seen by the cost, and its evaluation at many frequencies.
+//! The frequencies of all lines, and the resolvent of a model at each of them.
 
-use nalgebra::{Complex, DMatrix};
+use nalgebra::Complex;
 
 use gdcm_model::executor::{Executor, each};
 
-/// A continuous-time model `(A, B, C, D)` whose resolvent can be evaluated.
-pub(crate) trait LinearModel: Sync {
-    /// Returns `B`, n x inputs.
-    fn b(&self) -> &DMatrix<f64>;
-
-    /// Returns `C`, outputs x n.
-    fn c(&self) -> &DMatrix<f64>;
-
-    /// Returns `D`, outputs x inputs.
-    fn d(&self) -> &DMatrix<f64>;
-
-    /// Computes `C (j omega - A)^-1`, outputs x n, into `cr`, column after column.
-    fn output_resolvent(&self, omega: f64, cr: &mut [Complex<f64>]);
-
-    /// Computes `(j omega - A)^-1 x` in place.
-    fn resolve(&self, omega: f64, x: &mut [Complex<f64>]);
-
-    /// Returns the number of states n.
-    fn order(&self) -> usize {
-        self.b().nrows()
-    }
-
-    /// Computes `C (j omega - A)^-1 B + D`, outputs x inputs.
-    fn response(&self, omega: f64) -> DMatrix<Complex<f64>> {
-        let mut cr = DMatrix::zeros(self.c().nrows(), self.order());
-        self.output_resolvent(omega, cr.as_mut_slice());
-        cr * self.b().map(Complex::from) + self.d().map(Complex::from)
-    }
-}
+use super::schur_model::SchurModel;
 
 /// The frequencies of a set of lines without duplicates: records of equal length share theirs.
 #[derive(Clone, Debug, Default)]
@@ -58,7 +30,7 @@ impl FrequencyTable {
     /// Computes `C (j omega - A)^-1` of a model at every frequency.
     pub(crate) fn output_resolvents(
         &self,
-        model: &impl LinearModel,
+        model: &SchurModel,
         executor: &dyn Executor,
     ) -> OutputResolvents<'_> {
         let size = model.c().nrows() * model.order();

@@ -5,8 +5,15 @@ use nalgebra::{Complex, DMatrix, DVector};
 use gdcm_model::dataset::StateSpace;
 use gdcm_model::response::schur_form::SchurForm;
 
-use super::blocks::BlockModel;
-use super::linear_model::LinearModel;
+use crate::subspace::tried_orders::parameters_of_order;
+
+/// Left and right eigenvector of an eigenvalue.
+pub(crate) struct Eigenvectors {
+    /// `w^H`.
+    pub(crate) left: DVector<Complex<f64>>,
+    /// `v`.
+    pub(crate) right: DVector<Complex<f64>>,
+}
 
 /// A state-space model with the Schur form of its `A`.
 ///
@@ -14,7 +21,7 @@ use super::linear_model::LinearModel;
 /// A = Q T Q^H,   C (j omega - A)^-1 = (C Q) (j omega - T)^-1 Q^H
 /// ```
 #[derive(Clone, Debug)]
-pub(crate) struct DenseModel {
+pub(crate) struct SchurModel {
     a: DMatrix<f64>,
     b: DMatrix<f64>,
     c: DMatrix<f64>,
@@ -27,7 +34,7 @@ pub(crate) struct DenseModel {
     cq: DMatrix<Complex<f64>>,
 }
 
-impl DenseModel {
+impl SchurModel {
     /// Creates a model; `None` if an entry is not finite, or if the Schur iteration does not
     /// converge.
     pub(crate) fn new(
@@ -64,6 +71,17 @@ impl DenseModel {
         )
     }
 
+    /// Returns the number of states n.
+    pub(crate) fn order(&self) -> usize {
+        self.a.nrows()
+    }
+
+    /// Returns `k`, the number of parameters without changes of coordinates.
+    pub(crate) fn parameters(&self) -> usize {
+        let (outputs, inputs) = self.d.shape();
+        parameters_of_order(self.order(), inputs, outputs)
+    }
+
     /// Returns `A`, n x n.
     pub(crate) fn a(&self) -> &DMatrix<f64> {
         &self.a
@@ -94,23 +112,6 @@ impl DenseModel {
             &self.c + step.view((order, 0), (outputs, order)),
             &self.d + step.view((order, order), (outputs, inputs)),
         )
-    }
-
-    /// Returns the four matrices; `None` for a model without states.
-    pub(crate) fn state_space(&self) -> Option<StateSpace> {
-        StateSpace::new(
-            self.a.clone(),
-            self.b.clone(),
-            self.c.clone(),
-            self.d.clone(),
-        )
-        .ok()
-    }
-
-    /// Returns the model in blocks; `None` if it has poles so close that their eigenvectors cannot
-    /// be separated.
-    pub(crate) fn blocks(&self) -> Option<BlockModel> {
-        BlockModel::from_state_space(&self.state_space()?)
     }
 
     /// Computes `X = (j omega - A)^-1 (B U + tau)` at many frequencies \[rad/s\]; `inputs` is U,
@@ -155,26 +156,51 @@ impl DenseModel {
         }
     }
 
+    /// Returns `w^H` and `v` of the eigenvalue with this index, with `w^H A = lambda w^H`,
+    /// `A v = lambda v` and `w^H v = 1`. The entries are not finite for a double eigenvalue.
+    pub(crate) fn eigenvectors(&self, number: usize) -> Eigenvectors {
+        let order = self.order();
+        let pole = self.t[(number, number)];
+        let mut left = DVector::<Complex<f64>>::zeros(order);
+        let mut right = left.clone();
+        left[number] = Complex::from(1.0);
+        right[number] = Complex::from(1.0);
+        for row in (0..number).rev() {
+            let products = (row + 1..=number).map(|k| self.t[(row, k)] * right[k]);
+            right[row] = products.sum::<Complex<f64>>() / (pole - self.t[(row, row)]);
+        }
+        for column in number + 1..order {
+            let products = (number..column).map(|k| left[k] * self.t[(k, column)]);
+            left[column] = products.sum::<Complex<f64>>() / (pole - self.t[(column, column)]);
+        }
+        Eigenvectors {
+            left: self.q.map(|q| q.conj()) * left,
+            right: &self.q * right,
+        }
+    }
+
     /// Returns the eigenvalues of `A`.
     pub(crate) fn poles(&self) -> Vec<Complex<f64>> {
         self.t.diagonal().iter().copied().collect()
     }
-}
 
-impl LinearModel for DenseModel {
-    fn b(&self) -> &DMatrix<f64> {
+    /// Returns `B`, n x inputs.
+    pub(crate) fn b(&self) -> &DMatrix<f64> {
         &self.b
     }
 
-    fn c(&self) -> &DMatrix<f64> {
+    /// Returns `C`, outputs x n.
+    pub(crate) fn c(&self) -> &DMatrix<f64> {
         &self.c
     }
 
-    fn d(&self) -> &DMatrix<f64> {
+    /// Returns `D`, outputs x inputs.
+    pub(crate) fn d(&self) -> &DMatrix<f64> {
         &self.d
     }
 
-    fn output_resolvent(&self, omega: f64, cr: &mut [Complex<f64>]) {
+    /// Computes `C (j omega - A)^-1`, outputs x n, into `cr`, column after column.
+    pub(crate) fn output_resolvent(&self, omega: f64, cr: &mut [Complex<f64>]) {
         let outputs = self.c.nrows();
         let order = self.order();
         // Y (j omega - T) = C Q, column by column; outputs x n.
@@ -205,24 +231,10 @@ impl LinearModel for DenseModel {
         }
     }
 
-    fn resolve(&self, omega: f64, x: &mut [Complex<f64>]) {
-        let order = self.order();
-        let mut z: Vec<Complex<f64>> = Vec::with_capacity(order);
-        for schur_vector in self.q.column_iter() {
-            z.push(
-                schur_vector
-                    .iter()
-                    .zip(&*x)
-                    .map(|(q, x)| q.conj() * x)
-                    .sum(),
-            );
-        }
-        self.solve_schur(omega, &mut z);
-        x.fill(Complex::default());
-        for (schur_vector, value) in self.q.column_iter().zip(&z) {
-            for (to, entry) in x.iter_mut().zip(schur_vector.iter()) {
-                *to += entry * value;
-            }
-        }
+    /// Computes `C (j omega - A)^-1 B + D` at a frequency \[rad/s\], outputs x inputs.
+    pub(crate) fn response(&self, omega: f64) -> DMatrix<Complex<f64>> {
+        let mut cr = DMatrix::zeros(self.c.nrows(), self.order());
+        self.output_resolvent(omega, cr.as_mut_slice());
+        cr * self.b.map(Complex::from) + self.d.map(Complex::from)
     }
 }

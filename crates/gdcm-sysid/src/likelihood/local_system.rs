@@ -1,0 +1,137 @@
+//! Normal equations in the [local parameters](super::local_parameters) of a model, for each segment.
+
+use nalgebra::{DMatrix, DVector};
+
+use gdcm_model::executor::each;
+
+use super::cost::{Likelihood, SegmentCost, SpectralLines};
+use super::descent::Fit;
+use super::gram_matrix::scale_columns;
+use super::local_parameters::LocalParameters;
+use super::normal_equations::{EXACT, NormalEquations, gradient_along};
+use super::schur_model::SchurModel;
+
+/// `G` and `g`: a step `d` changes the cost by `-2 g'd + d'G d`.
+#[derive(Clone, Debug)]
+pub(crate) struct LocalSystem {
+    /// `G = J'J`, with the nuisance columns eliminated.
+    pub(crate) matrix: DMatrix<f64>,
+    /// `g = J'e`.
+    pub(crate) gradient: DVector<f64>,
+}
+
+impl LocalSystem {
+    /// Returns the sum of systems with this many parameters; zero if there are none.
+    pub(crate) fn sum<'s>(parameters: usize, systems: impl IntoIterator<Item = &'s Self>) -> Self {
+        let mut sum = Self {
+            matrix: DMatrix::zeros(parameters, parameters),
+            gradient: DVector::zeros(parameters),
+        };
+        for system in systems {
+            sum.matrix += &system.matrix;
+            sum.gradient += &system.gradient;
+        }
+        sum
+    }
+
+    /// Returns this system minus another.
+    pub(crate) fn without(&self, other: &Self) -> Self {
+        Self {
+            matrix: &self.matrix - &other.matrix,
+            gradient: &self.gradient - &other.gradient,
+        }
+    }
+
+    /// Computes the Levenberg-Marquardt step, `(G + lambda diag G) d = g`; `None` if it is not
+    /// finite.
+    pub(crate) fn damped_step(&self, lambda: f64) -> Option<DVector<f64>> {
+        let mut scaled = self.matrix.clone();
+        let scales = scale_columns(&mut scaled);
+        for (k, scale) in scales.iter().enumerate() {
+            scaled[(k, k)] = if *scale > 0.0 { 1.0 + lambda } else { 1.0 };
+        }
+        let step = scaled
+            .cholesky()?
+            .solve(&self.gradient.component_mul(&scales))
+            .component_mul(&scales);
+        if step.iter().all(|entry| entry.is_finite()) {
+            Some(step)
+        } else {
+            None
+        }
+    }
+}
+
+/// The systems of all segments of a likelihood at a model, in common parameters.
+pub(crate) struct LocalSystems {
+    pub(crate) parameters: LocalParameters,
+    /// A system for each segment, in their order.
+    pub(crate) systems: Vec<LocalSystem>,
+    /// Index of the record of each segment.
+    records: Vec<usize>,
+}
+
+impl LocalSystems {
+    /// Selects parameters for a fit, and computes the systems; `None` if an iteration does not
+    /// converge.
+    pub(crate) fn new(likelihood: &Likelihood, fit: &Fit) -> Option<Self> {
+        let whole = NormalEquations::new(likelihood, &fit.model, &fit.parts, EXACT)?;
+        let parameters = LocalParameters::select(&fit.model, &whole.matrix);
+        Self::in_parameters(parameters, likelihood, &fit.model, &fit.parts)
+    }
+
+    /// Computes the systems in given parameters; `parts` are the segment costs at the model.
+    pub(crate) fn in_parameters(
+        parameters: LocalParameters,
+        likelihood: &Likelihood,
+        model: &SchurModel,
+        parts: &[SegmentCost],
+    ) -> Option<Self> {
+        let places = parameters.places();
+        let segments = likelihood.segments.iter().zip(parts);
+        let systems = each(likelihood.executor, segments, |(segment, part)| {
+            let alone = Likelihood::of_segment(segment.clone());
+            let equations = NormalEquations::new(&alone, model, std::slice::from_ref(part), EXACT)?;
+            Some(LocalSystem {
+                matrix: equations
+                    .matrix
+                    .select_rows(&places)
+                    .select_columns(&places),
+                gradient: equations.gradient.select_rows(&places),
+            })
+        });
+        let mut all = Vec::with_capacity(systems.len());
+        for system in systems {
+            all.push(system?);
+        }
+        let records = likelihood.segments.iter().map(|segment| segment.record);
+        Some(Self {
+            parameters,
+            systems: all,
+            records: records.collect(),
+        })
+    }
+
+    /// Sums the systems of all segments.
+    pub(crate) fn whole(&self) -> LocalSystem {
+        LocalSystem::sum(self.parameters.count(), &self.systems)
+    }
+
+    /// Sums the systems of a record.
+    pub(crate) fn of_record(&self, record: usize) -> LocalSystem {
+        let segments = self.systems.iter().zip(&self.records);
+        let own = segments.filter(|(_, of)| **of == record);
+        LocalSystem::sum(self.parameters.count(), own.map(|(system, _)| system))
+    }
+
+    /// Computes `J'd` of a segment; `part` holds the column `d` as its residual, with the nuisance
+    /// columns removed.
+    pub(crate) fn gradient_along(
+        &self,
+        lines: &SpectralLines,
+        model: &SchurModel,
+        part: &SegmentCost,
+    ) -> DVector<f64> {
+        gradient_along(lines, model, part).select_rows(&self.parameters.places())
+    }
+}

@@ -22,6 +22,7 @@ pub(crate) mod prepared_data;
 mod real_flight_tests;
 #[cfg(test)]
 mod refined_known_answers_tests;
+mod search_records;
 
 pub use crate::diagnostics::cautions::IdentificationCaution;
 pub use crate::identification_error::IdentificationError;

@@ -98,6 +98,10 @@ pub(crate) fn refine<'a>(
     progress.next(0.7, "refinement")?;
     let weights = search
         .weights
+        .over_all_records(data)
+        .ok_or_else(|| data.no_model())?;
+    let chosen = Fit::start(&weights.likelihood, chosen.model).ok_or_else(|| data.no_model())?;
+    let weights = weights
         .updated(data, &chosen)
         .ok_or_else(|| data.no_model())?;
     let start = Fit::start(&weights.likelihood, chosen.model).ok_or_else(|| data.no_model())?;

@@ -15,7 +15,7 @@
 //! ```
 //!
 //! The weights remain those of the top order: a model that lacks a mode would take it for noise, and
-//! hide it from BIC.
+//! hide it from BIC. Many records are searched by a part of them (`search_records`).
 
 use std::collections::BTreeMap;
 
@@ -67,7 +67,7 @@ impl OrderSearch<'_> {
     pub(crate) fn first(starts: &BTreeMap<usize, Fit>, likelihood: &Likelihood) -> Option<usize> {
         let mut criteria = BTreeMap::new();
         for (&order, fit) in starts {
-            if let Some(value) = criterion(fit.cost, order, &fit.model, likelihood) {
+            if let Some(value) = criterion(fit.cost, order, &fit.model, likelihood, likelihood) {
                 criteria.insert(order, value);
             }
         }
@@ -99,16 +99,30 @@ impl OrderSearch<'_> {
     }
 }
 
-/// Computes the criterion of a model with this cost; `None` if the parameters leave no degrees of
-/// freedom.
-fn criterion(cost: f64, order: usize, model: &SchurModel, likelihood: &Likelihood) -> Option<f64> {
+/// Computes the criterion of a model of an order with this cost over `likelihood`, extrapolated to
+/// the degrees of freedom of `whole`; `None` if the parameters leave no degrees of freedom.
+///
+/// ```text
+/// J over all records, estimated: r (J + k phi) - k phi,  r = N / N of the likelihood,  phi = J / (N - k)
+/// ```
+///
+/// k phi is the part of the noise that the parameters explain, with few records as with many.
+fn criterion(
+    cost: f64,
+    order: usize,
+    model: &SchurModel,
+    likelihood: &Likelihood,
+    whole: &Likelihood,
+) -> Option<f64> {
     let k = model.parameters() as f64;
-    let n = likelihood.freedom(order) as f64;
-    if n > k {
-        Some(cost * (1.0 + k * n.ln() / (n - k)))
-    } else {
-        None
+    let used = likelihood.freedom(order) as f64;
+    let n = whole.freedom(order) as f64;
+    if used <= k {
+        return None;
     }
+    let explained = k * cost / (used - k);
+    let whole_cost = n / used * (cost + explained) - explained;
+    Some(whole_cost * (1.0 + k * n.ln() / (n - k)))
 }
 
 /// Returns the lowest order with the minimum value.
@@ -170,6 +184,7 @@ impl<'a> PreparedData<'a> {
             fits: BTreeMap::new(),
             criteria: BTreeMap::new(),
             weights,
+            whole: self.likelihood.clone(),
         };
         // A start without its fast modes has fewer states than its order.
         let mut order = fit.order();
@@ -218,10 +233,10 @@ impl<'a> PreparedData<'a> {
         start: &SchurModel,
         progress: &Shares,
     ) -> Result<Option<(Fit, NoiseWeights<'a>)>, Cancelled> {
-        let Some(mut fit) = Fit::start(&self.likelihood, start.clone()) else {
+        let mut weights = NoiseWeights::measured(self);
+        let Some(mut fit) = Fit::start(&weights.likelihood, start.clone()) else {
             return Ok(None);
         };
-        let mut weights = NoiseWeights::measured(self);
         for limit in [NEARLY_CONVERGED, COMPARABLE] {
             let Some(updated) = weights.updated(self, &fit) else {
                 return Ok(None);
@@ -279,13 +294,16 @@ struct Descent<'a> {
     fits: BTreeMap<usize, Fit>,
     criteria: BTreeMap<usize, f64>,
     weights: NoiseWeights<'a>,
+    /// The cost over all fitted records.
+    whole: Likelihood<'a>,
 }
 
 impl Descent<'_> {
     /// Adds a model and its criterion.
     fn insert(&mut self, fit: Fit) {
         let order = fit.order();
-        if let Some(value) = criterion(fit.cost, order, &fit.model, &self.weights.likelihood) {
+        let likelihood = &self.weights.likelihood;
+        if let Some(value) = criterion(fit.cost, order, &fit.model, likelihood, &self.whole) {
             self.criteria.insert(order, value);
         }
         self.fits.insert(order, fit);
@@ -321,7 +339,7 @@ impl Descent<'_> {
             return Ok(None);
         };
         // The cost at which the criterion of this order equals the best.
-        let unit = criterion(1.0, start.order(), &start.model, likelihood);
+        let unit = criterion(1.0, start.order(), &start.model, likelihood, &self.whole);
         let hopeless_above = unit.map_or(f64::INFINITY, |unit| self.least() / unit);
         let limits = Limits {
             decrement: COMPARABLE,

@@ -343,6 +343,14 @@ impl<'a> Likelihood<'a> {
         }
     }
 
+    /// Returns the likelihood of the segments with these indices.
+    pub(crate) fn of_segments(&self, numbers: &[usize]) -> Self {
+        let segments = numbers
+            .iter()
+            .filter_map(|number| self.segments.get(*number).cloned());
+        Self::new(segments.collect(), self.executor)
+    }
+
     /// Gathers the lines of a single segment.
     pub(crate) fn of_segment(segment: SpectralLines) -> Likelihood<'static> {
         Likelihood::new(vec![segment], &Sequential)

@@ -327,7 +327,7 @@ fn good_flights_raise_no_caution_and_each_trap_its_own_over_many_seeds() {
 
 /// Returns a stable aircraft with modes of 1.5, 3 and 6 rad/s and a lag of 2 rad/s, and random
 /// input and output matrices.
-fn aircraft(inputs: usize, outputs: usize, random: &mut Generator) -> StateSpace {
+pub(crate) fn aircraft(inputs: usize, outputs: usize, random: &mut Generator) -> StateSpace {
     let mut a = DMatrix::zeros(7, 7);
     for (at, omega) in [1.5, 3.0, 6.0].into_iter().enumerate() {
         a.view_mut((2 * at, 2 * at), (2, 2))

@@ -10,6 +10,8 @@
 mod assessment;
 pub(crate) mod candidates;
 #[cfg(test)]
+mod efficiency_tests;
+#[cfg(test)]
 mod fresh_flight_tests;
 pub mod identify;
 #[cfg(test)]

@@ -2,6 +2,11 @@
 
 use nalgebra::Complex;
 
+/// Half-width of the interval of a pole, in standard deviations: on known aircraft it holds about
+/// nine of ten poles, where 2 hold eight (M14.22). The interval is approximate, because a pole of a
+/// low order may represent several true poles.
+pub const POLE_INTERVAL: f64 = 3.0;
+
 /// An identified pole and its standard deviation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoleEstimate {
@@ -11,7 +16,7 @@ pub struct PoleEstimate {
     pub sd_re: f64,
     /// Standard deviation of the imaginary part \[rad/s\].
     pub sd_im: f64,
-    /// Whether the records determine the pole: it is not slower than the frequency band, and its
-    /// standard deviation is at most half its modulus.
+    /// Whether the records determine the pole: it is not slower than the frequency band, and
+    /// [`POLE_INTERVAL`] standard deviations are at most half its modulus.
     pub determined: bool,
 }

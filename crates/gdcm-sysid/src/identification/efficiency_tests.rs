@@ -16,6 +16,7 @@ use gdcm_model::dataset::{Pair, StateSpace};
 use gdcm_model::executor::Sequential;
 use gdcm_model::progress::{Shares, Unobserved};
 use gdcm_model::response::frequency_grid::log_spaced;
+use gdcm_model::response::pole_estimate::POLE_INTERVAL;
 use gdcm_model::simulation::{FirstOrderHold, FlightRecord};
 use gdcm_model::statistics::median;
 
@@ -26,7 +27,7 @@ use super::prepared_data::PreparedData;
 use super::real_flight_tests::Generator;
 use crate::diagnostics::bands::{BandModels, TWO_SIDED_95};
 use crate::likelihood::cost::{Likelihood, SpectralLines};
-use crate::likelihood::covariance::{POLE_INTERVAL, ParameterCovariance};
+use crate::likelihood::covariance::ParameterCovariance;
 use crate::likelihood::noise_covariance::{NoiseCovariance, NoisePoint};
 use crate::likelihood::schur_model::SchurModel;
 use crate::options::Options;

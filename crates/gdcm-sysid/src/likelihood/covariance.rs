@@ -10,7 +10,7 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use gdcm_model::response::pole_estimate::PoleEstimate;
+use gdcm_model::response::pole_estimate::{POLE_INTERVAL, PoleEstimate};
 
 use super::cost::{Likelihood, SegmentCost};
 use super::descent::Fit;
@@ -27,10 +27,6 @@ const ROUNDING: f64 = 1e-13;
 const UNKNOWN: f64 = 1e3;
 /// Maximum half-width of the interval of a determined pole, relative to its modulus.
 const DETERMINED: f64 = 0.5;
-/// Half-width of the interval of a pole, in standard deviations: on known aircraft it holds about
-/// nine of ten poles, where 2 hold eight (M14.22).
-pub const POLE_INTERVAL: f64 = 3.0;
-
 /// Covariance of the model parameters, and their information matrix.
 #[derive(Clone, Debug)]
 pub(crate) struct ParameterCovariance {

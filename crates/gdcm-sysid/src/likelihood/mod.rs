@@ -11,7 +11,7 @@
 
 pub(crate) mod balancing;
 pub(crate) mod cost;
-pub mod covariance;
+pub(crate) mod covariance;
 pub(crate) mod descent;
 pub(crate) mod frequency_table;
 pub(crate) mod gram_matrix;

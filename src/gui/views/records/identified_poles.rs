@@ -2,8 +2,7 @@
 
 use egui::{Sense, Ui};
 
-use gdcm_model::response::pole_estimate::PoleEstimate;
-use gdcm_sysid::diagnostics::bands::TWO_SIDED_95;
+use gdcm_model::response::pole_estimate::{POLE_INTERVAL, PoleEstimate};
 use gdcm_sysid::identification::Identification;
 
 use super::page::Page;
@@ -77,7 +76,8 @@ pub(super) fn identified_poles_ui(ui: &mut Ui, page: Page<'_>) {
         return;
     };
     ui.label(palette.small(
-        "± 1.96 standard deviations. Grey: below the band, or not determined by these records.",
+        "± 3 standard deviations, approximate. Grey: below the band, or not determined by these \
+        records.",
     ));
     let mut chart = Chart::new(
         "Poles of CT-PBSID, refined",
@@ -97,7 +97,7 @@ pub(super) fn identified_poles_ui(ui: &mut Ui, page: Page<'_>) {
     fill_with_chart(ui, &chart, palette);
 }
 
-/// Returns the poles with their 95 % intervals. Poles that the records do not determine have no
+/// Returns the poles with their intervals. Poles that the records do not determine have no
 /// interval, because it would hide other poles.
 fn pole_marks(poles: &[PoleEstimate], is_determined: bool, palette: &Palette) -> ChartMarks {
     let mut points = Vec::new();
@@ -109,8 +109,8 @@ fn pole_marks(poles: &[PoleEstimate], is_determined: bool, palette: &Palette) ->
         let mut half_re = 0.0;
         let mut half_im = 0.0;
         if is_determined {
-            half_re = TWO_SIDED_95 * estimate.sd_re;
-            half_im = TWO_SIDED_95 * estimate.sd_im;
+            half_re = POLE_INTERVAL * estimate.sd_re;
+            half_im = POLE_INTERVAL * estimate.sd_im;
         }
         points.push([estimate.pole.re, estimate.pole.im, half_im]);
         sideways.push(half_re);

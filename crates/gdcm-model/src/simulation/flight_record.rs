@@ -46,6 +46,12 @@ impl FlightRecord {
 }
 
 impl Segment {
+    /// Returns the number of samples times the sample time \[s\].
+    #[must_use]
+    pub fn duration_s(&self) -> f64 {
+        self.sample_time_s * self.inputs.nrows() as f64
+    }
+
     /// Returns the samples of a channel; panics if the segment does not have it.
     #[must_use]
     pub fn channel(&self, signal: &Signal) -> DVectorView<'_, f64> {

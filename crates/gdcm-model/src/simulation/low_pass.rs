@@ -56,11 +56,18 @@ impl LowPass {
     /// Returns the filtered `samples`, as many as given.
     #[must_use]
     pub fn filter(&self, samples: &[f64]) -> Vec<f64> {
+        self.filter_every(samples, 1)
+    }
+
+    /// Returns every `step`-th filtered sample, beginning with the first.
+    fn filter_every(&self, samples: &[f64], step: usize) -> Vec<f64> {
         let reach = self.half.len() - 1;
         let extended = oddly_reflected(samples, reach);
-        (reach..reach + samples.len())
-            .map(|centre| self.filtered_sample(&extended, centre))
-            .collect()
+        let mut filtered = Vec::with_capacity(samples.len().div_ceil(step));
+        for centre in (reach..reach + samples.len()).step_by(step) {
+            filtered.push(self.filtered_sample(&extended, centre));
+        }
+        filtered
     }
 
     /// Returns the filtered value at index `centre` of the extended signal.
@@ -79,22 +86,36 @@ impl LowPass {
     /// segment unchanged if [`LowPass::new`] returns `None`.
     #[must_use]
     pub fn applied(omega: f64, segment: &Segment) -> Segment {
+        Self::thinned(omega, 1, segment)
+    }
+
+    /// Filters as [`LowPass::applied`] does and keeps every `step`-th sample, beginning with the
+    /// first: the samples that are kept are those at the same times.
+    ///
+    /// The caller chooses a step that leaves half the sampling frequency well above `omega`. A
+    /// segment that is not filtered is not thinned either.
+    #[must_use]
+    pub fn thinned(omega: f64, step: usize, segment: &Segment) -> Segment {
         let Some(low_pass) = Self::new(omega, segment.sample_time_s) else {
             return segment.clone();
         };
+        let step = step.max(1);
         Segment {
-            inputs: low_pass.filter_columns(&segment.inputs),
-            outputs: low_pass.filter_columns(&segment.outputs),
-            ..segment.clone()
+            record: segment.record,
+            start_s: segment.start_s,
+            sample_time_s: segment.sample_time_s * step as f64,
+            inputs: low_pass.filter_columns(&segment.inputs, step),
+            outputs: low_pass.filter_columns(&segment.outputs, step),
         }
     }
 
-    fn filter_columns(&self, samples: &DMatrix<f64>) -> DMatrix<f64> {
-        let mut filtered = Vec::with_capacity(samples.len());
+    fn filter_columns(&self, samples: &DMatrix<f64>, step: usize) -> DMatrix<f64> {
+        let rows = samples.nrows().div_ceil(step);
+        let mut filtered = Vec::with_capacity(rows * samples.ncols());
         for column in samples.as_slice().chunks(samples.nrows().max(1)) {
-            filtered.extend(self.filter(column));
+            filtered.extend(self.filter_every(column, step));
         }
-        DMatrix::from_vec(samples.nrows(), samples.ncols(), filtered)
+        DMatrix::from_vec(rows, samples.ncols(), filtered)
     }
 }
 

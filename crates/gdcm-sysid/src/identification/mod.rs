@@ -13,9 +13,13 @@ pub(crate) mod candidates;
 mod efficiency_tests;
 #[cfg(test)]
 mod fresh_flight_tests;
+#[cfg(test)]
+mod gap_tests;
 pub mod identify;
 #[cfg(test)]
 pub(crate) mod known_answers_tests;
+#[cfg(test)]
+mod long_record_tests;
 pub(crate) mod model_selection;
 mod noise_weights;
 pub(crate) mod order;

@@ -20,9 +20,10 @@ use crate::likelihood::noise_covariance::NoiseCovariance;
 use crate::likelihood::schur_model::SchurModel;
 use crate::options::Options;
 use crate::spectra::cut_off::CutOff;
+use crate::spectra::filled_segment::FilledSegment;
 use crate::spectra::local_polynomial::local_polynomial;
 use crate::spectra::local_polynomial_error::LocalPolynomialError;
-use crate::spectra::preparation::prepare;
+use crate::spectra::preparation::{prepare, prepare_filled};
 use crate::spectra::record_cautions::RecordCaution;
 use crate::spectra::record_use::RecordUse;
 use crate::spectra::reference_response::Instrument;
@@ -55,16 +56,18 @@ pub(crate) struct PreparedData<'a> {
     pub(crate) record_uses: Vec<RecordUse>,
     /// Factors from scaled units to record units.
     pub(crate) scales: Scales,
-    /// Segments to fit, low-passed for the projections.
+    /// Segments to fit, without gaps, low-passed for the projections.
     pub(crate) segments: Vec<Segment>,
-    /// Segments to fit, without the low-pass.
+    /// Segments to fit, without gaps and without the low-pass.
     pub(crate) unfiltered: Vec<Segment>,
     /// Range of the lines of the measured response.
     pub(crate) lines: LineRange,
-    /// Held-out segments in record units.
+    /// Held-out segments without gaps, in record units.
     pub(crate) held_out_segments: Vec<Segment>,
-    /// Spectral lines to fit.
+    /// Spectral lines to fit, of records that are cut only at gaps too long to be estimated.
     pub(crate) spectra: Vec<Spectrum>,
+    /// Spectral lines of the segments without gaps.
+    gap_free_spectra: Vec<Spectrum>,
     /// The measured response.
     pub(crate) measured: ResponseEstimate,
     /// The cost over the fitted records.
@@ -92,6 +95,10 @@ impl<'a> PreparedData<'a> {
     /// 4  line weights, for the fit and for the held-out records
     /// 5  low-pass for the projections
     /// ```
+    ///
+    /// The measured response and the projections come from segments without gaps; the lines to fit
+    /// from whole records with filled gaps, whose missing samples are unknowns (M14.21). With a
+    /// reference, all lines are those of segments without gaps.
     pub(crate) fn new(
         records: &[FlightRecord],
         options: &Options,
@@ -99,8 +106,17 @@ impl<'a> PreparedData<'a> {
         progress: &Shares,
     ) -> Result<Self, IdentificationError> {
         check_held_out(records, options)?;
-        let prepared = prepare(records, &options.preparation, executor)?;
+        let used = LineRange {
+            lowest: options.lowest(),
+            highest: options.highest(),
+        };
+        let prepared = if options.references == 0 {
+            prepare_filled(records, &options.preparation, used, executor)?
+        } else {
+            prepare(records, &options.preparation, executor)?
+        };
         check_sampling(&prepared.segments, options)?;
+        let filled = SplitFilled::new(prepared.filled, options);
         let SplitSegments {
             to_fit,
             references,
@@ -114,10 +130,11 @@ impl<'a> PreparedData<'a> {
         check_inputs(&segments, options)?;
 
         progress.next(0.02, "measured response")?;
-        let lines = Lines::new(&segments, options, executor);
-        let too_short = check_length(&segments, &lines.narrow, options)?;
-        let used = lines.used;
+        let filled_to_fit = scale_filled(&scales, &filled.to_fit);
+        let lines = Lines::new(&segments, &filled_to_fit, used, executor);
+        let too_short = check_length(&filled_to_fit, &lines.to_fit, options)?;
         let reach = lines.reach;
+        let gap_free_spectra = lines.narrow();
         let Measurement {
             measured,
             spectra,
@@ -130,7 +147,8 @@ impl<'a> PreparedData<'a> {
             lines.measure_through_reference(&driven, outputs, executor)?
         };
         let likelihood = weigh(&spectra, &measured, executor)?;
-        let held_out_lines = used.spectra(&scale_all(&scales, &held_out_segments), executor);
+        let held_out_lines =
+            used.filled_spectra(&scale_filled(&scales, &filled.held_out), executor);
         let held_out = weigh(&held_out_lines, &measured, executor)?;
 
         progress.next(0.07, "low-pass")?;
@@ -148,6 +166,7 @@ impl<'a> PreparedData<'a> {
             lines: reach,
             held_out_segments,
             spectra,
+            gap_free_spectra,
             measured,
             likelihood,
             direct,
@@ -209,7 +228,7 @@ impl<'a> PreparedData<'a> {
     /// Returns the data for examining a model.
     pub(crate) fn measured_data(&self) -> MeasuredData<'_> {
         MeasuredData {
-            spectra: &self.spectra,
+            spectra: &self.gap_free_spectra,
             measured: &self.measured,
             executor: self.likelihood.executor,
         }
@@ -231,9 +250,9 @@ impl<'a> PreparedData<'a> {
             .sum()
     }
 
-    /// Returns the total length of the segments to fit \[s\].
+    /// Returns the total length of the segments without gaps \[s\].
     fn duration_s(&self) -> f64 {
-        self.spectra
+        self.gap_free_spectra
             .iter()
             .map(|spectrum| spectrum.duration_s)
             .sum()
@@ -281,6 +300,31 @@ impl SplitSegments {
     }
 }
 
+/// Filled segments to fit, and those of held-out records.
+struct SplitFilled {
+    to_fit: Vec<FilledSegment>,
+    held_out: Vec<FilledSegment>,
+}
+
+impl SplitFilled {
+    fn new(filled: Vec<FilledSegment>, options: &Options) -> Self {
+        let mut split = Self {
+            to_fit: Vec::new(),
+            held_out: Vec::new(),
+        };
+        for mut part in filled {
+            // Gaps of references do not occur: with references, segments have no gaps.
+            take_references(&mut part.segment, options.references);
+            if options.held_out.contains(&part.segment.record) {
+                split.held_out.push(part);
+            } else {
+                split.to_fit.push(part);
+            }
+        }
+        split
+    }
+}
+
 /// Removes the last `references` inputs from a segment and returns them.
 fn take_references(segment: &mut Segment, references: usize) -> DMatrix<f64> {
     let inputs = segment.inputs.ncols().saturating_sub(references);
@@ -297,6 +341,17 @@ fn scale_all(scales: &Scales, segments: &[Segment]) -> Vec<Segment> {
         .iter()
         .map(|segment| scales.scaled(segment))
         .collect()
+}
+
+fn scale_filled(scales: &Scales, filled: &[FilledSegment]) -> Vec<FilledSegment> {
+    let mut scaled = Vec::with_capacity(filled.len());
+    for part in filled {
+        scaled.push(FilledSegment {
+            segment: scales.scaled(&part.segment),
+            gaps: part.gaps.clone(),
+        });
+    }
+    scaled
 }
 
 /// Returns scaled segments with the references as inputs, and outputs and inputs as outputs.
@@ -335,39 +390,45 @@ struct Lines {
     used: LineRange,
     /// Range of the lines of the measured response.
     reach: LineRange,
+    /// Lines of the segments without gaps, for the measured response.
     wide: Vec<Spectrum>,
-    /// The lines to fit, taken from the wide spectra.
-    narrow: Vec<Spectrum>,
+    /// The lines to fit.
+    to_fit: Vec<Spectrum>,
 }
 
 impl Lines {
-    fn new(segments: &[Segment], options: &Options, executor: &dyn Executor) -> Self {
-        let used = LineRange {
-            lowest: options.lowest(),
-            highest: options.highest(),
-        };
+    fn new(
+        segments: &[Segment],
+        filled: &[FilledSegment],
+        used: LineRange,
+        executor: &dyn Executor,
+    ) -> Self {
         let reach = LineRange {
             highest: BEYOND * used.highest,
             ..used
         };
-        let wide = reach.spectra(segments, executor);
-        let narrow = wide
-            .iter()
-            .map(|spectrum| spectrum.between(used.lowest, used.highest))
-            .collect();
         Self {
             used,
             reach,
-            wide,
-            narrow,
+            wide: reach.spectra(segments, executor),
+            to_fit: used.filled_spectra(filled, executor),
         }
+    }
+
+    /// Returns the lines of the segments without gaps in the range of the fit.
+    fn narrow(&self) -> Vec<Spectrum> {
+        let mut narrow = Vec::with_capacity(self.wide.len());
+        for spectrum in &self.wide {
+            narrow.push(spectrum.between(self.used.lowest, self.used.highest));
+        }
+        narrow
     }
 
     /// Measures the response of the outputs to the inputs.
     fn measure<'a>(self, executor: &dyn Executor) -> Result<Measurement<'a>, LocalPolynomialError> {
         Ok(Measurement {
             measured: self.measure_response(executor)?,
-            spectra: self.narrow,
+            spectra: self.to_fit,
             direct: None,
         })
     }
@@ -385,7 +446,7 @@ impl Lines {
         Ok(Measurement {
             measured: instrument.measured,
             spectra: instrument.spectra,
-            direct: Some(weigh(&self.narrow, &logged, executor)?),
+            direct: Some(weigh(&self.to_fit, &logged, executor)?),
         })
     }
 
@@ -444,17 +505,17 @@ fn check_sampling(segments: &[Segment], options: &Options) -> Result<(), Identif
 /// Returns an error for records that are too short for the lower band end or for a first-order
 /// model.
 fn check_length(
-    segments: &[Segment],
+    filled: &[FilledSegment],
     lines: &[Spectrum],
     options: &Options,
 ) -> Result<Option<IdentificationCaution>, IdentificationError> {
     let lowest = options.band[0];
     let period_s = TAU / lowest;
-    let longest_s = segments
+    let longest_s = filled
         .iter()
-        .map(|segment| segment.sample_time_s * segment.inputs.nrows() as f64)
+        .map(|part| part.segment.duration_s())
         .fold(0.0, f64::max);
-    let periods_of_inputs = if segments.len() == 1 {
+    let periods_of_inputs = if filled.len() == 1 {
         options.inputs() as f64 * PERIODS_AN_INPUT
     } else {
         0.0
@@ -470,7 +531,7 @@ fn check_length(
             enough: LEAST_PERIODS * TAU / longest_s,
         });
     }
-    check_figures(segments.len(), lines)?;
+    check_figures(filled.len(), lines)?;
     let periods = longest_s * lowest / TAU;
     if periods >= BETTER_PERIODS {
         return Ok(None);

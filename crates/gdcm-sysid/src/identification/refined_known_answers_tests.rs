@@ -22,7 +22,7 @@ use crate::likelihood::schur_model::SchurModel;
 use crate::options::Options;
 use crate::spectra::preparation_settings::Preparation;
 
-fn answers() -> Value {
+pub(super) fn answers() -> Value {
     serde_json::from_str(include_str!(
         "../../../../tests/data/identification-refined-known-answers.json"
     ))
@@ -51,7 +51,7 @@ fn texts(value: &Value) -> Vec<&str> {
 }
 
 /// Reads the records of a case, with missing samples as NaN.
-fn flight_records(known: &Value) -> Vec<FlightRecord> {
+pub(super) fn flight_records(known: &Value) -> Vec<FlightRecord> {
     let inputs = texts(&known["inputs"]).len();
     let outputs = texts(&known["outputs"]).len();
     let dt = number(&known["dt"]);
@@ -87,14 +87,14 @@ fn flight_records(known: &Value) -> Vec<FlightRecord> {
     records
 }
 
-fn options(known: &Value) -> Options {
+pub(super) fn options(known: &Value) -> Options {
     let band = numbers(&known["band"]);
     let preparation = Preparation::of(&texts(&known["inputs"]), &texts(&known["outputs"]));
     Options::new([band[0], band[1]], preparation)
 }
 
 /// Converts a model in file units to scaled units.
-fn scaled_start(known: &Value, data: &PreparedData) -> SchurModel {
+pub(super) fn scaled_start(known: &Value, data: &PreparedData) -> SchurModel {
     let start = &known["start"];
     let [a, mut b, mut c, mut d] = ["A", "B", "C", "D"].map(|name| matrix(&start[name]));
     for (input, scale) in data.scales.inputs.iter().enumerate() {
@@ -108,7 +108,7 @@ fn scaled_start(known: &Value, data: &PreparedData) -> SchurModel {
     SchurModel::from_state_space(&StateSpace::new(a, b, c, d).unwrap()).unwrap()
 }
 
-fn weighed<'a>(data: &PreparedData, noise: &NoiseCovariance) -> Likelihood<'a> {
+pub(super) fn weighed<'a>(data: &PreparedData, noise: &NoiseCovariance) -> Likelihood<'a> {
     let lines = |spectrum| SpectralLines::new(spectrum, noise).unwrap();
     Likelihood::new(data.spectra.iter().map(lines).collect(), &Sequential)
 }

@@ -19,7 +19,7 @@ mod local_parameters;
 pub(crate) mod local_system;
 pub(crate) mod models_without_record;
 pub mod noise_covariance;
-mod normal_equations;
+pub(crate) mod normal_equations;
 mod nuisance_elimination;
 pub(crate) mod residual_noise;
 pub(crate) mod schur_model;

@@ -1,4 +1,16 @@
-//! Cut-off of the zero-phase low-pass before the Laguerre projections (M14.1).
+//! Cut-off of the zero-phase low-pass before the Laguerre projections (M14.1), and the sampling
+//! after it (M14.24).
+//!
+//! ```text
+//! wc = 5 whi, or 2 whi for a vibrating output
+//! D = floor(2 pi / (20 whi dt)), at least 1:  the projections use every D-th filtered sample
+//! ```
+//!
+//! Half the remaining sampling frequency is at least 10 whi, so that only what lies above 18 whi
+//! could appear at the lines used, where the low-pass lets less than 1/500 pass. The spectra are
+//! those of all samples.
+
+use std::f64::consts::TAU;
 
 use gdcm_model::executor::{Executor, each};
 use gdcm_model::simulation::{LowPass, Segment};
@@ -9,6 +21,10 @@ use super::spectrum::spectra;
 const USUAL: f64 = 5.0;
 /// Ratio of the cut-off to the highest line used, if an output vibrates (M14.1).
 const VIBRATING: f64 = 2.0;
+/// Ratio of the sampling frequency that the projections need to the highest line used (M14.24).
+const SAMPLING: f64 = 20.0;
+/// Tolerance for a sample time that was rounded.
+const ROUNDING: f64 = 1e-9;
 /// An output vibrates if more than this share of its variance lies above `VIBRATING` times the
 /// highest line used.
 const VIBRATION_SHARE: f64 = 0.3;
@@ -18,6 +34,8 @@ const VIBRATION_SHARE: f64 = 0.3;
 pub struct CutOff {
     /// Cut-off frequency \[rad/s\].
     pub omega: f64,
+    /// Highest line used \[rad/s\].
+    pub highest: f64,
     /// Vibrating outputs, counted from 0, each with the share of its variance above twice the
     /// highest line used.
     pub vibrating: Vec<(usize, f64)>,
@@ -58,15 +76,112 @@ impl CutOff {
         };
         Self {
             omega: highest * factor,
+            highest,
             vibrating,
         }
     }
 
-    /// Filters every channel, unless the cut-off is above half the sampling frequency.
+    /// Filters every channel, unless the cut-off is above half the sampling frequency, and omits
+    /// samples of records that are logged much faster than the highest line used needs.
     #[must_use]
     pub fn apply(&self, segments: &[Segment], executor: &dyn Executor) -> Vec<Segment> {
         each(executor, segments, |segment| {
-            LowPass::applied(self.omega, segment)
+            LowPass::thinned(self.omega, self.step(segment.sample_time_s), segment)
         })
+    }
+
+    /// Returns `D`: every D-th sample is kept.
+    fn step(&self, sample_time_s: f64) -> usize {
+        let steps = TAU / (SAMPLING * self.highest * sample_time_s);
+        if steps.is_finite() {
+            ((steps * (1.0 + ROUNDING)) as usize).max(1)
+        } else {
+            1
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use nalgebra::DMatrix;
+
+    use gdcm_model::executor::Sequential;
+
+    use super::*;
+
+    /// Highest line used \[rad/s\].
+    const HIGHEST: f64 = 16.0;
+
+    /// Returns a segment with a wave of this frequency in an input and an output.
+    fn wave(omega: f64, sample_time_s: f64, samples: usize) -> Segment {
+        let channel = DMatrix::from_fn(samples, 1, |n, _| {
+            (omega * n as f64 * sample_time_s + 0.3).sin()
+        });
+        Segment {
+            record: 0,
+            start_s: 2.0,
+            sample_time_s,
+            inputs: channel.clone(),
+            outputs: channel,
+        }
+    }
+
+    fn usual() -> CutOff {
+        CutOff {
+            omega: USUAL * HIGHEST,
+            highest: HIGHEST,
+            vibrating: Vec::new(),
+        }
+    }
+
+    fn applied(segment: &Segment) -> Segment {
+        usual()
+            .apply(std::slice::from_ref(segment), &Sequential)
+            .remove(0)
+    }
+
+    #[test]
+    fn records_are_thinned_to_no_less_than_twenty_times_the_highest_line() {
+        // 20 whi / (2 pi) = 50.9 Hz.
+        for (rate_hz, step) in [(50.0, 1), (100.0, 1), (102.0, 2), (250.0, 4), (1000.0, 19)] {
+            assert_eq!(usual().step(1.0 / rate_hz), step, "{rate_hz} Hz");
+        }
+        let thinned = applied(&wave(3.0, 0.004, 15_001));
+        assert_eq!(thinned.inputs.nrows(), 3751);
+        assert_eq!(thinned.start_s, 2.0);
+        assert!((thinned.sample_time_s - 0.016).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_samples_kept_are_the_filtered_ones_at_their_times() {
+        let segment = wave(HIGHEST, 0.004, 5000);
+        let thinned = applied(&segment);
+        let filtered = LowPass::applied(usual().omega, &segment);
+        // The filter has no phase: away from the ends the wave keeps its times, and 1e-3 of its
+        // size.
+        for n in 0..thinned.inputs.nrows() {
+            assert_eq!(thinned.outputs[n], filtered.outputs[4 * n]);
+        }
+        let gain = thinned.inputs[600] / (HIGHEST * 600.0 * 0.016 + 0.3).sin();
+        assert!((gain - 1.0).abs() < 2e-3, "{gain}");
+        for n in 100..1100 {
+            let time_s = n as f64 * thinned.sample_time_s;
+            let expected = gain * (HIGHEST * time_s + 0.3).sin();
+            assert!((thinned.inputs[n] - expected).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn what_would_appear_at_the_lines_used_is_removed() {
+        // At 62.5 Hz these frequencies appear at 0 to 21 rad/s, the lines of the measured response.
+        let rate = TAU / 0.016;
+        for alias in [-20.8, -10.0, 0.5, 10.0, 20.8, 16.0 + rate] {
+            let thinned = applied(&wave(rate + alias, 0.004, 20_000));
+            let middle = thinned.inputs.rows(500, 4000);
+            assert!(middle.amax() < 1.0 / 500.0, "{alias}: {}", middle.amax());
+        }
+        assert!(PI / 0.016 > 10.0 * HIGHEST);
     }
 }

@@ -26,6 +26,8 @@ pub enum Cause {
 pub enum Treatment {
     /// Replaced by straight lines.
     Bridged,
+    /// The missing samples are unknowns of the fit, and the other channels are used (M14.21).
+    Estimated,
     CutOut,
 }
 
@@ -63,6 +65,7 @@ impl fmt::Display for Gap {
         }
         f.write_str(match self.treatment {
             Treatment::Bridged => ", bridged",
+            Treatment::Estimated => ", estimated",
             Treatment::CutOut => ", left out",
         })
     }

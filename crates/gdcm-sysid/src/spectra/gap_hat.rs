@@ -58,13 +58,17 @@ pub(crate) struct HatGrid {
     pub(crate) highest: f64,
 }
 
+/// Returns the number of hats for `missing` samples and lines up to `highest` \[rad/s\].
+pub(crate) fn hat_count(missing: usize, sample_time_s: f64, highest: f64) -> usize {
+    let gap_s = (missing + 1) as f64 * sample_time_s;
+    let wanted = (2.0 * highest * gap_s / PI).ceil() as usize;
+    wanted.clamp(1, missing.max(1))
+}
+
 impl ChannelGap {
     /// Returns the number of hats that describe the missing samples.
     pub(crate) fn hat_count(&self, grid: HatGrid) -> usize {
-        let missing = self.samples.len();
-        let gap_s = (missing + 1) as f64 * grid.sample_time_s;
-        let wanted = (2.0 * grid.highest * gap_s / PI).ceil() as usize;
-        wanted.clamp(1, missing.max(1))
+        hat_count(self.samples.len(), grid.sample_time_s, grid.highest)
     }
 
     /// Computes the lines of all hats at `omega` \[rad/s\].

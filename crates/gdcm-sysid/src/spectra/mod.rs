@@ -3,7 +3,8 @@
 //! | stage | files |
 //! |---|---|
 //! | records to segments (M14.1) | [`preparation`], [`preparation_settings`], `record_clock` |
-//! | samples that count, and gaps (M14.1) | `valid_samples`, `frozen_outputs`, `gap_search`, [`gap`] |
+//! | samples that count, and gaps (M14.1) | `valid_samples`, `frozen_outputs`, `gap_search`, [`gap`], `grid_stretches` |
+//! | missing samples as unknowns (M14.21) | [`filled_segment`], [`gap_hat`] |
 //! | use of each record | [`record_use`] |
 //! | doubts about channels (M14.18) | [`record_cautions`], [`caution_note`], `clipping`, `stairs`, `coarse_steps` |
 //! | helpers of these | `finite_samples`, `value_range`, `signal_names` |
@@ -16,11 +17,13 @@ pub mod caution_note;
 pub(crate) mod clipping;
 mod coarse_steps;
 pub mod cut_off;
+pub mod filled_segment;
 mod finite_samples;
 mod frozen_outputs;
 pub mod gap;
 pub mod gap_hat;
 mod gap_search;
+mod grid_stretches;
 pub(crate) mod interpolation;
 pub mod local_polynomial;
 pub mod local_polynomial_error;

@@ -1,18 +1,19 @@
-//! From flight records as logged to segments without gaps on a uniform grid (M14.1).
-
-use nalgebra::DMatrix;
+//! From flight records as logged to segments on a uniform grid (M14.1, M14.21).
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::executor::{Executor, each};
 use gdcm_model::simulation::{FlightRecord, Segment, Signal};
 
+use super::filled_segment::FilledSegment;
 use super::gap::{Cause, Gap, Treatment};
 use super::gap_search::record_gaps;
+use super::grid_stretches::{GridRows, RowRange, grid_rows};
 use super::preparation_settings::{Preparation, PreparationError};
 use super::record_cautions::{RecordCaution, channel_cautions, inputs_at_limit, stuck_caution};
 use super::record_clock::Clock;
 use super::record_use::RecordUse;
-use super::valid_samples::{ValidSamples, read_row, valid_samples};
+use super::spectrum::LineRange;
+use super::valid_samples::valid_samples;
 
 /// Maximum range of a constant channel, relative to its maximum modulus: interpolation between equal
 /// samples may differ in the last digits.
@@ -23,8 +24,11 @@ const LENGTH_ROUNDING: f64 = 1e-9;
 /// Flight records cut into gap-free segments on a uniform time grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prepared {
-    /// Segments, by record and time; not empty.
+    /// Segments without gaps, by record and time; not empty.
     pub segments: Vec<Segment>,
+    /// The same records with gaps filled where the missing samples can be estimated, by record and
+    /// time.
+    pub filled: Vec<FilledSegment>,
     /// Use of each record, in record order.
     pub records: Vec<RecordUse>,
     pub cautions: Vec<RecordCaution>,
@@ -43,7 +47,8 @@ pub struct Prepared {
 /// 4  segments = runs of the grid t_0 + k dt where every channel has a value, for at least 10 s
 /// ```
 ///
-/// No mean or trend is removed, and nothing is filtered.
+/// No mean or trend is removed, and nothing is filtered. Gaps are not filled: the filled segments
+/// are those without gaps.
 ///
 /// # Errors
 /// Invalid settings, records that do not fit them, time that does not increase or is uneven,
@@ -53,20 +58,50 @@ pub fn prepare(
     preparation: &Preparation,
     executor: &dyn Executor,
 ) -> Result<Prepared, PreparationError> {
+    prepare_records(records, preparation, None, executor)
+}
+
+/// Cuts flight records into segments as [`prepare`] does, and fills gaps whose samples can be
+/// estimated from the spectral lines in the range `lines` (M14.21).
+///
+/// ```text
+/// 5  filled segments = the longest parts of a record in which the hats of all gaps are less than a
+///    tenth of the real values in the outputs' lines, with at least one segment without gaps
+///    (grid_stretches)
+/// 6  straight lines in the channels that miss samples, and in those alone
+/// ```
+pub(crate) fn prepare_filled(
+    records: &[FlightRecord],
+    preparation: &Preparation,
+    lines: LineRange,
+    executor: &dyn Executor,
+) -> Result<Prepared, PreparationError> {
+    prepare_records(records, preparation, Some(lines), executor)
+}
+
+/// Prepares all records; gaps are filled if there is a line range.
+fn prepare_records(
+    records: &[FlightRecord],
+    preparation: &Preparation,
+    lines: Option<LineRange>,
+    executor: &dyn Executor,
+) -> Result<Prepared, PreparationError> {
     preparation.check()?;
     if records.is_empty() {
         return Err(PreparationError::NoRecords);
     }
     let prepared = each(executor, records.iter().enumerate(), |(number, record)| {
-        prepare_record(number, record, preparation)
+        prepare_record(number, record, preparation, lines)
     });
     let mut segments = Vec::new();
+    let mut filled = Vec::new();
     let mut uses = Vec::new();
     let mut cautions = Vec::new();
     let mut longest_s = 0.0_f64;
     for record in prepared {
         let record = record?;
         segments.extend(record.segments);
+        filled.extend(record.filled);
         uses.push(record.used);
         cautions.extend(record.cautions);
         longest_s = longest_s.max(record.longest_s);
@@ -91,6 +126,7 @@ pub fn prepare(
     cautions.extend(channel_cautions(records, &segments, preparation));
     Ok(Prepared {
         segments,
+        filled,
         records: uses,
         cautions,
     })
@@ -113,7 +149,7 @@ pub fn segments_of(
         segments,
         longest_s,
         ..
-    } = prepare_record(0, record, preparation)?;
+    } = prepare_record(0, record, preparation, None)?;
     if segments.is_empty() {
         return Err(PreparationError::NothingLeft {
             longest_s,
@@ -133,17 +169,19 @@ fn is_constant(segments: &[Segment], signal: &Signal) -> bool {
 
 struct PreparedRecord {
     segments: Vec<Segment>,
+    filled: Vec<FilledSegment>,
     used: RecordUse,
     cautions: Vec<RecordCaution>,
     /// Longest run without a gap \[s\], even if it is too short for a segment.
     longest_s: f64,
 }
 
-/// Cuts a record into segments (steps 1 to 4); `number` is its index among the records.
+/// Cuts a record into segments (steps 1 to 6); `number` is its index among the records.
 fn prepare_record(
     number: usize,
     record: &FlightRecord,
     preparation: &Preparation,
+    lines: Option<LineRange>,
 ) -> Result<PreparedRecord, PreparationError> {
     check_shape(record, preparation)?;
     let clock = Clock::new(record, preparation.longest_bridge)?;
@@ -152,50 +190,133 @@ fn prepare_record(
     let channels = valid_samples(record, &clock, preparation);
     let mut gaps = record_gaps(&clock, &channels);
 
-    let mut segments = Vec::new();
-    let mut longest_s = 0.0_f64;
-    for run in runs(&clock, &channels) {
-        let start_s = clock.start_s + clock.sample_time_s * run.first;
-        let samples = run.rows.len() / channels.len();
-        let length_s = clock.sample_time_s * samples as f64;
-        longest_s = longest_s.max(length_s);
-        if length_s >= preparation.least_segment_s * (1.0 - LENGTH_ROUNDING) {
-            segments.push(run.into_segment(number, start_s, clock.sample_time_s, preparation));
-        } else {
-            gaps.push(Gap {
-                start_s,
-                end_s: start_s + length_s,
-                cause: Cause::SegmentTooShort(length_s),
-                treatment: Treatment::CutOut,
-            });
-            cautions.push(RecordCaution::SegmentDropped {
-                record: record.name.clone(),
-                start_s,
-                length_s,
-            });
+    let mut parts = RecordParts {
+        number,
+        clock: &clock,
+        preparation,
+        lines,
+        segments: Vec::new(),
+        filled: Vec::new(),
+        dropped: Vec::new(),
+        longest_s: 0.0,
+    };
+    for rows in grid_rows(&clock, &channels, preparation.inputs.len()) {
+        parts.add(&rows);
+    }
+    for gap in &mut gaps {
+        if gap.treatment == Treatment::CutOut && parts.is_filled(gap) {
+            gap.treatment = Treatment::Estimated;
         }
     }
-    if segments.is_empty() {
+    for dropped in parts.dropped {
+        gaps.push(Gap {
+            start_s: dropped.start_s,
+            end_s: dropped.start_s + dropped.length_s,
+            cause: Cause::SegmentTooShort(dropped.length_s),
+            treatment: Treatment::CutOut,
+        });
+        cautions.push(RecordCaution::SegmentDropped {
+            record: record.name.clone(),
+            start_s: dropped.start_s,
+            length_s: dropped.length_s,
+        });
+    }
+    if parts.segments.is_empty() {
         cautions.push(RecordCaution::RecordUnused(record.name.clone()));
     }
     gaps.sort_by(|a, b| a.start_s.total_cmp(&b.start_s));
-    let used_s = segments
-        .iter()
-        .map(|segment| segment.sample_time_s * segment.inputs.nrows() as f64)
-        .sum();
+    let used_s = parts.filled.iter().map(|part| part.segment.duration_s());
     Ok(PreparedRecord {
-        segments,
         used: RecordUse {
             record: record.name.clone(),
             sample_time_s: clock.sample_time_s,
             logged_s: clock.logged_s(),
-            used_s,
+            used_s: used_s.sum(),
             gaps,
             inputs_at_limit: inputs_at_limit(record, preparation),
         },
+        segments: parts.segments,
+        filled: parts.filled,
         cautions,
-        longest_s,
+        longest_s: parts.longest_s,
     })
+}
+
+/// A run without gaps that is too short for a segment.
+struct DroppedRun {
+    /// Time of the first sample \[s\], on the record's time axis.
+    start_s: f64,
+    length_s: f64,
+}
+
+/// The parts of a record that are used, and those that are dropped.
+struct RecordParts<'a> {
+    /// Index of the record, counted from 0.
+    number: usize,
+    clock: &'a Clock,
+    preparation: &'a Preparation,
+    /// Lines from which missing samples are estimated; `None` to cut at every gap.
+    lines: Option<LineRange>,
+    segments: Vec<Segment>,
+    filled: Vec<FilledSegment>,
+    dropped: Vec<DroppedRun>,
+    /// Longest run without a gap \[s\].
+    longest_s: f64,
+}
+
+impl RecordParts<'_> {
+    /// Adds consecutive grid points. A part is used if it has a run for a segment.
+    fn add(&mut self, rows: &GridRows) {
+        for part in rows.parts(self.lines, self.clock.sample_time_s) {
+            let runs = rows.runs(part.clone());
+            let mut dropped = Vec::new();
+            let mut has_segment = false;
+            for run in runs {
+                let start_s = self.start_s(rows, &run);
+                let length_s = self.clock.sample_time_s * run.len() as f64;
+                self.longest_s = self.longest_s.max(length_s);
+                if length_s >= self.preparation.least_segment_s * (1.0 - LENGTH_ROUNDING) {
+                    let segment = self.segment(rows, run);
+                    self.segments.push(segment);
+                    has_segment = true;
+                } else {
+                    dropped.push(DroppedRun { start_s, length_s });
+                }
+            }
+            if has_segment {
+                let segment = self.segment(rows, part.clone());
+                self.filled
+                    .push(FilledSegment::new(segment, rows.gaps(part)));
+            } else {
+                self.dropped.extend(dropped);
+            }
+        }
+    }
+
+    /// Returns the time of the first row of a range \[s\].
+    fn start_s(&self, rows: &GridRows, range: &RowRange) -> f64 {
+        self.clock.start_s + self.clock.sample_time_s * (rows.first + range.start as f64)
+    }
+
+    /// Returns the rows in a range, with 0 for missing samples.
+    fn segment(&self, rows: &GridRows, range: RowRange) -> Segment {
+        Segment {
+            record: self.number,
+            start_s: self.start_s(rows, &range),
+            sample_time_s: self.clock.sample_time_s,
+            inputs: rows.inputs(range.clone()),
+            outputs: rows.outputs(range),
+        }
+    }
+
+    /// Returns whether a gap lies in a filled segment.
+    fn is_filled(&self, gap: &Gap) -> bool {
+        let middle = 0.5 * (gap.start_s + gap.end_s);
+        self.filled.iter().any(|part| {
+            let after_start_s = middle - part.segment.start_s;
+            0.0 < after_start_s && after_start_s < part.segment.duration_s()
+        })
+    }
 }
 
 /// Returns an error for uneven sample times, or a caution if they may be interpolated.
@@ -248,58 +369,4 @@ fn check_shape(record: &FlightRecord, preparation: &Preparation) -> Result<(), P
         });
     }
     Ok(())
-}
-
-/// Consecutive grid points at which every channel has a value.
-struct Run {
-    /// First grid index, an integer value.
-    first: f64,
-    /// Samples row by row: sample `n` of channel `c` at `n channels + c`, inputs first.
-    rows: Vec<f64>,
-}
-
-impl Run {
-    fn into_segment(
-        self,
-        record: usize,
-        start_s: f64,
-        sample_time_s: f64,
-        preparation: &Preparation,
-    ) -> Segment {
-        let inputs = preparation.inputs.len();
-        let outputs = preparation.outputs.len();
-        let width = inputs + outputs;
-        let samples = self.rows.len() / width;
-        Segment {
-            record,
-            start_s,
-            sample_time_s,
-            inputs: DMatrix::from_fn(samples, inputs, |n, i| self.rows[n * width + i]),
-            outputs: DMatrix::from_fn(samples, outputs, |n, o| self.rows[n * width + inputs + o]),
-        }
-    }
-}
-
-/// Finds the runs of a record on the grid `k dt`, relative to its first stamp.
-fn runs(clock: &Clock, channels: &[ValidSamples]) -> Vec<Run> {
-    let mut runs: Vec<Run> = Vec::new();
-    let mut readers: Vec<_> = channels.iter().map(ValidSamples::reader).collect();
-    let mut row = vec![0.0; channels.len()];
-    for stretch in clock.grid() {
-        let mut is_open = false;
-        for k in (0..stretch.points).map(|point| stretch.first + point as f64) {
-            let is_complete = read_row(&mut readers, k * clock.sample_time_s, &mut row);
-            if is_complete && !is_open {
-                runs.push(Run {
-                    first: k,
-                    rows: Vec::new(),
-                });
-            }
-            if is_complete && let Some(run) = runs.last_mut() {
-                run.rows.extend_from_slice(&row);
-            }
-            is_open = is_complete;
-        }
-    }
-    runs
 }

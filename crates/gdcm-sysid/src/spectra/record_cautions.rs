@@ -91,7 +91,7 @@ pub enum RecordCaution {
     },
     /// Outputs stood still while others moved.
     #[error(
-        "{record}: {} stood still for {seconds:.1} s while other channels moved; that time was left out",
+        "{record}: {} stood still for {seconds:.1} s while other channels moved; these samples are not used",
         names(signals)
     )]
     Stuck {

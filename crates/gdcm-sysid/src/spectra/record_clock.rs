@@ -92,7 +92,7 @@ impl Clock {
             }
             if to > from {
                 let last = (self.times[to] / self.sample_time_s + ROUNDING).floor();
-                let first = (self.times[from] / self.sample_time_s).ceil();
+                let first = (self.times[from] / self.sample_time_s - ROUNDING).ceil();
                 grid.push(GridStretch {
                     first,
                     points: (last - first + 1.0).max(0.0) as usize,

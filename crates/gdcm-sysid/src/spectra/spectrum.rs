@@ -12,7 +12,7 @@ use super::gap_hat::GapHat;
 
 /// Lowest frequency used, in units of a segment's first line. The first line contains the drift, so
 /// that the lines are used from the second on (M14.12).
-const FIRST_LINE: f64 = 1.5;
+pub(crate) const FIRST_LINE: f64 = 1.5;
 
 /// Spectral lines of a segment (M14.2): columns are lines, rows are channels.
 ///
@@ -73,13 +73,18 @@ impl LineRange {
     pub(crate) fn spectra(self, segments: &[Segment], executor: &dyn Executor) -> Vec<Spectrum> {
         let mut used = Vec::new();
         for spectrum in spectra(segments, self.highest, executor) {
-            let second = FIRST_LINE * TAU / spectrum.duration_s;
-            let lines = spectrum.between(self.lowest.max(second), self.highest);
+            let lines = self.used_lines(&spectrum);
             if !lines.omega.is_empty() {
                 used.push(lines);
             }
         }
         used
+    }
+
+    /// Returns the lines in the range, from the second on.
+    pub(crate) fn used_lines(self, spectrum: &Spectrum) -> Spectrum {
+        let second = FIRST_LINE * TAU / spectrum.duration_s;
+        spectrum.between(self.lowest.max(second), self.highest)
     }
 }
 
@@ -87,6 +92,16 @@ impl LineRange {
 /// frequency, in segment order.
 #[must_use]
 pub fn spectra(segments: &[Segment], highest: f64, executor: &dyn Executor) -> Vec<Spectrum> {
+    let segments: Vec<&Segment> = segments.iter().collect();
+    spectra_of(&segments, highest, executor)
+}
+
+/// Computes the lines as [`spectra`] does.
+pub(crate) fn spectra_of(
+    segments: &[&Segment],
+    highest: f64,
+    executor: &dyn Executor,
+) -> Vec<Spectrum> {
     let mut planner = FourierPlanner::default();
     let plans: Vec<_> = segments
         .iter()
@@ -99,7 +114,7 @@ pub fn spectra(segments: &[Segment], highest: f64, executor: &dyn Executor) -> V
 
 /// Computes the lines of a segment up to `highest`; `plan` is a transform of its length.
 fn spectrum(segment: &Segment, highest: f64, plan: &FourierTransform) -> Spectrum {
-    let duration_s = segment.sample_time_s * segment.inputs.nrows() as f64;
+    let duration_s = segment.duration_s();
     let below_nyquist = segment.inputs.nrows().saturating_sub(1) / 2;
     let omega: Vec<f64> = (1..=below_nyquist)
         .map(|k| TAU * k as f64 / duration_s)

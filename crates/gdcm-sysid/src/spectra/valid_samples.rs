@@ -111,26 +111,26 @@ impl SampleReader<'_> {
             return Some(value);
         }
         if after - time > self.samples.longest_step_s {
-            return None;
+            // Rounded grid times may lie just beyond a sample at an end of the gap.
+            let rounding_s = self.samples.rounding_s;
+            return if t - time <= rounding_s {
+                Some(value)
+            } else if after - t <= rounding_s {
+                Some(values[self.next])
+            } else {
+                None
+            };
         }
         let share = (t - time) / (after - time);
         Some(value + share * (values[self.next] - value))
     }
 }
 
-/// Reads all channels at `t` \[s\] into `row`; returns whether every channel has a value.
-pub(crate) fn read_row(readers: &mut [SampleReader<'_>], t: f64, row: &mut [f64]) -> bool {
-    let mut is_complete = true;
+/// Reads all channels at `t` \[s\] into `row`.
+pub(crate) fn read_row(readers: &mut [SampleReader<'_>], t: f64, row: &mut [Option<f64>]) {
     for (reader, value) in readers.iter_mut().zip(row) {
-        match reader.at(t) {
-            Some(read) => *value = read,
-            None => {
-                *value = 0.0;
-                is_complete = false;
-            }
-        }
+        *value = reader.at(t);
     }
-    is_complete
 }
 
 /// Returns, for each stamp, whether the value is finite and outside the frozen runs.

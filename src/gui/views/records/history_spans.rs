@@ -68,7 +68,7 @@ fn gap_span(gap: &Gap, palette: &Palette) -> ChartSpan {
     ChartSpan {
         ends: [gap.start_s, gap.end_s],
         color: match gap.treatment {
-            Treatment::Bridged => palette.accent.gamma_multiply(0.25),
+            Treatment::Bridged | Treatment::Estimated => palette.accent.gamma_multiply(0.25),
             Treatment::CutOut => palette.warning.gamma_multiply(0.35),
         },
     }

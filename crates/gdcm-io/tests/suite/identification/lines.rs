@@ -346,6 +346,7 @@ fn vibration_lowers_the_cut_off_and_is_named() {
         CutOff::choose(&segments, 8.0, &Sequential),
         CutOff {
             omega: 40.0,
+            highest: 8.0,
             vibrating: vec![]
         }
     );

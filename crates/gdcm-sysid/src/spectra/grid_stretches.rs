@@ -1,0 +1,208 @@
+//! The samples of a record on its uniform grid, and the parts in which missing samples can be
+//! estimated (M14.1, M14.21).
+//!
+//! ```text
+//! hole: consecutive grid points at which a channel misses its value
+//! 1  a part of the record: from a point where all channels have a value to another such point
+//! 2  hats of all gaps in the part < 1/10 of the 2 l lines real values:   the part stays whole
+//!    otherwise it is cut at the hole with the most hats, and both parts are examined
+//! ```
+
+use std::f64::consts::TAU;
+use std::ops::Range;
+
+use nalgebra::DMatrix;
+
+use gdcm_model::dataset::channel::ChannelSide;
+
+use super::gap_hat::{ChannelGap, hat_count};
+use super::record_clock::Clock;
+use super::spectrum::{FIRST_LINE, LineRange};
+use super::valid_samples::{ValidSamples, read_row};
+
+/// Ratio of the real values in a part's lines to the hats, above which missing samples are
+/// estimated.
+const VALUES_A_HAT: usize = 10;
+
+/// Indices of consecutive rows.
+pub(crate) type RowRange = Range<usize>;
+
+/// Values of all channels at consecutive points of a record's grid.
+pub(crate) struct GridRows {
+    /// Index of the first grid point, an integer value.
+    pub(crate) first: f64,
+    /// Number of input channels; they come first.
+    inputs: usize,
+    /// Number of channels.
+    width: usize,
+    /// Sample `n` of channel `c` at `n width + c`; `None` where it is missing.
+    values: Vec<Option<f64>>,
+}
+
+/// Reads a record on the grid `k dt`, relative to its first stamp. `inputs` channels come first.
+///
+/// A time without stamps that is longer than the rest of the record is left out: rows end there.
+pub(crate) fn grid_rows(clock: &Clock, channels: &[ValidSamples], inputs: usize) -> Vec<GridRows> {
+    let grid = clock.grid();
+    let stamped: usize = grid.iter().map(|stretch| stretch.points).sum();
+    let mut readers: Vec<_> = channels.iter().map(ValidSamples::reader).collect();
+    let mut row = vec![None; channels.len()];
+    let mut found: Vec<GridRows> = Vec::new();
+    for stretch in grid {
+        let missing = match found.last() {
+            Some(rows) => stretch.first - rows.first - rows.count() as f64,
+            None => f64::INFINITY,
+        };
+        if missing > stamped as f64 {
+            found.push(GridRows {
+                first: stretch.first,
+                inputs,
+                width: channels.len(),
+                values: Vec::new(),
+            });
+        }
+        let Some(rows) = found.last_mut() else {
+            continue;
+        };
+        let absent = (stretch.first - rows.first) as usize * channels.len();
+        rows.values.resize(absent, None);
+        for k in (0..stretch.points).map(|point| stretch.first + point as f64) {
+            read_row(&mut readers, k * clock.sample_time_s, &mut row);
+            rows.values.extend_from_slice(&row);
+        }
+    }
+    found
+}
+
+impl GridRows {
+    /// Returns the number of rows.
+    fn count(&self) -> usize {
+        self.values.len() / self.width.max(1)
+    }
+
+    /// Returns the rows in a range.
+    fn rows(&self, range: RowRange) -> &[Option<f64>] {
+        &self.values[range.start * self.width..range.end * self.width]
+    }
+
+    /// Returns the inputs in a range, with 0 for missing samples.
+    pub(crate) fn inputs(&self, range: RowRange) -> DMatrix<f64> {
+        let rows = self.rows(range.clone());
+        DMatrix::from_fn(range.len(), self.inputs, |n, i| {
+            rows[n * self.width + i].unwrap_or(0.0)
+        })
+    }
+
+    /// Returns the outputs in a range, with 0 for missing samples.
+    pub(crate) fn outputs(&self, range: RowRange) -> DMatrix<f64> {
+        let rows = self.rows(range.clone());
+        DMatrix::from_fn(range.len(), self.width - self.inputs, |n, o| {
+            rows[n * self.width + self.inputs + o].unwrap_or(0.0)
+        })
+    }
+
+    /// Returns the runs of rows in a range at which every channel has a value.
+    pub(crate) fn runs(&self, range: RowRange) -> Vec<RowRange> {
+        let mut runs = Vec::new();
+        let mut start = None;
+        for n in range.clone() {
+            let is_complete = self.rows(n..n + 1).iter().all(Option::is_some);
+            match start {
+                None if is_complete => start = Some(n),
+                Some(first) if !is_complete => {
+                    runs.push(first..n);
+                    start = None;
+                }
+                _ => {}
+            }
+        }
+        if let Some(first) = start {
+            runs.push(first..range.end);
+        }
+        runs
+    }
+
+    /// Returns the missing samples of every channel in a range, counted from its first row.
+    pub(crate) fn gaps(&self, range: RowRange) -> Vec<ChannelGap> {
+        let mut gaps: Vec<ChannelGap> = Vec::new();
+        let rows = self.rows(range.clone());
+        for channel in 0..self.width {
+            let mut from = 0;
+            let values: Vec<bool> = rows
+                .iter()
+                .skip(channel)
+                .step_by(self.width)
+                .map(Option::is_some)
+                .collect();
+            for run in values.chunk_by(|a, b| a == b) {
+                if !run[0] {
+                    gaps.push(self.channel_gap(channel, from..from + run.len()));
+                }
+                from += run.len();
+            }
+        }
+        gaps
+    }
+
+    fn channel_gap(&self, channel: usize, samples: RowRange) -> ChannelGap {
+        if channel < self.inputs {
+            ChannelGap {
+                side: ChannelSide::Input,
+                channel,
+                samples,
+            }
+        } else {
+            ChannelGap {
+                side: ChannelSide::Output,
+                channel: channel - self.inputs,
+                samples,
+            }
+        }
+    }
+
+    /// Divides the rows into parts; without `lines`, at every hole.
+    pub(crate) fn parts(&self, lines: Option<LineRange>, sample_time_s: f64) -> Vec<RowRange> {
+        let runs = self.runs(0..self.count());
+        let Some(lines) = lines else {
+            return runs;
+        };
+        // Number of hats in the hole after each run.
+        let mut hats_after = Vec::with_capacity(runs.len());
+        for pair in runs.windows(2) {
+            let mut hats = 0;
+            for gap in self.gaps(pair[0].end..pair[1].start) {
+                hats += hat_count(gap.samples.len(), sample_time_s, lines.highest);
+            }
+            hats_after.push(hats);
+        }
+        let outputs = self.width - self.inputs;
+        let mut parts = Vec::new();
+        // Ranges of runs that are still to be examined, the earliest last.
+        let mut open = Vec::new();
+        if !runs.is_empty() {
+            open.push(0..runs.len());
+        }
+        while let Some(range) = open.pop() {
+            let rows = runs[range.start].start..runs[range.end - 1].end;
+            let inner = range.start..range.end - 1;
+            let hats: usize = hats_after[inner.clone()].iter().sum();
+            let values = 2 * outputs * line_count(lines, sample_time_s * rows.len() as f64);
+            let worst = inner.max_by_key(|&run| hats_after[run]);
+            match worst {
+                Some(worst) if VALUES_A_HAT * hats >= values => {
+                    open.push(worst + 1..range.end);
+                    open.push(range.start..worst + 1);
+                }
+                _ => parts.push(rows),
+            }
+        }
+        parts
+    }
+}
+
+/// Returns the number of lines of a segment in a range.
+fn line_count(lines: LineRange, duration_s: f64) -> usize {
+    let lowest = (lines.lowest * duration_s / TAU).max(FIRST_LINE).ceil();
+    let highest = (lines.highest * duration_s / TAU).floor();
+    (highest - lowest + 1.0).max(0.0) as usize
+}

@@ -161,6 +161,7 @@ impl Assessment<'_> {
             segments: &self.data.unfiltered,
             lines: self.data.lines,
             band: self.options.band,
+            coherence: self.data.measured.excitation().greatest_coherence(),
         };
         Feedback::measure(
             &records,
@@ -278,6 +279,7 @@ fn feedback_caution(feedback: Option<&Feedback>) -> Option<IdentificationCaution
         level,
         share: feedback.share,
         significance: feedback.significance,
+        coherence: feedback.coherence,
     })
 }
 

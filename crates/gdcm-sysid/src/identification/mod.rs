@@ -10,6 +10,8 @@
 mod assessment;
 pub(crate) mod candidates;
 #[cfg(test)]
+mod feedback_tests;
+#[cfg(test)]
 mod fresh_flight_tests;
 pub mod identify;
 #[cfg(test)]
@@ -20,6 +22,8 @@ pub(crate) mod order;
 pub(crate) mod prepared_data;
 #[cfg(test)]
 mod real_flight_tests;
+#[cfg(test)]
+mod record_caution_tests;
 #[cfg(test)]
 mod refined_known_answers_tests;
 

@@ -201,19 +201,45 @@ impl IdentificationCaution {
     /// Returns whether another caution is a mere consequence of this one.
     ///
     /// The residual of a contradicting record is not due to its noise; and if the sign of a channel
-    /// is reversed, no input seems to be swept in the mean over the records.
-    pub(crate) fn explains(&self, other: &Self) -> bool {
-        let Self::Contradiction { records, .. } = self else {
-            return false;
-        };
-        match other {
-            Self::UnlikeRecord { record, .. } => {
-                records.iter().any(|wrong| wrong.record == *record)
-            }
-            Self::Reweighed(_) => true,
-            Self::NotSwept { .. } => records.iter().any(has_turned_sign),
+    /// is reversed, no input seems to be swept in the mean over the records. Spikes enlarge the
+    /// residual of their record and are seen above the band; a delay or a sign that is found beside
+    /// them is a fault of its own.
+    fn explains(&self, other: &Self) -> bool {
+        match self {
+            Self::Contradiction { records, .. } => match other {
+                Self::UnlikeRecord { record, .. } => {
+                    records.iter().any(|wrong| wrong.record == *record)
+                }
+                Self::Reweighed(_) => true,
+                Self::NotSwept { .. } => records.iter().any(has_turned_sign),
+                _ => false,
+            },
+            Self::Records(RecordCaution::Spike { record, signal, .. }) => match other {
+                Self::UnlikeRecord { name, .. } => name == record,
+                Self::Inadequate { record: worst, .. } => worst == record,
+                Self::Contradiction { records, .. } => {
+                    common_code(records) == "record"
+                        && records.iter().any(|wrong| wrong.name == *record)
+                }
+                Self::Vibration {
+                    signal: vibrating, ..
+                } => vibrating == signal,
+                Self::Reweighed(_) => true,
+                _ => false,
+            },
             _ => false,
         }
+    }
+
+    /// Removes the cautions that others explain.
+    pub(crate) fn without_consequences(cautions: Vec<Self>) -> Vec<Self> {
+        let mut kept = Vec::with_capacity(cautions.len());
+        for caution in &cautions {
+            if !cautions.iter().any(|cause| cause.explains(caution)) {
+                kept.push(caution.clone());
+            }
+        }
+        kept
     }
 
     /// Returns the caution with its code and its subject.

@@ -212,10 +212,7 @@ impl Assessment<'_> {
         cautions.extend(feedback);
         if let Some(contrasts) = contrasts {
             cautions.extend(diagnostics.adequacy(fits));
-            if let Some(contradiction) = contrasts.caution(is_in_gusts, &diagnostics) {
-                cautions.retain(|caution| !contradiction.explains(caution));
-                cautions.push(contradiction);
-            }
+            cautions.extend(contrasts.caution(is_in_gusts, &diagnostics));
         }
         cautions.extend(diagnostics.departures());
         if search.still_falls {
@@ -231,7 +228,7 @@ impl Assessment<'_> {
                 highest: self.options.highest(),
             });
         }
-        cautions
+        IdentificationCaution::without_consequences(cautions)
     }
 
     /// Returns an unstable pole above the highest spectral line used, if there is one.

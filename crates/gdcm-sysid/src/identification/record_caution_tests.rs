@@ -113,6 +113,25 @@ fn a_spike_is_no_wrong_unit_and_hides_no_limit() {
 }
 
 #[test]
+fn spikes_are_not_taken_for_another_fault() {
+    // Without the caution about spikes: `reweighed` and `record`.
+    let mut records: Vec<FlightRecord> = (0..3).map(|at| flight(73_000 + at, 0.3)).collect();
+    let series = SpikeSeries {
+        count: 3,
+        size: 5.0,
+        length: 1,
+    };
+    add_spikes(&mut records[1], &mut Generator::new(0), series);
+    let found = identify(&records, &options(), &Sequential, &Unobserved).unwrap();
+    assert_eq!(codes(&found), ["spike"]);
+    // A record that is late as well keeps that caution.
+    records[1] = Flown::calm(73_001, 4).record(&known()).0;
+    add_spikes(&mut records[1], &mut Generator::new(0), series);
+    let found = identify(&records, &options(), &Sequential, &Unobserved).unwrap();
+    assert_eq!(codes(&found), ["spike", "time-skew"]);
+}
+
+#[test]
 fn steps_pulses_and_binary_sequences_are_no_spikes() {
     for (name, command) in commands(70_020) {
         let record = commanded(command);

@@ -4,7 +4,7 @@ use nalgebra::Complex;
 
 use gdcm_model::simulation::{Signal, ValidationError};
 
-use super::feedback::FeedbackLevel;
+use super::feedback::{FeedbackLevel, is_swept};
 use super::record_fault::{ContradictingRecord, RecordFault};
 use crate::spectra::caution_note::CautionNote;
 use crate::spectra::record_cautions::RecordCaution;
@@ -110,13 +110,15 @@ pub enum IdentificationCaution {
         contrast: f64,
     },
     /// The feedback carried gusts and noise into the inputs.
-    #[error("{}", feedback_text(*level, *share))]
+    #[error("{}", feedback_text(*level, *share, *coherence))]
     Feedback {
         level: FeedbackLevel,
         /// Median of `|G_b / G|`, the share of the measured response that is fed back.
         share: f64,
         /// Median of `|G_b|^2` over its variance.
         significance: f64,
+        /// Largest median partial coherence of an input; below 0.6, no input was swept.
+        coherence: f64,
     },
     /// The model departs from the measured points.
     #[error(
@@ -200,19 +202,45 @@ impl IdentificationCaution {
     ///
     /// The residual of a contradicting record is not due to its noise; and if the sign of a channel
     /// is reversed, no input seems to be swept in the mean over the records. The measured points are
-    /// means over records that contradict each other, which no model follows.
-    pub(crate) fn explains(&self, other: &Self) -> bool {
-        let Self::Contradiction { records, .. } = self else {
-            return false;
-        };
-        match other {
-            Self::UnlikeRecord { record, .. } => {
-                records.iter().any(|wrong| wrong.record == *record)
-            }
-            Self::Reweighed(_) | Self::LeavesPoints { .. } => true,
-            Self::NotSwept { .. } => records.iter().any(has_turned_sign),
+    /// means over records that contradict each other, which no model follows. Spikes enlarge the
+    /// residual of their record and are seen above the band; a delay or a sign that is found beside
+    /// them is a fault of its own.
+    fn explains(&self, other: &Self) -> bool {
+        match self {
+            Self::Contradiction { records, .. } => match other {
+                Self::UnlikeRecord { record, .. } => {
+                    records.iter().any(|wrong| wrong.record == *record)
+                }
+                Self::Reweighed(_) | Self::LeavesPoints { .. } => true,
+                Self::NotSwept { .. } => records.iter().any(has_turned_sign),
+                _ => false,
+            },
+            Self::Records(RecordCaution::Spike { record, signal, .. }) => match other {
+                Self::UnlikeRecord { name, .. } => name == record,
+                Self::Inadequate { record: worst, .. } => worst == record,
+                Self::Contradiction { records, .. } => {
+                    common_code(records) == "record"
+                        && records.iter().any(|wrong| wrong.name == *record)
+                }
+                Self::Vibration {
+                    signal: vibrating, ..
+                } => vibrating == signal,
+                Self::Reweighed(_) => true,
+                _ => false,
+            },
             _ => false,
         }
+    }
+
+    /// Removes the cautions that others explain.
+    pub(crate) fn without_consequences(cautions: Vec<Self>) -> Vec<Self> {
+        let mut kept = Vec::with_capacity(cautions.len());
+        for caution in &cautions {
+            if !cautions.iter().any(|cause| cause.explains(caution)) {
+                kept.push(caution.clone());
+            }
+        }
+        kept
     }
 
     /// Returns the caution with its code and its subject.
@@ -371,11 +399,15 @@ fn contradiction_text(records: &[ContradictingRecord], contrast: f64) -> String 
 }
 
 /// Describes the effect of the feedback, and the remedy.
-fn feedback_text(level: FeedbackLevel, share: f64) -> String {
+fn feedback_text(level: FeedbackLevel, share: f64, coherence: f64) -> String {
     let percent = 100.0 * share;
     let remedy = "Sweep with a larger amplitude, or specify the recorded reference that drove the loop \
         (--reference)";
     match level {
+        FeedbackLevel::TooMuch if !is_swept(coherence) => format!(
+            "do not use this model: no input was swept (median partial coherence at most \
+            {coherence:.2}), and gusts and noise are fed back into the inputs. {remedy}"
+        ),
         FeedbackLevel::TooMuch => format!(
             "do not use this model: about {percent:.0} % of the measured response is due to gusts \
             and noise fed back into the inputs, not to the aircraft, however well the model \
@@ -383,7 +415,7 @@ fn feedback_text(level: FeedbackLevel, share: f64) -> String {
         ),
         FeedbackLevel::Some | FeedbackLevel::None => format!(
             "about {percent:.0} % of the measured response is due to gusts and noise fed back \
-            into the inputs: the models have errors of a few tenths of a dB. {remedy}"
+            into the inputs: the models are wrong by tenths of a decibel to 2 dB. {remedy}"
         ),
     }
 }

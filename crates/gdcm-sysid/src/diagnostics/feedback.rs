@@ -12,10 +12,17 @@
 //! 4  G_b = local polynomial of V on U at 16 points in the band, and G of the model there
 //! 5  b = median |G_b / G|,  z = median |G_b|^2 / var
 //!    over the points with |G| > 3 % of the maximum of the output and sd G_b < 0.4 |G|
+//! 6  p = 40; if b and z reach a level, again with p = 200, and the lower level counts
+//! level 1  b >= 0.08 and z >= 1.6
+//! level 2  b >= 0.18 and z >= 3; or z >= 1.6 and no input with a median partial coherence >= 0.6
 //! ```
 //!
 //! With feedback, gusts act on the inputs through the outputs, and the cost stays at 1 however
 //! wrong the model is.
+//!
+//! Step 6: where a sensor closes the loop and its noise is most of the residual, the best predictor
+//! is a simulation from the inputs, whose memory is as long as the slowest mode. The errors of a
+//! shorter predictor contain a part of the response itself, which then seems to be fed back.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -27,7 +34,7 @@ use gdcm_model::statistics::median;
 use crate::likelihood::gram_matrix::scale_columns;
 use crate::likelihood::schur_model::SchurModel;
 use crate::spectra::local_polynomial::local_polynomial;
-use crate::spectra::response_estimate::ResponseEstimate;
+use crate::spectra::response_estimate::{ResponseEstimate, TRUSTED_COHERENCE};
 use crate::spectra::spectrum::{LineRange, Spectrum};
 
 /// Product of the predictor's sample time and the upper band end \[rad\].
@@ -36,6 +43,12 @@ const STEP: f64 = 0.25;
 const LEAST_PAST: usize = 6;
 /// Maximum number of past samples in the predictor.
 const MOST_PAST: usize = 40;
+/// Maximum number of past samples in the predictor that confirms a level.
+const LONG_PAST: usize = 200;
+/// Maximum number of unknowns for each output in the predictor that confirms a level.
+const LONG_UNKNOWNS: usize = 1000;
+/// Minimum ratio of the past of the confirming predictor to that of the first predictor.
+const LONGER: f64 = 1.5;
 /// Minimum number of samples for each unknown in the predictor.
 const SAMPLES_AN_UNKNOWN: usize = 8;
 /// Ridge, relative to columns of unit length.
@@ -68,6 +81,8 @@ const TOO_MUCH: Threshold = Threshold {
     share: 0.18,
     significance: 3.0,
 };
+/// `z` from which a model of records without a coherent input must not be used (M14.24).
+const SIGNIFICANT_WITHOUT_SWEEP: f64 = SOME.significance;
 
 /// Noise and gusts fed back into the measured response.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,6 +91,8 @@ pub struct Feedback {
     pub share: f64,
     /// `z`, the median of `|G_b|^2` over its variance; 0.7 without feedback.
     pub significance: f64,
+    /// Largest median partial coherence of an input (M14.2); below 0.6, no input was swept.
+    pub coherence: f64,
     /// Frequencies \[rad/s\], ascending.
     omega: Vec<f64>,
     /// `|G_b / G|` at each frequency, outputs x inputs.
@@ -87,7 +104,7 @@ pub struct Feedback {
 pub enum FeedbackLevel {
     /// No visible effect.
     None,
-    /// The models are wrong by some tenths of a dB.
+    /// The models are wrong by tenths of a dB to 2 dB (M14.24).
     Some,
     /// The models must not be used.
     TooMuch,
@@ -100,13 +117,17 @@ pub(crate) struct FeedbackRecords<'a> {
     pub(crate) lines: LineRange,
     /// Lower and upper band end \[rad/s\].
     pub(crate) band: [f64; 2],
+    /// Largest median partial coherence of an input.
+    pub(crate) coherence: f64,
 }
 
 impl Feedback {
     /// Returns the effect of the feedback on a model.
     #[must_use]
     pub fn level(&self) -> FeedbackLevel {
-        if self.reaches(&TOO_MUCH) {
+        let is_without_sweep =
+            !is_swept(self.coherence) && self.significance >= SIGNIFICANT_WITHOUT_SWEEP;
+        if self.reaches(&TOO_MUCH) || is_without_sweep {
             FeedbackLevel::TooMuch
         } else if self.reaches(&SOME) {
             FeedbackLevel::Some
@@ -145,36 +166,31 @@ impl Feedback {
 
     /// Measures the feedback relative to a model; `None` if the records are too short for a
     /// predictor.
+    ///
+    /// A level is confirmed with a longer predictor (step 6).
     pub(crate) fn measure(
         records: &FeedbackRecords<'_>,
         model: &SchurModel,
         executor: &dyn Executor,
     ) -> Option<Self> {
-        let first = records.segments.first()?;
-        let segments: Vec<&Segment> = records
-            .segments
-            .iter()
-            .filter(|segment| (segment.sample_time_s / first.sample_time_s - 1.0).abs() < ALIKE)
-            .collect();
-        let step = ((STEP / (records.band[1] * first.sample_time_s)).round() as usize).max(1);
-        let thinned = each(executor, &segments, |segment| thin(segment, step));
-        let predictor = Predictor::fit(&thinned, first.inputs.ncols(), first.outputs.ncols())?;
-        let errors = each(
-            executor,
-            segments.iter().zip(&thinned),
-            |(segment, samples)| predictor.error_segment(segment, samples, step),
-        );
-        let mut disturbances = records.lines.spectra(&errors, executor);
-        for spectrum in &mut disturbances {
-            predictor.add_memory(spectrum, step as f64 * first.sample_time_s)?;
+        let thinned = ThinnedRecords::new(records, executor)?;
+        let past = thinned.past(MOST_PAST);
+        let feedback = thinned.measure(past, model, executor)?;
+        if feedback.level() == FeedbackLevel::None {
+            return Some(feedback);
         }
-        let omegas = log_spaced(records.band[0], records.band[1], POINTS);
-        let fed_back = local_polynomial(&disturbances, &omegas, executor).ok()?;
-        Some(Self::compare(model, &fed_back))
+        let longer = thinned.past(LONG_PAST.min(LONG_UNKNOWNS / thinned.channels()));
+        if (longer as f64) < LONGER * past as f64 {
+            return Some(feedback);
+        }
+        match thinned.measure(longer, model, executor) {
+            Some(confirmed) if confirmed.level() < feedback.level() => Some(confirmed),
+            _ => Some(feedback),
+        }
     }
 
     /// Compares `G_b` with the response of the model (step 5).
-    fn compare(model: &SchurModel, fed_back: &ResponseEstimate) -> Self {
+    fn compare(model: &SchurModel, fed_back: &ResponseEstimate, coherence: f64) -> Self {
         let moduli: Vec<DMatrix<f64>> = fed_back
             .points
             .iter()
@@ -190,9 +206,86 @@ impl Feedback {
         Self {
             share: median(&mut shares),
             significance: median(&mut significances),
+            coherence,
             omega: fed_back.points.iter().map(|point| point.omega).collect(),
             ratios,
         }
+    }
+}
+
+/// Returns whether an input with this median partial coherence was swept.
+pub(crate) fn is_swept(coherence: f64) -> bool {
+    coherence >= TRUSTED_COHERENCE
+}
+
+/// Records of a common sample time, thinned for a predictor.
+struct ThinnedRecords<'a> {
+    records: &'a FeedbackRecords<'a>,
+    /// The segments used.
+    segments: Vec<&'a Segment>,
+    /// Every `step`-th sample of each segment.
+    samples: Vec<DMatrix<f64>>,
+    step: usize,
+    /// Sample time of the segments \[s\].
+    sample_time_s: f64,
+    inputs: usize,
+    outputs: usize,
+}
+
+impl<'a> ThinnedRecords<'a> {
+    /// Thins the segments with the sample time of the first; `None` without segments.
+    fn new(records: &'a FeedbackRecords<'a>, executor: &dyn Executor) -> Option<Self> {
+        let first = records.segments.first()?;
+        let segments: Vec<&Segment> = records
+            .segments
+            .iter()
+            .filter(|segment| (segment.sample_time_s / first.sample_time_s - 1.0).abs() < ALIKE)
+            .collect();
+        let step = ((STEP / (records.band[1] * first.sample_time_s)).round() as usize).max(1);
+        Some(Self {
+            samples: each(executor, &segments, |segment| thin(segment, step)),
+            records,
+            segments,
+            step,
+            sample_time_s: first.sample_time_s,
+            inputs: first.inputs.ncols(),
+            outputs: first.outputs.ncols(),
+        })
+    }
+
+    fn channels(&self) -> usize {
+        self.inputs + self.outputs
+    }
+
+    /// Returns the number of past samples of a predictor that these records determine, at most
+    /// `most`.
+    fn past(&self, most: usize) -> usize {
+        let samples: usize = self.samples.iter().map(DMatrix::ncols).sum();
+        (samples / (SAMPLES_AN_UNKNOWN * self.channels()))
+            .min(most)
+            .max(LEAST_PAST)
+    }
+
+    /// Measures the feedback with a predictor of `past` samples (steps 1 to 5).
+    fn measure(
+        &self,
+        past: usize,
+        model: &SchurModel,
+        executor: &dyn Executor,
+    ) -> Option<Feedback> {
+        let predictor = Predictor::fit(&self.samples, self.inputs, past)?;
+        let errors = each(
+            executor,
+            self.segments.iter().zip(&self.samples),
+            |(segment, samples)| predictor.error_segment(segment, samples, self.step),
+        );
+        let mut disturbances = self.records.lines.spectra(&errors, executor);
+        for spectrum in &mut disturbances {
+            predictor.add_memory(spectrum, self.step as f64 * self.sample_time_s)?;
+        }
+        let omegas = log_spaced(self.records.band[0], self.records.band[1], POINTS);
+        let fed_back = local_polynomial(&disturbances, &omegas, executor).ok()?;
+        Some(Feedback::compare(model, &fed_back, self.records.coherence))
     }
 }
 
@@ -268,11 +361,11 @@ struct Predictor {
 }
 
 impl Predictor {
-    /// Fits the predictor to all records (steps 1 and 2); `None` if they do not determine it.
-    fn fit(records: &[DMatrix<f64>], inputs: usize, outputs: usize) -> Option<Self> {
-        let channels = inputs + outputs;
-        let samples: usize = records.iter().map(DMatrix::ncols).sum();
-        let past = (samples / (SAMPLES_AN_UNKNOWN * channels)).clamp(LEAST_PAST, MOST_PAST);
+    /// Fits a predictor of `past` samples to all records (steps 1 and 2); `None` if they do not
+    /// determine it.
+    fn fit(records: &[DMatrix<f64>], inputs: usize, past: usize) -> Option<Self> {
+        let channels = records.first()?.nrows();
+        let outputs = channels - inputs;
         let mut gram = DMatrix::zeros((past + 1) * channels, (past + 1) * channels);
         for record in records {
             if record.ncols() > 2 * past {

@@ -39,8 +39,8 @@ const LEAST_KNOWN: f64 = 0.02;
 const MOST_KNOWN: f64 = 0.98;
 /// Eigenvalues of the information matrix `G` below this share of the largest are rounding errors.
 const ROUNDING: f64 = 1e-13;
-/// `F` above which a record contradicts the others.
-const CONTRADICTS: f64 = 4.0;
+/// `F` above which a record contradicts the others (M14.23).
+const CONTRADICTS: f64 = 6.0;
 /// `F` above which a record contradicts the others if gusts are fed back, because gusts differ
 /// between flights.
 const CONTRADICTS_IN_GUSTS: f64 = 12.0;

@@ -162,6 +162,7 @@ impl Assessment<'_> {
             segments: &self.data.unfiltered,
             lines: self.data.lines,
             band: self.options.band,
+            coherence: self.data.measured.excitation().greatest_coherence(),
         };
         Feedback::measure(
             &records,
@@ -213,10 +214,7 @@ impl Assessment<'_> {
         cautions.extend(diagnostics.departures());
         if let Some(contrasts) = contrasts {
             cautions.extend(diagnostics.adequacy(fits));
-            if let Some(contradiction) = contrasts.caution(is_in_gusts, &diagnostics) {
-                cautions.retain(|caution| !contradiction.explains(caution));
-                cautions.push(contradiction);
-            }
+            cautions.extend(contrasts.caution(is_in_gusts, &diagnostics));
         }
         if search.still_falls {
             cautions.push(IdentificationCaution::OrderLimit {
@@ -231,7 +229,7 @@ impl Assessment<'_> {
                 highest: self.options.highest(),
             });
         }
-        cautions
+        IdentificationCaution::without_consequences(cautions)
     }
 
     /// Returns an unstable pole above the highest spectral line used, if there is one.
@@ -279,6 +277,7 @@ fn feedback_caution(feedback: Option<&Feedback>) -> Option<IdentificationCaution
         level,
         share: feedback.share,
         significance: feedback.significance,
+        coherence: feedback.coherence,
     })
 }
 

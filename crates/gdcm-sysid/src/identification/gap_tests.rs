@@ -86,15 +86,9 @@ fn a_record_with_a_gap_has_the_known_cost_noise_and_minimum() {
     let likelihood = weighed(&data, &noise);
     let start = Fit::start(&likelihood, fit.model).unwrap();
     close(start.cost, &step["f_start"], exact);
-    let once = start
-        .clone()
-        .descended(&likelihood, Limits::to(f64::INFINITY), &progress)
-        .unwrap();
-    close(
-        once.decrement,
-        &step["decrement_start_over_k_phi"],
-        number(&tolerance["decrement_relative"]),
-    );
+    // The reference sums over bins: see `refined_known_answers_tests`.
+    let decrement = start.decrement(&likelihood).unwrap();
+    close(decrement, &step["decrement_start_over_k_phi"], 0.06);
     let fit = start
         .descended(&likelihood, Limits::to(CONVERGED), &progress)
         .unwrap();

@@ -12,6 +12,8 @@ pub(crate) mod candidates;
 #[cfg(test)]
 mod efficiency_tests;
 #[cfg(test)]
+mod feedback_tests;
+#[cfg(test)]
 mod fresh_flight_tests;
 #[cfg(test)]
 mod gap_tests;
@@ -26,6 +28,8 @@ pub(crate) mod order;
 pub(crate) mod prepared_data;
 #[cfg(test)]
 mod real_flight_tests;
+#[cfg(test)]
+mod record_caution_tests;
 #[cfg(test)]
 mod refined_known_answers_tests;
 mod search_records;

@@ -358,6 +358,7 @@ fn measured_feedback(data: &PreparedData, model: &SchurModel) -> Feedback {
         segments: &data.unfiltered,
         lines: data.lines,
         band: options().band,
+        coherence: data.measured.excitation().greatest_coherence(),
     };
     Feedback::measure(&records, model, &Sequential).unwrap()
 }

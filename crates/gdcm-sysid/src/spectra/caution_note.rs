@@ -61,6 +61,8 @@ impl CautionNote {
     pub fn mark(&self) -> &'static str {
         match self.code {
             "clipped" => "at its limit",
+            "spike" => "spikes",
+            "rate-limited" => "at a rate limit",
             "stuck" => "stood still",
             "coarse" => "coarse steps",
             "held" => "steps",

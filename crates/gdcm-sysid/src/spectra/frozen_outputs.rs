@@ -15,7 +15,9 @@
 use gdcm_model::statistics::quantile;
 
 use super::coarse_steps::is_coarse;
+use super::finite_samples::Sample;
 use super::record_clock::{Clock, StampRange, StampedValues};
+use super::spikes::Spikes;
 use super::value_range::ValueRange;
 
 /// Minimum duration of a frozen run \[s\].
@@ -46,7 +48,7 @@ pub(crate) fn frozen_runs(
     if runs.len() < MOVING_RUNS || is_coarse(&samples) {
         return Vec::new();
     }
-    let range = ValueRange::new(&samples);
+    let range = range_without_spikes(output, &places, clock);
     let longest_s = longest_usual_s(&runs, clock);
     let mut frozen = Vec::new();
     for run in &runs {
@@ -65,6 +67,23 @@ pub(crate) fn frozen_runs(
         }
     }
     frozen
+}
+
+/// Returns the range of the finite values of an output that are in no spike: a spike beyond a limit
+/// does not turn the samples at the limit into frozen ones.
+fn range_without_spikes(output: &StampedValues, places: &[usize], clock: &Clock) -> ValueRange {
+    let mut samples = Vec::with_capacity(places.len());
+    for &place in places {
+        samples.push(Sample {
+            time_s: clock.times[place],
+            value: output.values[place],
+        });
+    }
+    if let Some(spikes) = Spikes::find(samples.clone()) {
+        samples.retain(|sample| !spikes.contain(sample.time_s));
+    }
+    let values: Vec<f64> = samples.iter().map(|sample| sample.value).collect();
+    ValueRange::new(&values)
 }
 
 /// Returns the maximum duration \[s\] of a run that is not frozen.

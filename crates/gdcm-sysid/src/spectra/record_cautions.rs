@@ -1,4 +1,4 @@
-//! Doubts about the flight records themselves, channel by channel (M14.1, M14.18).
+//! Doubts about the flight records themselves, channel by channel (M14.1, M14.18, M14.24).
 
 use std::collections::BTreeSet;
 
@@ -10,10 +10,12 @@ use gdcm_model::simulation::{FlightRecord, Segment, Signal, centred};
 use super::caution_note::CautionNote;
 use super::clipping::Clipping;
 use super::coarse_steps::{COARSE, coarseness, is_coarse};
-use super::finite_samples::{finite_samples, finite_values};
+use super::finite_samples::{Sample, finite_samples, finite_values};
 use super::gap::{Cause, Gap};
 use super::preparation_settings::{ChannelPreparation, Hold, Preparation};
-use super::signal_names::names;
+use super::rate_limit::RateLimit;
+use super::signal_names::{listed, names};
+use super::spikes::Spikes;
 use super::stairs::Stairs;
 
 /// Correlation above which two inputs count as always moved together.
@@ -89,6 +91,36 @@ pub enum RecordCaution {
         /// Number of affected records.
         records: usize,
     },
+    /// Single samples of a channel far off their neighbours (M14.24).
+    #[error("{}", spike_text(record, signal, times_s, *deviations))]
+    Spike {
+        record: String,
+        signal: Signal,
+        /// Stamp of the first sample of each spike \[s\], ascending.
+        times_s: Vec<f64>,
+        /// Distance of the largest spike from its neighbours, in standard deviations of the other
+        /// samples.
+        deviations: f64,
+    },
+    /// An input often moves at one rate and never faster (M14.24).
+    #[error(
+        "{signal} moves at {rate:.4} per second, and never faster, for {percent:.0} % of the time that it moves in {record}{}: \
+        a rate limit. The response then depends on the amplitude, and if the limiter acts after the \
+        log, the record does not show the input. Sweep with a smaller amplitude at high frequency, or \
+        lower the upper end of the band",
+        if *records > 1 { format!(", and in {} other records", records - 1) } else { String::new() },
+    )]
+    RateLimited {
+        /// Name of the record with the largest share of slopes at the limit.
+        record: String,
+        signal: Signal,
+        /// Units of the channel per second.
+        rate: f64,
+        /// Share of the moving samples at the limit in this record \[%\].
+        percent: f64,
+        /// Number of affected records.
+        records: usize,
+    },
     /// Outputs stood still while others moved.
     #[error(
         "{record}: {} stood still for {seconds:.1} s while other channels moved; these samples are not used",
@@ -132,8 +164,82 @@ fn hold_choices(role: ChannelSide, hold_ms: f64) -> String {
     format!("{command}a slow sensor (only fresh samples kept, or moved {half:.0} ms earlier), ")
 }
 
+/// Maximum number of spikes that are listed by time.
+const LISTED_SPIKES: usize = 5;
+
+/// Describes the spikes of a channel in a record, and the remedy.
+fn spike_text(record: &str, signal: &Signal, times_s: &[f64], deviations: f64) -> String {
+    let mut times: Vec<String> = times_s
+        .iter()
+        .take(LISTED_SPIKES)
+        .map(|time_s| format!("{time_s:.2} s"))
+        .collect();
+    if times_s.len() > LISTED_SPIKES {
+        times.push(format!("{} more", times_s.len() - LISTED_SPIKES));
+    }
+    let spikes = match times_s.len() {
+        1 => "a spike".to_owned(),
+        count => format!("{count} spikes"),
+    };
+    format!(
+        "{record}: {signal} has {spikes} of up to {deviations:.1} standard deviations, at {}: single \
+        samples far off their neighbours, used as logged. If the samples are wrong, delete them in \
+        the file (an empty cell or null): up to 3 missing samples are bridged by a straight line",
+        listed(&times)
+    )
+}
+
+/// Spikes of a channel in a record.
+struct RecordSpikes<'r> {
+    record: &'r FlightRecord,
+    spikes: Option<Spikes>,
+}
+
+impl<'r> RecordSpikes<'r> {
+    /// Searches the spikes of a channel in each record.
+    fn of_channel(records: &'r [FlightRecord], signal: &Signal) -> Vec<Self> {
+        let mut found = Vec::with_capacity(records.len());
+        for record in records {
+            found.push(Self {
+                record,
+                spikes: Spikes::find(finite_samples(record, signal)),
+            });
+        }
+        found
+    }
+
+    /// Returns the samples of the channel that are in no spike.
+    fn other_samples(&self, signal: &Signal) -> Vec<Sample> {
+        let mut samples = finite_samples(self.record, signal);
+        if let Some(spikes) = &self.spikes {
+            samples.retain(|sample| !spikes.contain(sample.time_s));
+        }
+        samples
+    }
+
+    /// Returns the values of the channel that are in no spike.
+    fn other_values(&self, signal: &Signal) -> Vec<f64> {
+        self.other_samples(signal)
+            .into_iter()
+            .map(|sample| sample.value)
+            .collect()
+    }
+
+    fn caution(&self, signal: &Signal) -> Option<RecordCaution> {
+        let spikes = self.spikes.as_ref()?;
+        Some(RecordCaution::Spike {
+            record: self.record.name.clone(),
+            signal: signal.clone(),
+            times_s: spikes.times_s.clone(),
+            deviations: spikes.deviations,
+        })
+    }
+}
+
 /// Returns cautions about the channels of the records as logged, and of the segments made from
 /// them.
+///
+/// Spikes are found first; the other doubts about values are about the remaining samples.
 pub(crate) fn channel_cautions(
     records: &[FlightRecord],
     segments: &[Segment],
@@ -141,28 +247,42 @@ pub(crate) fn channel_cautions(
 ) -> Vec<RecordCaution> {
     let mut cautions = Vec::new();
     for (signal, channel) in preparation.channels() {
-        cautions.extend(unit_caution(&signal, channel, segments));
+        let spikes = RecordSpikes::of_channel(records, &signal);
+        for record in &spikes {
+            cautions.extend(record.caution(&signal));
+        }
+        cautions.extend(unit_caution(&signal, channel, segments, &spikes));
         cautions.extend(stairs_caution(&signal, channel, records));
-    }
-    for (signal, _) in preparation.channels_of(ChannelSide::Output) {
-        cautions.extend(limit_caution(&signal, records));
-        cautions.extend(coarse_caution(&signal, records));
+        match signal.role {
+            ChannelSide::Input => cautions.extend(rate_caution(&signal, &spikes)),
+            ChannelSide::Output => {
+                cautions.extend(limit_caution(&signal, &spikes));
+                cautions.extend(coarse_caution(&signal, &spikes));
+            }
+        }
     }
     cautions.extend(correlation_cautions(segments, preparation));
     cautions
 }
 
-/// Returns a caution if a channel exceeds its plausible limit, which suggests a wrong unit.
+/// Returns a caution if a channel exceeds its plausible limit, apart from spikes, which suggests a
+/// wrong unit.
 fn unit_caution(
     signal: &Signal,
     channel: &ChannelPreparation,
     segments: &[Segment],
+    spikes: &[RecordSpikes<'_>],
 ) -> Option<RecordCaution> {
     let limit = channel.limit?;
-    let greatest = segments
+    let used = segments
         .iter()
         .map(|segment| segment.channel(signal).amax())
         .fold(0.0, f64::max);
+    let logged = spikes
+        .iter()
+        .flat_map(|record| record.other_values(signal))
+        .fold(0.0, |most: f64, value| most.max(value.abs()));
+    let greatest = used.min(logged);
     if greatest > limit {
         Some(RecordCaution::UnlikelyUnit {
             signal: signal.clone(),
@@ -196,12 +316,12 @@ fn stairs_caution(
 }
 
 /// Returns a caution about an output at its limit; it names the worst record.
-fn limit_caution(signal: &Signal, records: &[FlightRecord]) -> Option<RecordCaution> {
+fn limit_caution(signal: &Signal, spikes: &[RecordSpikes<'_>]) -> Option<RecordCaution> {
     let mut clipped = Vec::new();
-    for record in records {
-        let clipping = Clipping::measure(&finite_values(record, signal));
+    for record in spikes {
+        let clipping = Clipping::measure(&record.other_values(signal));
         if clipping.is_excessive() {
-            clipped.push((record, clipping.share));
+            clipped.push((record.record, clipping.share));
         }
     }
     let (record, share) = clipped.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
@@ -213,9 +333,33 @@ fn limit_caution(signal: &Signal, records: &[FlightRecord]) -> Option<RecordCaut
     })
 }
 
+/// Returns a caution about an input at a rate limit; it names the record with the largest share.
+fn rate_caution(signal: &Signal, spikes: &[RecordSpikes<'_>]) -> Option<RecordCaution> {
+    let mut limited = Vec::new();
+    for record in spikes {
+        if let Some(limit) = RateLimit::find(record.other_samples(signal)) {
+            limited.push((record.record, limit));
+        }
+    }
+    let (record, limit) = limited
+        .iter()
+        .max_by(|a, b| a.1.share.total_cmp(&b.1.share))?;
+    Some(RecordCaution::RateLimited {
+        record: record.name.clone(),
+        signal: signal.clone(),
+        rate: limit.rate,
+        percent: 100.0 * limit.share,
+        records: limited.len(),
+    })
+}
+
 /// Returns a caution about an output that is logged in coarse steps.
-fn coarse_caution(signal: &Signal, records: &[FlightRecord]) -> Option<RecordCaution> {
-    let steps = coarseness(&values_of_all(records, signal))?;
+fn coarse_caution(signal: &Signal, spikes: &[RecordSpikes<'_>]) -> Option<RecordCaution> {
+    let values: Vec<f64> = spikes
+        .iter()
+        .flat_map(|record| record.other_values(signal))
+        .collect();
+    let steps = coarseness(&values)?;
     if steps > COARSE {
         Some(RecordCaution::Coarse {
             signal: signal.clone(),
@@ -323,6 +467,12 @@ impl RecordCaution {
             } => CautionNote::new("collinear-inputs").with_channel(second),
             Self::Copy { copy, .. } => CautionNote::new("copy").with_channel(copy),
             Self::AtLimit { record, signal, .. } => CautionNote::new("clipped")
+                .with_record(record)
+                .with_channel(signal),
+            Self::Spike { record, signal, .. } => CautionNote::new("spike")
+                .with_record(record)
+                .with_channel(signal),
+            Self::RateLimited { record, signal, .. } => CautionNote::new("rate-limited")
                 .with_record(record)
                 .with_channel(signal),
             Self::Stuck {

@@ -109,6 +109,12 @@ impl Excitation {
             .filter(|&i| self.partial_coherence[i] < LEAST_PARTIAL_COHERENCE)
     }
 
+    /// Returns the largest median partial coherence of an input; 0 without inputs.
+    #[must_use]
+    pub fn greatest_coherence(&self) -> f64 {
+        self.partial_coherence.iter().copied().fold(0.0, f64::max)
+    }
+
     /// Whether the median condition number exceeds 1000: some inputs were moved only together.
     #[must_use]
     pub fn moved_together(&self) -> bool {

@@ -118,9 +118,9 @@ pub(super) fn caution_remedies(
 fn record_caution_remedies(records: &ConditionRecords, caution: &RecordCaution) -> Vec<Remedy> {
     match caution {
         RecordCaution::SampleHold { signal, hold_s, .. } => hold_remedies(signal, *hold_s),
-        RecordCaution::AtLimit { record, .. } | RecordCaution::Stuck { record, .. } => {
-            leave_out(records, record).into_iter().collect()
-        }
+        RecordCaution::AtLimit { record, .. }
+        | RecordCaution::Stuck { record, .. }
+        | RecordCaution::Spike { record, .. } => leave_out(records, record).into_iter().collect(),
         RecordCaution::MovedTogether { .. } => vec![show_inputs()],
         RecordCaution::UnlikelyUnit { .. } | RecordCaution::Copy { .. } => vec![Remedy::new(
             "Set its column and factor…",

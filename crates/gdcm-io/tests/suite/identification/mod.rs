@@ -7,5 +7,6 @@ mod example;
 mod late;
 mod lines;
 mod preparation;
+mod record_doubts;
 mod validation;
 mod whole;

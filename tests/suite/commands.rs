@@ -875,8 +875,8 @@ fn the_real_aircraft_is_written_with_its_records_and_licences() {
     }
     // A file that is there already is kept, and then no file is written.
     fs::remove_file(desk.path("real/antx/sweep.mat")).unwrap();
-    desk.refusal(&["example", "real", "--real"])
-        .assert_code("exists", &["real/pelican/LICENSE"]);
+    desk.gdcm(&["example", "real", "--real"])
+        .assert_failed(2, &["real/pelican/LICENSE", "--force overwrites"]);
     assert!(!desk.path("real/antx/sweep.mat").exists());
     desk.gdcm(&["example", "real", "--real", "--force"])
         .assert_done();

@@ -7,5 +7,6 @@ mod example;
 mod late;
 mod lines;
 mod preparation;
+mod real_aircraft;
 mod validation;
 mod whole;

@@ -1131,12 +1131,13 @@ fn the_tutorial_of_the_real_aircraft_ends_with_the_figures_of_the_example() {
     for (condition, output, input) in [(0, 0, 1), (0, 1, 0), (0, 2, 2), (1, 0, 1), (1, 1, 0)] {
         let found = &own["conditions"][condition];
         let expected = &written["conditions"][condition];
-        // Half the 90 % error bar of the gain, and a quarter of a sample: the models of a
-        // neighbouring order, which another version may choose, lie within them.
+        // Below half the 90 % error bar of the gain (7 %, of yaw 18 %), and half a sample: the
+        // models of a neighbouring order, which another version may choose, lie within them.
         let gain = figure_of(found, "G", output, input);
-        assert!((gain / figure_of(expected, "G", output, input) - 1.0).abs() < 0.03);
+        let tolerance = if input == 2 { 0.08 } else { 0.03 };
+        assert!((gain / figure_of(expected, "G", output, input) - 1.0).abs() < tolerance);
         let delay_s = figure_of(found, "D_s", output, input);
-        assert!((delay_s - figure_of(expected, "D_s", output, input)).abs() < 0.005);
+        assert!((delay_s - figure_of(expected, "D_s", output, input)).abs() < 0.01);
     }
     // The part of the flight that is held out is predicted indoors only, and the program says so.
     for (id, limits) in [(1, 0.8..1.3), (2, 2.0..6.0)] {

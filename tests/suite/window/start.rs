@@ -96,7 +96,12 @@ fn the_start_page_opens_the_real_aircraft_with_its_records() {
     window
         .state_mut()
         .dispatch(LayoutCommand::ShowView(View::Records));
-    settle(&mut window);
+    wait_until(&mut window, "its records", |window| {
+        state(window)
+            .records
+            .conditions
+            .contains_key(&ConditionId(1))
+    });
     let records = &state(&window).records.conditions[&ConditionId(1)];
     let held_out: Vec<bool> = records.rows.iter().map(|row| row.guess.held_out).collect();
     assert_eq!(held_out, [false, true]);

@@ -55,11 +55,12 @@ fn assert_figures_of_the_tutorial(study: &Study) {
         );
     }
     let yaw = figures(indoors, study, "R", "YAW");
-    // The gain has an error bar of 22 %; a tenth of the delay is a quarter of a sample.
-    assert_within(yaw.gain, 1.06, 0.08);
+    // The gain has an error bar of 20 %; a tenth of the delay is a quarter of a sample.
+    assert_within(yaw.gain, 1.04, 0.08);
     assert_within(yaw.delay_s, 0.052, 0.005);
     assert_within(yaw.before, 48.0, 10.0);
-    assert!(yaw.after < 5.0, "{yaw:?}");
+    // 1.5 with order 6, 4.6 with order 5; below 50 is nearly indistinguishable from flight.
+    assert!(yaw.after < 10.0, "{yaw:?}");
     let outdoors = analysis.condition(OUTDOORS).unwrap();
     for [output, input] in [["P", "ROL"], ["Q", "PIT"]] {
         let found = figures(outdoors, study, output, input);

@@ -89,13 +89,17 @@ pub enum Command {
         #[arg(long, value_name = "CHANNEL=SIGN", value_parser = channel_sign, allow_hyphen_values = true)]
         sign: Vec<ChannelSign>,
     },
-    /// Write the embedded example (synthetic data) as a file that shows the format.
-    #[command(after_help = "Examples:\n  gdcm example .\n  gdcm example learn --force")]
+    /// Write the embedded example (synthetic data) as a file that shows the format; with --real, a real aircraft with its
+    /// physics model and flight records.
+    #[command(after_help = "Examples:\n  gdcm example .\n  gdcm example real --real --force")]
     Example {
-        /// Directory for the file, created if missing.
+        /// Directory for the files, created if missing.
         #[arg(value_name = "DIR")]
         directory: PathBuf,
-        /// Overwrite an existing file.
+        /// Write the example Real aircraft: physics models, flight records and licences of two quadrotors.
+        #[arg(long)]
+        real: bool,
+        /// Overwrite existing files.
         #[arg(long)]
         force: bool,
     },

@@ -58,11 +58,10 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use gdcm_io::files::dataset_file::write_example;
 use gdcm_io::files::opened_file::holds_models;
 use gdcm_io::files::study_file::open_study_of;
 use gdcm_io::reading_budget::ReadingBudget;
-use gdcm_io::{Existing, Opened, load_any};
+use gdcm_io::{Example, Existing, Opened, load_any};
 use gdcm_model::message_text::sanitized_path;
 use gdcm_words::dataset_differences::dataset_difference_text;
 
@@ -132,7 +131,11 @@ fn carry_out(command: &Command) -> Result<(), Failure> {
             opening,
             sign,
         } => check::check(file, opening, sign),
-        Command::Example { directory, force } => example(directory, existing(*force)),
+        Command::Example {
+            directory,
+            real,
+            force,
+        } => write_example(chosen_example(*real), directory, existing(*force)),
     }
 }
 
@@ -166,15 +169,36 @@ fn open(file: &Path, arguments: &OpeningArguments) -> Result<Opened, Failure> {
     Ok(opened)
 }
 
-/// Writes the embedded example into a directory and reports the path.
-fn example(directory: &Path, existing: Existing) -> Result<(), Failure> {
-    let path = write_example(directory, existing)?;
-    print(&format!(
-        "{}: the example dataset (synthetic data)\nits flight records, example-records.zip, are \
-        in the folder assets of the program's source code; the window finds them if they are \
-        beside the dataset\n",
-        sanitized_path(&path)
-    ))
+fn chosen_example(is_real: bool) -> Example {
+    if is_real {
+        Example::RealAircraft
+    } else {
+        Example::Simulated
+    }
+}
+
+/// Writes an embedded example into a directory, and reports the paths and what is in them.
+fn write_example(example: Example, directory: &Path, existing: Existing) -> Result<(), Failure> {
+    let paths = example.write(directory, existing)?;
+    let mut text = String::new();
+    for path in &paths {
+        text.push_str(&sanitized_path(path));
+        text.push('\n');
+    }
+    text.push_str(match example {
+        Example::Simulated => {
+            "the example dataset (synthetic data)\nits flight records, example-records.zip, are in \
+             the folder assets of the program's source code; the window finds them if they are \
+             beside the dataset\n"
+        }
+        Example::RealAircraft => {
+            "pelican: a published physics model of a quadrotor (physics.json), records of two \
+             flights, and the dataset with the models identified from them (real-aircraft.json)\n\
+             antx: a physics model and records of a second quadrotor\n\
+             flight data of others: each LICENSE applies to the files beside it\n"
+        }
+    });
+    print(&text)
 }
 
 fn existing(force: bool) -> Existing {

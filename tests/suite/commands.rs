@@ -8,7 +8,8 @@ use std::process::{Command, Output, Stdio};
 
 use serde_json::{Value, json};
 
-use gdcm_io::{load_dataset, save_study};
+use gdcm_io::{Example, load_dataset, load_example, save_study};
+use gdcm_model::dataset::BundleKind;
 use gdcm_study::Study;
 use gdcm_study::decisions::setting;
 
@@ -835,6 +836,51 @@ fn the_example_is_written_and_can_be_read() {
     let path = desk.path("learn/the format/example-dataset.json");
     assert_eq!(load_dataset(&path).unwrap().dataset.conditions().len(), 11);
     assert!(ended.out.contains("learn/the format/example-dataset.json"));
+}
+
+#[test]
+fn the_real_aircraft_is_written_with_its_records_and_licences() {
+    let desk = Desk::new();
+    let ended = desk.gdcm(&["example", "real", "--real"]);
+    ended.assert_done();
+    let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/real-aircraft");
+    for file in [
+        "pelican/physics.json",
+        "pelican/records.zip",
+        "pelican/LICENSE",
+        "antx/physics.json",
+        "antx/prbs.mat",
+        "antx/sweep.mat",
+        "antx/LICENSE",
+    ] {
+        assert!(ended.out.contains(&format!("real/{file}\n")), "{ended:?}");
+        assert!(
+            fs::read(desk.path("real").join(file)).unwrap() == fs::read(assets.join(file)).unwrap(),
+            "{file}"
+        );
+    }
+    let written = load_dataset(&desk.path("real/pelican/real-aircraft.json")).unwrap();
+    let embedded = load_example(Example::RealAircraft).unwrap();
+    assert_eq!(
+        (written.dataset, written.cautions),
+        (embedded.dataset, vec![])
+    );
+    for physics in ["pelican", "antx"] {
+        let path = format!("real/{physics}/physics.json");
+        let physics = load_dataset(&desk.path(&path)).unwrap();
+        assert!(physics.cautions.is_empty(), "{:?}", physics.cautions);
+        for condition in physics.dataset.conditions() {
+            assert!(condition.bundle(BundleKind::Identified).is_empty());
+        }
+    }
+    // A file that is there already is kept, and then no file is written.
+    fs::remove_file(desk.path("real/antx/sweep.mat")).unwrap();
+    desk.gdcm(&["example", "real", "--real"])
+        .assert_failed(2, &["real/pelican/LICENSE", "--force overwrites"]);
+    assert!(!desk.path("real/antx/sweep.mat").exists());
+    desk.gdcm(&["example", "real", "--real", "--force"])
+        .assert_done();
+    assert!(desk.path("real/antx/sweep.mat").exists());
 }
 
 #[test]

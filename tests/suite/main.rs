@@ -4,7 +4,9 @@
 use std::path::Path;
 use std::sync::LazyLock;
 
-use gdcm_io::{DatasetOrigin, LoadedDataset, embedded_example, load_dataset, load_dataset_bytes};
+use gdcm_io::{
+    DatasetOrigin, Example, LoadedDataset, embedded_example, load_dataset, load_dataset_bytes,
+};
 
 mod assembling;
 mod commands;
@@ -64,7 +66,11 @@ static FEW_TEXT: LazyLock<Vec<u8>> = LazyLock::new(|| {
 /// The conditions of [`FEW_TEXT`], loaded. The program contains flight records of conditions 3 and
 /// 10.
 static FEW: LazyLock<LoadedDataset> = LazyLock::new(|| {
-    load_dataset_bytes(&FEW_TEXT, DatasetOrigin::EmbeddedExample).expect("it is a dataset")
+    load_dataset_bytes(
+        &FEW_TEXT,
+        DatasetOrigin::EmbeddedExample(Example::Simulated),
+    )
+    .expect("it is a dataset")
 });
 
 /// Dataset for which independent code computed the reference values: the example's physics models,

@@ -174,7 +174,10 @@ fn requirements_are_those_of_the_command_and_time_histories_stand_where_there_ar
     assert!(!REPORT.contains("Share of time"), "no record was given");
 
     let channels = RecordChannels::of_dataset(&FEW.dataset).of_named_records();
-    let tables = example_records(3).unwrap().into_iter().take(1);
+    let tables = example_records(gdcm_io::Example::Simulated, 3)
+        .unwrap()
+        .into_iter()
+        .take(1);
     let proposed = |table| LaidOutRecord::proposed(table, &channels, &TimeWish::default()).0;
     let records: Vec<LaidOutRecord> = tables.map(proposed).collect();
     let (inputs, outputs) = FEW.dataset.names_of_channels();

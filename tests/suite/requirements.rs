@@ -516,7 +516,7 @@ fn a_record_is_drawn_with_its_corridor_the_difference_and_what_is_outside() {
         .analyze(&Study::new(dataset.clone()), &Unobserved)
         .unwrap();
     let channels = gdcm_sysid::records::RecordChannels::of_dataset(&dataset).of_named_records();
-    let table = gdcm_io::import::record_files::example_records(3)
+    let table = gdcm_io::import::record_files::example_records(gdcm_io::Example::Simulated, 3)
         .unwrap()
         .remove(0);
     let record =

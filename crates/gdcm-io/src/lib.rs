@@ -43,8 +43,9 @@ pub use gdcm_model::dataset::limits::LARGEST_TEXT;
 
 pub use crate::file_error::FileError;
 pub use crate::files::dataset_file::{
-    DatasetOrigin, LoadedDataset, embedded_example, load_dataset, load_dataset_bytes,
+    DatasetOrigin, LoadedDataset, embedded_example, load_dataset, load_dataset_bytes, load_example,
 };
+pub use crate::files::example::Example;
 pub use crate::files::opened_file::{Opened, load_any};
 pub use crate::files::study_file::save_study;
 pub use crate::formats::FolderProgress;

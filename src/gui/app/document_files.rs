@@ -63,9 +63,12 @@ impl DocumentFiles {
 
     /// Returns the stem from which names of files with results are formed.
     pub(super) fn stem(&self) -> String {
+        if let Some(example) = self.loaded.origin.example() {
+            return example.file_stem().to_owned();
+        }
         match self.loaded.path().and_then(Path::file_stem) {
             Some(stem) => stem.to_string_lossy().trim_end_matches(".json").to_owned(),
-            None => "example".to_owned(),
+            None => "dataset".to_owned(),
         }
     }
 

@@ -28,7 +28,7 @@ impl GdcmApp {
             }
             FileCommand::Open(path) => self.open(path, None),
             FileCommand::OpenStudyOf(study, dataset) => self.open(study, Some(dataset)),
-            FileCommand::OpenExample => self.open_example(),
+            FileCommand::OpenExample(example) => self.open_example(example),
             FileCommand::CloseStudy if self.state.unsaved => self.ask_to_lose(PendingAction::Close),
             FileCommand::CloseStudy => self.close_study(),
             FileCommand::RestoreRecovery(offer) => self.restore(offer),

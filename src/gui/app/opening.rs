@@ -11,7 +11,9 @@ use std::path::PathBuf;
 use gdcm_io::files::opened_file::holds_models;
 use gdcm_io::files::study_file::open_study_of;
 use gdcm_io::reading_budget::ReadingBudget;
-use gdcm_io::{FileError, LoadedDataset, Opened, embedded_example, load_any};
+use gdcm_io::{
+    Example, FileError, LoadedDataset, Opened, embedded_example, load_any, load_example,
+};
 use gdcm_model::message_text::sanitized_path;
 use gdcm_study::decisions::dataset_differences::Difference;
 
@@ -45,7 +47,7 @@ impl GdcmApp {
             state.forms.shown = Some(FormKind::Differences);
         }
         state.differences = differences;
-        state.is_example = loaded.path().is_none();
+        state.example = loaded.origin.example();
         let study = if state.unsaved { None } else { Some(study) };
         let saved = SavedStudy { path, study };
         (state, loaded, saved)
@@ -122,12 +124,12 @@ impl GdcmApp {
         });
     }
 
-    /// Opens the embedded example.
-    pub(super) fn open_example(&mut self) {
-        self.answer_opened(ReadFor::Opening, embedded_example().map(Opened::Dataset));
+    /// Opens an embedded example.
+    pub(super) fn open_example(&mut self, example: Example) {
+        self.answer_opened(ReadFor::Opening, load_example(example).map(Opened::Dataset));
     }
 
-    /// Closes the study: shows the start page, with the example behind it.
+    /// Closes the study: shows the start page, with the simulated example behind it.
     pub(super) fn close_study(&mut self) {
         let Some(example) = self.value_or_notify(embedded_example()) else {
             return;

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use gdcm_io::{DatasetOrigin, FileError};
+use gdcm_io::FileError;
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::number_format::counted;
 use gdcm_sysid::records::{LaidOutRecord, RecordChannels, leave_out_copies};
@@ -39,7 +39,7 @@ impl GdcmApp {
         {
             return;
         }
-        self.state.records.is_example = self.files.loaded.origin == DatasetOrigin::EmbeddedExample;
+        self.state.records.example = self.files.loaded.origin.example();
         let own = self.own_records();
         if !own.has_some(id) {
             self.records_of(id);

@@ -29,7 +29,7 @@ pub(super) struct ReadRecords {
     pub(super) read_from: BTreeMap<String, PathBuf>,
 }
 
-/// Source of the conditions' own records: the files that the dataset lists, or the embedded
+/// Source of the conditions' own records: the files that the dataset lists, or an embedded
 /// example.
 #[derive(Clone)]
 pub(super) struct OwnRecords {
@@ -47,7 +47,7 @@ impl OwnRecords {
     /// Returns whether a condition may have its own records.
     pub(super) fn has_some(&self, id: ConditionId) -> bool {
         match &self.origin {
-            DatasetOrigin::EmbeddedExample => true,
+            DatasetOrigin::EmbeddedExample(_) => true,
             DatasetOrigin::File(_) => !self.entries(id).is_empty(),
         }
     }
@@ -74,8 +74,8 @@ impl OwnRecords {
         let channels = channels.clone().of_named_records();
         for id in ids {
             let rows = found.own.entry(*id).or_default();
-            if self.origin == DatasetOrigin::EmbeddedExample {
-                for table in example_records(id.0)? {
+            if let DatasetOrigin::EmbeddedExample(example) = self.origin {
+                for table in example_records(example, id.0)? {
                     rows.push(laid_out(table, &channels, None));
                 }
             }

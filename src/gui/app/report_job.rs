@@ -27,7 +27,7 @@ impl GdcmApp {
             return;
         }
         let study = self.files.saved.path.as_deref();
-        let name = report_name(study.or(self.files.loaded.path()));
+        let name = report_name(study.or(self.files.loaded.path()), &self.files.stem());
         let path = self.state.forms.typed_in(FormKind::Report);
         *path = Path::new(path.trim())
             .with_file_name(name)
@@ -134,11 +134,12 @@ impl Job for ReportJob {
     }
 }
 
-/// Returns a file name for the report of a study or a dataset: `flight-7-report.html`.
-fn report_name(file: Option<&Path>) -> String {
+/// Returns a file name for the report of a study or a dataset, `flight-7-report.html`; without a
+/// file, from `stem`.
+fn report_name(file: Option<&Path>, stem: &str) -> String {
     let name = match file {
         Some(file) => study_name(Some(file)),
-        None => "example".to_owned(),
+        None => stem.to_owned(),
     };
     let stem = name.split(".gdcm-study").next().unwrap_or(&name);
     let stem = stem.trim_end_matches(".gz").trim_end_matches(".json");
@@ -151,13 +152,13 @@ mod tests {
 
     #[test]
     fn a_report_is_named_after_its_study_or_else_after_its_dataset() {
-        assert_eq!(report_name(None), "example-report.html");
+        assert_eq!(report_name(None, "example"), "example-report.html");
         assert_eq!(
-            report_name(Some(Path::new("/a/flight 7.gdcm-study.json"))),
+            report_name(Some(Path::new("/a/flight 7.gdcm-study.json")), ""),
             "flight 7-report.html"
         );
         assert_eq!(
-            report_name(Some(Path::new("data.json.gz"))),
+            report_name(Some(Path::new("data.json.gz")), ""),
             "data-report.html"
         );
     }

@@ -119,7 +119,7 @@ impl GdcmApp {
 
     /// Shows what the engineer sees first: a problem, the start page, or the guided tour.
     fn show_first_page(&mut self, trouble: Option<String>, offers_tour: bool) {
-        self.state.on_start_page = self.state.is_example
+        self.state.on_start_page = self.state.example.is_some()
             && self.state.display.layout.opens_with == OpensWith::StartPage
             && trouble.is_none();
         if let Some(trouble) = trouble {

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use gdcm_io::Example;
+
 use crate::gui::state::forms::RequirementTable;
 
 /// Opens, saves, reloads or closes a file.
@@ -21,7 +23,8 @@ pub enum FileCommand {
     Open(PathBuf),
     /// Opens a study whose dataset has moved: study path, dataset path.
     OpenStudyOf(PathBuf, PathBuf),
-    OpenExample,
+    /// Opens an example that is part of the program.
+    OpenExample(Example),
     /// Closes the study and shows the start page.
     CloseStudy,
     /// Saves the study to its file.

@@ -2,6 +2,8 @@
 
 use egui::Key;
 
+use gdcm_io::Example;
+
 use super::assembling::AssemblingCommand;
 use super::command::Command;
 use super::entry::{CTRL, CTRL_SHIFT, Entry, Menu, group};
@@ -26,7 +28,7 @@ pub(super) fn file_entries(state: &State) -> Vec<Entry> {
         .collect()
 }
 
-fn open_entries() -> [Entry; 5] {
+fn open_entries() -> [Entry; 6] {
     [
         Entry::new(
             "Open…",
@@ -43,7 +45,12 @@ fn open_entries() -> [Entry; 5] {
         Entry::new(
             "Open the example",
             "The simulated dataset that comes with the program",
-            FileCommand::OpenExample,
+            FileCommand::OpenExample(Example::Simulated),
+        ),
+        Entry::new(
+            "Open the real aircraft",
+            "Published physics model and two flights of a quadrotor; they come with the program",
+            FileCommand::OpenExample(Example::RealAircraft),
         ),
         Entry::new(
             "Import models…",

@@ -14,14 +14,14 @@ use crate::gui::widgets::palette::Palette;
 /// Draws everything between the side panels.
 pub fn centre_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     view_bar_ui(ui, state, palette, commands);
-    if state.is_example {
+    if let Some(example) = state.example {
         let frame = Frame::new().inner_margin(Margin {
             left: PADDING,
             right: PADDING,
             top: 2,
             bottom: 0,
         });
-        frame.show(ui, |ui| example_line_ui(ui, palette, commands));
+        frame.show(ui, |ui| example_line_ui(ui, example, palette, commands));
     }
     if let Some(dock) = state.display.layout.arrangement.dock() {
         dock_ui(ui, state, dock, palette, commands);

@@ -133,6 +133,11 @@ fn about_ui(form: &mut Form<'_, '_>) {
          responses exactly.",
     );
     form.explain("The embedded example is simulated; nothing in it comes from a real aircraft.");
+    form.explain(
+        "The example Real aircraft: model and flights of the AscTec Pelican, © 2011-2013 Renzo De \
+         Nardi, University College London, BSD-3-Clause; flights of the ANT-X drone, © 2025 \
+         MattiaDiMauro, MIT. gdcm example --real writes the licences.",
+    );
     form.explain("MIT OR Apache-2.0");
     form.button_ui("Close", true, FormCommand::ShowForm(None));
 }

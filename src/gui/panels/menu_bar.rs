@@ -5,6 +5,8 @@ use egui::{
     StrokeKind, ThemePreference, Ui, pos2, vec2,
 };
 
+use gdcm_io::Example;
+
 use crate::gui::commands::command::Command;
 use crate::gui::commands::command_table::command_table;
 use crate::gui::commands::entry::Menu;
@@ -80,6 +82,7 @@ fn search_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) -> f32
 /// Draws menu entries, in groups separated by lines.
 fn menu_ui(ui: &mut Ui, state: &State, menu: Menu, commands: &mut Vec<Command>) {
     let mut last = None;
+    let first_example = Command::File(FileCommand::OpenExample(Example::ALL[0]));
     for entry in command_table(state) {
         let Some((within, group)) = entry.menu else {
             continue;
@@ -91,8 +94,7 @@ fn menu_ui(ui: &mut Ui, state: &State, menu: Menu, commands: &mut Vec<Command>) 
             ui.separator();
         }
         last = Some(group);
-        let is_recent_place =
-            entry.command == Command::File(FileCommand::OpenExample) && !state.recent.is_empty();
+        let is_recent_place = entry.command == first_example && !state.recent.is_empty();
         if is_recent_place {
             ui.menu_button("Open recent", |ui| recent_menu_ui(ui, state, commands));
         }

@@ -2,12 +2,14 @@
 
 use egui::{Button, Frame, Margin, RichText, Sense, Stroke, Ui, vec2};
 
+use gdcm_io::Example;
 use gdcm_model::dataset::BundleKind;
 use gdcm_model::number_format::counted;
 
 use super::cost_picture::{PICTURE_HEAD, cost_picture_height, cost_picture_ui};
 use super::phase_sketch::phase_sketch_ui;
 use crate::gui::commands::command::Command;
+use crate::gui::commands::file::FileCommand;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::window_state::State;
 use crate::gui::views::frequency_curves::bode_curves;
@@ -43,10 +45,11 @@ pub(super) fn open_study_card_ui(
             means matched. Right: phases of the identified and the corrected model.",
         ));
         ui.add_space(12.0);
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             ui.add(Button::new(words.back).min_size(vec2(0.0, 28.0)))
                 .asks(LayoutCommand::ShowStart(false), commands);
-            if !state.is_example {
+            examples_ui(ui, state.example, commands);
+            if state.example.is_none() {
                 return;
             }
             let text = RichText::new("Guided tour, five notes").color(palette.accent);
@@ -56,6 +59,28 @@ pub(super) fn open_study_card_ui(
             }
         });
     });
+}
+
+/// Draws a button for each example that is not open.
+fn examples_ui(ui: &mut Ui, open: Option<Example>, commands: &mut Vec<Command>) {
+    for example in Example::ALL {
+        if open == Some(example) {
+            continue;
+        }
+        let (name, meaning) = match example {
+            Example::Simulated => (
+                "Simulated example",
+                "Eleven flight conditions of a helicopter with known deficits",
+            ),
+            Example::RealAircraft => (
+                "Real aircraft",
+                "A quadrotor: its published physics model, corrected from two flights",
+            ),
+        };
+        ui.add(Button::new(name).min_size(vec2(0.0, 28.0)))
+            .on_hover_text(meaning)
+            .asks(FileCommand::OpenExample(example), commands);
+    }
 }
 
 /// Texts about the open study.
@@ -74,7 +99,16 @@ impl StudyWords {
             .map(|condition| condition.bundle(BundleKind::Physics).len())
             .sum();
         let count = conditions.len();
-        if state.is_example {
+        if state.example == Some(Example::RealAircraft) {
+            return Self {
+                title: "Real aircraft".to_owned(),
+                content: "AscTec Pelican, a quadrotor: its published physics model, two flights \
+                          of 2011, and the models identified from them."
+                    .to_owned(),
+                back: "Continue",
+            };
+        }
+        if state.example == Some(Example::Simulated) {
             return Self {
                 title: "No data at hand?".to_owned(),
                 content: format!(

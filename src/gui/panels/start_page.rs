@@ -6,6 +6,8 @@ use egui::{
     StrokeKind, Ui, UiBuilder, pos2, vec2,
 };
 
+use gdcm_io::Example;
+
 use super::open_study_card::open_study_card_ui;
 use super::start_icons::{folder_icon, sheet_icon, wave_icon};
 use crate::gui::commands::assembling::AssemblingCommand;
@@ -70,13 +72,22 @@ fn ways() -> [Way; 3] {
 }
 
 /// Draws the three ways to begin as links above the example's plots.
-pub fn example_line_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
+pub fn example_line_ui(
+    ui: &mut Ui,
+    example: Example,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let words = match example {
+        Example::Simulated => "Simulated example. Your own data:",
+        Example::RealAircraft => "Real aircraft, two flights of 2011. Your own data:",
+    };
     let size = vec2(ui.available_width(), 18.0);
     ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
         ui.spacing_mut().button_padding = egui::Vec2::ZERO;
         ui.spacing_mut().interact_size.y = 16.0;
-        ui.label(palette.small("Simulated example. Your own data:"));
+        ui.label(palette.small(words));
         for (place, way) in ways().into_iter().enumerate() {
             if place > 0 {
                 ui.label(palette.small("·"));

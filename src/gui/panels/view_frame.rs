@@ -20,7 +20,7 @@ pub(super) fn view_frame_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let top = if state.is_example { 0 } else { 6 };
+    let top = if state.example.is_some() { 0 } else { 6 };
     let padding = Margin {
         left: PADDING,
         right: PADDING,

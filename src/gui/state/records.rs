@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
+use gdcm_io::Example;
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::jobs::identification_jobs::IdentifyJob;
 use gdcm_study::results::required_modes::KnownPoles;
@@ -29,8 +30,8 @@ pub struct RecordsBefore {
 pub struct RecordsState {
     /// Records by condition; without an entry, the records of a condition are not loaded yet.
     pub conditions: BTreeMap<ConditionId, ConditionRecords>,
-    /// Whether the dataset is the example, which has embedded records.
-    pub is_example: bool,
+    /// The example that the dataset is, if any: its records are part of the program.
+    pub example: Option<Example>,
     pub page: RecordsPage,
     /// Sorting of the table of conditions.
     pub sorting: Sorting,

@@ -5,6 +5,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use gdcm_io::Example;
 use gdcm_model::dataset::{BundleKind, Condition, Dataset, ModelId};
 use gdcm_study::Study;
 use gdcm_study::decisions::dataset_differences::Difference;
@@ -33,8 +34,8 @@ pub struct RecentFile {
 pub struct State {
     /// The study, the only saved part.
     pub study: Study,
-    /// Whether the dataset is the embedded example.
-    pub is_example: bool,
+    /// The embedded example that the dataset is, if any.
+    pub example: Option<Example>,
     /// Whether the start page covers everything else.
     pub on_start_page: bool,
     /// Dataset to which [`Self::follow_dataset`] last adapted the displayed selection.
@@ -87,7 +88,7 @@ impl State {
         Self {
             followed: Arc::clone(&study.dataset),
             study,
-            is_example: false,
+            example: None,
             on_start_page: false,
             history: History::default(),
             study_name,

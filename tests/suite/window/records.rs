@@ -14,11 +14,13 @@ use gdcm::gui::commands::study::StudyCommand;
 use gdcm::gui::state::records::RecordsPage;
 use gdcm::gui::state::view::View;
 use gdcm::gui::views::records::condition_table;
+use gdcm_io::{Example, Existing};
 use gdcm_model::dataset::Band;
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::condition::RecordKind;
 use gdcm_model::response::{FrequencyGrid, PreparedModel};
 use gdcm_model::simulation::Signal;
+use gdcm_study::decisions::adopted_models::OfferedModels;
 use gdcm_study::decisions::setting;
 use gdcm_sysid::identification::SearchSpace;
 
@@ -1285,4 +1287,47 @@ fn topics_with_clocks_of_their_own_become_the_record_of_a_dataset() {
     assert!(is_at(&window, 3.0), "its own band goes before the study's");
     give(&mut window, RecordsCommand::SetBand(None));
     assert!(is_at(&window, 6.0), "{} Hz", rate_hz(&window));
+}
+
+/// The way of the tutorial: physics models alone, records added, models identified and used.
+#[test]
+fn the_physics_model_of_the_real_aircraft_is_corrected_from_its_flights() {
+    let folder = tempfile::tempdir().unwrap();
+    Example::RealAircraft
+        .write(folder.path(), Existing::Keep)
+        .unwrap();
+    let physics = folder.path().join("pelican/physics.json");
+    let mut window = window_with(
+        load_any(&physics, &Default::default()).unwrap(),
+        Setup::default(),
+    );
+    assert!(
+        state(&window).shown().is_none(),
+        "there is nothing to compare with"
+    );
+    show(&mut window, View::Records);
+    give(
+        &mut window,
+        RecordsCommand::Add(vec![folder.path().join("pelican/records.zip")]),
+    );
+    wait_until(&mut window, "the records", |window| {
+        state(window).records.conditions.len() == 2 && state(window).records.reading.is_none()
+    });
+    click(&mut window, "Identify all 2 conditions");
+    wait_until(&mut window, "the end", |window| {
+        let records = &state(window).records;
+        records.running.is_empty()
+            && records
+                .conditions
+                .values()
+                .all(|records| records.found.is_some())
+    });
+    window.run_steps(2);
+    give(&mut window, RecordsCommand::TakeAll(OfferedModels::REFINED));
+    settle(&mut window);
+    let shown = state(&window).shown().expect("the models are compared");
+    let yaw = state(&window).dataset().find_pair("R", "YAW").unwrap();
+    let delay_s = shown.comparison.delta.delay_s[yaw].unwrap();
+    // As in the tutorial; a quarter of a sample, as long as the order is 5 to 7.
+    assert!((delay_s - 0.052).abs() < 0.005, "{delay_s}");
 }

@@ -4,6 +4,8 @@ use gdcm::gui::commands::layout::LayoutCommand;
 use gdcm::gui::state::opens_with::OpensWith;
 use gdcm::gui::state::preferences::Preferences;
 
+use gdcm_io::Example;
+
 use super::*;
 
 const WAYS: [&str; 3] = ["Open dataset…", "Import models…", "Import records…"];
@@ -64,7 +66,7 @@ fn the_start_page_comes_with_close_and_from_the_menu_and_leads_back() {
     let mut window = window();
     window.key_press_modifiers(Modifiers::COMMAND, Key::W);
     window.run_steps(4);
-    assert!(state(&window).on_start_page && state(&window).is_example);
+    assert!(state(&window).on_start_page && state(&window).example == Some(Example::Simulated));
     for way in WAYS {
         window.get_by_label(way);
     }
@@ -80,6 +82,54 @@ fn the_start_page_comes_with_close_and_from_the_menu_and_leads_back() {
     assert!(state(&window).on_start_page);
     press(&mut window, "Import models…");
     assert!(state(&window).assembling.is_some());
+}
+
+#[test]
+fn the_start_page_opens_the_real_aircraft_with_its_records() {
+    let mut window = begun_with(preferring(OpensWith::StartPage));
+    press(&mut window, "Real aircraft");
+    settle(&mut window);
+    assert!(!state(&window).on_start_page);
+    assert_eq!(state(&window).example, Some(Example::RealAircraft));
+    let analysis = state(&window).analysis().expect("there are results");
+    assert_eq!(analysis.study.dataset.conditions().len(), 2);
+    window
+        .state_mut()
+        .dispatch(LayoutCommand::ShowView(View::Records));
+    wait_until(&mut window, "its records", |window| {
+        state(window)
+            .records
+            .conditions
+            .contains_key(&ConditionId(1))
+    });
+    let records = &state(&window).records.conditions[&ConditionId(1)];
+    let held_out: Vec<bool> = records.rows.iter().map(|row| row.guess.held_out).collect();
+    assert_eq!(held_out, [false, true]);
+    for way in WAYS {
+        window.get_by_label(way);
+    }
+    // The simulated example is offered beside it, and so is the start page.
+    click(&mut window, "File");
+    press(&mut window, "Start page");
+    press(&mut window, "Simulated example");
+    settle(&mut window);
+    assert_eq!(state(&window).example, Some(Example::Simulated));
+}
+
+#[test]
+fn the_menu_and_the_card_of_an_open_file_offer_both_examples() {
+    let mut window = window();
+    click(&mut window, "File");
+    press(&mut window, "Open the real aircraft");
+    settle(&mut window);
+    assert_eq!(state(&window).example, Some(Example::RealAircraft));
+    open_by_path(&mut window, &files::small_dataset());
+    assert_eq!(state(&window).example, None);
+    click(&mut window, "File");
+    press(&mut window, "Start page");
+    for name in ["Simulated example", "Real aircraft"] {
+        window.get_by_label(name);
+    }
 }
 
 #[test]

@@ -41,7 +41,7 @@ pub(super) fn stays_within(command: &Action) -> bool {
         command,
         Action::File(FileCommand::Quit)
             | Action::File(FileCommand::Open(_))
-            | Action::File(FileCommand::OpenExample)
+            | Action::File(FileCommand::OpenExample(_))
             | Action::File(FileCommand::OpenStudyOf(..))
             | Action::File(FileCommand::SaveStudy)
             | Action::File(FileCommand::AskOpen)

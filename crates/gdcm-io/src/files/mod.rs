@@ -3,6 +3,7 @@
 pub mod beginning_check;
 pub mod corrections_file;
 pub mod dataset_file;
+pub mod example;
 pub mod export_contents;
 pub mod first_start;
 pub mod identified_models;

@@ -3,6 +3,7 @@
 
 use egui::{Align, Checkbox, Color32, Grid, Label, Layout, RichText, Role, Sense, Ui, vec2};
 
+use gdcm_io::Example;
 use gdcm_model::dataset::condition::RecordKind;
 use gdcm_sysid::records::LaidOutRecord;
 
@@ -78,7 +79,7 @@ fn no_records_ui(ui: &mut Ui, page: Page<'_>) {
     let text = "No flight records of this condition yet. Add files or a folder above, or drop \
                 them here: CSV, text, .mat, .npz or .zip, with column names.";
     ui.add(Label::new(palette.small(text)).wrap());
-    if state.records.is_example {
+    if state.records.example == Some(Example::Simulated) {
         let text = "The example includes the records of conditions 3 and 10; the records of all \
                     conditions are in assets/example-records.zip of the sources.";
         ui.add(Label::new(palette.small(text)).wrap());

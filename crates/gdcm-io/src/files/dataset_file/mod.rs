@@ -17,43 +17,47 @@ use gdcm_model::message_text::{sanitized, sanitized_path};
 
 use self::conversion::CautionedDraft;
 use self::json_form::{DatasetText, FORMAT};
+use super::example::Example;
 use crate::content_fault::ContentError;
 use crate::file_error::FileError;
 use crate::file_reading::Source;
 use crate::json_writing::write_compact;
-use crate::output_set::{Existing, OutputSet, make_directory};
+use crate::output_set::{Existing, OutputSet};
 use crate::reading_budget::ReadingBudget;
 
 pub(crate) use self::json_form::{LabelText, ModelText, RecordText};
 
-/// The example dataset: a synthetic UH-60A-class helicopter at eleven flight conditions.
-const EXAMPLE: &[u8] = include_bytes!("../../../../../assets/example-dataset.json.gz");
-/// File name under which the example is written.
-const EXAMPLE_NAME: &str = "example-dataset.json";
-
-/// Origin of a dataset: a file, or the example in the program.
+/// Origin of a dataset: a file, or an example in the program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DatasetOrigin {
     File(PathBuf),
-    /// The example dataset that is part of the program.
-    EmbeddedExample,
+    /// An example that is part of the program.
+    EmbeddedExample(Example),
 }
 
 impl fmt::Display for DatasetOrigin {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             DatasetOrigin::File(path) => formatter.write_str(&sanitized_path(path)),
-            DatasetOrigin::EmbeddedExample => formatter.write_str("(embedded example)"),
+            DatasetOrigin::EmbeddedExample(example) => write!(formatter, "({})", example.name()),
         }
     }
 }
 
 impl DatasetOrigin {
-    /// Returns the path of the file; `None` for the embedded example.
+    /// Returns the example; `None` for a file.
+    pub fn example(&self) -> Option<Example> {
+        match self {
+            DatasetOrigin::File(_) => None,
+            DatasetOrigin::EmbeddedExample(example) => Some(*example),
+        }
+    }
+
+    /// Returns the path of the file; `None` for an embedded example.
     pub fn file(&self) -> Option<PathBuf> {
         match self {
             DatasetOrigin::File(path) => Some(path.clone()),
-            DatasetOrigin::EmbeddedExample => None,
+            DatasetOrigin::EmbeddedExample(_) => None,
         }
     }
 
@@ -61,7 +65,7 @@ impl DatasetOrigin {
     pub(crate) fn message_path(&self) -> PathBuf {
         match self {
             DatasetOrigin::File(path) => path.clone(),
-            DatasetOrigin::EmbeddedExample => PathBuf::from(self.to_string()),
+            DatasetOrigin::EmbeddedExample(_) => PathBuf::from(self.to_string()),
         }
     }
 }
@@ -78,15 +82,15 @@ pub struct LoadedDataset {
 }
 
 impl LoadedDataset {
-    /// Returns the path of the dataset's file; `None` for the embedded example.
+    /// Returns the path of the dataset's file; `None` for an embedded example.
     pub fn path(&self) -> Option<&Path> {
         match &self.origin {
             DatasetOrigin::File(path) => Some(path),
-            DatasetOrigin::EmbeddedExample => None,
+            DatasetOrigin::EmbeddedExample(_) => None,
         }
     }
 
-    /// Returns the name of the dataset's file; "(embedded example)" if there is no file.
+    /// Returns the name of the dataset's file, or of the embedded example in parentheses.
     pub fn file_name(&self) -> String {
         match self.path().and_then(Path::file_name) {
             Some(name) => sanitized(&name.to_string_lossy()),
@@ -123,9 +127,14 @@ pub fn load_dataset_bytes(bytes: &[u8], origin: DatasetOrigin) -> Result<LoadedD
     )
 }
 
-/// Loads the example dataset that is part of the program.
+/// Loads the dataset of the simulated example.
 pub fn embedded_example() -> Result<LoadedDataset, FileError> {
-    load_dataset_bytes(EXAMPLE, DatasetOrigin::EmbeddedExample)
+    load_example(Example::Simulated)
+}
+
+/// Loads the dataset of an example.
+pub fn load_example(example: Example) -> Result<LoadedDataset, FileError> {
+    load_dataset_bytes(example.dataset(), DatasetOrigin::EmbeddedExample(example))
 }
 
 /// Loads a dataset from the text of a file or from text in memory; all other loaders call this one.
@@ -183,23 +192,6 @@ pub(crate) fn check_dataset_text(
     budget: &ReadingBudget<'_>,
 ) -> Result<(), FileError> {
     FORMAT.decode::<DatasetText>(text, path, budget).map(drop)
-}
-
-/// Writes the example dataset, uncompressed, into a directory, which is created if missing; returns
-/// the path of the file.
-pub fn write_example(directory: &Path, existing: Existing) -> Result<PathBuf, FileError> {
-    let source = Source::from_bytes(
-        EXAMPLE,
-        &DatasetOrigin::EmbeddedExample.message_path(),
-        &ReadingBudget::default(),
-    )?;
-    let path = directory.join(EXAMPLE_NAME);
-    let mut outputs = OutputSet::new(existing, Vec::new());
-    outputs.check(&[&path])?;
-    make_directory(directory)?;
-    outputs.add(&path, |file| file.write_all(source.text()))?;
-    outputs.persist()?;
-    Ok(path)
 }
 
 /// Saves a dataset, replacing an existing file; compressed with gzip if the name ends in `.gz`.

@@ -82,10 +82,10 @@ pub(super) struct VariantText {
 /// Reference from a study to its dataset.
 #[derive(Clone, Deserialize, Serialize)]
 pub(super) struct DatasetReference {
-    /// Path relative to the study's directory, with `/` between its parts; `None` for the embedded
+    /// Path relative to the study's directory, with `/` between its parts; `None` for an embedded
     /// example.
     pub(super) path: Option<String>,
-    /// Name of the dataset, for display only.
+    /// Name of the dataset, for display; without a path, the name of the embedded example.
     pub(super) name: String,
     pub(super) sha256: String,
     /// Summary of the dataset's contents, used to find changes; absent in older studies.

@@ -12,7 +12,8 @@ use gdcm_study::decisions::dataset_differences::{Difference, Inventory};
 use self::conversion::decisions_of;
 use self::json_form::{DatasetReference, FORMAT, StudyText};
 use self::paths::{path_text, referenced_path, settled_or_absolute, slashed};
-use super::dataset_file::{DatasetOrigin, LoadedDataset, embedded_example, load_dataset_within};
+use super::dataset_file::{DatasetOrigin, LoadedDataset, load_dataset_within, load_example};
+use super::example::Example;
 use crate::file_error::FileError;
 use crate::file_reading::Source;
 use crate::json_writing::write_pretty;
@@ -24,8 +25,6 @@ pub(crate) use self::json_form::MOST_VARIANTS;
 
 /// File extension of a study.
 pub const STUDY_EXTENSION: &str = "gdcm-study.json";
-/// Dataset name in a study of the embedded example, whose dataset has no path.
-const EMBEDDED: &str = "embedded example";
 
 /// A study read from a file, with its dataset and the changes of the dataset since the study was
 /// saved.
@@ -109,7 +108,7 @@ fn load_referenced(
 ) -> Result<LoadedDataset, FileError> {
     let path = match (moved, &reference.path) {
         (Some(moved), _) => moved.to_owned(),
-        (None, None) => return embedded_example(),
+        (None, None) => return load_example(Example::from_name(&reference.name)),
         (None, Some(relative)) => referenced_path(study, relative),
     };
     match load_dataset_within(&path, budget) {
@@ -132,7 +131,10 @@ pub(crate) fn dataset_of_study(path: &Path) -> Option<String> {
         .decode::<StudyText>(source.text(), path, &budget)
         .ok()?;
     match text.dataset.path {
-        None => Some(format!("the {EMBEDDED}")),
+        None => Some(format!(
+            "the {}",
+            Example::from_name(&text.dataset.name).name()
+        )),
         Some(path) => {
             let name = Path::new(&path).file_name()?;
             Some(name.to_string_lossy().into_owned())
@@ -168,9 +170,9 @@ fn save(
     let sha256 = loaded.sha256.clone();
     let holds = Some(Inventory::from_dataset(study.file_dataset()));
     let reference = match &loaded.origin {
-        DatasetOrigin::EmbeddedExample => DatasetReference {
+        DatasetOrigin::EmbeddedExample(example) => DatasetReference {
             path: None,
-            name: EMBEDDED.to_owned(),
+            name: example.name().to_owned(),
             sha256,
             holds,
         },

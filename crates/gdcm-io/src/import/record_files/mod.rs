@@ -44,7 +44,7 @@ use crate::formats::{
 use crate::reading_budget::{MOST_MEMORY, ReadingBudget, VariableFault};
 
 pub use self::dataset_entry::relative_entry;
-pub use self::embedded_example::{EXAMPLE_RECORD_CONDITIONS, example_records};
+pub use self::embedded_example::example_records;
 
 /// Results of reading record files.
 #[derive(Clone, Debug, Default)]

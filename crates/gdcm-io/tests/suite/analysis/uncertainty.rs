@@ -48,9 +48,12 @@ fn assert_near(what: &str, found: f64, reference: &Value, tolerance: f64) {
 pub(super) fn study_of(dataset: &Value) -> Study {
     let text = serde_json::to_vec(dataset).unwrap();
     Study::new(
-        load_dataset_bytes(&text, DatasetOrigin::EmbeddedExample)
-            .unwrap()
-            .dataset,
+        load_dataset_bytes(
+            &text,
+            DatasetOrigin::EmbeddedExample(gdcm_io::Example::Simulated),
+        )
+        .unwrap()
+        .dataset,
     )
 }
 

@@ -8,7 +8,7 @@ use flate2::write::GzEncoder;
 use serde_json::{Value, json};
 
 use gdcm_io::{
-    DatasetOrigin, FileError, embedded_example, load_any, load_dataset, load_dataset_bytes,
+    DatasetOrigin, Example, FileError, embedded_example, load_any, load_dataset, load_dataset_bytes,
 };
 use gdcm_model::dataset::limits::LARGEST_TEXT;
 
@@ -147,7 +147,10 @@ fn the_embedded_example_has_eleven_conditions_and_no_cautions() {
         (example.dataset.conditions().len(), example.cautions.len()),
         (11, 0)
     );
-    assert_eq!(example.origin, DatasetOrigin::EmbeddedExample);
+    assert_eq!(
+        example.origin,
+        DatasetOrigin::EmbeddedExample(Example::Simulated)
+    );
 }
 
 #[test]

@@ -8,7 +8,8 @@ use serde_json::{Value as Json, json};
 
 use gdcm_io::files::study_file::{open_study, open_study_of};
 use gdcm_io::{
-    FileError, LoadedDataset, Opened, embedded_example, load_any, load_dataset, save_study,
+    DatasetOrigin, Example, FileError, LoadedDataset, Opened, embedded_example, load_any,
+    load_dataset, load_example, save_study,
 };
 use gdcm_method::correction::Channel;
 use gdcm_method::schedule::DelayScheduling;
@@ -300,6 +301,21 @@ fn a_study_of_the_embedded_example_has_no_path() {
         panic!("a study was saved")
     };
     assert_eq!(opened.study, study);
+}
+
+#[test]
+fn a_study_of_the_real_aircraft_opens_that_example_again() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("real-aircraft.gdcm-study.json");
+    let loaded = load_example(Example::RealAircraft).unwrap();
+    let study = Study::new(loaded.dataset.clone());
+    save_study(&study, &loaded, &path).unwrap();
+    let opened = open_study(&path).unwrap();
+    assert_eq!(
+        opened.loaded.origin,
+        DatasetOrigin::EmbeddedExample(Example::RealAircraft)
+    );
+    assert_eq!((opened.study, opened.differences), (study, vec![]));
 }
 
 #[test]

@@ -8,5 +8,6 @@ mod late;
 mod lines;
 mod preparation;
 mod record_doubts;
+mod real_aircraft;
 mod validation;
 mod whole;

@@ -62,12 +62,17 @@ const CRATES: &[(&str, ModuleTable)] = &[
                 &["spectra", "subspace", "likelihood", "options"],
             ),
             (
+                "planning",
+                &["spectra", "subspace", "likelihood", "diagnostics"],
+            ),
+            (
                 "identification",
                 &[
                     "spectra",
                     "subspace",
                     "likelihood",
                     "diagnostics",
+                    "planning",
                     "identification_error",
                     "options",
                 ],

@@ -19,7 +19,7 @@ mod noise_weights;
 pub(crate) mod order;
 pub(crate) mod prepared_data;
 #[cfg(test)]
-mod real_flight_tests;
+pub(crate) mod real_flight_tests;
 #[cfg(test)]
 mod refined_known_answers_tests;
 

@@ -12,11 +12,11 @@
 //! and model reduction", IEEE Trans. Automat. Contr. 26, 1981, with sums over the measured lines
 //! instead of integrals.
 
-use nalgebra::{Complex, DMatrix};
+use nalgebra::{DMatrix, DVector};
 
 use gdcm_model::executor::each;
 
-use super::cost::{Likelihood, SpectralLines, multiply, whiten};
+use super::cost::{Likelihood, SpectralLines, whiten};
 use super::dense_model::DenseModel;
 use super::linear_model::{LinearModel, OutputResolvents};
 
@@ -28,15 +28,30 @@ const FLOOR: f64 = 1e-14;
 /// value, so that the transformation remains well-conditioned.
 const LEAST_SINGULAR: f64 = 1e-9;
 
-/// The sums of a segment.
-struct Gramians {
-    /// `Wc`.
-    controllability: DMatrix<f64>,
-    /// `Wo`.
-    observability: DMatrix<f64>,
+/// Gramians sampled at the lines.
+#[derive(Clone, Debug)]
+pub(crate) struct Gramians {
+    /// `Wc`, n x n.
+    pub(crate) controllability: DMatrix<f64>,
+    /// `Wo`, n x n.
+    pub(crate) observability: DMatrix<f64>,
 }
 
 impl Gramians {
+    /// Sums over all lines of all segments.
+    pub(crate) fn sampled(likelihood: &Likelihood, model: &DenseModel) -> Self {
+        let resolvents = likelihood.resolvents(model);
+        let of_segments = each(likelihood.executor, &likelihood.segments, |lines| {
+            Self::of_segment(lines, model, &resolvents)
+        });
+        let mut sums = Self::zeros(model.order());
+        for gramians in of_segments {
+            sums.controllability += gramians.controllability;
+            sums.observability += gramians.observability;
+        }
+        sums
+    }
+
     fn zeros(order: usize) -> Self {
         Self {
             controllability: DMatrix::zeros(order, order),
@@ -56,11 +71,9 @@ impl Gramians {
         // Real and imaginary parts side by side; the sums are then real products.
         let mut states = DMatrix::zeros(order, 2 * count);
         let mut rows = DMatrix::zeros(2 * outputs * count, order);
-        let mut x = vec![Complex::default(); order];
+        let at_lines = model.states(&lines.omega, &lines.inputs, &DVector::zeros(order));
         for (k, cr) in resolvents.at_lines(&lines.omega).into_iter().enumerate() {
-            multiply(model.b(), lines.inputs.column(k).as_slice(), &mut x);
-            model.resolve(lines.omega[k], &mut x);
-            for (state, value) in x.iter().enumerate() {
+            for (state, value) in at_lines.column(k).iter().enumerate() {
                 states[(state, 2 * k)] = value.re;
                 states[(state, 2 * k + 1)] = value.im;
             }
@@ -79,19 +92,23 @@ impl Gramians {
     }
 }
 
-/// Transforms a model to balanced coordinates; `None` if an iteration does not converge.
-pub(crate) fn balanced(likelihood: &Likelihood, model: &DenseModel) -> Option<DenseModel> {
-    let resolvents = likelihood.resolvents(model);
-    let of_segments = each(likelihood.executor, &likelihood.segments, |lines| {
-        Gramians::of_segment(lines, model, &resolvents)
-    });
-    let mut sums = Gramians::zeros(model.order());
-    for gramians in of_segments {
-        sums.controllability += gramians.controllability;
-        sums.observability += gramians.observability;
-    }
-    let reached = with_floor(sums.controllability).cholesky()?.unpack();
-    let seen = with_floor(sums.observability).cholesky()?.unpack();
+/// A change of coordinates `x = T z`.
+pub(crate) struct Coordinates {
+    /// `T`, n x n.
+    pub(crate) transformation: DMatrix<f64>,
+    /// `T^-1`, n x n.
+    pub(crate) inverse: DMatrix<f64>,
+}
+
+/// Returns the coordinates in which both Gramians are equal and diagonal; `None` if an iteration
+/// does not converge.
+pub(crate) fn balancing_coordinates(gramians: &Gramians) -> Option<Coordinates> {
+    let reached = with_floor(gramians.controllability.clone())
+        .cholesky()?
+        .unpack();
+    let seen = with_floor(gramians.observability.clone())
+        .cholesky()?
+        .unpack();
     let decomposition = (seen.transpose() * &reached).try_svd(false, true, f64::EPSILON, 10_000)?;
     let directions = decomposition.v_t?;
     let largest = decomposition.singular_values.max();
@@ -106,10 +123,13 @@ pub(crate) fn balanced(likelihood: &Likelihood, model: &DenseModel) -> Option<De
     for (mut row, root) in inverse.row_iter_mut().zip(roots.iter()) {
         row.scale_mut(*root);
     }
-    model.in_coordinates(&transformation, &inverse)
+    Some(Coordinates {
+        transformation,
+        inverse,
+    })
 }
 
-/// Scales nothing, but adds a small share of the mean to the diagonal.
+/// Adds a small share of the mean to the diagonal.
 fn with_floor(mut gramian: DMatrix<f64>) -> DMatrix<f64> {
     let order = gramian.nrows();
     let added = FLOOR * gramian.trace() / order as f64 + f64::MIN_POSITIVE;

@@ -1,6 +1,6 @@
 //! A model whose parameters are all entries of `A`, `B`, `C` and `D` (M14.19).
 
-use nalgebra::{Complex, DMatrix};
+use nalgebra::{Complex, DMatrix, DVector};
 
 use gdcm_model::dataset::StateSpace;
 use gdcm_model::response::schur_form::SchurForm;
@@ -113,6 +113,48 @@ impl DenseModel {
         BlockModel::from_state_space(&self.state_space()?)
     }
 
+    /// Computes `X = (j omega - A)^-1 (B U + tau)` at many frequencies \[rad/s\]; `inputs` is U,
+    /// inputs x lines. n x lines.
+    pub(crate) fn states(
+        &self,
+        omega: &[f64],
+        inputs: &DMatrix<Complex<f64>>,
+        transient: &DVector<f64>,
+    ) -> DMatrix<Complex<f64>> {
+        let order = self.order();
+        let driven = self.q.ad_mul(&self.b.map(Complex::from));
+        let initial = self.q.ad_mul(&transient.map(Complex::from));
+        // w = (j omega - T)^-1 Q^H (B U + tau), from the last row up; X = Q w.
+        let mut solutions = DMatrix::zeros(order, omega.len());
+        for (k, omega) in omega.iter().enumerate() {
+            let mut solution = initial.clone();
+            for (column, input) in driven.column_iter().zip(inputs.column(k).iter()) {
+                for (to, entry) in solution.iter_mut().zip(column.iter()) {
+                    *to += entry * input;
+                }
+            }
+            self.solve_schur(*omega, solution.as_mut_slice());
+            solutions.set_column(k, &solution);
+        }
+        let [q_re, q_im] = [self.q.map(|q| q.re), self.q.map(|q| q.im)];
+        let [w_re, w_im] = [solutions.map(|w| w.re), solutions.map(|w| w.im)];
+        let re = &q_re * &w_re - &q_im * &w_im;
+        let im = q_re * w_im + q_im * w_re;
+        re.zip_map(&im, Complex::new)
+    }
+
+    /// Solves `(j omega - T) w = z` in place, from the last row up.
+    fn solve_schur(&self, omega: f64, z: &mut [Complex<f64>]) {
+        for column in (0..z.len()).rev() {
+            let above = self.t.column(column);
+            z[column] /= Complex::new(0.0, omega) - above[column];
+            let solved = z[column];
+            for (entry, to) in above.iter().zip(&mut z[..column]) {
+                *to += entry * solved;
+            }
+        }
+    }
+
     /// Returns the eigenvalues of `A`.
     pub(crate) fn poles(&self) -> Vec<Complex<f64>> {
         self.t.diagonal().iter().copied().collect()
@@ -175,15 +217,7 @@ impl LinearModel for DenseModel {
                     .sum(),
             );
         }
-        // (j omega - T) w = z, from the last row up.
-        for column in (0..order).rev() {
-            let above = self.t.column(column);
-            z[column] /= Complex::new(0.0, omega) - above[column];
-            let solved = z[column];
-            for (entry, to) in above.iter().zip(&mut z[..column]) {
-                *to += entry * solved;
-            }
-        }
+        self.solve_schur(omega, &mut z);
         x.fill(Complex::default());
         for (schur_vector, value) in self.q.column_iter().zip(&z) {
             for (to, entry) in x.iter_mut().zip(schur_vector.iter()) {

@@ -9,21 +9,24 @@
 //! 4  g = Re sum (V^H e) S^H at every line: exact
 //! ```
 //!
-//! Bins narrower than the spacing of the lines hold equal frequencies of records of equal length:
-//! then `G` is exact. The changes of coordinates, n^2 of the (n + l)(n + m) directions, are
-//! orthogonal to `g`.
+//! With bins of width 0.04, the largest error of a diagonal entry of `G` is below 1 %. Bins narrower
+//! than the spacing of the lines hold equal frequencies of records of equal length: then `G` is
+//! exact. The changes of coordinates, n^2 of the (n + l)(n + m) directions, are orthogonal to `g`.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use gdcm_model::executor::each;
+use gdcm_model::executor::{Executor, each};
 
-use super::cost::{Likelihood, SegmentCost, SpectralLines, multiply, whiten};
+use super::balancing::Gramians;
+use super::cost::{Likelihood, SegmentCost, SpectralLines, whiten};
 use super::dense_model::DenseModel;
 use super::linear_model::{LinearModel, OutputResolvents};
 use super::nuisance_elimination::{NuisanceSums, VectorProducts};
 
-/// Width of a bin in ln omega: lines of the same frequency share one.
-const BIN_WIDTH: f64 = 1e-9;
+/// Width of a bin in ln omega for the steps of a descent.
+pub(crate) const BIN_WIDTH: f64 = 0.04;
+/// Width of a bin in ln omega that only lines of the same frequency share: `G` is exact.
+pub(crate) const EXACT: f64 = 1e-9;
 
 /// `G` and `g` in all entries of `[[A, B], [C, D]]`, column after column.
 pub(crate) struct DenseSystem {
@@ -33,20 +36,24 @@ pub(crate) struct DenseSystem {
     pub(crate) gradient: DVector<f64>,
     /// Diagonal of `J'J`, before the nuisance columns are eliminated.
     pub(crate) whole_diagonal: DVector<f64>,
+    /// Gramians of the states, transients included.
+    pub(crate) gramians: Gramians,
 }
 
-/// Computes `G` and `g` at a model; `parts` are the segment costs there.
+/// Computes `G` and `g` at a model, with bins of this width in ln omega; `parts` are the segment
+/// costs there.
 ///
 /// `None` if an iteration does not converge.
 pub(crate) fn dense_system(
     likelihood: &Likelihood,
     model: &DenseModel,
     parts: &[SegmentCost],
+    bin_width: f64,
 ) -> Option<DenseSystem> {
     let resolvents = likelihood.resolvents(model);
-    let binning = Binning::new(likelihood);
+    let binning = Binning::new(likelihood, bin_width);
     let products = binning.vector_products(likelihood, model);
-    let bins = binning.omega.len();
+    let bins = binning.power.len();
     let segments = likelihood.segments.iter().zip(parts).zip(&binning.places);
     let sums = each(likelihood.executor, segments, |((lines, part), places)| {
         let segment = SegmentAtModel {
@@ -57,31 +64,35 @@ pub(crate) fn dense_system(
         };
         segment.sums(places, bins)
     });
-    let inputs = model.d().ncols();
     let outputs = model.d().nrows();
-    let size = model.order() + inputs;
-    let mut squares = vec![DMatrix::<Complex<f64>>::zeros(size, size); bins];
-    let mut gradient = DMatrix::zeros(model.order() + outputs, size);
+    let order = model.order();
+    let size = order + model.d().ncols();
+    let mut squares = ScalarSquares::zeros(size, bins);
+    let mut gradient = DMatrix::zeros(order + outputs, size);
     for segment in &sums {
-        for (place, own) in &segment.squares {
-            squares[*place] += own;
-        }
+        squares.re += &segment.squares.re;
+        squares.im += &segment.squares.im;
         gradient += &segment.gradient;
     }
-    let mut matrix = kronecker_sum(&products, &squares);
+    let mut matrix = kronecker_sum(&products, &squares, likelihood.executor);
     let whole_diagonal = matrix.diagonal();
     let segments = likelihood.segments.iter().zip(&sums);
     let explained = each(likelihood.executor, segments, |(lines, sums)| {
         sums.nuisance.explained(&products, lines, model)
     });
+    let mut roots = Vec::with_capacity(explained.len());
     for root in explained {
-        let root = root?;
-        matrix.gemm(-1.0, &root, &root.transpose(), 1.0);
+        roots.push(root?);
     }
+    subtract_squares(&mut matrix, &roots, likelihood.executor);
     Some(DenseSystem {
         matrix,
         gradient: DVector::from_column_slice(gradient.as_slice()),
         whole_diagonal,
+        gramians: Gramians {
+            controllability: squares.controllability(order),
+            observability: products.observability(order, &binning.power),
+        },
     })
 }
 
@@ -91,12 +102,14 @@ struct Binning {
     omega: Vec<f64>,
     /// Segment and line whose weight represents each bin.
     representatives: Vec<(usize, usize)>,
+    /// Sum over the lines of each bin of their weights' squared scales.
+    power: Vec<f64>,
     /// Bin of each line of each segment.
     places: Vec<Vec<usize>>,
 }
 
 impl Binning {
-    fn new(likelihood: &Likelihood) -> Self {
+    fn new(likelihood: &Likelihood, width: f64) -> Self {
         let mut lines: Vec<(f64, usize, usize)> = Vec::new();
         for (segment, own) in likelihood.segments.iter().enumerate() {
             for (k, omega) in own.omega.iter().enumerate() {
@@ -107,6 +120,7 @@ impl Binning {
         let mut binning = Self {
             omega: Vec::new(),
             representatives: Vec::new(),
+            power: Vec::new(),
             places: likelihood
                 .segments
                 .iter()
@@ -116,15 +130,18 @@ impl Binning {
         let mut first = 0;
         while first < lines.len() {
             let end =
-                first + lines[first..].partition_point(|line| line.0 < lines[first].0 + BIN_WIDTH);
+                first + lines[first..].partition_point(|line| line.0 < lines[first].0 + width);
             let members = &lines[first..end];
             let mean = members.iter().map(|line| line.0).sum::<f64>() / members.len() as f64;
             let nearest = members
                 .partition_point(|line| line.0 < mean)
                 .min(members.len() - 1);
+            let mut power = 0.0;
             for &(_, segment, k) in members {
                 binning.places[segment][k] = binning.omega.len();
+                power += likelihood.segments[segment].scale.powi(2);
             }
+            binning.power.push(power);
             binning
                 .representatives
                 .push((members[nearest].1, members[nearest].2));
@@ -170,10 +187,63 @@ struct SegmentAtModel<'s> {
     resolvents: &'s OutputResolvents<'s>,
 }
 
+/// `sum conj(S) S'` in each bin, an upper triangle for each: a row for each of [`ordered_pairs`],
+/// a column for each bin.
+struct ScalarSquares {
+    /// Size of S: n + inputs.
+    size: usize,
+    re: DMatrix<f64>,
+    im: DMatrix<f64>,
+}
+
+impl ScalarSquares {
+    fn zeros(size: usize, bins: usize) -> Self {
+        let pairs = size * (size + 1) / 2;
+        Self {
+            size,
+            re: DMatrix::zeros(pairs, bins),
+            im: DMatrix::zeros(pairs, bins),
+        }
+    }
+
+    /// Adds `power conj(S) S'` to a bin; `re` and `im` are the parts of S.
+    fn add(&mut self, bin: usize, re: &[f64], im: &[f64], power: f64) {
+        let pairs = self.re.nrows();
+        let mut to_re = &mut self.re.as_mut_slice()[bin * pairs..(bin + 1) * pairs];
+        let mut to_im = &mut self.im.as_mut_slice()[bin * pairs..(bin + 1) * pairs];
+        for first in 0..self.size {
+            let length = self.size - first;
+            let (row_re, rest_re) = to_re.split_at_mut(length);
+            let (row_im, rest_im) = to_im.split_at_mut(length);
+            let first_re = power * re[first];
+            let first_im = power * im[first];
+            let seconds = re[first..].iter().zip(&im[first..]);
+            for ((to, to_im), (re, im)) in row_re.iter_mut().zip(row_im).zip(seconds) {
+                *to += first_re * re + first_im * im;
+                *to_im += first_re * im - first_im * re;
+            }
+            to_re = rest_re;
+            to_im = rest_im;
+        }
+    }
+
+    /// Computes `Re sum X X^H` over all bins for the first `order` entries of S.
+    fn controllability(&self, order: usize) -> DMatrix<f64> {
+        let sums = self.re.column_sum();
+        let mut gramian = DMatrix::zeros(order, order);
+        for (row, (first, second)) in ordered_pairs(self.size).into_iter().enumerate() {
+            if second < order {
+                gramian[(first, second)] = sums[row];
+                gramian[(second, first)] = sums[row];
+            }
+        }
+        gramian
+    }
+}
+
 /// Sums over the lines of a segment.
 struct SegmentSums {
-    /// `sum conj(S) S'` in each bin with lines, with the index of the bin.
-    squares: Vec<(usize, DMatrix<Complex<f64>>)>,
+    squares: ScalarSquares,
     nuisance: NuisanceSums,
     /// `g`, (n + outputs) x (n + inputs).
     gradient: DMatrix<f64>,
@@ -184,83 +254,95 @@ impl SegmentAtModel<'_> {
     fn sums(&self, places: &[usize], bins: usize) -> SegmentSums {
         let lines = self.lines;
         let order = self.model.order();
-        let (outputs, inputs) = self.model.d().shape();
+        let inputs = self.model.d().ncols();
         let size = order + inputs;
         let completed = lines.completed_inputs(&self.part.hat_values);
-        let power = Complex::from(lines.scale * lines.scale);
-        let mut sums = SegmentSums {
-            squares: Vec::new(),
-            nuisance: NuisanceSums::new(size, bins, lines.hats.len()),
-            gradient: DMatrix::zeros(order + outputs, size),
-        };
-        let mut x = vec![Complex::default(); order];
-        for (k, cr) in self
-            .resolvents
-            .at_lines(&lines.omega)
-            .into_iter()
-            .enumerate()
-        {
-            let input = completed.column(k);
-            multiply(self.model.b(), input.as_slice(), &mut x);
-            for (value, tau) in x.iter_mut().zip(self.part.transient.iter()) {
-                *value += tau;
+        let states = self
+            .model
+            .states(&lines.omega, &completed, &self.part.transient);
+        let mut re = DMatrix::zeros(size, lines.omega.len());
+        let mut im = re.clone();
+        re.rows_mut(0, order).copy_from(&states.map(|x| x.re));
+        im.rows_mut(0, order).copy_from(&states.map(|x| x.im));
+        re.rows_mut(order, inputs)
+            .copy_from(&completed.map(|u| u.re));
+        im.rows_mut(order, inputs)
+            .copy_from(&completed.map(|u| u.im));
+        let mut squares = ScalarSquares::zeros(size, bins);
+        let mut nuisance = NuisanceSums::new(size, bins, lines.hats.len());
+        let power = lines.scale * lines.scale;
+        let mut conjugate = vec![Complex::default(); size];
+        for (k, &place) in places.iter().enumerate() {
+            let parts = re.column(k).into_iter().zip(im.column(k).into_iter());
+            for (entry, (re, im)) in conjugate.iter_mut().zip(parts) {
+                *entry = Complex::new(*re, -*im);
             }
-            self.model.resolve(lines.omega[k], &mut x);
-            let mut s = DVector::<Complex<f64>>::zeros(size);
-            s.rows_mut(0, order).copy_from_slice(&x);
-            s.rows_mut(order, inputs).copy_from(&input);
-            let conjugate = s.conjugate();
-            if sums
-                .squares
-                .last()
-                .is_none_or(|(place, _)| *place != places[k])
-            {
-                sums.squares.push((places[k], DMatrix::zeros(size, size)));
-            }
-            if let Some((_, square)) = sums.squares.last_mut() {
-                square.ger(power, &conjugate, &s, Complex::from(1.0));
-            }
-            sums.nuisance.add(lines, k, places[k], &conjugate);
-            let along = vectors(cr, &lines.weights[k]).ad_mul(&self.part.residual.column(k));
-            for (column, scalar) in conjugate.iter().enumerate() {
-                let mut to = sums.gradient.column_mut(column);
-                for (entry, value) in to.iter_mut().zip(along.iter()) {
-                    *entry += (value * scalar).re;
-                }
-            }
+            squares.add(
+                place,
+                &re.as_slice()[k * size..(k + 1) * size],
+                &im.as_slice()[k * size..(k + 1) * size],
+                power,
+            );
+            nuisance.add(lines, k, place, &conjugate);
         }
-        sums
+        let along = self.residuals_along_vectors();
+        SegmentSums {
+            squares,
+            nuisance,
+            gradient: along.map(|v| v.re) * re.transpose() + along.map(|v| v.im) * im.transpose(),
+        }
+    }
+
+    /// Computes `V^H e` at each line: `[(C R)^H W^H e; W^H e]`.
+    fn residuals_along_vectors(&self) -> DMatrix<Complex<f64>> {
+        let order = self.model.order();
+        let (outputs, lines) = self.part.residual.shape();
+        let mut along = DMatrix::zeros(order + outputs, lines);
+        let resolvents = self.resolvents.at_lines(&self.lines.omega);
+        let weights = self.lines.weights.iter().zip(resolvents).enumerate();
+        for (k, (weight, cr)) in weights {
+            let weighted = weight.ad_mul(&self.part.residual.column(k));
+            for (state, column) in cr.chunks_exact(outputs).enumerate() {
+                let products = column.iter().zip(weighted.iter());
+                along[(state, k)] = products.map(|(c, w)| c.conj() * w).sum();
+            }
+            along
+                .view_mut((order, k), (outputs, 1))
+                .copy_from(&weighted);
+        }
+        along
     }
 }
 
 /// Computes `sum over bins of Re(P (x) Q)` for Hermitian `P` and `Q`: entry ((v, s), (v', s')) is
 /// `Re(P[v, v'] Q[s, s'])`, with v running fastest.
-fn kronecker_sum(products: &VectorProducts, squares: &[DMatrix<Complex<f64>>]) -> DMatrix<f64> {
+fn kronecker_sum(
+    products: &VectorProducts,
+    squares: &ScalarSquares,
+    executor: &dyn Executor,
+) -> DMatrix<f64> {
     let vectors = products.vectors;
-    let bins = squares.len();
-    let scalars = squares.first().map_or(0, DMatrix::nrows);
+    let bins = squares.re.ncols();
     let vector_pairs = ordered_pairs(vectors);
-    let scalar_pairs = ordered_pairs(scalars);
     let mut left_re = DMatrix::zeros(vector_pairs.len(), bins);
     let mut left_im = left_re.clone();
-    let mut right_re = DMatrix::zeros(bins, scalar_pairs.len());
-    let mut right_im = right_re.clone();
     for bin in 0..bins {
         for (row, &(v, w)) in vector_pairs.iter().enumerate() {
             let product = products.entry(bin, v, w);
             left_re[(row, bin)] = product.re;
             left_im[(row, bin)] = product.im;
         }
-        for (column, &(s, t)) in scalar_pairs.iter().enumerate() {
-            let product = squares[bin][(s, t)];
-            right_re[(bin, column)] = product.re;
-            right_im[(bin, column)] = product.im;
-        }
     }
-    let re = left_re * right_re;
-    let im = left_im * right_im;
-    let mut matrix = DMatrix::zeros(vectors * scalars, vectors * scalars);
-    for (column, &(s, t)) in scalar_pairs.iter().enumerate() {
+    let pairs_of_parts = [(&left_re, &squares.re), (&left_im, &squares.im)];
+    let parts = each(executor, pairs_of_parts, |(left, right)| {
+        left * right.transpose()
+    });
+    let [re, im] = parts.as_slice() else {
+        return DMatrix::zeros(0, 0);
+    };
+    let size = vectors * squares.size;
+    let mut matrix = DMatrix::zeros(size, size);
+    for (column, &(s, t)) in ordered_pairs(squares.size).iter().enumerate() {
         for (row, &(v, w)) in vector_pairs.iter().enumerate() {
             let direct = re[(row, column)] - im[(row, column)];
             let crossed = re[(row, column)] + im[(row, column)];
@@ -277,6 +359,36 @@ fn kronecker_sum(products: &VectorProducts, squares: &[DMatrix<Complex<f64>>]) -
         }
     }
     matrix
+}
+
+/// Columns that are updated at a time.
+const PANEL: usize = 64;
+
+/// Subtracts `sum F F'` over the matrices F from a symmetric matrix.
+fn subtract_squares(matrix: &mut DMatrix<f64>, roots: &[DMatrix<f64>], executor: &dyn Executor) {
+    let size = matrix.nrows();
+    let panels = each(executor, (0..size).step_by(PANEL), |first| {
+        let width = PANEL.min(size - first);
+        let mut panel = matrix
+            .view((first, first), (size - first, width))
+            .into_owned();
+        for root in roots {
+            let turned = root.rows(first, width).transpose();
+            panel.gemm(-1.0, &root.rows(first, size - first), &turned, 1.0);
+        }
+        panel
+    });
+    for (number, panel) in panels.iter().enumerate() {
+        let first = number * PANEL;
+        let width = panel.ncols();
+        matrix
+            .view_mut((first, first), panel.shape())
+            .copy_from(panel);
+        let below = panel.rows(width, size - first - width).transpose();
+        matrix
+            .view_mut((first, first + width), below.shape())
+            .copy_from(&below);
+    }
 }
 
 /// Returns all pairs of indices below `count` whose second is not smaller than the first.
@@ -350,7 +462,7 @@ mod tests {
             blocks.parameters(),
             &normal_systems(&likelihood, &blocks, &parts).unwrap(),
         );
-        let found = dense_system(&likelihood, &dense, &dense_parts).unwrap();
+        let found = dense_system(&likelihood, &dense, &dense_parts, EXACT).unwrap();
         // Entry of [[A, B], [C, D]] and sign of each block parameter.
         let mut entries = vec![(1, 0, -1.0), (1, 1, -1.0), (3, 2, -1.0), (3, 3, -1.0)];
         for state in 0..4 {

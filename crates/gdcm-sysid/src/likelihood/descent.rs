@@ -16,10 +16,10 @@ use nalgebra::{DMatrix, DVector};
 
 use gdcm_model::progress::{Cancelled, Shares};
 
-use super::balancing::balanced;
+use super::balancing::{Coordinates, Gramians, balancing_coordinates};
 use super::cost::{Likelihood, SegmentCost};
 use super::dense_model::DenseModel;
-use super::dense_system::{DenseSystem, dense_system};
+use super::dense_system::{BIN_WIDTH, DenseSystem, dense_system};
 use super::gram_matrix::solve_positive_definite;
 use super::linear_model::LinearModel;
 use crate::subspace::tried_orders::parameters_of_order;
@@ -27,8 +27,9 @@ use crate::subspace::tried_orders::parameters_of_order;
 /// Limit on the Newton decrement over `k phi` at a minimum.
 pub(crate) const CONVERGED: f64 = 0.02;
 /// Limit on the Newton decrement over `k phi` for the comparison of orders: the cost may still fall
-/// by about 5 % of what k parameters explain of the noise.
-pub(crate) const COMPARABLE: f64 = 0.05;
+/// by about 10 % of what k parameters explain of the noise, a small part of what BIC charges for a
+/// state, `(m + l) phi ln N`.
+pub(crate) const COMPARABLE: f64 = 0.1;
 /// Limit on the Newton decrement over `k phi` before the noise is measured again.
 pub(crate) const NEARLY_CONVERGED: f64 = 0.2;
 /// Multiple of the squared Newton decrement by which the cost may at most still fall.
@@ -82,6 +83,8 @@ pub(crate) struct DenseFit {
     /// Newton decrement over `k phi` where it was last computed; infinite before.
     pub(crate) decrement: f64,
     damping: f64,
+    /// Gramians in the present coordinates where they were last computed.
+    gramians: Option<Gramians>,
 }
 
 impl DenseFit {
@@ -98,6 +101,7 @@ impl DenseFit {
             cost,
             decrement: f64::INFINITY,
             damping: FIRST_DAMPING,
+            gramians: None,
         })
     }
 
@@ -145,9 +149,10 @@ impl DenseFit {
             return false;
         };
         self.balance(likelihood);
-        let Some(system) = dense_system(likelihood, &self.model, &self.parts) else {
+        let Some(system) = dense_system(likelihood, &self.model, &self.parts, BIN_WIDTH) else {
             return false;
         };
+        self.gramians = Some(system.gramians.clone());
         let scaled = ScaledSystem::new(system);
         let unit = self.parameters() as f64 * dispersion;
         let mut direction = scaled.solve(self.damping);
@@ -180,18 +185,24 @@ impl DenseFit {
         false
     }
 
-    /// Transforms the model to balanced coordinates, in which the transients have other values.
+    /// Transforms model and transients to balanced coordinates, by the Gramians at the step before.
     fn balance(&mut self, likelihood: &Likelihood) {
-        let Some(model) = balanced(likelihood, &self.model) else {
+        let gramians = self
+            .gramians
+            .take()
+            .unwrap_or_else(|| Gramians::sampled(likelihood, &self.model));
+        let Some(coordinates) = balancing_coordinates(&gramians) else {
             return;
         };
-        // The response is the same; costs that differ by more than rounding point to an
-        // ill-conditioned transformation.
-        if let Some(fit) = Self::start(likelihood, model)
-            && (fit.cost - self.cost).abs() <= 1e-6 * self.cost
-        {
-            self.model = fit.model;
-            self.parts = fit.parts;
+        let Coordinates {
+            transformation,
+            inverse,
+        } = coordinates;
+        if let Some(model) = self.model.in_coordinates(&transformation, &inverse) {
+            self.model = model;
+            for part in &mut self.parts {
+                part.transient = &inverse * &part.transient;
+            }
         }
     }
 

@@ -11,7 +11,7 @@
 //! 3  J'T F with F F' = (T'T)^+:  G is reduced by its product with its transpose
 //! ```
 
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DMatrix};
 
 use gdcm_model::dataset::channel::ChannelSide;
 
@@ -54,6 +54,19 @@ impl VectorProducts {
     pub(super) fn entry(&self, bin: usize, v: usize, w: usize) -> Complex<f64> {
         let row = w * self.vectors + v;
         Complex::new(self.table[(row, 2 * bin)], -self.table[(row, 2 * bin + 1)])
+    }
+
+    /// Computes `Re sum (W C R)^H W C R` over the bins, with the weight `power` of each; n x n.
+    pub(super) fn observability(&self, order: usize, power: &[f64]) -> DMatrix<f64> {
+        let mut gramian = DMatrix::zeros(order, order);
+        for (bin, power) in power.iter().enumerate() {
+            for w in 0..order {
+                for v in 0..order {
+                    gramian[(v, w)] += power * self.table[(w * self.vectors + v, 2 * bin)];
+                }
+            }
+        }
+        gramian
     }
 
     /// Computes `sum over bins of Re(V^H V[v, w] z)` for the columns w from `first` on: rows are
@@ -110,7 +123,7 @@ impl NuisanceSums {
         lines: &SpectralLines,
         k: usize,
         place: usize,
-        conjugate: &DVector<Complex<f64>>,
+        conjugate: &[Complex<f64>],
     ) {
         let power = lines.scale * lines.scale;
         let scalars = scalars_of_line(lines, k);

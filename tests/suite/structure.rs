@@ -124,6 +124,7 @@ const CRATES: &[(&str, ModuleTable)] = &[
             ("couplings", &["coupling_remark", "table"]),
             ("assessment", &["caution"]),
             ("uncertainty", &["table"]),
+            ("flight_plan", &["table"]),
             ("time_histories", &["table"]),
             (
                 "requirements",

@@ -154,7 +154,7 @@ impl Models<'_> {
         let unrefined = proposal.starts.get(&refinement.search.order)?;
         let poles = uncertainty.as_logged().poles(model, self.options.band[0]);
         let bands = Arc::new(uncertainty.bands);
-        let information = self.information(refinement, &bands);
+        let information = self.information(refinement, &bands, uncertainty.feedback.as_ref());
         let advice = self.advice(information.as_ref(), &uncertainty.not_identified);
         let mut refined = self.of_order(REFINED, model)?;
         refined.bands = Some(bands);
@@ -190,6 +190,7 @@ impl Models<'_> {
         &self,
         refinement: &Refinement,
         bands: &Arc<ModelBands>,
+        feedback: Option<&Feedback>,
     ) -> Option<FlightInformation> {
         let fitted = &refinement.weights.likelihood;
         FlightInformation::new(&FittedModel {
@@ -198,6 +199,7 @@ impl Models<'_> {
             scales: &self.data.scales,
             lines: [self.options.lowest(), self.options.highest()],
             bands,
+            feedback,
             not_swept: self.data.measured.excitation().not_identified().collect(),
         })
     }

@@ -178,8 +178,9 @@ impl<'a> PreparedData<'a> {
             criteria: BTreeMap::new(),
             weights,
         };
+        // CT-PBSID may have removed fast modes from the model of the top order.
+        let mut order = fit.order();
         descent.insert(fit);
-        let mut order = top;
         let mut rises = 0;
         while let Some(next) = self.order_below(order, starts) {
             let best = descent.least();

@@ -16,10 +16,11 @@ use gdcm_model::dataset::model::ModelBands;
 use gdcm_model::statistics::median;
 
 use super::planned_sweep::PlannedSweep;
-use crate::likelihood::balancing::balanced;
+use crate::diagnostics::feedback::Feedback;
+use crate::likelihood::balancing::{Gramians, balancing_coordinates};
 use crate::likelihood::cost::{Likelihood, SpectralLines};
 use crate::likelihood::dense_model::DenseModel;
-use crate::likelihood::dense_system::dense_system;
+use crate::likelihood::dense_system::{EXACT, dense_system};
 use crate::likelihood::linear_model::LinearModel;
 use crate::likelihood::noise_covariance::{NoiseCovariance, NoisePoint};
 use crate::spectra::scales::Scales;
@@ -47,6 +48,8 @@ pub struct FlightInformation {
     pub(super) lines: [f64; 2],
     /// Standard deviations of the responses of the model.
     pub(super) bands: Arc<ModelBands>,
+    /// Noise and gusts fed back into the responses.
+    pub(super) feedback: Option<Feedback>,
     /// A sweep of each input as strong and as long as it was flown.
     pub(super) standard_sweeps: Vec<StandardSweep>,
 }
@@ -69,6 +72,7 @@ pub(crate) struct FittedModel<'a> {
     /// Lowest and highest line used \[rad/s\].
     pub(crate) lines: [f64; 2],
     pub(crate) bands: &'a Arc<ModelBands>,
+    pub(crate) feedback: Option<&'a Feedback>,
     /// Indices of the inputs that were not swept.
     pub(crate) not_swept: Vec<usize>,
 }
@@ -88,7 +92,7 @@ impl FlightInformation {
             return None;
         }
         let dispersion = (cost / spare as f64).max(1.0);
-        let system = dense_system(likelihood, &model, &parts)?;
+        let system = dense_system(likelihood, &model, &parts, EXACT)?;
         Some(Self {
             model: model.state_space()?,
             scales: fitted.scales.clone(),
@@ -97,6 +101,7 @@ impl FlightInformation {
             noise: noise_of_lines(likelihood)?,
             lines: fitted.lines,
             bands: Arc::clone(fitted.bands),
+            feedback: fitted.feedback.cloned(),
             standard_sweeps: standard_sweeps(fitted)?,
         })
     }
@@ -133,6 +138,12 @@ impl FlightInformation {
             ..*sweep
         }
     }
+}
+
+/// Transforms a model to balanced coordinates; `None` if an iteration does not converge.
+fn balanced(likelihood: &Likelihood, model: &DenseModel) -> Option<DenseModel> {
+    let coordinates = balancing_coordinates(&Gramians::sampled(likelihood, model))?;
+    model.in_coordinates(&coordinates.transformation, &coordinates.inverse)
 }
 
 /// Returns the lines used, from the first that a record of this length has \[rad/s\].

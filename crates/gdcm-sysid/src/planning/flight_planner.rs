@@ -6,12 +6,12 @@
 //! 2  T = G/phi + sum_j r_j G_j/phi + c N N',   N the changes of coordinates
 //! 3  h = gradient of ln H_oi:  dH = [C R, I]_o dTheta [R B; I]_i     (M14.22)
 //!    var = h' T^-1 h, the same as h' (...)^+ h: h is orthogonal to N, and N' G = 0
-//! 4  sd^2 = sd_now^2 - 2 (var_now - var),   at least 2 var
+//! 4  sd^2 = f^2 + (sd_now^2 - f^2) var / var_now,   f^2 = |G_b/G|^2 / 2 (M14.17)
 //! ```
 //!
-//! Step 4 keeps what further flights of the same kind do not change: the differences between
-//! neighbouring orders, and the share of the response that is fed back. The factor 2 is that of the
-//! intervals of the identification (M14.22).
+//! Step 4 keeps the share of the response that is fed back, which further flights of the same kind
+//! do not change. The differences between neighbouring orders are due to noise as well: they fall
+//! with the variance of the fit.
 
 use std::cell::OnceCell;
 
@@ -24,10 +24,10 @@ use gdcm_model::units::neper_to_db;
 use super::coordinate_changes::coordinate_changes;
 use super::flight_information::FlightInformation;
 use super::planned_sweep::PlannedSweep;
-use crate::diagnostics::bands::{MEASURED_FACTOR, TWO_SIDED_95, UNKNOWN};
+use crate::diagnostics::bands::TWO_SIDED_95;
 use crate::likelihood::cost::{Likelihood, SegmentCost, SpectralLines};
 use crate::likelihood::dense_model::DenseModel;
-use crate::likelihood::dense_system::dense_system;
+use crate::likelihood::dense_system::{EXACT, dense_system};
 use crate::likelihood::linear_model::LinearModel;
 use crate::spectra::interpolation::Neighbours;
 use crate::spectra::spectrum::LineRange;
@@ -35,6 +35,8 @@ use crate::spectra::spectrum::LineRange;
 /// Share of the diagonal added to the information: a direction about which the flights say nothing
 /// keeps a large but finite variance.
 const FLOOR: f64 = 1e-12;
+/// Largest standard deviation of `ln H`.
+const UNKNOWN: f64 = 1e3;
 
 /// Half-width of the 95 % interval of a response at a frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -114,7 +116,7 @@ impl<'a> FlightPlanner<'a> {
             residual: DMatrix::zeros(outputs, lines.omega.len()),
         };
         let likelihood = Likelihood::new(vec![lines], self.executor);
-        let system = dense_system(&likelihood, &self.model, &[part])?;
+        let system = dense_system(&likelihood, &self.model, &[part], EXACT)?;
         Some(SweepInformation(
             system.matrix.unscale(self.information.dispersion),
         ))
@@ -155,30 +157,25 @@ impl<'a> FlightPlanner<'a> {
         let gradient = self.log_gradient(pair, omega);
         let before = self.now()?.variance(&gradient)?;
         let left = after.variance(&gradient)?;
-        Some(self.with_variance(pair, omega, before, left))
-    }
-
-    /// Returns the limit of the interval for infinitely many flights.
-    #[must_use]
-    pub fn interval_limit(&self, pair: Pair, omega: f64) -> Option<ResponseInterval> {
-        let before = self.now()?.variance(&self.log_gradient(pair, omega))?;
-        let none = LogVariance { re: 0.0, im: 0.0 };
-        Some(self.with_variance(pair, omega, before, none))
-    }
-
-    fn with_variance(
-        &self,
-        pair: Pair,
-        omega: f64,
-        before: LogVariance,
-        left: LogVariance,
-    ) -> ResponseInterval {
         let now = self.interval_now(pair, omega);
-        let db = neper_to_db(1.0).powi(2);
-        let deg = 1f64.to_degrees().powi(2);
+        let fed_back = self.interval_limit(pair, omega);
+        Some(ResponseInterval {
+            half_db: reduced(now.half_db, fed_back.half_db, left.re / before.re),
+            half_deg: reduced(now.half_deg, fed_back.half_deg, left.im / before.im),
+        })
+    }
+
+    /// Returns the limit of the interval for infinitely many flights: what is fed back.
+    #[must_use]
+    pub fn interval_limit(&self, pair: Pair, omega: f64) -> ResponseInterval {
+        let share = match &self.information.feedback {
+            Some(feedback) => feedback.ratio(omega, (pair.output, pair.input)),
+            None => 0.0,
+        };
+        let half_width = TWO_SIDED_95 * (0.5 * share.powi(2)).sqrt();
         ResponseInterval {
-            half_db: reduced(now.half_db, db * before.re, db * left.re),
-            half_deg: reduced(now.half_deg, deg * before.im, deg * left.im),
+            half_db: neper_to_db(half_width),
+            half_deg: half_width.to_degrees(),
         }
     }
 
@@ -273,11 +270,11 @@ impl FactoredInformation {
     }
 }
 
-/// Returns the half-width of an interval when the variance of the fit falls (step 4).
-fn reduced(half_width: f64, before: f64, left: f64) -> f64 {
-    let measured = MEASURED_FACTOR * TWO_SIDED_95.powi(2);
-    let fixed = (half_width.powi(2) - measured * before).max(0.0);
-    (fixed + measured * left).sqrt().min(half_width)
+/// Returns the half-width of an interval when the variance of the fit falls to a share of its
+/// present value (step 4).
+fn reduced(now: f64, fed_back: f64, share: f64) -> f64 {
+    let fixed = fed_back.min(now).powi(2);
+    (fixed + (now.powi(2) - fixed) * share.clamp(0.0, 1.0)).sqrt()
 }
 
 /// Interpolates linearly in log frequency; constant beyond the ends.

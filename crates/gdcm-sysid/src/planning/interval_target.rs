@@ -88,7 +88,7 @@ impl FlightPlanner<'_> {
             target,
             sweep,
             now,
-            limit: self.interval_limit(target.pair, target.omega)?,
+            limit: self.interval_limit(target.pair, target.omega),
             ways,
         })
     }

@@ -153,27 +153,26 @@ impl<'a> WantedFlights<'a> {
         task: &IdentificationTask,
         found: &Identification,
     ) -> Result<ConditionPlan, Failure> {
-        let not_computed = || Failure::NoModels {
-            reason: format!(
-                "{}the information of the records cannot be computed",
-                prefix(task.condition)
-            ),
-        };
-        let information = found.information.as_ref().ok_or_else(not_computed)?;
-        let planner = FlightPlanner::new(information, &Pool).ok_or_else(not_computed)?;
+        let information = found
+            .information
+            .as_ref()
+            .ok_or_else(|| no_information(task))?;
+        let planner = FlightPlanner::new(information, &Pool).ok_or_else(|| no_information(task))?;
         let mut sweeps: Vec<SweepPlan> = Vec::new();
         for input in 0..information.inputs() {
-            let sweep = self.sweep(information, input).ok_or_else(not_computed)?;
+            let sweep = self
+                .sweep(information, input)
+                .ok_or_else(|| no_information(task))?;
             let plan = planner.sweep_plan(sweep, &TABLE_REPEATS, planner.middle());
-            sweeps.push(plan.ok_or_else(|| self.no_lines())?);
+            sweeps.push(plan.ok_or_else(|| self.no_plan(task))?);
         }
         let mut targets: Vec<TargetPlan> = Vec::new();
         for target in &self.targets {
             let sweep = self
                 .sweep(information, target.pair.input)
-                .ok_or_else(not_computed)?;
+                .ok_or_else(|| no_information(task))?;
             let plan = planner.target_plan(*target, sweep, self.arguments.repeats);
-            targets.push(plan.ok_or_else(|| self.no_lines())?);
+            targets.push(plan.ok_or_else(|| self.no_plan(task))?);
         }
         Ok(ConditionPlan {
             condition: task.condition,
@@ -182,14 +181,17 @@ impl<'a> WantedFlights<'a> {
         })
     }
 
-    /// Returns the failure for sweeps that have no line in the band.
-    fn no_lines(&self) -> Failure {
-        let option = if self.arguments.length.is_some() {
-            "--length"
+    /// Returns the failure for sweeps about which nothing can be predicted: those with no spectral
+    /// line in the band, if the options give their length or band.
+    fn no_plan(&self, task: &IdentificationTask) -> Failure {
+        let reason = "the sweeps have no spectral line in the band";
+        if self.arguments.length.is_some() {
+            Failure::option("--length", reason)
+        } else if self.arguments.sweep_band.is_some() {
+            Failure::option("--sweep-band", reason)
         } else {
-            "--sweep-band"
-        };
-        Failure::option(option, "the sweeps have no spectral line in the band")
+            no_information(task)
+        }
     }
 
     /// Returns a sweep of an input: as flown, apart from what the options give.
@@ -209,6 +211,16 @@ impl<'a> WantedFlights<'a> {
             standard.is_assumed = false;
         }
         Some(standard)
+    }
+}
+
+/// Returns the failure for records whose information cannot be computed.
+fn no_information(task: &IdentificationTask) -> Failure {
+    Failure::NoModels {
+        reason: format!(
+            "{}the information of the records cannot be computed",
+            prefix(task.condition)
+        ),
     }
 }
 

@@ -100,7 +100,7 @@ pub fn sweep_plan_table(plan: &SweepPlan, channels: &PlannedChannels) -> Table {
     table
 }
 
-/// Returns an interval: `± 0.52`, or `–` if it is too wide to mean anything.
+/// Returns an interval: `± 0.52`, or `not identified` if it is too wide to mean anything.
 fn half_width(half_db: f64) -> String {
     if half_db > UNKNOWN_DB {
         "not identified".to_owned()

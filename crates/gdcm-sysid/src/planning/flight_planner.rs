@@ -9,9 +9,9 @@
 //! 4  sd^2 = f^2 + (sd_now^2 - f^2) var / var_now,   f^2 = |G_b/G|^2 / 2 (M14.17)
 //! ```
 //!
-//! Step 4 keeps the share of the response that is fed back, which further flights of the same kind
-//! do not change. The differences between neighbouring orders are due to noise as well: they fall
-//! with the variance of the fit.
+//! Step 4 keeps the share of the response that is fed back, if it is visible: further flights of the
+//! same kind do not change it. Otherwise it is due to noise, as are the differences between
+//! neighbouring orders: both fall with the variance of the fit.
 
 use std::cell::OnceCell;
 
@@ -25,6 +25,7 @@ use super::coordinate_changes::coordinate_changes;
 use super::flight_information::FlightInformation;
 use super::planned_sweep::PlannedSweep;
 use crate::diagnostics::bands::TWO_SIDED_95;
+use crate::diagnostics::feedback::FeedbackLevel;
 use crate::likelihood::cost::{Likelihood, SegmentCost, SpectralLines};
 use crate::likelihood::dense_model::DenseModel;
 use crate::likelihood::dense_system::{EXACT, dense_system};
@@ -165,12 +166,19 @@ impl<'a> FlightPlanner<'a> {
         })
     }
 
-    /// Returns the limit of the interval for infinitely many flights: what is fed back.
+    /// Returns the limit of the interval for infinitely many flights: what is visibly fed back. It is
+    /// 0 for an input that was not swept, because a sweep exceeds what is fed back into it.
     #[must_use]
     pub fn interval_limit(&self, pair: Pair, omega: f64) -> ResponseInterval {
+        let was_swept = self
+            .information
+            .standard_sweep(pair.input)
+            .is_some_and(|standard| !standard.is_assumed);
         let share = match &self.information.feedback {
-            Some(feedback) => feedback.ratio(omega, (pair.output, pair.input)),
-            None => 0.0,
+            Some(feedback) if was_swept && feedback.level() != FeedbackLevel::None => {
+                feedback.ratio(omega, (pair.output, pair.input))
+            }
+            _ => 0.0,
         };
         let half_width = TWO_SIDED_95 * (0.5 * share.powi(2)).sqrt();
         ResponseInterval {

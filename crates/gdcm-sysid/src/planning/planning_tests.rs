@@ -367,7 +367,11 @@ impl Comparison {
             records.extend(aircraft.first_flight(random));
         }
         let second = identify(&records, &options, &Sequential, &Unobserved);
-        let (Ok(first), Ok(second)) = (first, second) else {
+        let Ok(first) = first else {
+            self.failures += 1;
+            return;
+        };
+        let Ok(second) = second else {
             self.failures += 1;
             return;
         };

@@ -17,7 +17,7 @@ use gdcm_sysid::records::RecordChannels;
 use gdcm_words::flight_plan::{PlannedChannels, sweep_plan_table, target_lines};
 
 use super::channel_values::first_duplicate;
-use super::condition_messages::ConditionMessage;
+use super::condition_messages::{ConditionMessage, shared_messages};
 use super::existing;
 use super::failure::Failure;
 use super::identification_task::{IdentificationTask, planned_channels, prefix};
@@ -47,6 +47,7 @@ pub(super) fn plan(arguments: &PlanArguments) -> Result<(), Failure> {
         identification_tasks(source, destination.as_ref(), &mut channels, band)?;
     let mut plans: Vec<ConditionPlan> = Vec::new();
     let mut text = String::new();
+    let mut failures: Vec<ConditionMessage> = Vec::new();
     for task in &tasks {
         match task.run() {
             Ok(found) => {
@@ -60,12 +61,14 @@ pub(super) fn plan(arguments: &PlanArguments) -> Result<(), Failure> {
                     reason: why.to_string(),
                 });
             }
-            Err(why) => {
-                let words = format!("no model was identified: {why}");
-                let message = ConditionMessage::new(task.condition, words);
-                caution_for(&message.conditions, &message.text);
-            }
+            Err(why) => failures.push(ConditionMessage::new(
+                task.condition,
+                format!("no model was identified: {why}"),
+            )),
         }
+    }
+    for message in shared_messages(failures) {
+        caution_for(&message.conditions, &message.text);
     }
     if plans.is_empty() {
         return Err(Failure::NoModels {

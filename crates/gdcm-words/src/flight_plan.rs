@@ -32,7 +32,9 @@ pub struct PlannedInput {
 
 impl PlannedChannels {
     fn input(&self, index: usize) -> &str {
-        self.inputs.get(index).map_or("", |input| &input.name)
+        self.inputs
+            .get(index)
+            .map_or("", |input| input.name.as_str())
     }
 
     /// Returns a response: `PED → R`.
@@ -43,7 +45,10 @@ impl PlannedChannels {
 
     /// Returns an amplitude with the unit of its input: `5.0 %`.
     fn amplitude(&self, input: usize, amplitude: f64) -> String {
-        let unit = self.inputs.get(input).map_or("", |input| &input.unit);
+        let unit = self
+            .inputs
+            .get(input)
+            .map_or("", |input| input.unit.as_str());
         format!("{} {unit}", significant(amplitude))
             .trim_end()
             .to_owned()

@@ -187,17 +187,6 @@ impl<'a> FlightPlanner<'a> {
         }
     }
 
-    /// Computes the variance of the logarithm of a response (step 3).
-    #[cfg(test)]
-    pub(super) fn variance(
-        &self,
-        after: &FactoredInformation,
-        pair: Pair,
-        omega: f64,
-    ) -> Option<LogVariance> {
-        after.variance(&self.log_gradient(pair, omega))
-    }
-
     /// Returns the gradient of `ln H` in all entries of `[[A, B], [C, D]]`: real and imaginary
     /// part.
     pub(super) fn log_gradient(&self, pair: Pair, omega: f64) -> DMatrix<f64> {
@@ -260,7 +249,7 @@ impl FactoredInformation {
     }
 
     /// Computes the variances along a gradient of two columns; `None` if it is not finite.
-    fn variance(&self, gradient: &DMatrix<f64>) -> Option<LogVariance> {
+    pub(super) fn variance(&self, gradient: &DMatrix<f64>) -> Option<LogVariance> {
         let mut scaled = gradient.clone();
         for mut column in scaled.column_iter_mut() {
             column.component_mul_assign(&self.scales);

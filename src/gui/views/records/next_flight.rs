@@ -26,7 +26,7 @@ pub(super) fn next_flight_ui(ui: &mut Ui, page: Page<'_>) {
     for sweep in &plan.sweeps {
         let table = sweep_plan_table(sweep, &channels);
         ui.add_space(4.0);
-        ui.label(palette.small(&table.title));
+        ui.label(palette.small(table.title.as_str()));
         table_ui(ui, &table);
     }
     ui.label(palette.small(

@@ -7,6 +7,7 @@ use clap::{Parser, Subcommand};
 use super::channel_values::{ChannelSign, channel_sign};
 use super::identify_arguments::IdentifyArguments;
 use super::model_arguments::{AssembleArguments, ConvertArguments};
+use super::plan_arguments::PlanArguments;
 use super::result_arguments::{
     AnalyzeArguments, ExportArguments, FigureArguments, ReportArguments, RequirementsArguments,
 };
@@ -76,6 +77,12 @@ pub enum Command {
         after_help = "Examples:\n  gdcm identify sweeps --inputs LON,LAT --outputs P,Q=pitch_rate --band 0.5 12 --out identified\n  gdcm identify records --into dataset.json.gz --every-condition --hold-out validation.csv --out identified"
     )]
     Identify(Box<IdentifyArguments>),
+    /// Plan the next flight: identify models from flight records, and print the 95 % intervals that further frequency sweeps of each
+    /// input would bring, and what brings a wanted interval.
+    #[command(
+        after_help = "Examples:\n  gdcm plan sweeps --inputs LON,LAT --outputs P,Q --band 0.5 12\n  gdcm plan records --into dataset.json.gz --condition 3 --target Q/LON@1=0.5 --length 90"
+    )]
+    Plan(Box<PlanArguments>),
     /// Print the contents of a dataset or a study, or every fault and its place in the file.
     #[command(
         after_help = "Examples:\n  gdcm check example-dataset.json\n  gdcm check flight.gdcm-study.json --dataset moved/example-dataset.json --strict"

@@ -126,6 +126,13 @@ pub(super) fn channel_factor(text: &str) -> Result<ChannelValue<f64>, String> {
     })
 }
 
+/// Parses an input and the amplitude of its sweeps: "LON=5".
+pub(super) fn channel_amplitude(text: &str) -> Result<ChannelValue<f64>, String> {
+    ChannelValue::parse(text, |value| factor(value).filter(|value| *value > 0.0)).ok_or_else(|| {
+        format!("expected INPUT=X with a positive number X, such as LON=5; found \"{text}\"")
+    })
+}
+
 /// Parses a channel and the location of its samples: topic and field, or a column.
 pub(super) fn channel_topic(text: &str) -> Result<ChannelValue<String>, String> {
     ChannelValue::parse(text, |column| text_value(column.trim_matches('"'))).ok_or_else(|| {
@@ -187,7 +194,10 @@ mod tests {
         }
         for wrong in ["P", "P=x", "P=0", "P=NaN", "=1"] {
             assert!(channel_factor(wrong).is_err(), "{wrong}");
+            assert!(channel_amplitude(wrong).is_err(), "{wrong}");
         }
+        assert_eq!(channel_amplitude("LON=5").unwrap().value, 5.0);
+        assert!(channel_amplitude("LON=-5").is_err());
         assert_eq!(
             channel_topic("P = a.b[0]"),
             Ok(ChannelValue {

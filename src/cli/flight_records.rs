@@ -20,7 +20,7 @@ use gdcm_sysid::records::{
 };
 
 use super::failure::Failure;
-use super::identify_arguments::IdentifyArguments;
+use super::identify_arguments::RecordArguments;
 use super::option_values::RecordPart;
 use super::progress::ReadingProgress;
 use super::record_parts::{CutRecords, WholeRecord, cut_parts, is_part, part_without_samples};
@@ -64,7 +64,7 @@ pub(super) fn found_records(paths: &[PathBuf]) -> Result<FoundRecords, Failure> 
 /// Reads the records and assigns their columns to channels. Assumptions and faults are reported on
 /// standard error. Channels without a unit take the unit stated by a record.
 pub(super) fn laid_out_records(
-    arguments: &IdentifyArguments,
+    arguments: &RecordArguments,
     channels: &mut RecordChannels,
     dataset: Option<&Dataset>,
 ) -> Result<ReadRecords, Failure> {

@@ -12,13 +12,14 @@ use gdcm_study::results::channel_time_skew::ChannelTimeSkew;
 use gdcm_sysid::identification::{
     CautionNote, Identification, IdentificationCaution, IdentificationError, Preparation,
 };
-use gdcm_sysid::records::LaidOutRecord;
+use gdcm_sysid::records::{LaidOutRecord, RecordChannels};
 use gdcm_words::channel_time_skew::time_skew_text;
+use gdcm_words::flight_plan::{PlannedChannels, PlannedInput, caution_with_advice};
 
 use super::failure::Failure;
 use super::receiving_dataset::RecordGroup;
 
-use super::identify_arguments::IdentifyArguments;
+use super::identify_arguments::{IdentifyArguments, RecordArguments};
 use super::progress::TerminalProgress;
 use super::record_table::record_table;
 use crate::executor::Pool;
@@ -39,7 +40,7 @@ impl IdentificationTask {
         group: RecordGroup,
         preparation: &Preparation,
         band: Band,
-        arguments: &IdentifyArguments,
+        arguments: &RecordArguments,
     ) -> Result<Self, Failure> {
         let RecordGroup { condition, records } = group;
         let band_rad_s = [band.min(), band.max()];
@@ -76,13 +77,16 @@ impl IdentificationTask {
     pub(super) fn cautions(
         &self,
         found: &Identification,
+        channels: &RecordChannels,
         dataset: Option<&Dataset>,
     ) -> Vec<CautionNote> {
-        let mut cautions: Vec<CautionNote> = found
-            .cautions
-            .iter()
-            .map(|caution| self.caution_with_remedy(caution))
-            .collect();
+        let planned = planned_channels(channels);
+        let mut cautions = Vec::with_capacity(found.cautions.len());
+        for caution in &found.cautions {
+            let mut note = caution.note();
+            note.text = caution_with_advice(caution, &found.advice, &planned);
+            cautions.push(self.with_remedy(note, caution));
+        }
         if let Some(dataset) = dataset {
             cautions.extend(self.late_channel(found, dataset));
         }
@@ -110,9 +114,8 @@ impl IdentificationTask {
         })
     }
 
-    /// Returns a caution with the options that solve the problem.
-    fn caution_with_remedy(&self, caution: &IdentificationCaution) -> CautionNote {
-        let mut note = caution.note();
+    /// Adds the options that solve the problem to the note of a caution.
+    fn with_remedy(&self, mut note: CautionNote, caution: &IdentificationCaution) -> CautionNote {
         let IdentificationCaution::Contradiction { records, .. } = caution else {
             return note;
         };
@@ -163,7 +166,7 @@ impl IdentificationTask {
     /// the condition.
     pub(super) fn output_path(&self, arguments: &IdentifyArguments) -> PathBuf {
         match self.condition {
-            Some(id) if arguments.every_condition => arguments
+            Some(id) if arguments.source.every_condition => arguments
                 .out
                 .join(format!("identified-condition-{id}.json")),
             _ => arguments.out.join(IDENTIFIED_FILE),
@@ -187,8 +190,23 @@ impl IdentificationTask {
     }
 }
 
+/// Returns names and units of the channels in the order of the records.
+pub(super) fn planned_channels(channels: &RecordChannels) -> PlannedChannels {
+    let mut planned = PlannedChannels::default();
+    for input in &channels.inputs {
+        planned.inputs.push(PlannedInput {
+            name: input.name.clone(),
+            unit: input.unit.clone(),
+        });
+    }
+    for output in &channels.outputs {
+        planned.outputs.push(output.name.clone());
+    }
+    planned
+}
+
 /// Returns the prefix of messages about a condition.
-fn prefix(condition: Option<ConditionId>) -> String {
+pub(super) fn prefix(condition: Option<ConditionId>) -> String {
     match condition {
         Some(id) => format!("condition {id}: "),
         None => String::new(),

@@ -131,7 +131,11 @@ impl<'a> Identifications<'a> {
         add_identified(&models, file, &mut self.outputs)?;
         if let (Some(destination), Some(condition)) = (&mut self.destination, task.condition) {
             let entries = records.into_iter().map(|entry| {
-                relative_entry(entry, &self.basis.arguments.records, &destination.path)
+                relative_entry(
+                    entry,
+                    &self.basis.arguments.source.records,
+                    &destination.path,
+                )
             });
             let offered = self.basis.arguments.take.offered();
             let models = AdoptedModels::from_identification(found, offered, entries.collect());
@@ -150,7 +154,7 @@ impl<'a> Identifications<'a> {
         found: &Identification,
     ) -> Vec<CautionNote> {
         let dataset = self.destination.as_ref().map(|place| &*place.dataset);
-        let mut cautions = task.cautions(found, dataset);
+        let mut cautions = task.cautions(found, self.basis.channels, dataset);
         for caution in &cautions {
             let message = ConditionMessage::new(task.condition, caution.text.clone());
             self.cautions.push(message);
@@ -167,7 +171,7 @@ impl<'a> Identifications<'a> {
     /// inputs.
     fn model_channels(&self) -> RecordChannels {
         let mut channels = self.basis.channels.clone();
-        let references = self.basis.arguments.references().len();
+        let references = self.basis.arguments.source.references().len();
         channels.inputs.truncate(channels.inputs.len() - references);
         channels
     }

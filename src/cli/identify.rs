@@ -15,7 +15,7 @@ use super::flight_records::{Duplicate, ReadRecords, laid_out_records};
 use super::held_out_records::hold_out;
 use super::identification_task::{IDENTIFIED_FILE, IdentificationTask};
 use super::identifications::{IdentificationBasis, Identifications};
-use super::identify_arguments::IdentifyArguments;
+use super::identify_arguments::{IdentifyArguments, RecordArguments};
 use super::printed_lines::listed_paths;
 use super::receiving_dataset::{ReceivingDataset, RecordGroup, named_conditions};
 use super::record_remedies::apply_record_remedies;
@@ -25,14 +25,16 @@ use super::terminal::caution;
 /// Identifies models from flight records and writes them; with `--into`, also a copy of the dataset
 /// that contains them.
 pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
-    let read = arguments.records.iter().chain(&arguments.into);
+    let source = &arguments.source;
+    let read = source.records.iter().chain(&source.into);
     let outputs = OutputSet::new(existing(arguments.force), read.cloned().collect());
-    let destination = ReceivingDataset::open(arguments)?;
+    let destination =
+        ReceivingDataset::open(source, &arguments.out, arguments.description.as_deref())?;
     check_known_outputs(arguments, destination.as_ref(), &outputs)?;
     let dataset = destination.as_ref().map(|place| place.dataset.as_ref());
-    let band = requested_band(arguments, dataset)?;
-    let mut channels = requested_channels(arguments, dataset, band)?;
-    let tasks = identification_tasks(arguments, destination.as_ref(), &mut channels, band)?;
+    let band = requested_band(source, dataset)?;
+    let mut channels = requested_channels(source, dataset, band)?;
+    let tasks = identification_tasks(source, destination.as_ref(), &mut channels, band)?;
     let basis = IdentificationBasis {
         arguments,
         channels: &channels,
@@ -58,7 +60,7 @@ fn check_known_outputs(
     outputs: &OutputSet,
 ) -> Result<(), Failure> {
     let mut places: Vec<PathBuf> = Vec::new();
-    if !arguments.every_condition {
+    if !arguments.source.every_condition {
         places.push(arguments.out.join(IDENTIFIED_FILE));
     }
     places.extend(destination.map(|place| place.path.clone()));
@@ -66,18 +68,18 @@ fn check_known_outputs(
 }
 
 /// The identifications to be run, and what was reported while reading.
-struct IdentificationTasks {
-    tasks: Vec<IdentificationTask>,
+pub(super) struct IdentificationTasks {
+    pub(super) tasks: Vec<IdentificationTask>,
     /// Requested files that could not be read completely.
-    unread: Vec<PathBuf>,
+    pub(super) unread: Vec<PathBuf>,
     /// Notes about assumptions made while the records were read.
     reading: Vec<String>,
     duplicates: Vec<Duplicate>,
 }
 
 /// Creates the identification tasks: one for all records, or one per condition.
-fn identification_tasks(
-    arguments: &IdentifyArguments,
+pub(super) fn identification_tasks(
+    arguments: &RecordArguments,
     destination: Option<&ReceivingDataset>,
     channels: &mut RecordChannels,
     band: Band,

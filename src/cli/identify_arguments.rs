@@ -16,7 +16,7 @@ use super::option_values::{RecordPart, positive_rate, real_number, record_part, 
 
 /// Flight records, their channels, and the search for a model.
 #[derive(Debug, Args)]
-pub struct IdentifyArguments {
+pub struct RecordArguments {
     /// Flight records at one condition, or with --every-condition at many: files, or folders with their subfolders (text, MATLAB, NumPy, JSON, zip; logs of PX4, ArduPilot and Betaflight).
     #[arg(value_name = "RECORD", required = true)]
     pub records: Vec<PathBuf>,
@@ -78,7 +78,7 @@ pub struct IdentifyArguments {
     /// Factor of a channel's samples, negative for the opposite sign; in one record as RECORD:CHANNEL=X; may be repeated.
     #[arg(long, value_name = "CHANNEL=X", value_parser = channel_factor, allow_hyphen_values = true)]
     pub factor: Vec<ChannelValue<f64>>,
-    /// Dataset to add the models to; the new dataset is written beside identified.json.
+    /// Dataset that gives channels, units and band; `identify` adds the models to a copy beside identified.json.
     #[arg(long, value_name = "DATASET", requires = "where")]
     pub into: Option<PathBuf>,
     /// Condition in the dataset, by its id.
@@ -93,6 +93,13 @@ pub struct IdentifyArguments {
     /// Every condition of the dataset: each record goes to the condition in its name or its folder's name.
     #[arg(long, requires = "into", group = "where")]
     pub every_condition: bool,
+}
+
+/// Flight records, and where their models go.
+#[derive(Debug, Args)]
+pub struct IdentifyArguments {
+    #[command(flatten)]
+    pub source: RecordArguments,
     /// Models to add to the dataset.
     #[arg(
         long,
@@ -113,7 +120,7 @@ pub struct IdentifyArguments {
     pub force: bool,
 }
 
-impl IdentifyArguments {
+impl RecordArguments {
     /// Returns the recorded references; empty if none are given.
     pub fn references(&self) -> &[SaidChannel] {
         match &self.reference {

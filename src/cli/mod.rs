@@ -34,6 +34,8 @@ mod leave_one_out;
 mod misspelling;
 mod model_arguments;
 mod option_values;
+mod plan;
+mod plan_arguments;
 mod printed_lines;
 mod progress;
 mod receiving_dataset;
@@ -126,6 +128,7 @@ fn carry_out(command: &Command) -> Result<(), Failure> {
         Command::Assemble(arguments) => assemble::assemble(arguments),
         Command::Convert(arguments) => convert::convert(arguments),
         Command::Identify(arguments) => identify::identify(arguments),
+        Command::Plan(arguments) => plan::plan(arguments),
         Command::Check {
             file,
             opening,

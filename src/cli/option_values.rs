@@ -47,6 +47,14 @@ pub(super) fn positive_rate(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Parses a finite number above 0.
+pub(super) fn positive_number(text: &str) -> Result<f64, String> {
+    match finite_number(text.trim()) {
+        Some(number) if number > 0.0 => Ok(number),
+        _ => Err(format!("expected a positive number, found \"{text}\"")),
+    }
+}
+
 /// Airspeeds \[kt\] of a lookup table, increasing.
 pub type Breakpoints = Vec<f64>;
 
@@ -86,7 +94,7 @@ pub(super) fn pair_list(text: &str) -> Result<PairList, String> {
     }
 }
 
-fn pair_name(text: &str) -> Result<PairName, String> {
+pub(super) fn pair_name(text: &str) -> Result<PairName, String> {
     match text.trim().split_once('/') {
         Some((output, input)) if !output.is_empty() && !input.is_empty() => Ok(PairName {
             output: output.to_owned(),
@@ -256,6 +264,14 @@ mod tests {
             "29", "58:29", "5:5", ":1:2", "a:b", "0:inf", "+5:34", "5:+34", "++5:+34", "+5:-34",
         ] {
             assert!(record_part(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_positive_number_is_finite() {
+        assert_eq!(positive_number(" 0.5 "), Ok(0.5));
+        for wrong in ["0", "-1", "inf", "x", ""] {
+            assert!(positive_number(wrong).is_err(), "{wrong}");
         }
     }
 

@@ -15,7 +15,7 @@ use gdcm_sysid::records::LaidOutRecord;
 use super::condition_messages::listed_conditions;
 use super::dataset_lookup::{condition_ids, condition_of};
 use super::failure::Failure;
-use super::identify_arguments::IdentifyArguments;
+use super::identify_arguments::RecordArguments;
 use super::terminal::{caution, note};
 
 /// Records from which models are identified jointly.
@@ -36,8 +36,13 @@ pub(super) struct ReceivingDataset {
 }
 
 impl ReceivingDataset {
-    /// Opens the dataset given by `--into`; `None` without this option.
-    pub(super) fn open(arguments: &IdentifyArguments) -> Result<Option<Self>, Failure> {
+    /// Opens the dataset given by `--into`; `None` without this option. Its copy with models is
+    /// written to the directory `out`, with this description if there is one.
+    pub(super) fn open(
+        arguments: &RecordArguments,
+        out: &Path,
+        description: Option<&str>,
+    ) -> Result<Option<Self>, Failure> {
         let Some(path) = arguments.into.as_deref() else {
             return Ok(None);
         };
@@ -49,9 +54,9 @@ impl ReceivingDataset {
             Some(id) => Some(condition_of(&loaded.dataset, id)?),
             None => None,
         };
-        let written = arguments.out.join(path.file_name().unwrap_or_default());
+        let written = out.join(path.file_name().unwrap_or_default());
         let folder = relative_folder(path.parent().unwrap_or(Path::new("")), &written);
-        let dataset = moved_dataset(&loaded.dataset, &folder, arguments.description.as_deref())?;
+        let dataset = moved_dataset(&loaded.dataset, &folder, description)?;
         Ok(Some(Self {
             dataset: Arc::new(dataset),
             path: written,

@@ -8,7 +8,7 @@ use gdcm_sysid::records::{LaidOutRecord, RecordChannels};
 
 use super::channel_values::RecordChannel;
 use super::failure::Failure;
-use super::identify_arguments::IdentifyArguments;
+use super::identify_arguments::RecordArguments;
 use super::record_parts::is_called;
 use super::requested_channels::{has_channel, unknown_channel};
 
@@ -17,7 +17,7 @@ use super::requested_channels::{has_channel, unknown_channel};
 /// # Errors
 /// The channel or the record is unknown, or a value is given twice.
 pub(super) fn apply_record_remedies(
-    arguments: &IdentifyArguments,
+    arguments: &RecordArguments,
     records: &mut [LaidOutRecord],
     channels: &RecordChannels,
 ) -> Result<(), Failure> {
@@ -69,7 +69,7 @@ struct RecordRemedy<'a> {
 }
 
 /// Returns the options that give a delay or a factor for a channel in a single record.
-fn record_remedies(arguments: &IdentifyArguments) -> Vec<RecordRemedy<'_>> {
+fn record_remedies(arguments: &RecordArguments) -> Vec<RecordRemedy<'_>> {
     let mut remedies = Vec::new();
     for delay in &arguments.delay {
         if let Some(RecordChannel { record, channel }) = RecordChannel::parse(&delay.channel) {

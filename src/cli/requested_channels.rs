@@ -9,11 +9,11 @@ use gdcm_sysid::records::record_channels::{ResamplingWish, SaidConversion};
 
 use super::channel_values::{ChannelValue, RecordChannel, first_duplicate};
 use super::failure::Failure;
-use super::identify_arguments::IdentifyArguments;
+use super::identify_arguments::RecordArguments;
 
 /// Returns the identification band; by default the band of the dataset.
 pub(super) fn requested_band(
-    arguments: &IdentifyArguments,
+    arguments: &RecordArguments,
     dataset: Option<&Dataset>,
 ) -> Result<Band, Failure> {
     match (arguments.band.as_deref(), dataset) {
@@ -27,7 +27,7 @@ pub(super) fn requested_band(
 
 /// Returns the requested channels, with the declarations about their samples.
 pub(super) fn requested_channels(
-    arguments: &IdentifyArguments,
+    arguments: &RecordArguments,
     dataset: Option<&Dataset>,
     band: Band,
 ) -> Result<RecordChannels, Failure> {
@@ -75,7 +75,7 @@ fn listed(list: &Option<ChannelList>) -> &[SaidChannel] {
 
 /// Returns the channels listed on the command line; channels without a unit take the unit of the
 /// first record.
-fn named_channels(arguments: &IdentifyArguments) -> RecordChannels {
+fn named_channels(arguments: &RecordArguments) -> RecordChannels {
     let inputs = listed(&arguments.inputs).iter();
     let outputs = listed(&arguments.outputs).iter();
     RecordChannels {
@@ -87,7 +87,7 @@ fn named_channels(arguments: &IdentifyArguments) -> RecordChannels {
 
 /// Returns the channels of the dataset, in its units; columns may be given on the command line.
 fn channels_of_dataset(
-    arguments: &IdentifyArguments,
+    arguments: &RecordArguments,
     dataset: &Dataset,
 ) -> Result<RecordChannels, Failure> {
     let mut channels = RecordChannels::of_dataset(dataset);
@@ -135,7 +135,7 @@ fn set_column(
 /// Adds the reference channels to the inputs, after those of the model, because both are read in
 /// the same way.
 fn add_references(
-    arguments: &IdentifyArguments,
+    arguments: &RecordArguments,
     channels: &mut RecordChannels,
 ) -> Result<(), Failure> {
     for reference in arguments.references() {
@@ -153,7 +153,7 @@ fn add_references(
 
 /// Sets the topics or columns given by `--topic`.
 fn set_locations(
-    arguments: &IdentifyArguments,
+    arguments: &RecordArguments,
     channels: &mut RecordChannels,
 ) -> Result<(), Failure> {
     const OPTION: &str = "--topic";
@@ -173,7 +173,7 @@ fn set_locations(
 }
 
 /// Rejects names given by `--held` that are not inputs.
-fn check_held(arguments: &IdentifyArguments, channels: &RecordChannels) -> Result<(), Failure> {
+fn check_held(arguments: &RecordArguments, channels: &RecordChannels) -> Result<(), Failure> {
     for held in &arguments.held {
         if channels.inputs.iter().all(|rule| rule.name != *held) {
             let reason = format!("{held} is not an input");
@@ -185,7 +185,7 @@ fn check_held(arguments: &IdentifyArguments, channels: &RecordChannels) -> Resul
 
 /// Returns the preparation of the channels, which removes the given delays.
 pub(super) fn requested_preparation(
-    arguments: &IdentifyArguments,
+    arguments: &RecordArguments,
     channels: &RecordChannels,
 ) -> Result<Preparation, Failure> {
     const OPTION: &str = "--delay";

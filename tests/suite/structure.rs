@@ -62,12 +62,17 @@ const CRATES: &[(&str, ModuleTable)] = &[
                 &["spectra", "subspace", "likelihood", "options"],
             ),
             (
+                "planning",
+                &["spectra", "subspace", "likelihood", "diagnostics"],
+            ),
+            (
                 "identification",
                 &[
                     "spectra",
                     "subspace",
                     "likelihood",
                     "diagnostics",
+                    "planning",
                     "identification_error",
                     "options",
                 ],
@@ -119,6 +124,7 @@ const CRATES: &[(&str, ModuleTable)] = &[
             ("couplings", &["coupling_remark", "table"]),
             ("assessment", &["caution"]),
             ("uncertainty", &["table"]),
+            ("flight_plan", &["table"]),
             ("time_histories", &["table"]),
             (
                 "requirements",

@@ -9,6 +9,7 @@
 //! | [`subspace`] | models of all orders by CT-PBSID |
 //! | [`likelihood`] | the cost, its minimum, and the covariance there |
 //! | [`diagnostics`] | doubts about the model, as typed facts |
+//! | [`planning`] | the intervals that further sweeps will bring |
 //! | [`identification`] | the whole run, from flight records to a model with its uncertainty |
 //! | [`options`], [`identification_error`] | settings of the run, and the reasons why it fails |
 //!
@@ -50,6 +51,7 @@ pub mod identification;
 pub mod identification_error;
 pub mod likelihood;
 pub mod options;
+pub mod planning;
 pub mod records;
 pub mod spectra;
 pub mod subspace;

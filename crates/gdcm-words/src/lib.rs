@@ -34,6 +34,7 @@ pub mod couplings;
 pub mod dataset_differences;
 pub mod decision_differences;
 pub mod derivation;
+pub mod flight_plan;
 pub mod lead_price;
 pub mod leads;
 pub mod missing_results;

@@ -310,6 +310,8 @@ mod tests {
             record_uses: Vec::new(),
             not_identified: Vec::new(),
             cautions: Vec::new(),
+            information: None,
+            advice: Vec::new(),
         }
     }
 

@@ -6,6 +6,7 @@ pub mod dataset_file;
 pub mod example;
 pub mod export_contents;
 pub mod first_start;
+pub mod flight_plan_file;
 pub mod identified_models;
 pub mod levels_and_tolerances;
 pub mod model_collection;

@@ -11,6 +11,8 @@ use gdcm_model::simulation::{
 };
 use gdcm_sysid::identification::identify::identify;
 use gdcm_sysid::identification::{Identification, IdentificationError, Options, Preparation};
+use gdcm_sysid::planning::flight_plan::FlightPlan;
+use gdcm_sysid::planning::flight_planner::FlightPlanner;
 use gdcm_sysid::records::LaidOutRecord;
 use gdcm_sysid::spectra::preparation::segments_of;
 use gdcm_sysid::spectra::preparation_settings::PreparationError;
@@ -97,6 +99,8 @@ pub struct IdentificationNews {
     pub first_model: Option<Arc<StateSpace>>,
     /// Duration, once complete \[s\].
     pub duration_s: Option<f64>,
+    /// What further sweeps would bring, once complete.
+    pub next_flight: Option<Arc<FlightPlan>>,
 }
 
 /// Identification of a condition's models from its flight records.
@@ -178,11 +182,21 @@ impl Job for IdentifyJob {
             },
         );
         locked(&self.news).duration_s = Some(begin.elapsed().as_secs_f64());
+        if let Ok(found) = &found {
+            let plan = next_flight(found, executor.as_ref());
+            locked(&self.news).next_flight = plan.map(Arc::new);
+        }
         match found {
             Err(IdentificationError::Stopped(cancelled)) => Err(cancelled),
             found => Ok(found.map(Arc::new)),
         }
     }
+}
+
+/// Predicts what further sweeps of each input would bring; `None` if it cannot be computed.
+fn next_flight(found: &Identification, executor: &dyn Executor) -> Option<FlightPlan> {
+    let information = found.information.as_ref()?;
+    FlightPlanner::new(information, executor)?.standard_plan()
 }
 
 /// Simulation of a model with a flight record's inputs (M14, section 6).

@@ -24,9 +24,9 @@ use crate::likelihood::schur_model::SchurModel;
 /// Half-width of a two-sided 95 % confidence interval, in standard deviations.
 pub const TWO_SIDED_95: f64 = 1.96;
 /// Factor on the variances from the fit and from the order, found by measurement (M14.5).
-const MEASURED_FACTOR: f64 = 2.0;
+pub(crate) const MEASURED_FACTOR: f64 = 2.0;
 /// Maximum reported standard deviation, in neper and radians.
-const UNKNOWN: f64 = 1e3;
+pub(crate) const UNKNOWN: f64 = 1e3;
 
 /// A model, and the causes of its uncertainty besides the fit.
 pub(crate) struct BandModels<'a> {

@@ -29,7 +29,7 @@ const BAND_POINTS: usize = 60;
 /// the highest order is too low.
 const NARROWER: f64 = 0.7;
 /// Standard deviation above which a response is not identified \[dB\].
-const NOT_IDENTIFIED_DB: f64 = 3.0;
+pub(super) const NOT_IDENTIFIED_DB: f64 = 3.0;
 
 /// Uncertainty of the recommended model.
 pub(super) struct Uncertainty {

@@ -2,16 +2,17 @@
 
 use std::sync::Arc;
 
-use gdcm_model::dataset::model::{Origin, Provenance};
-use gdcm_model::dataset::{Dynamics, Model};
+use gdcm_model::dataset::model::{ModelBands, Origin, Provenance};
+use gdcm_model::dataset::{Dynamics, Model, Pair};
 use gdcm_model::executor::Executor;
 use gdcm_model::progress::{Progress, Shares};
 use gdcm_model::response::pole_estimate::PoleEstimate;
 use gdcm_model::simulation::{FlightRecord, Validation};
 
-use super::assessment::{AssessedModel, Assessment};
+use super::assessment::{AssessedModel, Assessment, NOT_IDENTIFIED_DB};
 use super::model_selection::{Proposal, Refinement, propose, refine};
 use super::prepared_data::PreparedData;
+use crate::diagnostics::bands::TWO_SIDED_95;
 use crate::diagnostics::cautions::IdentificationCaution;
 use crate::diagnostics::feedback::Feedback;
 use crate::diagnostics::record_contrast::RecordContrast;
@@ -20,6 +21,9 @@ use crate::identification_error::IdentificationError;
 use crate::likelihood::models_without_record::ModelWithoutRecord;
 use crate::likelihood::schur_model::SchurModel;
 use crate::options::Options;
+use crate::planning::flight_information::{FittedModel, FlightInformation};
+use crate::planning::flight_planner::FlightPlanner;
+use crate::planning::sweep_advice::SweepAdvice;
 use crate::spectra::record_use::RecordUse;
 use crate::spectra::response_estimate::ResponseEstimate;
 use crate::subspace::stabilisation::StabilisationPoint;
@@ -75,6 +79,11 @@ pub struct Identification {
     pub not_identified: Vec<(usize, usize)>,
     /// Doubts about records and models, each with a code.
     pub cautions: Vec<IdentificationCaution>,
+    /// What the records say about the recommended model, to plan further flights; `None` if it
+    /// cannot be computed.
+    pub information: Option<Arc<FlightInformation>>,
+    /// The sweeps that identify the responses in `not_identified`.
+    pub advice: Vec<SweepAdvice>,
 }
 
 /// Identifies a flight condition from its records (M14.7).
@@ -143,8 +152,11 @@ impl Models<'_> {
         let model = &refinement.fit.model;
         let unrefined = proposal.unrefined(refinement.search.order)?;
         let poles = uncertainty.as_logged().poles(model, self.options.band[0]);
+        let bands = Arc::new(uncertainty.bands);
+        let information = self.information(refinement, &bands, uncertainty.feedback.as_ref());
+        let advice = self.advice(information.as_ref(), &uncertainty.not_identified);
         let mut refined = self.of_order(REFINED, model)?;
-        refined.bands = Some(Arc::new(uncertainty.bands));
+        refined.bands = Some(bands);
         Some(Identification {
             refined,
             unrefined: self.of_order(UNREFINED, &unrefined.model)?,
@@ -166,7 +178,48 @@ impl Models<'_> {
             record_uses: self.data.record_uses.clone(),
             not_identified: uncertainty.not_identified,
             cautions: assessed.cautions,
+            information: information.map(Arc::new),
+            advice,
         })
+    }
+
+    /// Computes what the records say about the recommended model; with a reference, what the lines
+    /// as logged say.
+    fn information(
+        &self,
+        refinement: &Refinement,
+        bands: &Arc<ModelBands>,
+        feedback: Option<&Feedback>,
+    ) -> Option<FlightInformation> {
+        let fitted = &refinement.weights.likelihood;
+        FlightInformation::new(&FittedModel {
+            model: &refinement.fit.model.state_space()?,
+            likelihood: self.data.direct.as_ref().unwrap_or(fitted),
+            scales: &self.data.scales,
+            lines: [self.options.lowest(), self.options.highest()],
+            bands,
+            feedback,
+            not_swept: self.data.measured.excitation().not_identified().collect(),
+        })
+    }
+
+    /// Returns the sweeps that identify these responses (output, input).
+    fn advice(
+        &self,
+        information: Option<&FlightInformation>,
+        not_identified: &[(usize, usize)],
+    ) -> Vec<SweepAdvice> {
+        if not_identified.is_empty() {
+            return Vec::new();
+        }
+        let mut pairs = Vec::with_capacity(not_identified.len());
+        for &(output, input) in not_identified {
+            pairs.push(Pair { output, input });
+        }
+        information
+            .and_then(|information| FlightPlanner::new(information, self.data.likelihood.executor))
+            .and_then(|planner| planner.advice(&pairs, TWO_SIDED_95 * NOT_IDENTIFIED_DB))
+            .unwrap_or_default()
     }
 
     /// Names a model after its method and order.

@@ -27,7 +27,7 @@ mod noise_weights;
 pub(crate) mod order;
 pub(crate) mod prepared_data;
 #[cfg(test)]
-mod real_flight_tests;
+pub(crate) mod real_flight_tests;
 #[cfg(test)]
 mod record_caution_tests;
 #[cfg(test)]

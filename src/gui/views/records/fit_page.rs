@@ -1,10 +1,11 @@
 //! Page with the fit of the models: χ²/dof in the frequency domain, fit and Theil's coefficient in
-//! the time domain.
+//! the time domain; below, what further sweeps would bring.
 
 use egui::{Grid, RichText, ScrollArea, Ui};
 
 use gdcm_sysid::identification::Identification;
 
+use super::next_flight::next_flight_ui;
 use super::page::Page;
 use super::record_list::cost_text;
 use super::simulation::{simulated, time_models_ui};
@@ -25,6 +26,8 @@ pub(super) fn fit_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
             }
             ui.add_space(10.0);
             time_fit_ui(ui, page, commands);
+            ui.add_space(10.0);
+            next_flight_ui(ui, page);
         });
 }
 

@@ -13,6 +13,7 @@ mod histories;
 mod history_spans;
 mod identified_poles;
 mod input_charts;
+mod next_flight;
 mod offered_models;
 mod outcome;
 pub mod page;

@@ -10,11 +10,13 @@ use gdcm_study::results::channel_time_skew::ChannelTimeSkew;
 use gdcm_sysid::diagnostics::model_doubts::HELD_OUT;
 use gdcm_sysid::identification::Identification;
 use gdcm_words::channel_time_skew::time_skew_text;
+use gdcm_words::flight_plan::caution_with_advice;
 
 use super::caution_remedies::{
     Remedy, band_remedy, caution_remedies, remove_common_delay, study_band_remedy,
 };
 use super::frame_cache::{Source, cached};
+use super::next_flight::planned_channels;
 use super::page::Page;
 use super::record_list::{BAD_FIT, CHI_SQUARED};
 use crate::gui::commands::command::Command;
@@ -52,9 +54,11 @@ pub(super) fn outcome_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command
                 ui.label(palette.small_warning("Outdated: records or settings have changed"));
             }
             summary_ui(ui, found, palette);
+            let channels = planned_channels(state.dataset());
             for caution in &found.cautions {
                 let remedies = caution_remedies(ui, records, caution);
-                caution_ui(ui, &caution.to_string(), remedies, palette, commands);
+                let words = caution_with_advice(caution, &found.advice, &channels);
+                caution_ui(ui, &words, remedies, palette, commands);
             }
             late_channel_ui(ui, page, commands);
         }

@@ -1,0 +1,278 @@
+//! What the flown records say about a model: the Fisher information, with all that is necessary to
+//! predict the information of further flights.
+//!
+//! ```text
+//! G = sum over lines of Re(V^H V (x) conj(S) S'),   phi = max(J / (N - k), 1)     (M14.19, M14.22)
+//! information = G / phi,   noise of a line = phi Cv
+//! ```
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use nalgebra::{Complex, DMatrix};
+
+use gdcm_model::dataset::StateSpace;
+use gdcm_model::dataset::model::ModelBands;
+use gdcm_model::statistics::median;
+
+use super::planned_sweep::PlannedSweep;
+use crate::diagnostics::feedback::Feedback;
+use crate::likelihood::balancing::{Gramians, balancing_coordinates};
+use crate::likelihood::cost::{Likelihood, SpectralLines};
+use crate::likelihood::dense_model::DenseModel;
+use crate::likelihood::dense_system::{EXACT, dense_system};
+use crate::likelihood::linear_model::LinearModel;
+use crate::likelihood::noise_covariance::{NoiseCovariance, NoisePoint};
+use crate::spectra::scales::Scales;
+use crate::subspace::tried_orders::parameters_of_order;
+
+/// Minimum distance in ln omega of the frequencies at which the noise is kept.
+const NOISE_SPACING: f64 = 0.02;
+/// First line used, in units of the first line of a record (M14.12).
+const FIRST_LINE: f64 = 1.5;
+
+/// The information of the flown records about a model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FlightInformation {
+    /// The model in scaled units, in balanced coordinates.
+    pub(super) model: StateSpace,
+    /// Scales of the channels, from scaled units to those of the records.
+    pub(super) scales: Scales,
+    /// `G / phi` in all entries of `[[A, B], [C, D]]`, column after column.
+    pub(super) flown: DMatrix<f64>,
+    /// `phi`.
+    pub(super) dispersion: f64,
+    /// `Cv`, in scaled units.
+    pub(super) noise: NoiseCovariance,
+    /// Lowest and highest line used \[rad/s\].
+    pub(super) lines: [f64; 2],
+    /// Standard deviations of the responses of the model.
+    pub(super) bands: Arc<ModelBands>,
+    /// Noise and gusts fed back into the responses.
+    pub(super) feedback: Option<Feedback>,
+    /// A sweep of each input as strong and as long as it was flown.
+    pub(super) standard_sweeps: Vec<StandardSweep>,
+}
+
+/// A sweep like those flown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StandardSweep {
+    pub sweep: PlannedSweep,
+    /// Whether the amplitude and length are those of the other inputs: this input was not swept.
+    pub is_assumed: bool,
+}
+
+/// A fitted model and its lines.
+pub(crate) struct FittedModel<'a> {
+    /// The model in scaled units.
+    pub(crate) model: &'a StateSpace,
+    /// The fitted lines; with a reference, the lines as logged.
+    pub(crate) likelihood: &'a Likelihood<'a>,
+    pub(crate) scales: &'a Scales,
+    /// Lowest and highest line used \[rad/s\].
+    pub(crate) lines: [f64; 2],
+    pub(crate) bands: &'a Arc<ModelBands>,
+    pub(crate) feedback: Option<&'a Feedback>,
+    /// Indices of the inputs that were not swept.
+    pub(crate) not_swept: Vec<usize>,
+}
+
+impl FlightInformation {
+    /// Computes the information at a fitted model; `None` if an iteration does not converge, or if
+    /// the parameters leave no degrees of freedom.
+    pub(crate) fn new(fitted: &FittedModel) -> Option<Self> {
+        let likelihood = fitted.likelihood;
+        let model = balanced(likelihood, &DenseModel::from_state_space(fitted.model)?)?;
+        let parts = likelihood.parts(&model)?;
+        let cost: f64 = parts.iter().map(|part| part.cost).sum();
+        let (outputs, inputs) = model.d().shape();
+        let parameters = parameters_of_order(model.order(), inputs, outputs);
+        let spare = likelihood.freedom(model.order()).checked_sub(parameters)?;
+        if spare == 0 {
+            return None;
+        }
+        let dispersion = (cost / spare as f64).max(1.0);
+        let system = dense_system(likelihood, &model, &parts, EXACT)?;
+        Some(Self {
+            model: model.state_space()?,
+            scales: fitted.scales.clone(),
+            flown: system.matrix.unscale(dispersion),
+            dispersion,
+            noise: noise_of_lines(likelihood)?,
+            lines: fitted.lines,
+            bands: Arc::clone(fitted.bands),
+            feedback: fitted.feedback.cloned(),
+            standard_sweeps: standard_sweeps(fitted)?,
+        })
+    }
+
+    /// Returns the number of inputs.
+    #[must_use]
+    pub fn inputs(&self) -> usize {
+        self.standard_sweeps.len()
+    }
+
+    /// Returns a sweep of an input like those flown, once; `None` for an input that does not exist.
+    #[must_use]
+    pub fn standard_sweep(&self, input: usize) -> Option<StandardSweep> {
+        self.standard_sweeps.get(input).copied()
+    }
+
+    /// Returns the band of a sweep of this length that reaches all lines used \[rad/s\].
+    #[must_use]
+    pub fn sweep_band(&self, length_s: f64) -> [f64; 2] {
+        sweep_band(self.lines, length_s)
+    }
+
+    /// Returns a sweep with another length; a band that reaches all lines used still does so.
+    #[must_use]
+    pub fn with_length(&self, sweep: &PlannedSweep, length_s: f64) -> PlannedSweep {
+        let band = if sweep.band == self.sweep_band(sweep.length_s) {
+            self.sweep_band(length_s)
+        } else {
+            sweep.band
+        };
+        PlannedSweep {
+            length_s,
+            band,
+            ..*sweep
+        }
+    }
+}
+
+/// Transforms a model to balanced coordinates; `None` if an iteration does not converge.
+fn balanced(likelihood: &Likelihood, model: &DenseModel) -> Option<DenseModel> {
+    let coordinates = balancing_coordinates(&Gramians::sampled(likelihood, model))?;
+    model.in_coordinates(&coordinates.transformation, &coordinates.inverse)
+}
+
+/// Returns the lines used, from the first that a record of this length has \[rad/s\].
+fn sweep_band(lines: [f64; 2], length_s: f64) -> [f64; 2] {
+    let first = FIRST_LINE * TAU / length_s;
+    [lines[0].max(first).min(0.5 * lines[1]), lines[1]]
+}
+
+/// Returns the noise covariance of the lines, without the factors of the records:
+/// `Cv = 2 W^-1 W^-H`.
+fn noise_of_lines(likelihood: &Likelihood) -> Option<NoiseCovariance> {
+    let mut lines: Vec<(f64, &SpectralLines, usize)> = Vec::new();
+    for segment in &likelihood.segments {
+        for (k, omega) in segment.omega.iter().enumerate() {
+            lines.push((*omega, segment, k));
+        }
+    }
+    lines.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut points: Vec<NoisePoint> = Vec::new();
+    for (omega, segment, k) in lines {
+        let is_near = points
+            .last()
+            .is_some_and(|point| omega < point.omega * NOISE_SPACING.exp());
+        if is_near {
+            continue;
+        }
+        let weight = segment.weights[k].unscale(segment.scale);
+        let size = weight.nrows();
+        let root = weight.solve_lower_triangular(&DMatrix::identity(size, size))?;
+        points.push(NoisePoint {
+            omega,
+            covariance: (&root * root.adjoint()).scale(2.0),
+        });
+    }
+    NoiseCovariance::new(points)
+}
+
+/// A sweep of an input, measured in a record.
+#[derive(Clone, Copy)]
+struct FlownSweep {
+    /// In the units of the input.
+    amplitude: f64,
+    length_s: f64,
+}
+
+/// Returns a sweep of each input like those flown; inputs that were not swept get the median of the
+/// others. `None` without lines.
+fn standard_sweeps(fitted: &FittedModel) -> Option<Vec<StandardSweep>> {
+    let mut flown = Vec::with_capacity(fitted.scales.inputs.len());
+    for (input, scale) in fitted.scales.inputs.iter().enumerate() {
+        let mut strongest: Option<FlownSweep> = None;
+        for segment in &fitted.likelihood.segments {
+            let Some(sweep) = flown_sweep(segment, input, fitted.lines) else {
+                continue;
+            };
+            if strongest.is_none_or(|other| sweep.amplitude > other.amplitude) {
+                strongest = Some(sweep);
+            }
+        }
+        let strongest = strongest?;
+        flown.push(FlownSweep {
+            amplitude: strongest.amplitude * scale,
+            ..strongest
+        });
+    }
+    let mut swept: Vec<FlownSweep> = Vec::new();
+    for (input, sweep) in flown.iter().enumerate() {
+        if !fitted.not_swept.contains(&input) {
+            swept.push(*sweep);
+        }
+    }
+    let mut sweeps = Vec::with_capacity(flown.len());
+    for (input, own) in flown.into_iter().enumerate() {
+        let is_assumed = fitted.not_swept.contains(&input) && !swept.is_empty();
+        let used = if is_assumed {
+            FlownSweep {
+                amplitude: median_of(&swept, |sweep| sweep.amplitude),
+                length_s: median_of(&swept, |sweep| sweep.length_s),
+            }
+        } else {
+            own
+        };
+        sweeps.push(StandardSweep {
+            sweep: PlannedSweep {
+                input,
+                amplitude: used.amplitude,
+                length_s: used.length_s,
+                band: sweep_band(fitted.lines, used.length_s),
+                repeats: 1,
+            },
+            is_assumed,
+        });
+    }
+    Some(sweeps)
+}
+
+/// Returns the median of a property of sweeps.
+fn median_of(sweeps: &[FlownSweep], property: fn(&FlownSweep) -> f64) -> f64 {
+    let mut values: Vec<f64> = sweeps.iter().map(property).collect();
+    median(&mut values)
+}
+
+/// Measures the amplitude of a sweep in a segment: that of a planned sweep of the same length whose
+/// power equals the power of the lines in the median. `None` for fewer than two lines.
+fn flown_sweep(segment: &SpectralLines, input: usize, lines: [f64; 2]) -> Option<FlownSweep> {
+    let [first, second, ..] = segment.omega[..] else {
+        return None;
+    };
+    let length_s = TAU / (second - first);
+    let unit = PlannedSweep {
+        input,
+        amplitude: 1.0,
+        length_s,
+        band: sweep_band(lines, length_s),
+        repeats: 1,
+    };
+    let mut ratios = Vec::with_capacity(segment.omega.len());
+    for (k, &omega) in segment.omega.iter().enumerate() {
+        let power = unit.power(omega);
+        let value: Complex<f64> = segment.inputs[(input, k)];
+        if power > 0.0 {
+            ratios.push(value.norm_sqr() / power);
+        }
+    }
+    if ratios.is_empty() {
+        return None;
+    }
+    Some(FlownSweep {
+        amplitude: median(&mut ratios).sqrt(),
+        length_s,
+    })
+}

@@ -1,0 +1,96 @@
+//! Tables of the intervals that further sweeps bring.
+
+use gdcm_model::dataset::Pair;
+
+use super::flight_information::StandardSweep;
+use super::flight_planner::{FlightPlanner, Repeated, ResponseInterval};
+
+/// Numbers of sweeps in a table.
+pub const TABLE_REPEATS: [usize; 3] = [1, 2, 4];
+
+/// The intervals that further sweeps bring, for each input.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FlightPlan {
+    pub sweeps: Vec<SweepPlan>,
+}
+
+/// The intervals of the responses to an input after further sweeps of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SweepPlan {
+    /// The sweep, with `repeats` of 1.
+    pub sweep: StandardSweep,
+    /// Numbers of sweeps of the entries of `after`.
+    pub repeats: Vec<usize>,
+    /// A response for each output.
+    pub responses: Vec<PlannedResponse>,
+}
+
+/// The interval of a response now and after further sweeps.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlannedResponse {
+    pub pair: Pair,
+    /// \[rad/s\].
+    pub omega: f64,
+    pub now: ResponseInterval,
+    /// After each number of sweeps.
+    pub after: Vec<ResponseInterval>,
+}
+
+impl FlightPlanner<'_> {
+    /// Predicts the intervals of all responses to an input at `omega` \[rad/s\] after numbers of
+    /// sweeps; `None` if an iteration does not converge.
+    #[must_use]
+    pub fn sweep_plan(
+        &self,
+        sweep: StandardSweep,
+        repeats: &[usize],
+        omega: f64,
+    ) -> Option<SweepPlan> {
+        let information = self.sweep_information(&sweep.sweep)?;
+        let bands = &self.information().bands;
+        let input = sweep.sweep.input;
+        let mut responses = Vec::with_capacity(bands.sd_db().outputs());
+        for output in 0..bands.sd_db().outputs() {
+            let pair = Pair { output, input };
+            responses.push(PlannedResponse {
+                pair,
+                omega,
+                now: self.interval_now(pair, omega),
+                after: Vec::with_capacity(repeats.len()),
+            });
+        }
+        for &times in repeats {
+            let after = self.after(&[Repeated {
+                information: &information,
+                times: times as f64,
+            }])?;
+            for response in &mut responses {
+                let interval = self.interval(&after, response.pair, omega)?;
+                response.after.push(interval);
+            }
+        }
+        Some(SweepPlan {
+            sweep,
+            repeats: repeats.to_vec(),
+            responses,
+        })
+    }
+
+    /// Predicts the intervals in the middle of the band after one, two and four sweeps of each
+    /// input.
+    #[must_use]
+    pub fn standard_plan(&self) -> Option<FlightPlan> {
+        let mut sweeps = Vec::with_capacity(self.information().inputs());
+        for sweep in &self.information().standard_sweeps {
+            sweeps.push(self.sweep_plan(*sweep, &TABLE_REPEATS, self.middle())?);
+        }
+        Some(FlightPlan { sweeps })
+    }
+
+    /// Returns the middle frequency of the bands \[rad/s\].
+    #[must_use]
+    pub fn middle(&self) -> f64 {
+        let omega = self.information().bands.omega();
+        omega[omega.len() / 2]
+    }
+}

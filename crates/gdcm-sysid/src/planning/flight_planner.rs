@@ -1,0 +1,286 @@
+//! Predicted standard deviations after further sweeps.
+//!
+//! ```text
+//! 1  G_j: information of one planned sweep. U from its samples, Y = G U, tau = 0 (the sweep begins
+//!    and ends in trim), the other inputs 0, the noise that of the flown records
+//! 2  T = G/phi + sum_j r_j G_j/phi + c N N',   N the changes of coordinates
+//! 3  h = gradient of ln H_oi:  dH = [C R, I]_o dTheta [R B; I]_i     (M14.22)
+//!    var = h' T^-1 h, the same as h' (...)^+ h: h is orthogonal to N, and N' G = 0
+//! 4  sd^2 = f^2 + (sd_now^2 - f^2) var / var_now,   f^2 = |G_b/G|^2 / 2 (M14.17)
+//! ```
+//!
+//! Step 4 keeps the share of the response that is fed back, if it is visible: further flights of the
+//! same kind do not change it. Otherwise it is due to noise, as are the differences between
+//! neighbouring orders: both fall with the variance of the fit.
+
+use std::cell::OnceCell;
+
+use nalgebra::{Complex, DMatrix, DVector};
+
+use gdcm_model::dataset::Pair;
+use gdcm_model::executor::Executor;
+use gdcm_model::units::neper_to_db;
+
+use super::coordinate_changes::coordinate_changes;
+use super::flight_information::FlightInformation;
+use super::planned_sweep::PlannedSweep;
+use crate::diagnostics::bands::TWO_SIDED_95;
+use crate::diagnostics::feedback::FeedbackLevel;
+use crate::likelihood::cost::{Likelihood, SegmentCost, SpectralLines};
+use crate::likelihood::dense_model::DenseModel;
+use crate::likelihood::dense_system::{EXACT, dense_system};
+use crate::likelihood::linear_model::LinearModel;
+use crate::spectra::interpolation::Neighbours;
+use crate::spectra::spectrum::LineRange;
+
+/// Share of the diagonal added to the information: a direction about which the flights say nothing
+/// keeps a large but finite variance.
+const FLOOR: f64 = 1e-12;
+/// Largest standard deviation of `ln H`.
+const UNKNOWN: f64 = 1e3;
+
+/// Half-width of the 95 % interval of a response at a frequency.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ResponseInterval {
+    pub half_db: f64,
+    pub half_deg: f64,
+}
+
+/// Predicts intervals after further sweeps.
+pub struct FlightPlanner<'a> {
+    information: &'a FlightInformation,
+    model: DenseModel,
+    /// `G/phi + c N N'`.
+    flown: DMatrix<f64>,
+    executor: &'a dyn Executor,
+    /// The factored information of the flown records.
+    now: OnceCell<Option<FactoredInformation>>,
+}
+
+/// Information of a single planned sweep, `G_j/phi`.
+#[derive(Clone)]
+pub(super) struct SweepInformation(pub(super) DMatrix<f64>);
+
+/// Planned sweeps that are flown a number of times, which may be a fraction.
+pub(super) struct Repeated<'p> {
+    pub(super) information: &'p SweepInformation,
+    pub(super) times: f64,
+}
+
+/// Variances of the real and imaginary part of `ln H`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LogVariance {
+    pub(super) re: f64,
+    pub(super) im: f64,
+}
+
+impl<'a> FlightPlanner<'a> {
+    /// Prepares the predictions; `None` if an iteration does not converge.
+    #[must_use]
+    pub fn new(information: &'a FlightInformation, executor: &'a dyn Executor) -> Option<Self> {
+        let model = DenseModel::from_state_space(&information.model)?;
+        let changes = coordinate_changes(&model);
+        let mut fixed = &changes * changes.transpose();
+        let ratio = information.flown.trace() / fixed.trace();
+        if ratio.is_finite() && ratio > 0.0 {
+            fixed *= ratio;
+        }
+        Some(Self {
+            information,
+            model,
+            flown: fixed + &information.flown,
+            executor,
+            now: OnceCell::new(),
+        })
+    }
+
+    /// Returns the information for which the flights are planned.
+    #[must_use]
+    pub fn information(&self) -> &FlightInformation {
+        self.information
+    }
+
+    /// Computes the information of a single sweep (step 1); `None` if it has no lines, or if an
+    /// iteration does not converge.
+    pub(super) fn sweep_information(&self, sweep: &PlannedSweep) -> Option<SweepInformation> {
+        let (outputs, inputs) = self.model.d().shape();
+        let scale = *self.information.scales.inputs.get(sweep.input)?;
+        let [lowest, highest] = self.information.lines;
+        let range = LineRange { lowest, highest };
+        let segment = sweep.segment(inputs, outputs, scale);
+        let spectra = range.spectra(std::slice::from_ref(&segment), self.executor);
+        let lines = SpectralLines::new(spectra.first()?, &self.information.noise)?;
+        let part = SegmentCost {
+            cost: 0.0,
+            transient: DVector::zeros(self.model.order()),
+            hat_values: Vec::new(),
+            residual: DMatrix::zeros(outputs, lines.omega.len()),
+        };
+        let likelihood = Likelihood::new(vec![lines], self.executor);
+        let system = dense_system(&likelihood, &self.model, &[part], EXACT)?;
+        Some(SweepInformation(
+            system.matrix.unscale(self.information.dispersion),
+        ))
+    }
+
+    /// Factors the information after further sweeps (step 2); `None` if it is not positive
+    /// definite.
+    pub(super) fn after(&self, sweeps: &[Repeated]) -> Option<FactoredInformation> {
+        let mut total = self.flown.clone();
+        for Repeated { information, times } in sweeps {
+            total += &information.0 * *times;
+        }
+        FactoredInformation::new(total)
+    }
+
+    /// Returns the factored information of the flown records.
+    fn now(&self) -> Option<&FactoredInformation> {
+        self.now.get_or_init(|| self.after(&[])).as_ref()
+    }
+
+    /// Returns the reported interval of a response.
+    #[must_use]
+    pub fn interval_now(&self, pair: Pair, omega: f64) -> ResponseInterval {
+        let bands = &self.information.bands;
+        ResponseInterval {
+            half_db: TWO_SIDED_95 * interpolated(bands.omega(), &bands.sd_db()[pair], omega),
+            half_deg: TWO_SIDED_95 * interpolated(bands.omega(), &bands.sd_deg()[pair], omega),
+        }
+    }
+
+    /// Predicts the interval of a response (step 4).
+    pub(super) fn interval(
+        &self,
+        after: &FactoredInformation,
+        pair: Pair,
+        omega: f64,
+    ) -> Option<ResponseInterval> {
+        let gradient = self.log_gradient(pair, omega);
+        let before = self.now()?.variance(&gradient)?;
+        let left = after.variance(&gradient)?;
+        let now = self.interval_now(pair, omega);
+        let fed_back = self.interval_limit(pair, omega);
+        Some(ResponseInterval {
+            half_db: reduced(now.half_db, fed_back.half_db, left.re / before.re),
+            half_deg: reduced(now.half_deg, fed_back.half_deg, left.im / before.im),
+        })
+    }
+
+    /// Returns the limit of the interval for infinitely many flights: what is visibly fed back. It is
+    /// 0 for an input that was not swept, because a sweep exceeds what is fed back into it.
+    #[must_use]
+    pub fn interval_limit(&self, pair: Pair, omega: f64) -> ResponseInterval {
+        let was_swept = self
+            .information
+            .standard_sweep(pair.input)
+            .is_some_and(|standard| !standard.is_assumed);
+        let share = match &self.information.feedback {
+            Some(feedback) if was_swept && feedback.level() != FeedbackLevel::None => {
+                feedback.ratio(omega, (pair.output, pair.input))
+            }
+            _ => 0.0,
+        };
+        let half_width = TWO_SIDED_95 * (0.5 * share.powi(2)).sqrt();
+        ResponseInterval {
+            half_db: neper_to_db(half_width),
+            half_deg: half_width.to_degrees(),
+        }
+    }
+
+    /// Returns the gradient of `ln H` in all entries of `[[A, B], [C, D]]`: real and imaginary
+    /// part.
+    pub(super) fn log_gradient(&self, pair: Pair, omega: f64) -> DMatrix<f64> {
+        let order = self.model.order();
+        let (outputs, inputs) = self.model.d().shape();
+        let mut cr = DMatrix::<Complex<f64>>::zeros(outputs, order);
+        self.model.output_resolvent(omega, cr.as_mut_slice());
+        let mut states: Vec<Complex<f64>> = Vec::with_capacity(order);
+        states.extend(
+            self.model
+                .b()
+                .column(pair.input)
+                .iter()
+                .copied()
+                .map(Complex::from),
+        );
+        self.model.resolve(omega, &mut states);
+        let mut rows: Vec<Complex<f64>> = cr.row(pair.output).iter().copied().collect();
+        rows.resize(order + outputs, Complex::default());
+        rows[order + pair.output] = Complex::from(1.0);
+        let mut columns = states;
+        columns.resize(order + inputs, Complex::default());
+        columns[order + pair.input] = Complex::from(1.0);
+        let response = self.model.response(omega)[(pair.output, pair.input)];
+        let mut gradient = DMatrix::zeros(rows.len() * columns.len(), 2);
+        for (c, column) in columns.iter().enumerate() {
+            for (r, row) in rows.iter().enumerate() {
+                let value = row * column / response;
+                gradient[(c * rows.len() + r, 0)] = value.re;
+                gradient[(c * rows.len() + r, 1)] = value.im;
+            }
+        }
+        gradient
+    }
+}
+
+/// The lower Cholesky factor of an information matrix whose columns have unit length.
+pub(super) struct FactoredInformation {
+    /// Factors on the columns.
+    scales: DVector<f64>,
+    lower: DMatrix<f64>,
+}
+
+impl FactoredInformation {
+    fn new(mut total: DMatrix<f64>) -> Option<Self> {
+        let scales = total
+            .diagonal()
+            .map(|square| 1.0 / square.max(f64::MIN_POSITIVE).sqrt());
+        let size = scales.len();
+        for (at, entry) in total.iter_mut().enumerate() {
+            *entry *= scales[at % size] * scales[at / size];
+        }
+        for place in 0..size {
+            total[(place, place)] += FLOOR;
+        }
+        Some(Self {
+            scales,
+            lower: total.cholesky()?.unpack(),
+        })
+    }
+
+    /// Computes the variances along a gradient of two columns; `None` if it is not finite.
+    pub(super) fn variance(&self, gradient: &DMatrix<f64>) -> Option<LogVariance> {
+        let mut scaled = gradient.clone();
+        for mut column in scaled.column_iter_mut() {
+            column.component_mul_assign(&self.scales);
+        }
+        let solved = self.lower.solve_lower_triangular(&scaled)?;
+        let [re, im] = [0, 1].map(|part| solved.column(part).norm_squared());
+        if re.is_finite() && im.is_finite() {
+            Some(LogVariance {
+                re: re.min(UNKNOWN * UNKNOWN),
+                im: im.min(UNKNOWN * UNKNOWN),
+            })
+        } else {
+            None
+        }
+    }
+}
+
+/// Returns the half-width of an interval when the variance of the fit falls to a share of its
+/// present value (step 4).
+fn reduced(now: f64, fed_back: f64, share: f64) -> f64 {
+    let fixed = fed_back.min(now).powi(2);
+    (fixed + (now.powi(2) - fixed) * share.clamp(0.0, 1.0)).sqrt()
+}
+
+/// Interpolates linearly in log frequency; constant beyond the ends.
+fn interpolated(omegas: &[f64], values: &[f64], omega: f64) -> f64 {
+    let logs: Vec<f64> = omegas.iter().map(|omega| omega.ln()).collect();
+    let Neighbours {
+        before,
+        after,
+        share,
+    } = Neighbours::find(&logs, omega.ln());
+    values[before] * (1.0 - share) + values[after] * share
+}

@@ -1,0 +1,218 @@
+//! What brings a wanted interval: the number of sweeps, their length, their amplitude, or a
+//! narrower band.
+
+use gdcm_model::dataset::Pair;
+
+use super::flight_information::StandardSweep;
+use super::flight_planner::{FlightPlanner, Repeated, ResponseInterval, SweepInformation};
+use super::least_number::{Least, least_number};
+use super::planned_sweep::PlannedSweep;
+
+/// Step of the length of a sweep \[s\].
+const LENGTH_STEP_S: f64 = 5.0;
+/// Maximum length of a sweep \[s\].
+const LONGEST_S: f64 = 300.0;
+/// Step of the amplitude, relative to that of the sweep.
+const AMPLITUDE_STEP: f64 = 0.05;
+/// Maximum amplitude, relative to that of the sweep: beyond, the response of the aircraft is not
+/// linear.
+const LARGEST_AMPLITUDE: f64 = 3.0;
+/// Ratio of the wanted frequency to the lower end of the narrow band, and of its upper end to the
+/// wanted frequency.
+const NARROW: f64 = 2.0;
+
+/// A wanted interval of a response at a frequency.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IntervalTarget {
+    pub pair: Pair,
+    /// \[rad/s\].
+    pub omega: f64,
+    /// Half-width of the 95 % interval of the magnitude \[dB\].
+    pub half_db: f64,
+}
+
+/// How much is needed for a target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Need<T> {
+    /// The least amount, and the half-width then \[dB\].
+    Least { amount: T, half_db: f64 },
+    /// The largest amount considered, which is not enough, and the half-width then \[dB\].
+    NotWithin { most: T, half_db: f64 },
+}
+
+/// Each way to a target, with everything else as in `sweep`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TargetPlan {
+    pub target: IntervalTarget,
+    /// The sweep of the input of the response, with `repeats` of 1.
+    pub sweep: StandardSweep,
+    pub now: ResponseInterval,
+    /// For infinitely many flights.
+    pub limit: ResponseInterval,
+    /// `None` if the interval is narrow enough now.
+    pub ways: Option<TargetWays>,
+}
+
+/// The ways to a target.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TargetWays {
+    /// Number of sweeps.
+    pub repeats: Need<usize>,
+    /// Length of a single sweep \[s\].
+    pub length_s: Need<f64>,
+    /// Amplitude of a single sweep, in the units of the input.
+    pub amplitude: Need<f64>,
+    /// Band of sweeps from half to twice the frequency of the target \[rad/s\].
+    pub narrow_band: [f64; 2],
+    /// Number of sweeps in the narrow band.
+    pub narrow_repeats: Need<usize>,
+}
+
+impl FlightPlanner<'_> {
+    /// Finds what brings a target, with at most `most_repeats` sweeps; `None` if an iteration does
+    /// not converge, or if the response does not exist.
+    #[must_use]
+    pub fn target_plan(
+        &self,
+        target: IntervalTarget,
+        sweep: StandardSweep,
+        most_repeats: usize,
+    ) -> Option<TargetPlan> {
+        let now = self.interval_now(target.pair, target.omega);
+        let ways = if now.half_db <= target.half_db {
+            None
+        } else {
+            Some(self.ways(target, &sweep.sweep, most_repeats)?)
+        };
+        Some(TargetPlan {
+            target,
+            sweep,
+            now,
+            limit: self.interval_limit(target.pair, target.omega),
+            ways,
+        })
+    }
+
+    fn ways(
+        &self,
+        target: IntervalTarget,
+        sweep: &PlannedSweep,
+        most_repeats: usize,
+    ) -> Option<TargetWays> {
+        let information = self.sweep_information(sweep)?;
+        let narrow = PlannedSweep {
+            band: self.narrow_band(target.omega, sweep.length_s),
+            ..*sweep
+        };
+        Some(TargetWays {
+            repeats: self.needed_repeats(target, &information, most_repeats)?,
+            length_s: self.needed_length(target, sweep)?,
+            amplitude: self.needed_amplitude(target, sweep, &information)?,
+            narrow_band: narrow.band,
+            narrow_repeats: self.needed_repeats(
+                target,
+                &self.sweep_information(&narrow)?,
+                most_repeats,
+            )?,
+        })
+    }
+
+    /// Returns the band from half to twice a frequency, within the lines used \[rad/s\].
+    fn narrow_band(&self, omega: f64, length_s: f64) -> [f64; 2] {
+        let [lowest, highest] = self.information().sweep_band(length_s);
+        let first = (omega / NARROW).clamp(lowest, highest / NARROW);
+        [first, (omega * NARROW).clamp(NARROW * first, highest)]
+    }
+
+    /// Predicts the half-width of the target \[dB\] after sweeps.
+    fn half_db(
+        &self,
+        target: IntervalTarget,
+        information: &SweepInformation,
+        times: f64,
+    ) -> Option<f64> {
+        let after = self.after(&[Repeated { information, times }])?;
+        let interval = self.interval(&after, target.pair, target.omega)?;
+        Some(interval.half_db)
+    }
+
+    fn needed_repeats(
+        &self,
+        target: IntervalTarget,
+        information: &SweepInformation,
+        most: usize,
+    ) -> Option<Need<usize>> {
+        let least = least_number(most, |repeats| {
+            let half_db = self.half_db(target, information, repeats as f64)?;
+            Some(half_db <= target.half_db)
+        })?;
+        Some(match least {
+            Least::Number(amount) => Need::Least {
+                amount,
+                half_db: self.half_db(target, information, amount as f64)?,
+            },
+            Least::NotWithin => Need::NotWithin {
+                most,
+                half_db: self.half_db(target, information, most as f64)?,
+            },
+        })
+    }
+
+    fn needed_amplitude(
+        &self,
+        target: IntervalTarget,
+        sweep: &PlannedSweep,
+        information: &SweepInformation,
+    ) -> Option<Need<f64>> {
+        let most = (LARGEST_AMPLITUDE / AMPLITUDE_STEP).round() as usize;
+        // The information grows with the square of the amplitude.
+        let power = |steps: usize| (steps as f64 * AMPLITUDE_STEP).powi(2);
+        let least = least_number(most, |steps| {
+            Some(self.half_db(target, information, power(steps))? <= target.half_db)
+        })?;
+        Some(match least {
+            Least::Number(steps) => Need::Least {
+                amount: steps as f64 * AMPLITUDE_STEP * sweep.amplitude,
+                half_db: self.half_db(target, information, power(steps))?,
+            },
+            Least::NotWithin => Need::NotWithin {
+                most: LARGEST_AMPLITUDE * sweep.amplitude,
+                half_db: self.half_db(target, information, power(most))?,
+            },
+        })
+    }
+
+    fn needed_length(&self, target: IntervalTarget, sweep: &PlannedSweep) -> Option<Need<f64>> {
+        let most = (LONGEST_S / LENGTH_STEP_S).round() as usize;
+        let least = least_number(most, |steps| {
+            Some(self.half_db_of_length(target, sweep, steps)? <= target.half_db)
+        })?;
+        Some(match least {
+            Least::Number(steps) => Need::Least {
+                amount: steps as f64 * LENGTH_STEP_S,
+                half_db: self.half_db_of_length(target, sweep, steps)?,
+            },
+            Least::NotWithin => Need::NotWithin {
+                most: LONGEST_S,
+                half_db: self.half_db_of_length(target, sweep, most)?,
+            },
+        })
+    }
+
+    /// Predicts the half-width of the target \[dB\] after a sweep of a length in steps; a sweep too
+    /// short for a line changes nothing.
+    fn half_db_of_length(
+        &self,
+        target: IntervalTarget,
+        sweep: &PlannedSweep,
+        steps: usize,
+    ) -> Option<f64> {
+        let longer = self
+            .information()
+            .with_length(sweep, steps as f64 * LENGTH_STEP_S);
+        match self.sweep_information(&longer) {
+            Some(information) => self.half_db(target, &information, 1.0),
+            None => Some(self.interval_now(target.pair, target.omega).half_db),
+        }
+    }
+}

@@ -1,0 +1,22 @@
+//! Planning the next flight: the intervals that further frequency sweeps will bring.
+//!
+//! The Fisher information of the flown records, kept at the end of the identification, plus that
+//! of planned sweeps, gives the standard deviations after a flight that has not been flown.
+//!
+//! | question | files |
+//! |---|---|
+//! | what the flown records say | [`flight_information`] |
+//! | the spectrum of a planned sweep | [`planned_sweep`] |
+//! | intervals after further sweeps | [`flight_planner`], `coordinate_changes` |
+//! | tables, advice, targets | [`flight_plan`], [`sweep_advice`], [`interval_target`] |
+
+mod coordinate_changes;
+pub mod flight_information;
+pub mod flight_plan;
+pub mod flight_planner;
+pub mod interval_target;
+mod least_number;
+pub mod planned_sweep;
+#[cfg(test)]
+mod planning_tests;
+pub mod sweep_advice;

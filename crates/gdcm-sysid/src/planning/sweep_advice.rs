@@ -1,0 +1,105 @@
+//! The sweeps to be flown for responses that are not identified.
+
+use gdcm_model::dataset::Pair;
+
+use super::flight_information::StandardSweep;
+use super::flight_planner::{FlightPlanner, Repeated, ResponseInterval, SweepInformation};
+use super::least_number::{Least, least_number};
+use super::planned_sweep::PlannedSweep;
+
+/// Maximum number of sweeps of an input.
+const MOST_ADVISED: usize = 8;
+
+/// The least number of sweeps of an input that identifies its responses, or the maximum number if
+/// that is not enough.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SweepAdvice {
+    /// The sweeps, with their number in `repeats`.
+    pub sweep: StandardSweep,
+    /// The response whose interval is the widest then.
+    pub pair: Pair,
+    /// \[rad/s\].
+    pub omega: f64,
+    pub now: ResponseInterval,
+    pub then: ResponseInterval,
+    /// Whether all responses to the input are identified then.
+    pub is_enough: bool,
+}
+
+impl FlightPlanner<'_> {
+    /// Returns an advice for each input with responses among `pairs`; they are identified once the
+    /// 95 % interval in the middle of the band is at most `limit_db` on each side.
+    #[must_use]
+    pub fn advice(&self, pairs: &[Pair], limit_db: f64) -> Option<Vec<SweepAdvice>> {
+        let mut advice = Vec::new();
+        for standard in &self.information().standard_sweeps {
+            let mut own: Vec<Pair> = pairs.to_vec();
+            own.retain(|pair| pair.input == standard.sweep.input);
+            if !own.is_empty() {
+                advice.push(self.advice_for_input(*standard, &own, limit_db)?);
+            }
+        }
+        Some(advice)
+    }
+
+    fn advice_for_input(
+        &self,
+        standard: StandardSweep,
+        pairs: &[Pair],
+        limit_db: f64,
+    ) -> Option<SweepAdvice> {
+        let information = self.sweep_information(&standard.sweep)?;
+        let least = least_number(MOST_ADVISED, |repeats| {
+            let widest = self.widest(&information, repeats, pairs)?;
+            Some(widest.then.half_db <= limit_db)
+        })?;
+        let repeats = match least {
+            Least::Number(repeats) => repeats,
+            Least::NotWithin => MOST_ADVISED,
+        };
+        let widest = self.widest(&information, repeats, pairs)?;
+        Some(SweepAdvice {
+            sweep: StandardSweep {
+                sweep: PlannedSweep {
+                    repeats,
+                    ..standard.sweep
+                },
+                ..standard
+            },
+            pair: widest.pair,
+            omega: self.middle(),
+            now: self.interval_now(widest.pair, self.middle()),
+            then: widest.then,
+            is_enough: least != Least::NotWithin,
+        })
+    }
+
+    /// Returns the response with the widest interval after a number of sweeps; `None` without
+    /// responses.
+    fn widest(
+        &self,
+        information: &SweepInformation,
+        repeats: usize,
+        pairs: &[Pair],
+    ) -> Option<WidestResponse> {
+        let after = self.after(&[Repeated {
+            information,
+            times: repeats as f64,
+        }])?;
+        let mut widest: Option<WidestResponse> = None;
+        for &pair in pairs {
+            let then = self.interval(&after, pair, self.middle())?;
+            if widest.is_none_or(|other| then.half_db > other.then.half_db) {
+                widest = Some(WidestResponse { pair, then });
+            }
+        }
+        widest
+    }
+}
+
+/// The response with the widest interval after further sweeps.
+#[derive(Clone, Copy)]
+struct WidestResponse {
+    pair: Pair,
+    then: ResponseInterval,
+}

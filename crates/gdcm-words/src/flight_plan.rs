@@ -1,0 +1,428 @@
+//! The next flight in words: tables of predicted intervals, advice, and ways to a target.
+
+use gdcm_model::dataset::Pair;
+use gdcm_model::number_format::{counted, significant, telling};
+use gdcm_sysid::identification::IdentificationCaution;
+use gdcm_sysid::planning::flight_information::StandardSweep;
+use gdcm_sysid::planning::flight_plan::SweepPlan;
+use gdcm_sysid::planning::interval_target::{Need, TargetPlan};
+use gdcm_sysid::planning::planned_sweep::PlannedSweep;
+use gdcm_sysid::planning::sweep_advice::SweepAdvice;
+
+use crate::table::Table;
+
+/// Half-width above which an interval only says that the response is not identified \[dB\].
+const UNKNOWN_DB: f64 = 20.0;
+
+/// Names and units of the channels for which flights are planned.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct PlannedChannels {
+    pub inputs: Vec<PlannedInput>,
+    /// Names of the outputs.
+    pub outputs: Vec<String>,
+}
+
+/// Name and unit of an input.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct PlannedInput {
+    pub name: String,
+    /// Empty if it is not known.
+    pub unit: String,
+}
+
+impl PlannedChannels {
+    fn input(&self, index: usize) -> &str {
+        self.inputs
+            .get(index)
+            .map_or("", |input| input.name.as_str())
+    }
+
+    /// Returns a response: `PED → R`.
+    pub fn response(&self, pair: Pair) -> String {
+        let output = self.outputs.get(pair.output).map_or("", String::as_str);
+        format!("{} → {output}", self.input(pair.input))
+    }
+
+    /// Returns an amplitude with the unit of its input: `5.0 %`.
+    fn amplitude(&self, input: usize, amplitude: f64) -> String {
+        let unit = self
+            .inputs
+            .get(input)
+            .map_or("", |input| input.unit.as_str());
+        format!("{} {unit}", significant(amplitude))
+            .trim_end()
+            .to_owned()
+    }
+
+    /// Returns a sweep: `60 s sweep of PED (amplitude 5.0 %, 0.50 to 16 rad/s)`.
+    pub fn sweep(&self, sweep: &StandardSweep) -> String {
+        let PlannedSweep {
+            input,
+            amplitude,
+            length_s,
+            band: [first, last],
+            ..
+        } = sweep.sweep;
+        let assumed = if sweep.is_assumed {
+            ", assumed to be that of the other inputs"
+        } else {
+            ""
+        };
+        format!(
+            "{length_s:.0} s sweep of {} (amplitude {}{assumed}; {} to {} rad/s)",
+            self.input(input),
+            self.amplitude(input, amplitude),
+            significant(first),
+            significant(last)
+        )
+    }
+}
+
+/// Returns the predicted 95 % intervals of the responses to an input: now, and after numbers of
+/// sweeps.
+pub fn sweep_plan_table(plan: &SweepPlan, channels: &PlannedChannels) -> Table {
+    let omega = plan.responses.first().map_or(0.0, |first| first.omega);
+    let title = format!(
+        "{}: 95 % intervals in dB at {} rad/s",
+        channels.sweep(&plan.sweep),
+        significant(omega)
+    );
+    let mut headings = vec!["response".to_owned(), "now".to_owned()];
+    for repeats in &plan.repeats {
+        headings.push(format!("after {}", counted(*repeats, "sweep")));
+    }
+    let mut table = Table::new(title, headings);
+    for response in &plan.responses {
+        let mut cells = vec![
+            channels.response(response.pair),
+            half_width(response.now.half_db),
+        ];
+        for interval in &response.after {
+            cells.push(half_width(interval.half_db));
+        }
+        table.row(cells);
+    }
+    table
+}
+
+/// Returns an interval: `± 0.52`, or `not identified` if it is too wide to mean anything.
+fn half_width(half_db: f64) -> String {
+    if half_db > UNKNOWN_DB {
+        "not identified".to_owned()
+    } else {
+        format!("± {}", telling(half_db, 2))
+    }
+}
+
+/// Returns an interval in a sentence: `± 0.7 dB`.
+fn interval_text(half_db: f64) -> String {
+    if half_db > UNKNOWN_DB {
+        format!("more than ± {UNKNOWN_DB:.0} dB")
+    } else {
+        format!("± {} dB", telling(half_db, 1))
+    }
+}
+
+/// Returns a small number in words.
+fn number_word(number: usize) -> String {
+    const WORDS: [&str; 12] = [
+        "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven",
+        "twelve",
+    ];
+    match number.checked_sub(1).and_then(|place| WORDS.get(place)) {
+        Some(word) => (*word).to_owned(),
+        None => number.to_string(),
+    }
+}
+
+/// Returns further sweeps of an input: `two more 60 s sweeps of PED`.
+fn more_sweeps(sweep: &PlannedSweep, repeats: usize, channels: &PlannedChannels) -> String {
+    let noun = if repeats == 1 { "sweep" } else { "sweeps" };
+    format!(
+        "{} more {:.0} s {noun} of {}",
+        number_word(repeats),
+        sweep.length_s,
+        channels.input(sweep.input)
+    )
+}
+
+/// Returns an advice as a sentence: "two more 60 s sweeps of PED with an amplitude of 5.0 % bring
+/// PED → R from ± 6.4 dB to ± 3.1 dB at 3.5 rad/s".
+pub fn advice_text(advice: &SweepAdvice, channels: &PlannedChannels) -> String {
+    let sweep = &advice.sweep.sweep;
+    let amplitude = channels.amplitude(sweep.input, sweep.amplitude);
+    let assumed = if advice.sweep.is_assumed {
+        ", as of the other inputs,"
+    } else {
+        ""
+    };
+    let sweeps = more_sweeps(sweep, sweep.repeats, channels);
+    let response = channels.response(advice.pair);
+    let now = interval_text(advice.now.half_db);
+    let then = interval_text(advice.then.half_db);
+    let omega = significant(advice.omega);
+    if advice.is_enough {
+        let verb = if sweep.repeats == 1 {
+            "brings"
+        } else {
+            "bring"
+        };
+        format!(
+            "{sweeps} with an amplitude of {amplitude}{assumed} {verb} {response} from {now} to \
+            {then} at {omega} rad/s"
+        )
+    } else {
+        format!(
+            "even {sweeps} with an amplitude of {amplitude}{assumed} leave {response} at {then} \
+            ({now} now) at {omega} rad/s"
+        )
+    }
+}
+
+/// Returns a caution, followed by the advice for responses that are not identified.
+pub fn caution_with_advice(
+    caution: &IdentificationCaution,
+    advice: &[SweepAdvice],
+    channels: &PlannedChannels,
+) -> String {
+    let text = caution.to_string();
+    if advice.is_empty() || !matches!(caution, IdentificationCaution::PairsNotIdentified(_)) {
+        return text;
+    }
+    let sentences: Vec<String> = advice
+        .iter()
+        .map(|advice| advice_text(advice, channels))
+        .collect();
+    format!("{text}. Predicted: {}", sentences.join("; "))
+}
+
+/// Returns the ways to a target, a line for each.
+pub fn target_lines(plan: &TargetPlan, channels: &PlannedChannels) -> Vec<String> {
+    let target = &plan.target;
+    let wanted = format!(
+        "{} within ± {} dB at {} rad/s",
+        channels.response(target.pair),
+        telling(target.half_db, 2),
+        significant(target.omega)
+    );
+    let Some(ways) = &plan.ways else {
+        return vec![format!(
+            "{wanted}: reached now (± {} dB)",
+            telling(plan.now.half_db, 2)
+        )];
+    };
+    let sweep = &plan.sweep.sweep;
+    let input = sweep.input;
+    let now = interval_text_fine(plan.now.half_db);
+    let mut lines = vec![format!("{wanted}, {now} now; each line alone:")];
+    lines.push(need_line(&ways.repeats, |repeats| {
+        more_sweeps(sweep, repeats, channels)
+    }));
+    lines.push(need_line(&ways.length_s, |length_s| {
+        format!(
+            "one more sweep of {} of {length_s:.0} s",
+            channels.input(input)
+        )
+    }));
+    lines.push(need_line(&ways.amplitude, |amplitude| {
+        format!(
+            "one more {:.0} s sweep of {} with an amplitude of {}",
+            sweep.length_s,
+            channels.input(input),
+            channels.amplitude(input, amplitude)
+        )
+    }));
+    let [first, last] = ways.narrow_band.map(significant);
+    lines.push(need_line(&ways.narrow_repeats, |repeats| {
+        format!(
+            "{} from {first} to {last} rad/s only",
+            more_sweeps(sweep, repeats, channels)
+        )
+    }));
+    if plan.limit.half_db > target.half_db {
+        lines.push(format!(
+            "not by any number of such flights: gusts and noise fed back into the inputs leave {}",
+            interval_text_fine(plan.limit.half_db)
+        ));
+    }
+    lines
+}
+
+/// Returns an interval in a sentence with two decimals: `± 0.52 dB`.
+fn interval_text_fine(half_db: f64) -> String {
+    if half_db > UNKNOWN_DB {
+        interval_text(half_db)
+    } else {
+        format!("± {} dB", telling(half_db, 2))
+    }
+}
+
+/// Returns a line about a way; `describe` receives the amount.
+fn need_line<T: Copy>(need: &Need<T>, describe: impl Fn(T) -> String) -> String {
+    match *need {
+        Need::Least { amount, half_db } => {
+            format!("{}: {}", describe(amount), interval_text_fine(half_db))
+        }
+        Need::NotWithin { most, half_db } => format!(
+            "not within {}: {}",
+            describe(most),
+            interval_text_fine(half_db)
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use gdcm_model::dataset::channel::ChannelSide;
+    use gdcm_model::simulation::Signal;
+    use gdcm_sysid::planning::flight_plan::PlannedResponse;
+    use gdcm_sysid::planning::flight_planner::ResponseInterval;
+    use gdcm_sysid::planning::interval_target::{IntervalTarget, TargetWays};
+
+    use super::*;
+
+    fn channels() -> PlannedChannels {
+        PlannedChannels {
+            inputs: vec![PlannedInput {
+                name: "PED".into(),
+                unit: "%".into(),
+            }],
+            outputs: vec!["R".into()],
+        }
+    }
+
+    fn interval(half_db: f64) -> ResponseInterval {
+        ResponseInterval {
+            half_db,
+            half_deg: 6.6 * half_db,
+        }
+    }
+
+    fn sweep(repeats: usize, is_assumed: bool) -> StandardSweep {
+        StandardSweep {
+            sweep: PlannedSweep {
+                input: 0,
+                amplitude: 5.0,
+                length_s: 60.0,
+                band: [0.5, 16.0],
+                repeats,
+            },
+            is_assumed,
+        }
+    }
+
+    fn advice(repeats: usize, is_enough: bool) -> SweepAdvice {
+        SweepAdvice {
+            sweep: sweep(repeats, false),
+            pair: Pair::new(0, 0),
+            omega: 3.46,
+            now: interval(8.4),
+            then: interval(4.2),
+            is_enough,
+        }
+    }
+
+    #[test]
+    fn an_advice_names_the_sweeps_and_both_intervals() {
+        assert_eq!(
+            advice_text(&advice(2, true), &channels()),
+            "two more 60 s sweeps of PED with an amplitude of 5.00 % bring PED → R from ± 8.4 dB to \
+            ± 4.2 dB at 3.46 rad/s"
+        );
+        let even = advice_text(&advice(8, false), &channels());
+        assert!(
+            even.starts_with("even eight more 60 s sweeps of PED"),
+            "{even}"
+        );
+    }
+
+    #[test]
+    fn only_the_caution_about_responses_that_are_not_identified_has_an_advice() {
+        let signal = |role, name: &str| Signal {
+            role,
+            index: 0,
+            name: name.into(),
+        };
+        let pairs = vec![[
+            signal(ChannelSide::Output, "R"),
+            signal(ChannelSide::Input, "PED"),
+        ]];
+        let caution = IdentificationCaution::PairsNotIdentified(pairs);
+        let advised = caution_with_advice(&caution, &[advice(2, true)], &channels());
+        assert!(advised.starts_with(&caution.to_string()) && advised.contains("two more"));
+        assert_eq!(
+            caution_with_advice(&caution, &[], &channels()),
+            caution.to_string()
+        );
+        let other = IdentificationCaution::Reweighed(2.0);
+        assert_eq!(
+            caution_with_advice(&other, &[advice(2, true)], &channels()),
+            other.to_string()
+        );
+    }
+
+    #[test]
+    fn a_table_has_a_column_for_each_number_of_sweeps() {
+        let plan = SweepPlan {
+            sweep: sweep(1, true),
+            repeats: vec![1, 2],
+            responses: vec![PlannedResponse {
+                pair: Pair::new(0, 0),
+                omega: 3.46,
+                now: interval(30.0),
+                after: vec![interval(1.414), interval(1.0)],
+            }],
+        };
+        let table = sweep_plan_table(&plan, &channels());
+        assert_eq!(
+            table.columns,
+            ["response", "now", "after 1 sweep", "after 2 sweeps"]
+        );
+        assert_eq!(
+            table.rows,
+            [["PED → R", "not identified", "± 1.41", "± 1.00"]]
+        );
+        assert!(table.title.contains("assumed"), "{}", table.title);
+    }
+
+    #[test]
+    fn a_target_has_a_line_for_each_way() {
+        let mut plan = TargetPlan {
+            target: IntervalTarget {
+                pair: Pair::new(0, 0),
+                omega: 1.0,
+                half_db: 0.5,
+            },
+            sweep: sweep(1, false),
+            now: interval(1.4),
+            limit: interval(0.6),
+            ways: Some(TargetWays {
+                repeats: Need::NotWithin {
+                    most: 16,
+                    half_db: 0.7,
+                },
+                length_s: Need::Least {
+                    amount: 240.0,
+                    half_db: 0.5,
+                },
+                amplitude: Need::Least {
+                    amount: 12.0,
+                    half_db: 0.5,
+                },
+                narrow_band: [0.5, 2.0],
+                narrow_repeats: Need::Least {
+                    amount: 2,
+                    half_db: 0.48,
+                },
+            }),
+        };
+        let lines = target_lines(&plan, &channels());
+        assert_eq!(lines.len(), 6, "{lines:?}");
+        assert!(lines[1].starts_with("not within 16 more 60 s sweeps of PED"));
+        assert!(lines[4].contains("0.500 to 2.00 rad/s only"), "{lines:?}");
+        plan.limit = interval(0.0);
+        assert_eq!(target_lines(&plan, &channels()).len(), 5);
+        plan.ways = None;
+        assert_eq!(target_lines(&plan, &channels()).len(), 1);
+    }
+}

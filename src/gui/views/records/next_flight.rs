@@ -1,0 +1,69 @@
+//! Tables of the intervals that further sweeps of each input would bring.
+
+use egui::{Grid, RichText, Ui};
+
+use gdcm_model::dataset::Dataset;
+use gdcm_words::Table;
+use gdcm_words::flight_plan::{PlannedChannels, PlannedInput, sweep_plan_table};
+
+use super::page::Page;
+
+/// Shows a table for each input; nothing before an identification.
+pub(super) fn next_flight_ui(ui: &mut Ui, page: Page<'_>) {
+    let Page {
+        state,
+        records,
+        palette,
+    } = page;
+    let Some((job, Ok(_))) = &records.found else {
+        return;
+    };
+    let Some(plan) = job.news().next_flight else {
+        return;
+    };
+    ui.label(RichText::new("Next flight: predicted 95 % intervals").strong());
+    let channels = planned_channels(state.dataset());
+    for sweep in &plan.sweeps {
+        let table = sweep_plan_table(sweep, &channels);
+        ui.add_space(4.0);
+        ui.label(palette.small(table.title.as_str()));
+        table_ui(ui, &table);
+    }
+    ui.label(palette.small(
+        "The noise is that of the flown records, and the other inputs do not move; gdcm plan \
+        computes other sweeps",
+    ));
+}
+
+fn table_ui(ui: &mut Ui, table: &Table) {
+    Grid::new(("next flight", &table.title))
+        .num_columns(table.columns.len())
+        .striped(true)
+        .show(ui, |ui| {
+            for heading in &table.columns {
+                ui.label(heading);
+            }
+            ui.end_row();
+            for row in &table.rows {
+                for cell in row {
+                    ui.label(cell);
+                }
+                ui.end_row();
+            }
+        });
+}
+
+/// Returns names and units of the channels of a dataset, in its order.
+pub(super) fn planned_channels(dataset: &Dataset) -> PlannedChannels {
+    let mut channels = PlannedChannels::default();
+    for input in dataset.inputs() {
+        channels.inputs.push(PlannedInput {
+            name: input.name.clone(),
+            unit: input.unit.clone(),
+        });
+    }
+    for output in dataset.outputs() {
+        channels.outputs.push(output.name.clone());
+    }
+    channels
+}

@@ -71,6 +71,13 @@ impl SchurModel {
         )
     }
 
+    /// Returns the four matrices; `None` for a model without states.
+    pub(crate) fn state_space(&self) -> Option<StateSpace> {
+        let matrices = [&self.a, &self.b, &self.c, &self.d];
+        let [a, b, c, d] = matrices.map(DMatrix::clone);
+        StateSpace::new(a, b, c, d).ok()
+    }
+
     /// Returns the number of states n.
     pub(crate) fn order(&self) -> usize {
         self.a.nrows()

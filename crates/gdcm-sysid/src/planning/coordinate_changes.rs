@@ -6,12 +6,11 @@
 
 use nalgebra::DMatrix;
 
-use crate::likelihood::dense_model::DenseModel;
-use crate::likelihood::linear_model::LinearModel;
+use crate::likelihood::schur_model::SchurModel;
 
 /// Returns `N`: a column for each of the n^2 changes of coordinates, a row for each entry of
 /// `[[A, B], [C, D]]`, column after column.
-pub(super) fn coordinate_changes(model: &DenseModel) -> DMatrix<f64> {
+pub(super) fn coordinate_changes(model: &SchurModel) -> DMatrix<f64> {
     let order = model.order();
     let (outputs, inputs) = model.d().shape();
     let rows = order + outputs;

@@ -19,10 +19,9 @@ use super::planned_sweep::PlannedSweep;
 use crate::diagnostics::feedback::Feedback;
 use crate::likelihood::balancing::{Gramians, balancing_coordinates};
 use crate::likelihood::cost::{Likelihood, SpectralLines};
-use crate::likelihood::dense_model::DenseModel;
-use crate::likelihood::dense_system::{EXACT, dense_system};
-use crate::likelihood::linear_model::LinearModel;
 use crate::likelihood::noise_covariance::{NoiseCovariance, NoisePoint};
+use crate::likelihood::normal_equations::{EXACT, NormalEquations};
+use crate::likelihood::schur_model::SchurModel;
 use crate::spectra::scales::Scales;
 use crate::subspace::tried_orders::parameters_of_order;
 
@@ -82,7 +81,7 @@ impl FlightInformation {
     /// the parameters leave no degrees of freedom.
     pub(crate) fn new(fitted: &FittedModel) -> Option<Self> {
         let likelihood = fitted.likelihood;
-        let model = balanced(likelihood, &DenseModel::from_state_space(fitted.model)?)?;
+        let model = balanced(likelihood, &SchurModel::from_state_space(fitted.model)?)?;
         let parts = likelihood.parts(&model)?;
         let cost: f64 = parts.iter().map(|part| part.cost).sum();
         let (outputs, inputs) = model.d().shape();
@@ -92,7 +91,7 @@ impl FlightInformation {
             return None;
         }
         let dispersion = (cost / spare as f64).max(1.0);
-        let system = dense_system(likelihood, &model, &parts, EXACT)?;
+        let system = NormalEquations::new(likelihood, &model, &parts, EXACT)?;
         Some(Self {
             model: model.state_space()?,
             scales: fitted.scales.clone(),
@@ -141,7 +140,7 @@ impl FlightInformation {
 }
 
 /// Transforms a model to balanced coordinates; `None` if an iteration does not converge.
-fn balanced(likelihood: &Likelihood, model: &DenseModel) -> Option<DenseModel> {
+fn balanced(likelihood: &Likelihood, model: &SchurModel) -> Option<SchurModel> {
     let coordinates = balancing_coordinates(&Gramians::sampled(likelihood, model))?;
     model.in_coordinates(&coordinates.transformation, &coordinates.inverse)
 }

@@ -27,9 +27,8 @@ use super::planned_sweep::PlannedSweep;
 use crate::diagnostics::bands::TWO_SIDED_95;
 use crate::diagnostics::feedback::FeedbackLevel;
 use crate::likelihood::cost::{Likelihood, SegmentCost, SpectralLines};
-use crate::likelihood::dense_model::DenseModel;
-use crate::likelihood::dense_system::{EXACT, dense_system};
-use crate::likelihood::linear_model::LinearModel;
+use crate::likelihood::normal_equations::{EXACT, NormalEquations};
+use crate::likelihood::schur_model::SchurModel;
 use crate::spectra::interpolation::Neighbours;
 use crate::spectra::spectrum::LineRange;
 
@@ -49,7 +48,7 @@ pub struct ResponseInterval {
 /// Predicts intervals after further sweeps.
 pub struct FlightPlanner<'a> {
     information: &'a FlightInformation,
-    model: DenseModel,
+    model: SchurModel,
     /// `G/phi + c N N'`.
     flown: DMatrix<f64>,
     executor: &'a dyn Executor,
@@ -78,7 +77,7 @@ impl<'a> FlightPlanner<'a> {
     /// Prepares the predictions; `None` if an iteration does not converge.
     #[must_use]
     pub fn new(information: &'a FlightInformation, executor: &'a dyn Executor) -> Option<Self> {
-        let model = DenseModel::from_state_space(&information.model)?;
+        let model = SchurModel::from_state_space(&information.model)?;
         let changes = coordinate_changes(&model);
         let mut fixed = &changes * changes.transpose();
         let ratio = information.flown.trace() / fixed.trace();
@@ -117,7 +116,7 @@ impl<'a> FlightPlanner<'a> {
             residual: DMatrix::zeros(outputs, lines.omega.len()),
         };
         let likelihood = Likelihood::new(vec![lines], self.executor);
-        let system = dense_system(&likelihood, &self.model, &[part], EXACT)?;
+        let system = NormalEquations::new(&likelihood, &self.model, &[part], EXACT)?;
         Some(SweepInformation(
             system.matrix.unscale(self.information.dispersion),
         ))
@@ -194,20 +193,13 @@ impl<'a> FlightPlanner<'a> {
         let (outputs, inputs) = self.model.d().shape();
         let mut cr = DMatrix::<Complex<f64>>::zeros(outputs, order);
         self.model.output_resolvent(omega, cr.as_mut_slice());
-        let mut states: Vec<Complex<f64>> = Vec::with_capacity(order);
-        states.extend(
-            self.model
-                .b()
-                .column(pair.input)
-                .iter()
-                .copied()
-                .map(Complex::from),
-        );
-        self.model.resolve(omega, &mut states);
+        let mut moved = DMatrix::zeros(inputs, 1);
+        moved[pair.input] = Complex::from(1.0);
+        let states = self.model.states(&[omega], &moved, &DVector::zeros(order));
         let mut rows: Vec<Complex<f64>> = cr.row(pair.output).iter().copied().collect();
         rows.resize(order + outputs, Complex::default());
         rows[order + pair.output] = Complex::from(1.0);
-        let mut columns = states;
+        let mut columns: Vec<Complex<f64>> = states.iter().copied().collect();
         columns.resize(order + inputs, Complex::default());
         columns[order + pair.input] = Complex::from(1.0);
         let response = self.model.response(omega)[(pair.output, pair.input)];

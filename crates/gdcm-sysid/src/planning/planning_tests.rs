@@ -21,8 +21,8 @@ use crate::identification::identify::identify;
 use crate::identification::real_flight_tests::Generator;
 use crate::identification::{Identification, Options, Preparation};
 use crate::likelihood::cost::{Likelihood, SpectralLines};
-use crate::likelihood::dense_model::DenseModel;
-use crate::likelihood::dense_system::{EXACT, dense_system};
+use crate::likelihood::normal_equations::{EXACT, NormalEquations};
+use crate::likelihood::schur_model::SchurModel;
 use crate::spectra::preparation::segments_of;
 use crate::spectra::spectrum::LineRange;
 
@@ -198,7 +198,7 @@ fn repeated(information: &SweepInformation, times: f64) -> Repeated<'_> {
 fn changes_of_coordinates_change_neither_response_nor_cost() {
     let found = first_identification(1);
     let information = found.information.as_ref().unwrap();
-    let model = DenseModel::from_state_space(&information.model).unwrap();
+    let model = SchurModel::from_state_space(&information.model).unwrap();
     let changes = coordinate_changes(&model);
     let planner = FlightPlanner::new(information, &Sequential).unwrap();
     for (pair, omega) in small_aircraft(0.3).places() {
@@ -323,9 +323,9 @@ fn information_of(record: &FlightRecord, information: &FlightInformation) -> Swe
     let spectra = LineRange { lowest, highest }.spectra(&segments, &Sequential);
     let lines = SpectralLines::new(&spectra[0], &information.noise).unwrap();
     let likelihood = Likelihood::new(vec![lines], &Sequential);
-    let model = DenseModel::from_state_space(&information.model).unwrap();
+    let model = SchurModel::from_state_space(&information.model).unwrap();
     let parts = likelihood.parts(&model).unwrap();
-    let system = dense_system(&likelihood, &model, &parts, EXACT).unwrap();
+    let system = NormalEquations::new(&likelihood, &model, &parts, EXACT).unwrap();
     SweepInformation(system.matrix.unscale(information.dispersion))
 }
 

@@ -10,3 +10,4 @@
 pub mod cli;
 pub mod executor;
 pub mod gui;
+pub mod message;

@@ -453,7 +453,9 @@ fn what_a_stick_commands_is_an_option_and_levels_are_drawn() {
 
 #[test]
 fn what_requirements_are_asked_with_comes_back_with_the_study() {
-    use gdcm_study::decisions::requirement_settings::{OverviewLimits, RequirementSettings};
+    use gdcm_study::decisions::requirement_settings::{
+        OverviewLimits, RequirementPart, RequirementSettings,
+    };
     use gdcm_study::{Edit, Study};
     let desk = Desk::new();
     let loaded = gdcm_io::load_dataset(&desk.path("small.json")).unwrap();
@@ -474,7 +476,7 @@ fn what_requirements_are_asked_with_comes_back_with_the_study() {
     settings.attitude_command.insert("P".to_owned());
     study
         .apply(&Edit::SetRequirements(
-            "levels",
+            RequirementPart::Levels,
             std::sync::Arc::new(settings),
         ))
         .unwrap();

@@ -13,6 +13,7 @@ use super::GdcmApp;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::output::OutputCommand;
 use crate::gui::state::forms::FormKind;
+use crate::message::Message;
 
 impl GdcmApp {
     /// Writes the corrections of the conditions selected in the form.
@@ -31,13 +32,13 @@ impl GdcmApp {
             self.outputs(),
         );
         let absent = self.absent_bars(analysis.uncertainty.is_some());
-        let message = format!(
+        let text = format!(
             "exported {} to {}{absent}",
             counted(chosen.len(), "condition"),
             sanitized_path(&folder)
         );
         self.notify_written(
-            written.map(|()| message),
+            written.map(|()| Message::new("exported", text)),
             FormKind::Export,
             Command::Output(OutputCommand::Export),
         );
@@ -72,13 +73,14 @@ impl GdcmApp {
         let written = write_export(&analysis, &source, &request, &path, self.outputs());
         let absent = self.absent_bars(analysis.uncertainty.is_some());
         let message = written.map(|remarks| {
-            format!(
+            let text = format!(
                 "exported {}: {}{}{}{absent}",
                 sanitized_path(&path),
                 contents.words(),
                 left_out_suffix(&left_out),
                 remarks_suffix(&remarks)
-            )
+            );
+            Message::new("exported", text)
         });
         self.notify_written(
             message,
@@ -111,27 +113,32 @@ impl GdcmApp {
         }
     }
 
-    /// Returns the complete analysis for the current decisions, or a sentence that explains why
+    /// Returns the complete analysis for the current decisions, or a message that explains why
     /// there is none and asks the engineer to repeat `action` later.
-    pub(super) fn analysis_to_write(&self, action: &str) -> Result<Arc<Analysis>, String> {
+    pub(super) fn analysis_to_write(&self, action: &str) -> Result<Arc<Analysis>, Message> {
         let results = &self.state.results;
         if results.stopped {
-            return Err(format!(
+            let text = format!(
                 "{}: the computation was stopped; choose Compute first",
                 self.state.after_stop()
-            ));
+            );
+            return Err(Message::new("computation-stopped", text));
         }
         if !results.background.proofs.is_empty() {
-            return Err(format!(
+            let text = format!(
                 "the gains are still being proven optimal; {action} again in a moment, or stop \
                 the proof"
-            ));
+            );
+            return Err(Message::new("proof-running", text));
         }
         match &results.analysis {
             Some(analysis) if !results.is_waiting() => Ok(Arc::clone(analysis)),
-            _ => Err(format!(
-                "the newest results are still being computed; {action} again in a moment"
-            )),
+            _ => {
+                let text = format!(
+                    "the newest results are still being computed; {action} again in a moment"
+                );
+                Err(Message::new("computation-running", text))
+            }
         }
     }
 }

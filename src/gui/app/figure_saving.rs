@@ -16,6 +16,7 @@ use crate::gui::state::forms::FormKind;
 use crate::gui::state::view::View;
 use crate::gui::views::figure_button::tables_in_place;
 use crate::gui::views::figures::{figure_name, figure_of};
+use crate::message::Message;
 
 impl GdcmApp {
     /// Copies the values shown by a view to the clipboard.
@@ -28,11 +29,12 @@ impl GdcmApp {
             },
         };
         self.ctx.copy_text(csv_text(&tables));
-        self.notify_done(format!(
+        let text = format!(
             "copied the numbers of {}{}",
             view.name(),
             self.absent_bars_of(view)
-        ));
+        );
+        self.notify_done(Message::new("numbers-copied", text));
     }
 
     /// Asks where to save a view; proposes the folder in which the previous figure was saved.
@@ -62,10 +64,11 @@ impl GdcmApp {
             }
             Some(_) => {
                 let found = sanitized_path(&path);
-                return self.notify_error(format!(
+                let text = format!(
                     "{} shows tables here: expected a name that ends in .csv, found {found}",
                     view.name()
-                ));
+                );
+                return self.notify_error(Message::new("tables-as-csv", text));
             }
             None => {
                 let Some(figure) = self.figure_of(view) else {
@@ -74,11 +77,12 @@ impl GdcmApp {
                 write_figure(&figure, width, &path, self.outputs())
             }
         };
-        let message = format!(
+        let text = format!(
             "saved {}{}",
             sanitized_path(&path),
             self.absent_bars_of(view)
         );
+        let message = Message::new("saved", text);
         let again = Command::Output(OutputCommand::SaveFigure(view, width, path.clone()));
         self.notify_written(written.map(|()| message), FormKind::SaveFigure, again);
     }
@@ -87,11 +91,12 @@ impl GdcmApp {
     fn figure_of(&mut self, view: View) -> Option<Figure> {
         let figure = figure_of(&self.state, view);
         if figure.is_none() {
-            self.notify_error(format!(
+            let text = format!(
                 "{} has no figure yet: {}",
                 view.name(),
                 self.state.results.absence()
-            ));
+            );
+            self.notify_error(Message::new("no-figure", text));
         }
         figure
     }

@@ -4,10 +4,11 @@
 use egui::Ui;
 
 use super::text_fields::entry_ui;
+use crate::message::Message;
 
 /// Reason why an entry is refused.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct RefusedEntry(pub String);
+pub struct RefusedEntry(pub Message);
 
 /// Like [`entry_ui`], but for a number; any other text is refused by a command with the reason.
 /// Returns `None` without a new number, and `Some(None)` if the field was emptied.
@@ -22,7 +23,8 @@ pub fn number_entry_ui<C: From<RefusedEntry>>(
     match typed_number(&entry_ui(ui, name, value, hint, width)?) {
         Ok(number) => Some(number),
         Err(why) => {
-            commands.push(RefusedEntry(format!("{name}: {why}")).into());
+            let message = Message::new("not-a-number", format!("{name}: {why}"));
+            commands.push(RefusedEntry(message).into());
             None
         }
     }

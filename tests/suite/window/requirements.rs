@@ -12,7 +12,7 @@ use gdcm::gui::state::view::View;
 use gdcm_method::requirements::{ModeVerdict, RecordCheck, ToleranceTable};
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::Edit;
-use gdcm_study::decisions::requirement_settings::RequirementSettings;
+use gdcm_study::decisions::requirement_settings::{RequirementPart, RequirementSettings};
 use gdcm_study::results::record_history::RecordHistory;
 use gdcm_study::results::required_bandwidth::BandwidthFinding;
 use gdcm_study::results::requirement_role::RequirementRole;
@@ -577,7 +577,7 @@ fn the_report_of_the_window_has_the_records_that_are_open_and_what_was_decided_l
     settings.tolerances = ToleranceTable::new("edited", rows).unwrap();
     give(
         &mut window,
-        Edit::SetRequirements("levels", Arc::new(settings)),
+        Edit::SetRequirements(RequirementPart::Levels, Arc::new(settings)),
     );
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("report.html");

@@ -15,6 +15,7 @@ use crate::gui::state::assembling::AssemblyState;
 use crate::gui::widgets::controls::named;
 use crate::gui::widgets::number_entry::typed_number;
 use crate::gui::widgets::text_fields::entry_ui;
+use crate::message::Message;
 
 const FIELD_WIDTH: f32 = 200.0;
 
@@ -89,7 +90,10 @@ fn field_ui(
         let mut changed = rule.cloned().unwrap_or_default();
         commands.push(match field.apply(&text, &mut changed) {
             Ok(()) => assembly.rule_change(assembly.selected, |rule| *rule = changed),
-            Err(why) => Command::Form(FormCommand::Refuse(format!("{}: {why}", field.name))),
+            Err(why) => {
+                let text = format!("{}: {why}", field.name);
+                Command::Form(FormCommand::Refuse(Message::new("wrong-declaration", text)))
+            }
         });
     }
     if fill_down_ui(ui, field.name) {

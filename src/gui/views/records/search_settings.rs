@@ -14,6 +14,7 @@ use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::text_fields::entry_ui;
+use crate::message::Message;
 
 const FIELD_WIDTH: f32 = 150.0;
 /// Name by which cautions refer to the model orders.
@@ -124,7 +125,7 @@ fn band_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     if let Some(text) = field_ui(ui, "band [rad/s]", &value, &hint, page.palette) {
         commands.push(match numbers(&text).and_then(|list| typed_band(&list)) {
             Ok(band) => RecordsCommand::SetBand(band).into(),
-            Err(why) => Command::Form(FormCommand::Refuse(why)),
+            Err(why) => Command::Form(FormCommand::Refuse(Message::new("wrong-band", why))),
         });
     }
 }
@@ -143,7 +144,13 @@ fn search_list_ui(
         let result = numbers(&text).and_then(|values| list.set(&mut wanted, values));
         commands.push(match result {
             Ok(()) => RecordsCommand::SetSearch(wanted).into(),
-            Err(why) => Command::Form(FormCommand::Refuse(format!("{name}: {why}"))),
+            Err(why) => {
+                let text = format!("{name}: {why}");
+                Command::Form(FormCommand::Refuse(Message::new(
+                    "wrong-search-setting",
+                    text,
+                )))
+            }
         });
     }
 }

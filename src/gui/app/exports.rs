@@ -31,7 +31,7 @@ impl GdcmApp {
             &folder,
             self.outputs(),
         );
-        let absent = self.absent_bars(analysis.uncertainty.is_some());
+        let absent = absent_bars_suffix(self.absent_bars(analysis.uncertainty.is_some()));
         let text = format!(
             "exported {} to {}{absent}",
             counted(chosen.len(), "condition"),
@@ -71,7 +71,7 @@ impl GdcmApp {
         let contents = export_contents(&analysis, &request);
         let left_out = contents.left_out_words(&analysis.study.dataset);
         let written = write_export(&analysis, &source, &request, &path, self.outputs());
-        let absent = self.absent_bars(analysis.uncertainty.is_some());
+        let absent = absent_bars_suffix(self.absent_bars(analysis.uncertainty.is_some()));
         let message = written.map(|remarks| {
             let text = format!(
                 "exported {}: {}{}{}{absent}",
@@ -99,17 +99,17 @@ impl GdcmApp {
         }
     }
 
-    /// Returns the end of a message, which explains missing error bars; empty if they are present.
-    pub(super) fn absent_bars(&self, are_present: bool) -> &'static str {
+    /// Returns why error bars are missing; `None` if they are present.
+    pub(super) fn absent_bars(&self, are_present: bool) -> Option<AbsentBars> {
         let background = &self.state.results.background;
         // If the error bars are still being computed, only other work was stopped.
         let were_stopped = background.stopped && background.error_bars.is_none();
         if are_present {
-            ""
+            None
         } else if were_stopped {
-            "; without error bars: their computation was stopped"
+            Some(AbsentBars::Stopped)
         } else {
-            "; without error bars, which are still being computed"
+            Some(AbsentBars::StillComputed)
         }
     }
 
@@ -140,6 +140,22 @@ impl GdcmApp {
                 Err(Message::new("computation-running", text))
             }
         }
+    }
+}
+
+/// Why error bars are missing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum AbsentBars {
+    Stopped,
+    StillComputed,
+}
+
+/// Returns the end of a message, which explains missing error bars; empty if they are present.
+pub(super) fn absent_bars_suffix(absent: Option<AbsentBars>) -> &'static str {
+    match absent {
+        None => "",
+        Some(AbsentBars::Stopped) => "; without error bars: their computation was stopped",
+        Some(AbsentBars::StillComputed) => "; without error bars, which are still being computed",
     }
 }
 

@@ -10,6 +10,7 @@ use gdcm_plot::figure::{ColumnWidth, Figure, FigureFormat, FigureKind};
 use gdcm_words::Table;
 
 use super::GdcmApp;
+use super::exports::{AbsentBars, absent_bars_suffix};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::output::OutputCommand;
 use crate::gui::state::forms::FormKind;
@@ -29,12 +30,18 @@ impl GdcmApp {
             },
         };
         self.ctx.copy_text(csv_text(&tables));
+        let absent = self.absent_bars_of(view);
+        let code = match absent {
+            None => "numbers-copied",
+            Some(AbsentBars::Stopped) => "numbers-copied-without-error-bars",
+            Some(AbsentBars::StillComputed) => "numbers-copied-before-error-bars",
+        };
         let text = format!(
             "copied the numbers of {}{}",
             view.name(),
-            self.absent_bars_of(view)
+            absent_bars_suffix(absent)
         );
-        self.notify_done(Message::new("numbers-copied", text));
+        self.notify_done(Message::new(code, text));
     }
 
     /// Asks where to save a view; proposes the folder in which the previous figure was saved.
@@ -80,7 +87,7 @@ impl GdcmApp {
         let text = format!(
             "saved {}{}",
             sanitized_path(&path),
-            self.absent_bars_of(view)
+            absent_bars_suffix(self.absent_bars_of(view))
         );
         let message = Message::new("saved", text);
         let again = Command::Output(OutputCommand::SaveFigure(view, width, path.clone()));
@@ -101,9 +108,9 @@ impl GdcmApp {
         figure
     }
 
-    /// Returns the end of a message about a view's figure, as [`Self::absent_bars`] does; empty if
-    /// the view shows no error bars.
-    fn absent_bars_of(&self, view: View) -> &'static str {
+    /// Returns why a view's figure lacks error bars, as [`Self::absent_bars`] does; `None` if it
+    /// shows none.
+    fn absent_bars_of(&self, view: View) -> Option<AbsentBars> {
         let shows_bars = view.figure().is_some_and(FigureKind::takes_bars)
             && !self.state.display.gains.hide_bars;
         self.absent_bars(!shows_bars || self.state.uncertainty().is_some())

@@ -31,7 +31,7 @@ fn wanted(window: &Window) -> &WantedDataset {
 fn made(window: &mut Window, name: &str) -> Vec<String> {
     click(window, "Make the dataset");
     wait_until(window, "the dataset", |window| {
-        assert_eq!(wanted(window).problems, Vec::<String>::new());
+        assert_eq!(wanted(window).problems, []);
         state(window).dataset().name() == name
     });
     show(window, View::Records);

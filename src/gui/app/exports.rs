@@ -120,7 +120,7 @@ impl GdcmApp {
         if results.stopped {
             let text = format!(
                 "{}: the computation was stopped; choose Compute first",
-                self.state.after_stop()
+                self.state.after_stop().text
             );
             return Err(Message::new("computation-stopped", text));
         }

@@ -179,16 +179,13 @@ mod tests {
         };
         let words = end_words(fault, &Remains::Kept(kept));
         assert!(
-            words.starts_with(
-                "the window was ended by a fault: out of range at src/view/centre.rs:7;"
-            ),
-            "{words}"
-        );
-        assert!(
-            words.ends_with("1970 are in /data/recovery/7-1.gdcm-study.json"),
+            words.contains(fault)
+                && words.contains(" 1970 ")
+                && words.ends_with("/data/recovery/7-1.gdcm-study.json"),
             "{words}"
         );
         assert!(!words.contains("lost"), "{words}");
-        assert!(end_words(fault, &Remains::Saved).ends_with("; every decision was saved"));
+        let saved = end_words(fault, &Remains::Saved);
+        assert!(saved.contains(fault) && !saved.contains("lost"), "{saved}");
     }
 }

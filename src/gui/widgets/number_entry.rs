@@ -23,7 +23,7 @@ pub fn number_entry_ui<C: From<RefusedEntry>>(
     match typed_number(&entry_ui(ui, name, value, hint, width)?) {
         Ok(number) => Some(number),
         Err(why) => {
-            let message = Message::new("not-a-number", format!("{name}: {why}"));
+            let message = Message::new(why.code, format!("{name}: {}", why.text));
             commands.push(RefusedEntry(message).into());
             None
         }
@@ -34,14 +34,17 @@ pub fn number_entry_ui<C: From<RefusedEntry>>(
 ///
 /// # Errors
 /// A message with the expected and the found text.
-pub fn typed_number(text: &str) -> Result<Option<f64>, String> {
+pub fn typed_number(text: &str) -> Result<Option<f64>, Message> {
     let text = text.trim().replace(',', ".");
     if text.is_empty() {
         return Ok(None);
     }
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(Some(value)),
-        _ => Err(format!("expected a number, found \"{text}\"")),
+        _ => Err(Message::new(
+            "not-a-number",
+            format!("expected a number, found \"{text}\""),
+        )),
     }
 }
 

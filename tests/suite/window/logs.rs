@@ -65,10 +65,7 @@ fn a_log_of_px4_proposes_its_setpoints_and_rates() {
         "{inputs}; {outputs}"
     );
     let notes = made(&mut window, "quadrotor");
-    assert!(
-        notes.iter().any(|note| note.contains("signs follow PX4's")),
-        "{notes:?}"
-    );
+    assert!(notes.iter().any(|note| note.contains("PX4")), "{notes:?}");
     let units: Vec<&str> = state(&window)
         .dataset()
         .outputs()

@@ -51,7 +51,9 @@ impl Field {
     fn apply(&self, text: &str, rule: &mut RowRule) -> Result<(), String> {
         match self.effect {
             Effect::Text(place) => *place(rule) = typed_text(text),
-            Effect::Number(place) => *place(rule) = typed_number(text)?,
+            Effect::Number(place) => {
+                *place(rule) = typed_number(text).map_err(|refusal| refusal.text)?;
+            }
             Effect::Names(place) => *place(rule) = typed_names(text),
             Effect::Parsed(set) => set(rule, text)?,
         }

@@ -56,7 +56,7 @@ impl SearchList {
         }
     }
 
-    fn set(self, search: &mut SearchSpace, list: Vec<f64>) -> Result<(), String> {
+    fn set(self, search: &mut SearchSpace, list: Vec<f64>) -> Result<(), Message> {
         match self {
             Self::Orders => search.orders = whole_numbers(&list, HIGHEST_ORDER)?,
             Self::PastWindows => search.pasts = whole_numbers(&list, LONGEST_PAST)?,
@@ -125,7 +125,7 @@ fn band_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     if let Some(text) = field_ui(ui, "band [rad/s]", &value, &hint, page.palette) {
         commands.push(match numbers(&text).and_then(|list| typed_band(&list)) {
             Ok(band) => RecordsCommand::SetBand(band).into(),
-            Err(why) => Command::Form(FormCommand::Refuse(Message::new("wrong-band", why))),
+            Err(why) => Command::Form(FormCommand::Refuse(why)),
         });
     }
 }
@@ -145,11 +145,8 @@ fn search_list_ui(
         commands.push(match result {
             Ok(()) => RecordsCommand::SetSearch(wanted).into(),
             Err(why) => {
-                let text = format!("{name}: {why}");
-                Command::Form(FormCommand::Refuse(Message::new(
-                    "wrong-search-setting",
-                    text,
-                )))
+                let text = format!("{name}: {}", why.text);
+                Command::Form(FormCommand::Refuse(Message::new(why.code, text)))
             }
         });
     }

@@ -5,7 +5,8 @@ use egui::{CollapsingHeader, Color32, Label, Panel, ScrollArea, Ui, Vec2, vec2};
 
 use gdcm_method::requirements::{TestInput, TestInputShape};
 use gdcm_model::units::number;
-use gdcm_plot::figure::{Figure, OverTime};
+use gdcm_plot::figure::Figure;
+use gdcm_plot::figure::request::OverTime;
 use gdcm_study::decisions::requirement_settings::RequirementPart;
 use gdcm_study::results::record_comparison::Trend;
 use gdcm_words::Table;

@@ -3,7 +3,7 @@
 use gdcm::gui::commands::form::FormCommand;
 use gdcm::gui::state::forms::FormKind;
 
-use gdcm_io::export::{ExportRequest, export_contents};
+use gdcm_io::export::{EXPORTERS, ExportRequest, export_contents};
 
 use super::*;
 
@@ -270,7 +270,14 @@ fn corrections_are_exported_for_other_tools_and_an_existing_file_is_asked_about(
     });
     window.run_steps(2);
     let analysis = state(&window).analysis().unwrap();
-    let contents = export_contents(analysis, &ExportRequest::default());
+    let request = ExportRequest {
+        format: EXPORTERS
+            .into_iter()
+            .find(|format| format.name == "py")
+            .unwrap(),
+        ..ExportRequest::default()
+    };
+    let contents = export_contents(analysis, &request);
     let left_out = contents.left_out_words(state(&window).dataset());
     assert!(
         left_out.len() == 1 && left_out[0].contains("output NX"),

@@ -51,7 +51,10 @@ impl Copy {
 
 fn is_told(window: &Window) -> bool {
     bar_codes(window).contains(&"dataset-changed-on-disk")
-        && window.query_by_label_contains("my-dataset.json").is_some()
+        && window
+            .query_all_by_label_contains("my-dataset.json")
+            .next()
+            .is_some()
 }
 
 #[test]

@@ -172,15 +172,6 @@ impl Tolerance {
         }
     }
 
-    /// Describes the tolerance, for example "±10 % or ±3 deg/s".
-    pub fn words(&self) -> String {
-        let absolute = format!("±{} {}", number(self.absolute), self.unit);
-        match self.relative {
-            Some(relative) => format!("±{} % or {absolute}", number(100.0 * relative)),
-            None => absolute,
-        }
-    }
-
     /// Converts the tolerance to its output's units.
     ///
     /// # Errors

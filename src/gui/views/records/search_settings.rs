@@ -62,10 +62,11 @@ impl SearchList {
             Self::PastWindows => search.pasts = whole_numbers(&list, LONGEST_PAST)?,
             Self::LaguerrePoles => {
                 if let Some(pole) = list.iter().find(|pole| **pole <= 0.0) {
-                    return Err(format!(
+                    let text = format!(
                         "Laguerre poles: expected positive values, found {}",
                         number(*pole)
-                    ));
+                    );
+                    return Err(Message::new("pole-not-positive", text));
                 }
                 search.poles = list;
             }

@@ -27,7 +27,7 @@ use super::printed_lines::{caution_line, line};
 use super::study_arguments::OpeningArguments;
 use super::study_options::apply_signs;
 use super::terminal::{error, keep_caution, print};
-use crate::message::file_error_code;
+use crate::message_codes::file_error_code;
 
 /// Prints the contents of a dataset or study.
 pub(super) fn check(

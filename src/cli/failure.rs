@@ -7,7 +7,7 @@ use gdcm_model::number_format::counted;
 use gdcm_model::progress::Cancelled;
 
 use super::printed_lines::listed_paths;
-use crate::message::file_error_code;
+use crate::message_codes::file_error_code;
 
 /// Exit status if the command produced no complete result.
 pub(super) const NOT_DONE: u8 = 1;

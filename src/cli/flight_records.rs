@@ -14,7 +14,7 @@ use std::sync::Arc;
 use gdcm_io::import::record_files::{FoundRecords, read_records};
 use gdcm_model::dataset::Dataset;
 use gdcm_sysid::identification::CautionNote;
-use gdcm_sysid::records::layout_problem::{LayoutCaution, LayoutProblem};
+use gdcm_sysid::records::layout_problem::LayoutCaution;
 use gdcm_sysid::records::{
     LaidOutRecord, RecordChannels, RecordTable, TimeWish, leave_out_copies, with_topics_joined,
 };
@@ -25,7 +25,7 @@ use super::option_values::RecordPart;
 use super::progress::ReadingProgress;
 use super::record_parts::{CutRecords, WholeRecord, cut_parts, is_part, part_without_samples};
 use super::terminal::{caution, error, note};
-use crate::message::{layout_caution_code, layout_problem_code};
+use crate::message_codes::{layout_caution_code, layout_problem_code};
 
 /// Records read from files, with the messages about them.
 pub(super) struct ReadRecords {
@@ -132,7 +132,7 @@ struct Reported {
     /// Notes about assumptions made while reading, each prefixed with the name of its record.
     reading: Vec<String>,
     last_notes: Vec<String>,
-    last_problems: Vec<LayoutProblem>,
+    last_problems: Vec<String>,
 }
 
 impl RecordLayouts<'_> {
@@ -223,14 +223,15 @@ impl Reported {
 
     /// Reports the problems of a record, unless they equal those of the previous record.
     fn add_problems(&mut self, record: &LaidOutRecord) {
-        if record.problems == self.last_problems {
+        let problems: Vec<String> = record.problems.iter().map(ToString::to_string).collect();
+        if problems == self.last_problems {
             return;
         }
         for problem in &record.problems {
             let text = format!("{}: {problem}", record.table.name);
             error(layout_problem_code(problem), &text);
         }
-        self.last_problems = record.problems.clone();
+        self.last_problems = problems;
     }
 }
 

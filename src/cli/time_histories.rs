@@ -20,7 +20,7 @@ use super::requested_channels::declare_conversions;
 use super::result_arguments::HistoryArguments;
 use super::terminal::{caution, note};
 use crate::executor::Pool;
-use crate::message::{layout_caution_code, layout_problem_code};
+use crate::message_codes::{layout_caution_code, layout_problem_code};
 
 /// Flight records of each condition, and those that could not be read.
 #[derive(Default)]

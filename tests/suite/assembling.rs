@@ -381,7 +381,7 @@ fn a_folder_of_matrices_without_names_is_made_a_dataset_by_rules_from_the_shell(
     first
         .assert_code("incomplete-rules", &[])
         .assert_reported("no-unit", &["input 1: "])
-        .assert_reported("unnamed-channels", &[&others]);
+        .assert_reported("unit-of-file", &[&others]);
     assert!(!out.exists(), "nothing half made");
     // Complete the proposed rules with the names and units of the channels.
     let path = folder.path().join("made.gdcm-rules.json");

@@ -1246,7 +1246,11 @@ fn conditions_can_be_held_out_and_each_be_left_out_in_turn() {
         "out",
     ]);
     ran.assert_done();
-    assert!(ran.out.contains("(3, 8)"), "{}", ran.out);
+    assert!(
+        ran.out.contains("(3, 8)") && ran.out.contains("of the others"),
+        "{}",
+        ran.out
+    );
     let corrections = crate::read_json(&desk.path("out/corrections.json"));
     let held_out = entries(&corrections["conditions"])
         .iter()

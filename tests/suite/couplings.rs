@@ -27,6 +27,7 @@ fn analyze_says_what_couplings_mean_are_worth_and_cost_and_writes_them() {
     for words in [
         "11 conditions",
         "LAT receives 4.",
+        "left out",
         "swashplate phase",
         "at 120 rad/s, ",
     ] {

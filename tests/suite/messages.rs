@@ -6,7 +6,7 @@ use std::path::Path;
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
-use gdcm::message::file_error_code;
+use gdcm::message_codes::file_error_code;
 use gdcm_io::files::study_file::open_study;
 use gdcm_io::{DatasetOrigin, FileError, load_dataset, load_dataset_bytes, save_study};
 use gdcm_method::correction::GainBounds;

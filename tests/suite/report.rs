@@ -16,13 +16,13 @@ use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
 use gdcm_model::progress::{Cancelled, Progress, Unobserved};
 use gdcm_study::results::condition_remarks::condition_remarks;
 use gdcm_study::results::record_simulations::time_histories_of;
-use gdcm_study::results::remark_kind::RemarkKind;
 use gdcm_study::results::required_modes::KnownPoles;
 use gdcm_study::results::requirement_role::RequirementRole;
 use gdcm_study::results::time_histories::HistoryRecords;
 use gdcm_study::{Analysis, Edit, Engine, Execution, Study};
 use gdcm_sysid::identification::Preparation;
 use gdcm_sysid::records::{LaidOutRecord, RecordChannels, TimeWish};
+use gdcm_words::assessment::not_assessed_text;
 use gdcm_words::remark::remark_text;
 use gdcm_words::requirements::summary_table;
 use gdcm_words::time_histories::{record_table, share_table};
@@ -170,7 +170,7 @@ fn requirements_are_those_of_the_command_and_time_histories_stand_where_there_ar
         .find(|of| of.omega_bw_rad_s.is_some())
         .unwrap();
     let bandwidth = format!("{:.2}", known.omega_bw_rad_s.unwrap());
-    assert!(cells.contains(&bandwidth));
+    assert!(cells.contains(&bandwidth) && REPORT.contains("qualification"));
     assert!(!REPORT.contains("J_rms"), "no record was given");
 
     let channels = RecordChannels::of_dataset(&FEW.dataset).of_named_records();
@@ -230,13 +230,17 @@ fn a_rejected_model_stands_with_the_words_that_the_analyst_typed() {
         .position(|cell| cell == REASON)
         .expect("the reason is there");
     assert_eq!(cells[place - 4..place - 1], ["10", "physics", "nominal"]);
+    let left_out = ANALYSIS.assessment[&ConditionId(10)].as_ref().unwrap_err();
+    assert_eq!(left_out.code(), "nominal-rejected");
+    assert!(REPORT.contains(&not_assessed_text(left_out, &FEW.dataset)));
     let shown = ANALYSIS.condition(ConditionId(10)).unwrap();
-    for remark in condition_remarks(&ANALYSIS.study, shown, None) {
-        if remark.kind() == RemarkKind::Trouble {
-            let words = remark_text(&remark, &FEW.dataset);
-            assert!(REPORT.contains(&words), "{words}");
-        }
-    }
+    let remarks = condition_remarks(&ANALYSIS.study, shown, None);
+    let lead = remarks
+        .iter()
+        .find(|remark| remark.code() == "needs-lead")
+        .expect("a delay cannot provide the phase");
+    let words = remark_text(lead, &FEW.dataset);
+    assert!(REPORT.contains(&words), "{words}");
     assert!(
         REPORT.contains(&FEW.sha256)
             && REPORT.contains(concat!("gdcm ", env!("CARGO_PKG_VERSION")))

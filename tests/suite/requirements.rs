@@ -58,7 +58,13 @@ fn the_embedded_example_has_bandwidths_of_every_role_and_modes_and_costs() {
         costs("corrected") < costs("physics"),
         "a correction lowers J"
     );
-    for words in ["Bandwidth", "[ms]", "MUAD", "requirements.csv"] {
+    for words in [
+        "Bandwidth",
+        "[ms]",
+        "MUAD",
+        "qualification",
+        "requirements.csv",
+    ] {
         assert!(
             ended.out.contains(words),
             "expected \"{words}\" in:\n{}",

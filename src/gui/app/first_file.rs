@@ -11,7 +11,8 @@ use gdcm_model::message_text::{sanitized, shortened_message};
 
 use super::setup::Setup;
 use crate::gui::state::opens_with::OpensWith;
-use crate::message::{Message, file_error_code};
+use crate::message::Message;
+use crate::message_codes::file_error_code;
 
 /// Result of reading the requested file; the example if there is none.
 pub(super) struct Loaded {

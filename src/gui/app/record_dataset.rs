@@ -14,7 +14,8 @@ use super::readers::SilentProgress;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::state::forms::FormKind;
 use crate::gui::state::wanted_dataset::WantedDataset;
-use crate::message::{Message, layout_problem_code};
+use crate::message::Message;
+use crate::message_codes::layout_problem_code;
 
 /// Maximum number of problems reported individually.
 const MOST_PROBLEMS: usize = 6;

@@ -17,7 +17,8 @@ use gdcm_sysid::identification::{CautionNote, ChannelPreparation, Identification
 use gdcm_sysid::records::{ColumnUse, LaidOutRecord, RecordChannels};
 
 use super::condition_records::ConditionRecords;
-use crate::message::{Message, layout_problem_code};
+use crate::message::Message;
+use crate::message_codes::layout_problem_code;
 
 impl ConditionRecords {
     /// Returns the latest identification if it succeeded.

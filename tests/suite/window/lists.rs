@@ -146,6 +146,11 @@ fn a_condition_left_out_of_the_schedule_says_so_and_its_menu_takes_it_in_again()
     window.run_steps(2);
     click(&mut window, "Include in the schedule: condition 3");
     assert!(state(&window).study.choice(ConditionId(3)).scheduled);
+    assert!(
+        window
+            .query_by_label_contains(", left out of the schedule")
+            .is_none()
+    );
     let edit = Edit::SetScheduled {
         condition: ConditionId(3),
         scheduled: true,

@@ -42,7 +42,10 @@ fn bandwidth_modes_and_summary_stand_in_tables_and_a_row_is_marked_in_bode() {
     });
     let requirements = state(&window).requirements().unwrap().clone();
     let said = texts(&window);
-    assert!(said.contains("ω_BW"), "{said}");
+    assert!(
+        said.contains("qualification") && said.contains("ω_BW"),
+        "{said}"
+    );
     // The values equal those of the command: one finding for each condition, on-axis response and
     // role.
     let roles = if state(&window).analysis().unwrap().schedule.is_ok() {

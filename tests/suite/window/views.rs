@@ -279,7 +279,11 @@ fn the_evidence_answers_which_differences_are_in_earnest() {
         .unwrap();
     assert!(difference.is_significant(uncertainty.level));
     assert!((difference.difference.ratio().unwrap() - 5.39).abs() < 0.05);
-    window.get_by_label_contains(difference_verdict(difference, uncertainty.level));
+    let verdict = difference_verdict(difference, uncertainty.level);
+    assert!(
+        window.query_all_by_label_contains(verdict).next().is_some(),
+        "{verdict}"
+    );
     let line = window.get_by_label("5.4 × expected").rect();
     for words in ["COL → NZ", "conditions 3 and 5 (45 kt)", "13 %"] {
         let is_beside = |place: egui::Rect| (place.center().y - line.center().y).abs() < 2.0;

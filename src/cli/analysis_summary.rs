@@ -51,7 +51,7 @@ fn doubts_section(analysis: &Analysis) -> String {
     let mut text = String::new();
     for doubt in &analysis.doubts {
         let words = doubt_words(doubt, &analysis.study.dataset);
-        keep_caution(&doubt.conditions, &words);
+        keep_caution("convention-doubt", &doubt.conditions, &words);
         text += &line("Caution", &sanitized(&words));
     }
     text
@@ -153,7 +153,7 @@ fn couplings_section(analysis: &Analysis) -> String {
         let label = match remark.kind() {
             RemarkKind::Good => "couplings",
             RemarkKind::Caution | RemarkKind::Trouble => {
-                keep_caution(&[], &sentence);
+                keep_caution(remark.code(), &[], &sentence);
                 "caution"
             }
         };

@@ -21,7 +21,7 @@ use super::failure::Failure;
 use super::found_models::{found_models, given_headings};
 use super::model_arguments::AssembleArguments;
 use super::printed_lines::indented;
-use super::terminal::{caution, coded_caution, error, print};
+use super::terminal::{self, caution, caution_for, error, print};
 
 /// Assembles a dataset from the models in files and folders.
 pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
@@ -39,7 +39,7 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
     let assembly = assembled_models(arguments)?;
     print(&model_table(&assembly))?;
     for caution in assembly.cautions() {
-        coded_caution(Some(caution.code()), &[], &assembly.caution_words(&caution));
+        terminal::caution(caution.code(), &assembly.caution_words(&caution));
     }
     if let Some(path) = &proposed_path {
         add_rules(assembly.rules(), path, &mut outputs)?;
@@ -66,7 +66,7 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
         None => {
             let problems = assembly.problem_lines();
             for problem in &problems {
-                error(&problem.text);
+                error(problem.code, &problem.text);
             }
             let path = given_rules.or(proposed_path.as_deref());
             Err(Failure::Incomplete {
@@ -106,7 +106,7 @@ fn assembled_models(arguments: &AssembleArguments) -> Result<Assembly, Failure> 
 fn rules_of_file(path: &Path) -> Result<Rules, Failure> {
     let (rules, cautions) = load_rules(path)?;
     for words in cautions {
-        caution(&format!("{}: {words}", path.display()));
+        caution("rules-file", &format!("{}: {words}", path.display()));
     }
     Ok(rules)
 }
@@ -116,7 +116,7 @@ fn report_missing_references(dataset: &Dataset) {
     let without = dataset.without_reference();
     if !without.is_empty() {
         let failure = ConditionFailure::NoReference;
-        coded_caution(Some(failure.code()), &without, &failure.to_string());
+        caution_for(failure.code(), &without, &failure.to_string());
     }
 }
 

@@ -91,13 +91,15 @@ fn absent_lines(label: &str, messages: Vec<ConditionMessage>) -> String {
 struct AbsentReason<'a> {
     /// First result to which the reason applies.
     finding: &'a BandwidthFinding,
+    /// Code of the reason.
+    code: &'static str,
     /// Response, roles and reason: "LON → Q (physics, corrected): …".
     words: String,
 }
 
 impl AbsentReason<'_> {
     fn into_message(self) -> ConditionMessage {
-        ConditionMessage::new(self.finding.condition, self.words)
+        ConditionMessage::new(self.finding.condition, self.code, self.words)
     }
 }
 
@@ -120,8 +122,13 @@ fn absent_reasons<'a>(response: &ResponseBandwidths<'a>, quantity: &str) -> Vec<
         } else {
             format!(" ({})", roles.join(", "))
         };
+        let code = match without[0].absent.get(quantity) {
+            Some(why) => why.code(),
+            None => "",
+        };
         absent.push(AbsentReason {
             finding: without[0],
+            code,
             words: format!("{}{roles}: {reason}", response.name),
         });
     }

@@ -26,7 +26,8 @@ use super::open;
 use super::printed_lines::{caution_line, line};
 use super::study_arguments::OpeningArguments;
 use super::study_options::apply_signs;
-use super::terminal::{error, print};
+use super::terminal::{error, keep_caution, print};
+use crate::message_codes::file_error_code;
 
 /// Prints the contents of a dataset or study.
 pub(super) fn check(
@@ -66,7 +67,7 @@ fn report_faults(file: &Path, first: FileError) -> Failure {
     match dataset_faults(file) {
         Ok(faults) if faults.len() > 1 => {
             for fault in &faults {
-                error(&fault.to_string());
+                error(file_error_code(fault), &fault.to_string());
             }
             Failure::Faulty {
                 path: sanitized_path(file),
@@ -78,7 +79,8 @@ fn report_faults(file: &Path, first: FileError) -> Failure {
     }
 }
 
-/// Returns the cautions of an analysis that concern only the models. Missing references come first,
+/// Returns the cautions of an analysis that concern only the models, and adds them to the JSON
+/// object. Missing references come first,
 /// then signs and units, because other cautions may result from them.
 fn model_cautions(study: &Study) -> Result<String, Failure> {
     let execution = Execution::new(&crate::executor::Pool, &Unobserved, 0);
@@ -86,19 +88,28 @@ fn model_cautions(study: &Study) -> Result<String, Failure> {
     let mut text = String::new();
     let without = dataset.without_reference();
     if !without.is_empty() {
-        let words = ConditionFailure::NoReference.to_string();
+        let failure = ConditionFailure::NoReference;
+        let words = failure.to_string();
+        keep_caution(failure.code(), &without, &words);
         text += &caution_line(&with_conditions(&without, &words));
     }
     for doubt in doubts_of_models(study, &execution)? {
-        text += &caution_line(&doubt_words(&doubt, dataset));
+        let words = doubt_words(&doubt, dataset);
+        keep_caution("convention-doubt", &doubt.conditions, &words);
+        text += &caution_line(&words);
     }
     let cautions = cautions_of_models(study, &execution)?;
     let messages = cautions.into_iter().map(|(id, caution)| {
         let words = caution_text(&caution, |pair| dataset.pair_name(pair));
-        ConditionMessage::new(id, words)
+        ConditionMessage::new(id, caution.code(), words)
     });
-    for message in shared_messages(messages) {
-        text += &caution_line(&message.words());
+    for shared in shared_messages(messages) {
+        keep_caution(
+            shared.message.code,
+            &shared.conditions,
+            &shared.message.text,
+        );
+        text += &caution_line(&shared.words());
     }
     Ok(text)
 }

@@ -3,17 +3,23 @@
 
 use gdcm_model::dataset::ConditionId;
 
+use crate::message::Message;
+
 /// A message about a condition, or about the whole result.
 pub(super) struct ConditionMessage {
     condition: Option<ConditionId>,
-    text: String,
+    message: Message,
 }
 
 impl ConditionMessage {
-    pub(super) fn new(condition: impl Into<Option<ConditionId>>, text: String) -> Self {
+    pub(super) fn new(
+        condition: impl Into<Option<ConditionId>>,
+        code: &'static str,
+        text: String,
+    ) -> Self {
         Self {
             condition: condition.into(),
-            text,
+            message: Message { code, text },
         }
     }
 }
@@ -22,27 +28,27 @@ impl ConditionMessage {
 /// result.
 pub(super) struct SharedMessage {
     pub(super) conditions: Vec<ConditionId>,
-    pub(super) text: String,
+    pub(super) message: Message,
 }
 
 impl SharedMessage {
     /// Returns the message, prefixed with its conditions.
     pub(super) fn words(&self) -> String {
-        with_conditions(&self.conditions, &self.text)
+        with_conditions(&self.conditions, &self.message.text)
     }
 }
 
-/// Merges messages with equal text, in the order of first occurrence.
+/// Merges equal messages, in the order of first occurrence.
 pub(super) fn shared_messages(
     messages: impl IntoIterator<Item = ConditionMessage>,
 ) -> Vec<SharedMessage> {
     let mut shared: Vec<SharedMessage> = Vec::new();
-    for ConditionMessage { condition, text } in messages {
-        let known = shared.iter().position(|message| message.text == text);
+    for ConditionMessage { condition, message } in messages {
+        let known = shared.iter().position(|known| known.message == message);
         let place = known.unwrap_or_else(|| {
             shared.push(SharedMessage {
                 conditions: Vec::new(),
-                text,
+                message,
             });
             shared.len() - 1
         });
@@ -91,13 +97,16 @@ mod tests {
     #[test]
     fn equal_messages_are_printed_once_with_all_their_conditions() {
         let messages = [(3, "late"), (4, "noisy"), (7, "late"), (7, "late")];
-        let messages =
-            messages.map(|(id, text)| ConditionMessage::new(ConditionId(id), text.to_owned()));
-        let lines: Vec<String> = shared_messages(messages)
+        let messages = messages
+            .map(|(id, text)| ConditionMessage::new(ConditionId(id), text, text.to_owned()));
+        let shared: Vec<(&str, Vec<i64>)> = shared_messages(messages)
             .iter()
-            .map(SharedMessage::words)
+            .map(|shared| {
+                let ids = shared.conditions.iter().map(|id| id.0);
+                (shared.message.code, ids.collect())
+            })
             .collect();
-        assert_eq!(lines, ["conditions 3, 7: late", "condition 4: noisy"]);
+        assert_eq!(shared, [("late", vec![3, 7]), ("noisy", vec![4])]);
     }
 
     #[test]

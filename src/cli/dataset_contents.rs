@@ -10,8 +10,10 @@ use gdcm_model::units::number;
 use gdcm_words::Table;
 
 use super::printed_lines::{caution_line, indented, line};
+use super::terminal::keep_caution;
 
-/// Returns the contents of a dataset: its header, conditions, timings, records and cautions.
+/// Returns the contents of a dataset: its header, conditions, timings, records and cautions, which
+/// are also added to the JSON object.
 pub(super) fn contents(loaded: &LoadedDataset) -> String {
     let dataset = &loaded.dataset;
     let band = format!(
@@ -32,6 +34,7 @@ pub(super) fn contents(loaded: &LoadedDataset) -> String {
     text += &timings(dataset);
     text += &records(dataset);
     for words in &loaded.cautions {
+        keep_caution("dataset-file", &[], words);
         text += &caution_line(words);
     }
     text

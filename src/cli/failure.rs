@@ -7,6 +7,7 @@ use gdcm_model::number_format::counted;
 use gdcm_model::progress::Cancelled;
 
 use super::printed_lines::listed_paths;
+use crate::message_codes::file_error_code;
 
 /// Exit status if the command produced no complete result.
 pub(super) const NOT_DONE: u8 = 1;
@@ -117,10 +118,10 @@ impl Failure {
         Self::coded_option(option, "unknown-record", reason)
     }
 
-    /// Returns the stable code for scripts; `None` for a file error that has no code.
-    pub(super) fn code(&self) -> Option<&'static str> {
-        let code = match self {
-            Failure::File(error) => return error.code(),
+    /// Returns the stable code for scripts.
+    pub(super) fn code(&self) -> &'static str {
+        match self {
+            Failure::File(error) => file_error_code(error),
             Failure::Option { code, .. } => code,
             Failure::UnknownCommand { .. } => "unknown-command",
             Failure::Different { .. } => "different-dataset",
@@ -136,8 +137,7 @@ impl Failure {
             Failure::NoResult { .. } => "no-result",
             Failure::Cancelled(_) => "stopped",
             Failure::StandardOutput { .. } => "standard-output",
-        };
-        Some(code)
+        }
     }
 
     /// Returns the exit status of the program.

@@ -25,6 +25,7 @@ use super::option_values::RecordPart;
 use super::progress::ReadingProgress;
 use super::record_parts::{CutRecords, WholeRecord, cut_parts, is_part, part_without_samples};
 use super::terminal::{caution, error, note};
+use crate::message_codes::{layout_caution_code, layout_problem_code};
 
 /// Records read from files, with the messages about them.
 pub(super) struct ReadRecords {
@@ -49,10 +50,10 @@ pub(super) struct Duplicate {
 pub(super) fn found_records(paths: &[PathBuf]) -> Result<FoundRecords, Failure> {
     let found = read_records(paths, &ReadingProgress::new())?;
     for fault in &found.faults {
-        caution(&format!("not read: {fault}"));
+        caution("not-read", &format!("not read: {fault}"));
     }
     for words in &found.ignored {
-        note(&format!("no record: {words}"));
+        note("no-record", &format!("no record: {words}"));
     }
     if found.tables.is_empty() {
         Err(Failure::nothing_in(paths, "record"))
@@ -164,7 +165,8 @@ impl RecordLayouts<'_> {
             let (record, mut notes) = self.lay_out(table, channels);
             let name = &record.table.name;
             if is_empty_part(&record) {
-                note(&format!("{name}: no samples in the requested part"));
+                let text = format!("{name}: no samples in the requested part");
+                note("no-samples-in-part", &text);
                 continue;
             }
             if is_log(&record.table) {
@@ -172,7 +174,7 @@ impl RecordLayouts<'_> {
             }
             self.reported.add_notes(name, notes);
             for words in &record.cautions {
-                caution(&format!("{name}: {words}"));
+                caution(layout_caution_code(words), &format!("{name}: {words}"));
             }
             self.reported.add_problems(&record);
             channels.take_units(&record.layout, &record.table);
@@ -196,7 +198,8 @@ impl RecordLayouts<'_> {
             }
             let (record, _) = self.lay_out(Arc::unwrap_or_clone(record.table), channels);
             for words in &record.problems {
-                error(&format!("{}: {words}", record.table.name));
+                let text = format!("{}: {words}", record.table.name);
+                error(layout_problem_code(words), &text);
             }
             again.push(record);
         }
@@ -212,7 +215,7 @@ impl Reported {
         }
         for words in &notes {
             let words = format!("{name}: {words}");
-            note(&words);
+            note("record-layout", &words);
             self.reading.push(words);
         }
         self.last_notes = notes;
@@ -224,8 +227,9 @@ impl Reported {
         if problems == self.last_problems {
             return;
         }
-        for words in &problems {
-            error(&format!("{}: {words}", record.table.name));
+        for problem in &record.problems {
+            let text = format!("{}: {problem}", record.table.name);
+            error(layout_problem_code(problem), &text);
         }
         self.last_problems = problems;
     }
@@ -273,7 +277,7 @@ pub(super) fn report_duplicates(record: &LaidOutRecord) -> Vec<Duplicate> {
             continue;
         };
         let text = format!("{}: {reason}", record.table.name);
-        caution(&text);
+        caution("duplicate", &text);
         duplicates.push(Duplicate {
             original: first.clone(),
             caution: CautionNote {

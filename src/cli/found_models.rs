@@ -14,13 +14,13 @@ use super::terminal::{caution, note};
 pub(super) fn found_models(paths: &[PathBuf], headings: &Headings) -> Result<FoundModels, Failure> {
     let found = read_models(paths, headings, &ReadingProgress::new())?;
     for fault in &found.faults {
-        caution(&format!("not read: {fault}"));
+        caution("not-read", &format!("not read: {fault}"));
     }
     for words in &found.ignored {
-        note(&format!("no model: {words}"));
+        note("no-model", &format!("no model: {words}"));
     }
     for words in found.unused_words() {
-        note(&words);
+        note("unused-variables", &words);
     }
     Ok(found)
 }

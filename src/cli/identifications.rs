@@ -22,6 +22,7 @@ use super::identification_task::IdentificationTask;
 use super::identify_arguments::IdentifyArguments;
 use super::receiving_dataset::ReceivingDataset;
 use super::terminal::{caution_for, note, print};
+use crate::message::Message;
 
 /// Command line, channels and record messages on which all identifications are based.
 #[derive(Clone, Copy)]
@@ -88,6 +89,7 @@ impl<'a> Identifications<'a> {
                 }
                 Err(why) => self.cautions.push(ConditionMessage::new(
                     task.condition,
+                    "no-models",
                     format!("no model was identified: {why}"),
                 )),
             }
@@ -114,7 +116,7 @@ impl<'a> Identifications<'a> {
             .flat_map(RecordUse::facts)
             .collect();
         for fact in &facts {
-            note(fact);
+            note("record-preparation", fact);
         }
         let reading = [self.basis.reading, &facts].concat();
         let cautions = self.cautions_of(task, found);
@@ -156,7 +158,7 @@ impl<'a> Identifications<'a> {
         let dataset = self.destination.as_ref().map(|place| &*place.dataset);
         let mut cautions = task.cautions(found, self.basis.channels, dataset);
         for caution in &cautions {
-            let message = ConditionMessage::new(task.condition, caution.text.clone());
+            let message = ConditionMessage::new(task.condition, caution.code, caution.text.clone());
             self.cautions.push(message);
         }
         for duplicate in self.basis.duplicates {
@@ -181,8 +183,9 @@ impl<'a> Identifications<'a> {
     /// # Errors
     /// No task has a result, or the records identify no input.
     pub(super) fn finish(mut self, task_count: usize) -> Result<(), Failure> {
-        for message in shared_messages(self.cautions) {
-            caution_for(&message.conditions, &message.text);
+        for shared in shared_messages(self.cautions) {
+            let Message { code, text } = &shared.message;
+            caution_for(code, &shared.conditions, text);
         }
         if self.count == 0 {
             return Err(Failure::NoModels {

@@ -117,9 +117,10 @@ pub(super) fn identification_tasks(
 fn single_group(records: Vec<LaidOutRecord>) -> RecordGroup {
     let conditions = named_conditions(&records);
     if conditions.contains(',') {
-        caution(&format!(
+        let text = format!(
             "the names of the records give conditions {conditions}: all are fitted together"
-        ));
+        );
+        caution("records-of-several-conditions", &text);
     }
     RecordGroup {
         condition: None,

@@ -72,7 +72,7 @@ use arguments::{Arguments, Command};
 use command_line::{has_argument, take_leading_switches, usage_words, with_values_joined};
 use failure::{Failure, WRONG_INPUT};
 use study_arguments::OpeningArguments;
-use terminal::{OutputFormat, caution, coded_error, print};
+use terminal::{OutputFormat, caution, print};
 
 /// Runs the command on the command line. Without a command, opens the window with a file or with
 /// the embedded example. Help, version and errors of the command line are printed here.
@@ -110,7 +110,7 @@ pub fn run(
             ..
         }) => open_window(file),
         Err(wrong) if wrong.use_stderr() => {
-            coded_error(Some("wrong-command-line"), &usage_words(&wrong));
+            terminal::error("wrong-command-line", &usage_words(&wrong));
             ExitCode::from(terminal::end(WRONG_INPUT))
         }
         Err(help) => finish(print(&help.to_string())),
@@ -156,11 +156,8 @@ fn open(file: &Path, arguments: &OpeningArguments) -> Result<Opened, Failure> {
     };
     if let Opened::Study(study) = &opened {
         for difference in &study.differences {
-            caution(&format!(
-                "{}: {}",
-                file.display(),
-                dataset_difference_text(difference)
-            ));
+            let words = dataset_difference_text(difference);
+            caution(difference.code(), &format!("{}: {words}", file.display()));
         }
         if arguments.strict && !study.differences.is_empty() {
             return Err(Failure::Different {
@@ -217,7 +214,7 @@ fn finish(result: Result<(), Failure>) -> ExitCode {
     let status = match result {
         Ok(()) => 0,
         Err(failure) => {
-            coded_error(failure.code(), &failure.to_string());
+            terminal::error(failure.code(), &failure.to_string());
             failure.status()
         }
     };

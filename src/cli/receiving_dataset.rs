@@ -87,10 +87,13 @@ impl ReceivingDataset {
             let group = groups.iter_mut().find(|group| group.condition == condition);
             match group {
                 Some(group) => group.records.push(record),
-                None => caution(&format!(
-                    "{}: left out, because its name gives no condition of the dataset",
-                    record.table.name
-                )),
+                None => {
+                    let text = format!(
+                        "{}: left out, because its name gives no condition of the dataset",
+                        record.table.name
+                    );
+                    caution("record-without-condition", &text);
+                }
             }
         }
         let without: Vec<ConditionId> = groups
@@ -99,10 +102,11 @@ impl ReceivingDataset {
             .filter_map(|group| group.condition)
             .collect();
         if !without.is_empty() {
-            note(&format!(
+            let text = format!(
                 "{}: no records; the identified models remain unchanged",
                 listed_conditions(&without)
-            ));
+            );
+            note("no-record-of-condition", &text);
         }
         groups.retain(|group| !group.records.is_empty());
         if groups.is_empty() {
@@ -153,11 +157,12 @@ fn group_for_condition(
         }
     }
     if !others.is_empty() {
-        caution(&format!(
+        let text = format!(
             "{} of {count} records left out: their names give condition {}, not {condition}",
             others.len(),
             named_conditions(&others)
-        ));
+        );
+        caution("records-of-other-condition", &text);
     }
     if own.is_empty() {
         let reason = format!(

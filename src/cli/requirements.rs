@@ -30,6 +30,7 @@ use super::study_analysis::{ErrorBars, StudyAnalysis, analyze_study};
 use super::study_options::CommandStudy;
 use super::terminal::{caution_for, note, print};
 use super::time_histories::{read_histories, simulated_histories};
+use crate::message::Message;
 
 /// Writes the tolerance table if requested; analyses the study, writes the requirements, and prints
 /// a short table.
@@ -99,10 +100,12 @@ fn tolerance_line(
 
 fn report_cautions(requirements: &Requirements, dataset: &Dataset) {
     let messages = requirements.cautions.iter().map(|caution| {
-        ConditionMessage::new(caution.condition, reversed_phase_text(caution, dataset))
+        let text = reversed_phase_text(caution, dataset);
+        ConditionMessage::new(caution.condition, "reversed-phase", text)
     });
-    for message in shared_messages(messages) {
-        caution_for(&message.conditions, &message.text);
+    for shared in shared_messages(messages) {
+        let Message { code, text } = &shared.message;
+        caution_for(code, &shared.conditions, text);
     }
 }
 
@@ -122,10 +125,10 @@ fn report_missing(requirements: &Requirements, histories: &TimeHistories) {
     let messages = missing.into_iter().map(|finding| {
         let why = missing_reason_text(&finding.why);
         let words = format!("no {}: {why}", finding.what);
-        ConditionMessage::new(finding.condition, words)
+        ConditionMessage::new(finding.condition, finding.why.code(), words)
     });
-    for message in shared_messages(messages) {
-        note(&message.words());
+    for shared in shared_messages(messages) {
+        note(shared.message.code, &shared.words());
     }
 }
 

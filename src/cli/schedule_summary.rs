@@ -9,7 +9,7 @@ use gdcm_words::Table;
 use gdcm_words::schedule::{delayed_channel_text, schedule_caution_text};
 
 use super::printed_lines::{detail, fixed_digits, indented, line};
-use super::terminal::keep_coded_caution;
+use super::terminal::keep_caution;
 
 /// Returns the responses listed in tables: the responses in the objective (on-axis; all if none is
 /// on-axis) and the constrained responses.
@@ -33,7 +33,7 @@ pub(super) fn schedule_section(analysis: &Analysis) -> String {
     for caution in &schedule.cautions {
         let words = schedule_caution_text(caution, &inputs, &outputs);
         if let ScheduleCaution::CostsMore(cost) = caution {
-            keep_coded_caution(Some(caution.code()), &[cost.condition], &words);
+            keep_caution(caution.code(), &[cost.condition], &words);
         }
         text += &detail("caution", &sanitized(&words));
     }

@@ -15,7 +15,7 @@ use gdcm_words::remark::{lead_ms_text, lead_offer_texts, raised_gain_text, remar
 
 use super::condition_messages::{ConditionMessage, shared_messages};
 use super::printed_lines::{indented, line};
-use super::terminal::keep_caution;
+use super::terminal::{keep_caution, keep_summary};
 
 /// Cautions about a condition of the recurring kinds, which a table lists.
 struct RecurringRow {
@@ -42,11 +42,11 @@ pub(super) fn cautions_section(analysis: &Analysis) -> String {
                 row.cautions.push(caution);
             } else {
                 let text = remark_text(&caution, dataset);
-                others.push(ConditionMessage::new(row.condition, text));
+                others.push(ConditionMessage::new(row.condition, caution.code(), text));
             }
         }
         if let Some(words) = lead_limit_words(result) {
-            others.push(ConditionMessage::new(row.condition, words));
+            others.push(ConditionMessage::new(row.condition, "lead-limit", words));
         }
         if !row.cautions.is_empty() {
             rows.push(row);
@@ -57,14 +57,19 @@ pub(super) fn cautions_section(analysis: &Analysis) -> String {
         && let [alone] = &row.cautions[..]
     {
         // A single caution about a single condition needs no table.
-        let message = ConditionMessage::new(row.condition, remark_text(alone, dataset));
+        let text = remark_text(alone, dataset);
+        let message = ConditionMessage::new(row.condition, alone.code(), text);
         others.insert(0, message);
     } else if !rows.is_empty() {
         text += &recurring_table(dataset, &rows);
     }
-    for message in shared_messages(others) {
-        keep_caution(&message.conditions, &message.text);
-        text += &line("Caution", &sanitized(&message.words()));
+    for shared in shared_messages(others) {
+        keep_caution(
+            shared.message.code,
+            &shared.conditions,
+            &shared.message.text,
+        );
+        text += &line("Caution", &sanitized(&shared.words()));
     }
     text
 }
@@ -111,7 +116,10 @@ fn recurring_table(dataset: &Dataset, rows: &[RecurringRow]) -> String {
     sentences.extend(columns.iter().map(|column| column.sentence));
     let sentence = sentences.join("; ");
     let conditions: Vec<ConditionId> = rows.iter().map(|row| row.condition).collect();
-    keep_caution(&conditions, &sentence);
+    let mut codes: Vec<&'static str> = cautions.iter().map(|caution| caution.code()).collect();
+    codes.sort_unstable();
+    codes.dedup();
+    keep_summary("recurring-cautions", codes, &conditions, &sentence);
     line("Cautions", &format!("{sentence}:")) + &indented(&table, 2)
 }
 

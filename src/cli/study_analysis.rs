@@ -10,7 +10,7 @@ use super::failure::Failure;
 use super::progress::TerminalProgress;
 use super::study_arguments::StudyArguments;
 use super::study_options::apply;
-use super::terminal::coded_caution;
+use super::terminal::caution_for;
 use crate::executor::Pool;
 
 /// Whether an analysis computes error bars.
@@ -64,7 +64,8 @@ fn report_failed_conditions(analysis: &Analysis) -> Result<(), Failure> {
         }
     }
     let messages = failures.iter().map(|(id, failure)| {
-        ConditionMessage::new(*id, failure_text(failure, &analysis.study.dataset))
+        let text = failure_text(failure, &analysis.study.dataset);
+        ConditionMessage::new(*id, failure.code(), text)
     });
     let shared = shared_messages(messages);
     if let Some(first) = shared.first()
@@ -74,10 +75,12 @@ fn report_failed_conditions(analysis: &Analysis) -> Result<(), Failure> {
             reason: first.words(),
         });
     }
-    for SharedMessage { conditions, text } in &shared {
-        let failure = failures.iter().find(|(id, _)| conditions.contains(id));
-        let code = failure.map(|(_, failure)| failure.code());
-        coded_caution(code, conditions, text);
+    for SharedMessage {
+        conditions,
+        message,
+    } in &shared
+    {
+        caution_for(message.code, conditions, &message.text);
     }
     Ok(())
 }

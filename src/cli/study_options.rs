@@ -8,7 +8,7 @@ use gdcm_io::{LoadedDataset, embedded_example};
 use gdcm_method::correction;
 use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
 use gdcm_model::message_text::sanitized;
-use gdcm_study::decisions::requirement_settings::RequirementSettings;
+use gdcm_study::decisions::requirement_settings::{RequirementPart, RequirementSettings};
 use gdcm_study::{Edit, Study};
 
 use super::channel_values::{ChannelSign, ChannelValue, first_duplicate};
@@ -44,7 +44,7 @@ impl CommandStudy {
             }
         };
         for words in &loaded.cautions {
-            caution(&format!("{}: {words}", loaded.origin));
+            caution("dataset-file", &format!("{}: {words}", loaded.origin));
         }
         apply_options(&mut study, arguments)?;
         let inputs = [&arguments.file, &arguments.levels, &arguments.tolerances]
@@ -119,22 +119,23 @@ fn apply_requirements(study: &mut Study, arguments: &StudyArguments) -> Result<(
         settings.levels = read_levels(path)?;
         let unknown = settings.levels.unknown_axes(&outputs);
         if !unknown.is_empty() {
-            caution(&sanitized(&format!(
+            let text = format!(
                 "levels of {} are not drawn: the outputs are {}",
                 unknown.join(", "),
                 outputs.join(", ")
-            )));
+            );
+            caution("levels-of-unknown-channel", &sanitized(&text));
         }
     }
     if let Some(path) = &arguments.tolerances {
         let (tolerances, cautions) = load_tolerances(path)?;
         for words in cautions {
-            caution(&format!("{}: {words}", path.display()));
+            caution("tolerance-file", &format!("{}: {words}", path.display()));
         }
         settings.tolerances = tolerances;
     }
     if settings != *study.requirements {
-        let edit = Edit::SetRequirements("options", Arc::new(settings));
+        let edit = Edit::SetRequirements(RequirementPart::Options, Arc::new(settings));
         apply(study, "--levels", &edit)?;
     }
     Ok(())

@@ -34,18 +34,22 @@ struct Messages {
     /// Text that would otherwise be printed on standard output.
     text: String,
     notes: Vec<String>,
+    /// Stable code of each note.
+    note_codes: Vec<&'static str>,
     cautions: Vec<Caution>,
     errors: Vec<String>,
-    /// Stable code of each error; null for an error without a code.
-    error_codes: Vec<Option<&'static str>>,
+    /// Stable code of each error.
+    error_codes: Vec<&'static str>,
 }
 
 /// A caution with its conditions; without conditions, it concerns the whole result.
 #[derive(Debug, Serialize)]
 struct Caution {
-    /// Stable code of the kind of caution, if it has one.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    code: Option<&'static str>,
+    /// Stable code of the kind of caution.
+    code: &'static str,
+    /// Codes of the cautions that a table summarises.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    summarised_codes: Vec<&'static str>,
     text: String,
     conditions: Vec<i64>,
 }
@@ -61,6 +65,7 @@ static MESSAGES: Mutex<Messages> = Mutex::new(Messages {
     status: 0,
     text: String::new(),
     notes: Vec::new(),
+    note_codes: Vec::new(),
     cautions: Vec::new(),
     errors: Vec::new(),
     error_codes: Vec::new(),
@@ -123,59 +128,53 @@ fn write_standard_error(kind: &str, words: &str) {
 }
 
 /// Prints a note about an assumption that needs no action, or adds it to the JSON output.
-pub(super) fn note(words: &str) {
+pub(super) fn note(code: &'static str, words: &str) {
     let mut messages = messages();
     if messages.output.json {
         messages.notes.push(plain(words));
+        messages.note_codes.push(code);
     } else if !messages.output.quiet {
         write_standard_error("note", words);
     }
 }
 
 /// Prints a caution about a problem that may need action although the command continues.
-pub(super) fn caution(words: &str) {
-    caution_for(&[], words);
+pub(super) fn caution(code: &'static str, words: &str) {
+    caution_for(code, &[], words);
 }
 
-/// Prints a caution about several conditions once, with a list of the conditions.
-pub(super) fn caution_for(conditions: &[ConditionId], words: &str) {
-    coded_caution(None, conditions, words);
-}
-
-/// Prints a caution with a stable code, or adds it to the JSON output.
-pub(super) fn coded_caution(code: Option<&'static str>, conditions: &[ConditionId], words: &str) {
+/// Prints a caution about several conditions once, with a list of the conditions; or adds it to the
+/// JSON output.
+pub(super) fn caution_for(code: &'static str, conditions: &[ConditionId], words: &str) {
     if messages().output.json {
-        keep_coded_caution(code, conditions, words);
+        keep_caution(code, conditions, words);
     } else {
         write_standard_error("caution", &with_conditions(conditions, words));
     }
 }
 
 /// Adds a caution to the JSON object only; the text output includes it elsewhere.
-pub(super) fn keep_caution(conditions: &[ConditionId], words: &str) {
-    keep_coded_caution(None, conditions, words);
+pub(super) fn keep_caution(code: &'static str, conditions: &[ConditionId], words: &str) {
+    keep_summary(code, Vec::new(), conditions, words);
 }
 
-/// Adds a caution with a stable code to the JSON object only.
-pub(super) fn keep_coded_caution(
-    code: Option<&'static str>,
+/// Adds a caution that summarises cautions with the given codes to the JSON object only.
+pub(super) fn keep_summary(
+    code: &'static str,
+    summarised_codes: Vec<&'static str>,
     conditions: &[ConditionId],
     words: &str,
 ) {
     messages().cautions.push(Caution {
         code,
+        summarised_codes,
         text: plain(words),
         conditions: conditions.iter().map(|id| id.0).collect(),
     });
 }
 
-/// Prints an error without a code, or adds it to the JSON output.
-pub(super) fn error(words: &str) {
-    coded_error(None, words);
-}
-
-/// Prints an error with a stable code, or adds it to the JSON output.
-pub(super) fn coded_error(code: Option<&'static str>, words: &str) {
+/// Prints an error, or adds it to the JSON output.
+pub(super) fn error(code: &'static str, words: &str) {
     let mut messages = messages();
     if messages.output.json {
         messages.errors.push(plain(words));

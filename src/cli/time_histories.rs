@@ -20,6 +20,7 @@ use super::requested_channels::declare_conversions;
 use super::result_arguments::HistoryArguments;
 use super::terminal::{caution, note};
 use crate::executor::Pool;
+use crate::message_codes::{layout_caution_code, layout_problem_code};
 
 /// Flight records of each condition, and those that could not be read.
 #[derive(Default)]
@@ -158,21 +159,20 @@ fn report_record(laid_out: &ConditionRecord) {
     let record = &laid_out.record;
     let name = &record.table.name;
     if laid_out.condition.is_none() {
-        caution(&format!(
-            "{name}: left out, because its name gives no condition of the dataset"
-        ));
+        let text = format!("{name}: left out, because its name gives no condition of the dataset");
+        caution("record-without-condition", &text);
         return;
     }
     for words in &record.cautions {
-        caution(&format!("{name}: {words}"));
+        caution(layout_caution_code(words), &format!("{name}: {words}"));
     }
     for words in &record.problems {
-        caution(&format!("{name}: left out: {words}"));
+        let text = format!("{name}: left out: {words}");
+        caution(layout_problem_code(words), &text);
     }
     if !record.used {
-        note(&format!(
-            "{name}: left out, because the dataset excludes it"
-        ));
+        let text = format!("{name}: left out, because the dataset excludes it");
+        note("record-excluded", &text);
     }
 }
 

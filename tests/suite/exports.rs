@@ -58,8 +58,8 @@ fn every_format_is_written_once_and_over_nothing_unasked() {
         ended.assert_done();
         assert!(ended.out.starts_with(&format!("{name}: ")), "{}", ended.out);
         let written = fs::read(desk.path(name)).unwrap();
-        desk.gdcm(&arguments)
-            .assert_failed(2, &[name, "exists already; --force overwrites"]);
+        desk.messages(&arguments)
+            .assert_code("file-exists", &[name, "--force"]);
         desk.gdcm(&[&arguments[..], &["--force"]].concat())
             .assert_done();
         assert!(
@@ -109,27 +109,31 @@ fn json_and_csv_are_those_of_analyze() {
 fn what_cannot_be_exported_is_status_2_before_any_work() {
     let desk = Desk::new();
     let export = ["export", "small.json", "--as"];
-    let files: [(&[&str], &[&str]); 4] = [
+    let files: [(&[&str], &str, &[&str]); 4] = [
         (
             &["state-space", "--out", "a.csv"],
-            &["a.csv: ", ".mat, .json or .npz"],
+            "models-format",
+            &["a.csv: ", ".mat", ".json", ".npz"],
         ),
         (
             &["m", "--out", "my-study.m"],
-            &["my-study.m: ", "found \"my-study\""],
+            "function-name",
+            &["my-study.m: ", "\"my-study\""],
         ),
         (
             &["json", "--out", "small.json", "--force"],
-            &["small.json: the data are read from this"],
+            "input-as-output",
+            &["small.json: "],
         ),
         (
             &["state-space", "--out", "a.mat", "--model", "V+5kt"],
-            &["condition 10 has no physics model \"V+5kt\""],
+            "unknown-model",
+            &["condition 10", "\"V+5kt\""],
         ),
     ];
-    for (options, words) in files {
-        desk.gdcm(&[&export, options].concat())
-            .assert_failed(2, words);
+    for (options, code, names) in files {
+        desk.messages(&[&export, options].concat())
+            .assert_code(code, names);
     }
     let options: [(&[&str], &str, &[&str]); 7] = [
         (
@@ -171,7 +175,7 @@ fn what_cannot_be_exported_is_status_2_before_any_work() {
     for (options, code, names) in options {
         let line = [&export, options].concat();
         desk.gdcm(&line).assert_failed(2, names);
-        desk.refusal(&line).assert_code(code, names);
+        desk.messages(&line).assert_code(code, names);
     }
     assert_eq!(
         fs::read_dir(desk.directory.path()).unwrap().count(),
@@ -296,15 +300,12 @@ fn delays_of_held_responses_are_exported_unless_that_is_not_wanted() {
         &["--schedule-delays=always"],
     ] {
         let (out, contains, found) = export(more);
-        assert!(
-            out.contains(
-                "\ncontains: gains scheduled, delays scheduled, leads none, couplings none\n"
-            ),
-            "{out}"
-        );
         assert!(!out.contains("left out"), "{out}");
         for (place, condition) in dataset.conditions().iter().enumerate() {
+            assert_eq!(contains[place]["gains"], "scheduled");
             assert_eq!(contains[place]["delays"], "scheduled");
+            assert_eq!(contains[place]["leads"], "none");
+            assert_eq!(contains[place]["couplings"], "none");
             assert_eq!(contains[place]["left_out"], json!([]));
             let flown = &condition.bundle(gdcm_model::dataset::BundleKind::Identified)[0];
             // The delays must be included; `evaluate` omits them.
@@ -326,14 +327,9 @@ fn delays_of_held_responses_are_exported_unless_that_is_not_wanted() {
         }
     }
     let (out, contains, _) = export(&["--schedule-delays", "never"]);
-    assert!(
-        out.contains("\ncontains: gains scheduled, delays none, leads none, couplings none\n"),
-        "{out}"
-    );
     // 50 ms at 12 rad/s are 34.4 degrees.
     assert!(
-        out.contains("phase error of up to 34.377 deg at 12 rad/s")
-            && !out.contains("delays exact"),
+        out.contains(" 34.377 deg at 12 rad/s") && !out.contains("delays exact"),
         "{out}"
     );
     for contains in &contains {
@@ -344,15 +340,14 @@ fn delays_of_held_responses_are_exported_unless_that_is_not_wanted() {
         assert!(!entries(&contains["left_out"]).is_empty(), "{contains}");
     }
     let (out, contains, _) = export(&["--schedule-delays", "never", "--correction", "own"]);
-    assert!(
-        out.contains("\ncontains: gains own, delays own, leads none, couplings none\n"),
-        "{out}"
-    );
-    assert!(
-        contains
-            .iter()
-            .all(|contains| contains["delays"] == "own" && contains["left_out"] == json!([]))
-    );
+    assert!(!out.contains("left out"), "{out}");
+    for contains in &contains {
+        assert_eq!(
+            (&contains["gains"], &contains["delays"]),
+            (&json!("own"), &json!("own"))
+        );
+        assert_eq!(contains["left_out"], json!([]));
+    }
 }
 
 #[test]
@@ -478,11 +473,7 @@ fn a_schedule_that_loses_what_a_condition_gains_is_cautioned_of() {
         let [scheduled, own] = ["value", "own"].map(|key| note[key].as_f64().unwrap());
         assert!(scheduled > 1.0 && scheduled > 2.0 * own, "{note}");
     }
-    let words = out.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(
-        words.contains("with the condition's own correction") && words.contains("left out"),
-        "{out}"
-    );
+    assert!(out.contains("left out"), "{out}");
     let line = [
         "analyze",
         "lagging.json",
@@ -509,23 +500,13 @@ fn the_example_has_gains_alone_and_the_delay_that_it_leaves_out_is_named() {
     let desk = Desk::new();
     let ended = desk.gdcm(&["export", "--as", "py", "--out", "a.py"]);
     ended.assert_done();
-    assert!(
-        ended
-            .out
-            .contains("\ncontains: gains scheduled, delays none, "),
-        "{}",
-        ended.out
-    );
     let left_out: Vec<&str> = ended
         .out
         .lines()
         .filter(|line| line.starts_with("left out: "))
         .collect();
     assert_eq!(left_out.len(), 1, "{left_out:?}");
-    assert!(
-        left_out[0].starts_with("left out: delay of output NX: ")
-            && left_out[0].contains("in condition 4 ")
-    );
+    assert!(left_out[0].contains("output NX: ") && left_out[0].contains("condition 4 "));
 }
 
 #[test]
@@ -542,13 +523,7 @@ fn a_table_says_how_far_it_is_off() {
     ];
     let ended = desk.gdcm(&table);
     ended.assert_done();
-    assert!(
-        ended
-            .out
-            .contains("table of the gain of input LON: maximum error "),
-        "{}",
-        ended.out
-    );
+    assert!(ended.out.contains("input LON: "), "{}", ended.out);
     let text = fs::read_to_string(desk.path("t.csv")).unwrap();
     let rows: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).collect();
     assert_eq!(rows.len(), 4);
@@ -587,11 +562,7 @@ fn corrected_models_are_the_program_s_in_every_format() {
             .concat(),
         );
         ended.assert_done();
-        assert!(
-            ended.out.contains("order 8, phase error up to "),
-            "{}",
-            ended.out
-        );
+        assert!(ended.out.contains("order 8, "), "{}", ended.out);
         ended
             .out
             .lines()
@@ -695,7 +666,7 @@ fn leads_are_exact_in_corrected_models_and_in_programs() {
         ended.out
     };
     let words = export("state-space", "m.json");
-    assert!(words.contains("gains and lead filters exact"), "{words}");
+    assert!(words.contains("filters exact"), "{words}");
     let found = models(&desk.path("m.json"));
     assert_eq!(found[0].draft.states[..2], ["LON lead 1", "LON lead 2"]);
     desk.gdcm(&["analyze", "few.json", "--phase", "lead", "--out", "."])
@@ -878,25 +849,20 @@ fn delays_of_discrete_time_are_exact_or_refused() {
     let ended = export("m.json");
     ended.assert_done();
     assert!(
-        ended
-            .out
-            .contains("nominal, scheduled correction: gains and the model's own delays exact"),
+        ended.out.contains("nominal, scheduled correction: "),
         "{}",
         ended.out
     );
     // Conditions 7 and 10. The correction has no delays, so no message says that delays are left
     // out.
     assert_eq!(
-        ended.out.matches("the model's own delays exact\n").count(),
+        ended.out.matches("delays exact\n").count(),
         2,
         "{}",
         ended.out
     );
     assert!(
-        ended
-            .out
-            .contains("\ncontains: gains scheduled, delays none,")
-            && !ended.out.contains("without delays"),
+        ended.out.contains("delays none,") && !ended.out.contains("without delays"),
         "{}",
         ended.out
     );
@@ -912,10 +878,14 @@ fn delays_of_discrete_time_are_exact_or_refused() {
         nominal["sample_time_s"] = json!(0.01);
         nominal["input_delays_s"] = json!([0.034, 0]);
     });
-    let words = [
-        "m.npz: condition 7, model \"nominal\": the delay of LON, 0.034 s, is 3.4 samples of 0.01 s",
+    let names = [
+        "m.npz: ",
+        "condition 7",
+        "\"nominal\"",
+        "LON, 0.034 s",
+        "3.4 samples",
     ];
-    desk.gdcm(&[
+    desk.messages(&[
         "export",
         "part.json",
         "--as",
@@ -923,7 +893,7 @@ fn delays_of_discrete_time_are_exact_or_refused() {
         "--out",
         "m.npz",
     ])
-    .assert_failed(2, &words);
+    .assert_code("no-corrected-model", &names);
     assert!(!desk.path("m.npz").exists());
 }
 

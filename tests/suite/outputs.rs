@@ -8,7 +8,7 @@ use std::path::Path;
 use egui_kittest::kittest::Queryable;
 
 use gdcm::gui::state::notices::NoticeKind;
-use gdcm_io::{load_dataset, save_study};
+use gdcm_io::{FileError, load_dataset, save_study};
 use gdcm_study::Study;
 
 use crate::commands::{Desk, Ended, SMALL};
@@ -47,17 +47,17 @@ fn results_that_are_there_are_named_and_only_overwritten_by_force() {
     let analyze = ["analyze", "small.json", "--out", "out"];
     desk.gdcm(&analyze).assert_done();
     fs::write(desk.path("out/corrections.csv"), "mine").unwrap();
-    let all =
-        "out/corrections.json, out/corrections.csv, out/assessment.csv, out/corrections.sha256";
-    let words = [&*format!("{all} exist already; --force overwrites")];
-    desk.gdcm(&analyze).assert_failed(2, &words);
+    let all = RESULTS.map(|name| format!("out/{name}"));
+    let mut names_of_all: Vec<&str> = all.iter().map(String::as_str).collect();
+    names_of_all.push("--force");
+    desk.messages(&analyze)
+        .assert_code("file-exists", &names_of_all);
     fs::remove_file(desk.path("out/corrections.json")).unwrap();
     fs::remove_file(desk.path("out/assessment.csv")).unwrap();
     fs::remove_file(desk.path("out/corrections.sha256")).unwrap();
-    desk.gdcm(&analyze).assert_failed(
-        2,
-        &["error: out/corrections.csv exists already; --force overwrites"],
-    );
+    let refused = desk.messages(&analyze);
+    refused.assert_code("file-exists", &["out/corrections.csv", "--force"]);
+    assert!(!refused.errors[0].text.contains("assessment.csv"));
     assert_eq!(names(&desk.path("out")), ["corrections.csv"]);
     assert_eq!(
         fs::read_to_string(desk.path("out/corrections.csv")).unwrap(),
@@ -77,10 +77,8 @@ fn results_that_are_there_are_named_and_only_overwritten_by_force() {
 fn the_example_is_overwritten_only_by_force() {
     let desk = Desk::new();
     fs::write(desk.path("example-dataset.json"), "mine").unwrap();
-    desk.gdcm(&["example", "."]).assert_failed(
-        2,
-        &["./example-dataset.json exists already; --force overwrites"],
-    );
+    desk.messages(&["example", "."])
+        .assert_code("file-exists", &["./example-dataset.json", "--force"]);
     assert_eq!(
         fs::read_to_string(desk.path("example-dataset.json")).unwrap(),
         "mine"
@@ -92,26 +90,26 @@ fn the_example_is_overwritten_only_by_force() {
 #[test]
 fn an_input_is_not_overwritten_even_by_force() {
     let desk = Desk::new();
-    let refused = ["the data are read from this file"];
+    let refused = "input-as-output";
     fs::write(desk.path("corrections.json"), SMALL).unwrap();
-    desk.gdcm(&["analyze", "corrections.json", "--out", ".", "--force"])
-        .assert_failed(2, &refused);
+    desk.messages(&["analyze", "corrections.json", "--out", ".", "--force"])
+        .assert_code(refused, &[]);
 
     let loaded = load_dataset(&desk.path("small.json")).unwrap();
     let study = desk.path("study/corrections.csv");
     fs::create_dir(desk.path("study")).unwrap();
     save_study(&Study::new(loaded.dataset.clone()), &loaded, &study).unwrap();
     let study = study.to_str().unwrap();
-    desk.gdcm(&["analyze", study, "--out", "study", "--force"])
-        .assert_failed(2, &refused);
+    desk.messages(&["analyze", study, "--out", "study", "--force"])
+        .assert_code(refused, &[]);
 
     // The output is a link to the study's dataset.
     #[cfg(unix)]
     {
         fs::create_dir(desk.path("linked")).unwrap();
         std::os::unix::fs::symlink("../small.json", desk.path("linked/assessment.csv")).unwrap();
-        desk.gdcm(&["analyze", study, "--out", "linked", "--force"])
-            .assert_failed(2, &refused);
+        desk.messages(&["analyze", study, "--out", "linked", "--force"])
+            .assert_code(refused, &[]);
     }
     assert_eq!(fs::read_to_string(desk.path("small.json")).unwrap(), SMALL);
     assert_eq!(
@@ -130,12 +128,7 @@ fn a_study_is_not_saved_over_its_dataset() {
         &desk.path("small.json"),
     )
     .unwrap_err();
-    assert!(
-        error
-            .to_string()
-            .contains("the data are read from this file"),
-        "{error}"
-    );
+    assert!(matches!(error, FileError::Input { .. }), "{error}");
     assert_eq!(fs::read_to_string(desk.path("small.json")).unwrap(), SMALL);
 }
 
@@ -144,9 +137,7 @@ fn a_study_is_not_saved_over_its_dataset() {
 fn a_file_larger_than_the_system_allows_is_status_1_and_leaves_what_was_there() {
     let desk = Desk::new();
     let limited = "ulimit -f 1; gdcm analyze small.json --out out --force";
-    let words = [
-        "out/corrections.json: cannot be written: it would be larger than the system allows (ulimit -f)",
-    ];
+    let words = ["out/corrections.json: ", "(ulimit -f)"];
     shell(&desk, limited).assert_failed(1, &words);
     assert_eq!(names(&desk.path("out")), [""; 0]);
     for name in RESULTS {
@@ -162,10 +153,7 @@ fn a_file_larger_than_the_system_allows_is_status_1_and_leaves_what_was_there() 
         );
     }
     let ended = shell(&desk, "ulimit -f 0; gdcm check small.json > printed");
-    ended.assert_failed(
-        1,
-        &["standard output cannot be written: it would be larger than the system allows"],
-    );
+    ended.assert_failed(1, &["standard output", "ulimit -f"]);
 }
 
 /// Runs a command that must end by itself: a command that waits for a pipe is killed after a
@@ -457,7 +445,7 @@ fn a_directory_that_may_not_be_written_to_is_status_1_without_the_name_of_a_temp
     assert!(
         ended
             .error
-            .starts_with("error: /proc/self/example-dataset.json: cannot be written: "),
+            .starts_with("error: /proc/self/example-dataset.json: "),
         "{}",
         ended.error
     );

@@ -14,7 +14,7 @@ use gdcm_model::names::standard_patterns;
 use gdcm_sysid::records::record_guess::RecordGuess;
 use gdcm_sysid::records::{RecordChannels, RecordLayout, TimeWish};
 
-use crate::commands::{Desk, Refusal};
+use crate::commands::{Desk, Messages};
 use crate::window::records::late_dataset;
 
 /// Returns the archive with the 99 records of the example.
@@ -113,7 +113,7 @@ fn desk() -> Desk {
 #[test]
 fn records_are_laid_out_in_words_and_held_out_by_name() {
     let desk = desk();
-    let ended = desk.gdcm(&[
+    let line = [
         "identify",
         "sweep_1.csv",
         "validation.csv",
@@ -126,16 +126,17 @@ fn records_are_laid_out_in_words_and_held_out_by_name() {
         "12",
         "--out",
         "out",
-    ]);
-    for words in [
-        "sweep_1: time from column \"t\", in s",
-        "sweep_1: P: column \"roll rate\" unchanged, in rad/s",
-        "sweep_1: LON: column \"lon\" unchanged",
+    ];
+    let told = desk.messages(&line);
+    for names in [
+        ["sweep_1: ", "time", "\"t\""],
+        ["sweep_1: P: ", "\"roll rate\"", "rad/s"],
+        ["sweep_1: LON: ", "\"lon\"", "unchanged"],
     ] {
-        assert!(ended.error.contains(words), "{words}: {ended:?}");
+        told.assert_reported("record-layout", &names);
     }
-    let line = ended
-        .out
+    let line = told
+        .text
         .lines()
         .find(|line| line.starts_with("validation"))
         .unwrap();
@@ -162,27 +163,24 @@ fn a_unit_that_no_file_says_is_refused_with_the_option_that_says_it_and_never_ch
             "out",
             "--quiet",
         ];
-        desk.gdcm(&[&["identify"], records, &of[..], more].concat())
+        desk.messages(&[&["identify"], records, &of[..], more].concat())
     };
     // The order does not matter: rad/s in a file implies nothing about the other file.
     for records in [["sweep_1.csv", "bare.csv"], ["bare.csv", "sweep_1.csv"]] {
-        let ended = identify(&records, &[]);
-        assert_eq!(ended.status, 2, "{ended:?}");
-        for words in [
-            "error: bare: the file does not give the unit of P (column \"P\"), and its samples can be in rad/s or deg/s; choose the unit \
-             with --unit \"P=rad/s\"",
-            "error: bare: the file does not give the unit of Q",
-            "error: 1 of 2 records cannot be used",
-        ] {
-            assert!(ended.error.contains(words), "{words}: {}", ended.error);
-        }
+        identify(&records, &[])
+            .assert_code("unclear-records", &["1 of 2 records"])
+            .assert_reported(
+                "unknown-unit",
+                &["bare: ", " P ", "rad/s or deg/s", "--unit \"P=rad/s\""],
+            )
+            .assert_reported("unknown-unit", &["bare: ", " Q "]);
         assert!(!desk.path("out").exists());
     }
     let said = identify(
         &["sweep_1.csv", "bare.csv"],
         &["--unit", "P=rad/s", "--unit", "Q=rad/s"],
     );
-    assert!(!said.error.contains("does not give the unit"), "{said:?}");
+    said.assert_not_reported("unknown-unit");
     // The dataset is in deg/s. The stick values from 40 to 60 can only be per cent.
     let into = [
         "identify",
@@ -194,27 +192,13 @@ fn a_unit_that_no_file_says_is_refused_with_the_option_that_says_it_and_never_ch
         "--out",
         "out",
     ];
-    let ended = desk.gdcm(&into);
-    assert_eq!(ended.status, 2, "{ended:?}");
-    assert!(
-        ended.error.contains("its samples can be in deg/s or rad/s"),
-        "{}",
-        ended.error
-    );
-    assert!(
-        ended.error.contains(
-            "note: bare: LON: column \"LON\", assumed to be in %: the file gives no unit"
-        ),
-        "{ended:?}"
-    );
+    desk.messages(&into)
+        .assert_code("unclear-records", &[])
+        .assert_reported("unknown-unit", &["deg/s or rad/s"])
+        .assert_reported("record-layout", &["bare: LON: ", "\"LON\"", "%"]);
     let outputs = ["--outputs", "P [deg/s],Q [deg/s]"];
-    let ended = desk.gdcm(&[&into[..], &outputs[..]].concat());
-    assert!(
-        ended
-            .error
-            .contains("P: column \"P\", in deg/s as set for the channel"),
-        "{ended:?}"
-    );
+    desk.messages(&[&into[..], &outputs[..]].concat())
+        .assert_reported("record-layout", &["P: ", "\"P\"", "deg/s"]);
     // The unit also applies to records with which models are compared.
     fs::rename(desk.path("bare.csv"), desk.path("cond7_bare.csv")).unwrap();
     let report = [
@@ -226,19 +210,12 @@ fn a_unit_that_no_file_says_is_refused_with_the_option_that_says_it_and_never_ch
         "r.html",
         "--force",
     ];
-    let ended = desk.gdcm(&report);
-    assert!(
-        ended.status == 1
-            && ended
-                .error
-                .contains("caution: cond7_bare: left out: the file does not give the unit"),
-        "{ended:?}"
-    );
-    let ended = desk.gdcm(&[&report[..], &["--unit", "P=rad/s", "--unit", "Q=rad/s"]].concat());
-    assert!(
-        ended.status == 0 && !ended.error.contains("left out"),
-        "{ended:?}"
-    );
+    let told = desk.messages(&report);
+    assert_eq!(told.status, 1, "{told:?}");
+    told.assert_reported("unknown-unit", &["cond7_bare: "]);
+    desk.messages(&[&report[..], &["--unit", "P=rad/s", "--unit", "Q=rad/s"]].concat())
+        .assert_success()
+        .assert_not_reported("unknown-unit");
 }
 
 #[test]
@@ -273,7 +250,7 @@ fn what_is_said_twice_of_one_channel_is_refused() {
         "out",
     ];
     for (options, names) in cases {
-        desk.refusal(&[&identify, options].concat())
+        desk.messages(&[&identify, options].concat())
             .assert_code("given-twice", names);
     }
     let assemble = [
@@ -288,7 +265,7 @@ fn what_is_said_twice_of_one_channel_is_refused() {
     ];
     let names = ["--sign: NZ of identified "];
     desk.gdcm(&assemble).assert_failed(2, &names);
-    desk.refusal(&assemble).assert_code("given-twice", &names);
+    desk.messages(&assemble).assert_code("given-twice", &names);
 }
 
 #[test]
@@ -316,12 +293,10 @@ fn what_cannot_be_is_refused_with_the_place_and_nothing_is_written() {
         "unclear-records",
         &["1 of 1 record "],
     );
-    wrong.assert_reported(
-        "wrong: no column for the input LAT; choose a column (columns: t, lon, lever",
-    );
+    wrong.assert_reported("no-column", &["wrong: ", "LAT", "t, lon, lever"]);
     let sweep = "sweep_1.csv";
     refused_sweep(&desk, sweep, &["--time", "clock"], "unclear-records", &[])
-        .assert_reported("there is no column \"clock\"");
+        .assert_reported("no-such-column", &["\"clock\""]);
     refused_sweep(
         &desk,
         sweep,
@@ -329,7 +304,7 @@ fn what_cannot_be_is_refused_with_the_place_and_nothing_is_written() {
         "unclear-records",
         &[],
     )
-    .assert_reported("the sample time is -0.02 s");
+    .assert_reported("wrong-sample-time", &["-0.02 s"]);
     let cases: [(&[&str], &str, &[&str]); 8] = [
         (
             &["--hold-out", "other.csv"],
@@ -339,7 +314,7 @@ fn what_cannot_be_is_refused_with_the_place_and_nothing_is_written() {
         (
             &["--hold-out", "sweep_1.csv"],
             "wrong-option",
-            &["--hold-out: every record is held out"],
+            &["--hold-out: "],
         ),
         (&["--delay", "X=0.02"], "unknown-channel", &["--delay", "X"]),
         (
@@ -365,12 +340,7 @@ fn what_cannot_be_is_refused_with_the_place_and_nothing_is_written() {
     for (options, code, names) in cases {
         refused_sweep(&desk, sweep, options, code, names);
     }
-    let missing = desk.gdcm(&[&identify_line("missing.csv", &[])[..], &["--out", "out"]].concat());
-    assert_eq!(missing.status, 2, "{missing:?}");
-    assert!(
-        missing.error.contains("missing.csv: there is no such file"),
-        "{missing:?}"
-    );
+    refused_sweep(&desk, "missing.csv", &[], "missing-file", &["missing.csv"]);
     let into = ["sweep_1.csv", "--into", "small.json"];
     refused(
         &desk,
@@ -402,8 +372,8 @@ fn what_cannot_be_is_refused_with_the_place_and_nothing_is_written() {
         "no-records",
         &["--every-condition: ", "7, 10", "cond03"],
     )
-    .assert_reported("sweep_1: left out, ")
-    .assert_reported("conditions 7, 10: no records; ");
+    .assert_reported("record-without-condition", &["sweep_1: "])
+    .assert_reported("no-record-of-condition", &["conditions 7, 10: "]);
     fs::rename(
         desk.path("validation.csv"),
         desk.path("cond7_validation.csv"),
@@ -414,7 +384,7 @@ fn what_cannot_be_is_refused_with_the_place_and_nothing_is_written() {
         &desk,
         &[&into[..], &["--every-condition"]].concat(),
         "wrong-option",
-        &["--hold-out: condition 7: every record is held out"],
+        &["--hold-out: condition 7: "],
     );
     refused(
         &desk,
@@ -422,17 +392,16 @@ fn what_cannot_be_is_refused_with_the_place_and_nothing_is_written() {
         "no-records",
         &["--condition: ", "condition 10"],
     )
-    .assert_reported("1 of 1 records left out: their names give condition 7, not 10");
+    .assert_reported("records-of-other-condition", &["1 of 1 ", "7", "10"]);
     fs::copy(desk.path("sweep_1.csv"), desk.path("again.csv")).unwrap();
     refused_sweep(
         &desk,
         sweep,
         &["again.csv", "--hold-out", "sweep_1.csv"],
         "wrong-option",
-        &["--hold-out: every record is held out"],
+        &["--hold-out: "],
     )
-    .assert_reported("same samples as ")
-    .assert_reported("left out, so that no measurement counts twice");
+    .assert_reported("duplicate", &["again", "sweep_1"]);
 }
 
 /// Returns the arguments for identification from a sweep, without the output directory.
@@ -450,15 +419,15 @@ fn refused_sweep(
     options: &[&str],
     code: &str,
     names: &[&str],
-) -> Refusal {
+) -> Messages {
     refused(desk, &identify_line(record, options)[1..], code, names)
 }
 
 /// Asserts that an identification is refused with this code and writes nothing.
 #[track_caller]
-fn refused(desk: &Desk, arguments: &[&str], code: &str, names: &[&str]) -> Refusal {
+fn refused(desk: &Desk, arguments: &[&str], code: &str, names: &[&str]) -> Messages {
     let line = [&["identify"], arguments, &["--out", "out"]].concat();
-    let refusal = desk.refusal(&line);
+    let refusal = desk.messages(&line);
     refusal.assert_code(code, names);
     assert!(!desk.path("out").exists());
     refusal
@@ -487,7 +456,7 @@ fn records_of_many_conditions_fill_each_its_own_and_leave_the_others_as_they_are
     ]
     .map(|said| ["--unit", said])
     .concat();
-    let ended = desk.gdcm(
+    let ended = desk.messages(
         &[
             &["identify", records, "--into", into],
             &of_every[..],
@@ -495,19 +464,10 @@ fn records_of_many_conditions_fill_each_its_own_and_leave_the_others_as_they_are
         ]
         .concat(),
     );
-    assert_eq!(ended.status, 0, "{ended:?}");
-    assert!(
-        ended.error.contains(
-            "note: conditions 1, 2, 4 to 9, 11: no records; the identified models remain"
-        ),
-        "{}",
-        ended.error
-    );
-    assert!(
-        ended.out.contains("identified models of 2 conditions"),
-        "{}",
-        ended.out
-    );
+    ended
+        .assert_success()
+        .assert_reported("no-record-of-condition", &["conditions 1, 2, 4 to 9, 11: "]);
+    assert!(ended.text.contains("2 conditions"), "{}", ended.text);
     let before = &crate::REFERENCE_DATASET.dataset;
     let after = load_dataset(&desk.path("out/example-dataset.json.gz")).unwrap();
     assert_eq!(
@@ -519,10 +479,9 @@ fn records_of_many_conditions_fill_each_its_own_and_leave_the_others_as_they_are
         if [3, 10].contains(&id.0) {
             let file = format!("out/identified-condition-{id}.json");
             assert!(
-                ended.out.contains(&format!("condition {id}: {file}: "))
-                    && desk.path(&file).exists(),
+                ended.text.contains(&format!("{id}: {file}: ")) && desk.path(&file).exists(),
                 "{}",
-                ended.out
+                ended.text
             );
             // The command adopts the same models as the window, in the same order: the refined
             // models, then CT-PBSID (unrefined).
@@ -561,7 +520,7 @@ fn records_of_many_conditions_fill_each_its_own_and_leave_the_others_as_they_are
 #[test]
 fn channels_units_and_band_are_the_dataset_s_where_one_is_given() {
     let desk = desk();
-    let ended = desk.gdcm(&[
+    let told = desk.messages(&[
         "identify",
         "sweep_1.csv",
         "--into",
@@ -573,15 +532,11 @@ fn channels_units_and_band_are_the_dataset_s_where_one_is_given() {
         "--out",
         "out",
     ]);
+    told.assert_reported("record-layout", &["P: ", "\"pitch rate\"", "rad/s → deg/s"]);
     assert!(
-        ended
-            .error
-            .contains("P: column \"pitch rate\", rad/s → deg/s"),
-        "{ended:?}"
-    );
-    assert!(
-        !ended.error.contains("roll rate\", rad/s"),
-        "the engineer's column stands in place of the name: {ended:?}"
+        told.of_code("record-layout")
+            .all(|note| !note.text.contains("roll rate")),
+        "the engineer's column stands in place of the name: {told:?}"
     );
 }
 
@@ -597,15 +552,15 @@ fn a_channel_that_is_late_in_all_records_is_told_with_the_option_that_takes_its_
             "flight_3.csv",
         ];
         let into = ["--into", "late.json", "--condition", "7", "--out", out];
-        let ended = desk.gdcm(&[&["identify"], &files[..], &into[..], &LATE_UNITS, more].concat());
-        assert_eq!(ended.status, 0, "{ended:?}");
-        ended.error
+        let told =
+            desk.messages(&[&["identify"], &files[..], &into[..], &LATE_UNITS, more].concat());
+        told.assert_success();
+        told
     };
-    let said = identified(&[], "first");
-    let line = said
-        .lines()
-        .find(|line| line.contains("Q seems to be logged"))
-        .unwrap_or_else(|| panic!("{said}"));
+    let told = identified(&[], "first");
+    let skews: Vec<_> = told.of_code("time-skew").collect();
+    assert_eq!(skews.len(), 1, "{told:?}");
+    let line = &skews[0].text;
     // The delay is three samples of 40 ms.
     let option = line
         .rsplit_once("(--delay Q=")
@@ -617,7 +572,7 @@ fn a_channel_that_is_late_in_all_records_is_told_with_the_option_that_takes_its_
         "{line}"
     );
     let again = identified(&["--delay", &format!("Q={option}")], "again");
-    assert!(!again.contains("seems to be logged"), "{again}");
+    again.assert_not_reported("time-skew");
 }
 
 #[test]
@@ -637,10 +592,10 @@ fn units_that_were_said_once_are_kept_by_the_dataset_with_its_records() {
             "--out",
             out,
         ];
-        let ended = desk.gdcm(&[&["identify"], &files[..], &into[..], more].concat());
-        assert_eq!(ended.status, 0, "{ended:?}");
+        let told = desk.messages(&[&["identify"], &files[..], &into[..], more].concat());
+        told.assert_success();
         let models = crate::read_json(&desk.path(out).join("identified.json"))["models"].clone();
-        (models, ended.error)
+        (models, told)
     };
     let units = [
         "--unit", "Q=rad/s", "--unit", "P=deg/s", "--unit", "LON=%", "--unit", "LAT=%",
@@ -662,15 +617,11 @@ fn units_that_were_said_once_are_kept_by_the_dataset_with_its_records() {
         (&json!("../flight_0.csv"), &Value::Null)
     );
     let (kept, told) = identified("said/late.json", &[], "kept");
-    assert_eq!(said, kept, "{told}");
-    assert!(
-        told.contains("Q: multiplied by 57.29")
-            && told.contains("removed, as stored in the dataset"),
-        "{told}"
-    );
+    assert_eq!(said, kept, "{told:?}");
+    told.assert_reported("record-layout", &["Q: ", "57.29"]);
     // Options on the command line override the dataset.
     let (anew, told) = identified("said/late.json", &units, "anew");
-    assert_eq!(said, anew, "{told}");
+    assert_eq!(said, anew, "{told:?}");
 }
 
 #[test]
@@ -764,7 +715,7 @@ fn a_record_in_which_a_channel_is_late_or_turned_is_named_with_the_option_that_p
             "the dataset says what was put right"
         );
     }
-    desk.refusal(&[
+    desk.messages(&[
         "identify",
         "flight_0.csv",
         "--into",
@@ -829,8 +780,7 @@ fn the_quadrotor_is_identified_from_its_log_as_it_was_logged() {
     let ended = desk.gdcm(&[&["identify", log.to_str().unwrap()], &channels[..]].concat());
     assert_eq!(ended.status, 0, "{ended:?}");
     assert!(
-        ended.error.contains("one record of 2 topics: M, q")
-            && ended.error.contains("resampled to 106.1"),
+        ended.error.contains(" 2 topics: M, q") && ended.error.contains(" 106.1"),
         "{ended:?}"
     );
     let identified = crate::read_json(&desk.path("out/identified.json"));
@@ -949,34 +899,15 @@ fn desk_of_prbs() -> Desk {
 fn a_part_outside_the_clock_of_a_record_is_refused_with_its_span_and_one_from_its_start_is_taken() {
     let desk = desk_of_prbs();
     let identified = |more: &[&str]| desk.gdcm(&[&PRBS[..], more].concat());
-    desk.refusal(&[&PRBS[..], &["--part", "5:34", "--out", "none"]].concat())
+    desk.messages(&[&PRBS[..], &["--part", "5:34", "--out", "none"]].concat())
         .assert_code("no-samples", &["--part", "5:34", "42.30 s", "+5:+34"]);
-    let ended = identified(&["--part", "5:34", "--out", "none"]);
-    assert_eq!(ended.status, 2, "{ended:?}");
-    let line = ended
-        .error
-        .lines()
-        .find(|line| line.starts_with("error:"))
-        .unwrap();
-    assert!(
-        line.contains("--part") && line.contains("prbs runs from 42.30 s to "),
-        "{line}"
-    );
-    assert!(
-        line.contains("--part +5:+34 counts from the start of a record"),
-        "{line}"
-    );
     assert!(!desk.path("none").exists());
-    let ended = identified(&["--part", "+500:+534", "--out", "none"]);
-    assert!(
-        ended.status == 2 && ended.error.contains("prbs runs from 42.30 s to "),
-        "{ended:?}"
-    );
-    let ended = identified(&["--part", "+5:34", "--out", "none"]);
-    assert!(
-        ended.status == 2 && ended.error.contains("expected A:B"),
-        "{ended:?}"
-    );
+    let outside = ["--part", "+500:+534", "--out", "none"];
+    desk.messages(&[&PRBS[..], &outside].concat())
+        .assert_code("no-samples", &["--part", "prbs", "42.30 s"]);
+    let mixed = ["--part", "+5:34", "--out", "none"];
+    desk.messages(&[&PRBS[..], &mixed].concat())
+        .assert_code("wrong-command-line", &["--part", "A:B"]);
 
     // Times relative to the start of the record; the first part also has the record's name, and the
     // second is held out by the same text.
@@ -1034,21 +965,14 @@ fn models_are_identified_into_a_dataset_that_has_none_yet() {
     }
     fs::write(desk.path("late.json"), dataset.to_string()).unwrap();
     // Without any reference there is no result, and the message names the missing data.
-    let ended = desk.gdcm(&["analyze", "late.json", "--out", "results"]);
-    assert_eq!(ended.status, 1, "{ended:?}");
+    desk.messages(&["analyze", "late.json", "--out", "results"])
+        .assert_status_and_code(1, "no-result", &["conditions 7, 10: "]);
+    let checked = desk.messages(&["check", "late.json"]);
+    checked.assert_success();
+    let without: Vec<_> = checked.of_code("no-reference").collect();
     assert!(
-        ended
-            .error
-            .contains("conditions 7, 10: no identified models yet"),
-        "{ended:?}"
-    );
-    let ended = desk.gdcm(&["check", "late.json"]);
-    assert_eq!(ended.status, 0, "{ended:?}");
-    assert!(
-        ended
-            .out
-            .contains("conditions 7, 10: no identified models yet"),
-        "{ended:?}"
+        without.len() == 1 && without[0].conditions == [7, 10],
+        "{checked:?}"
     );
     let files = [
         "flight_0.csv",

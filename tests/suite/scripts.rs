@@ -72,7 +72,7 @@ fn notes_cautions_and_errors_are_told_apart_by_how_their_lines_begin() {
         ended
             .error
             .lines()
-            .any(|line| line.starts_with("note: a: time from column")),
+            .any(|line| line.starts_with("note: a: time ")),
         "{ended:?}"
     );
     let quiet = desk.gdcm(&[&identify[..], &["--quiet"]].concat());
@@ -102,7 +102,7 @@ fn records_that_identify_no_input_are_status_1() {
         "t,LON,Q\n".to_owned() + &(0..3000).map(&mut row).collect::<String>(),
     )
     .unwrap();
-    desk.refusal(&[
+    desk.messages(&[
         "identify",
         "a.csv",
         "--inputs",
@@ -174,11 +174,7 @@ fn everything_is_one_json_object_where_that_is_asked_for() {
     );
     assert_eq!(analysed["error_codes"], json!([]));
     let missing = message_object(&desk, &["check", "missing.json", "--json"]);
-    assert_eq!(
-        missing["error_codes"],
-        json!([null]),
-        "an error without a code of its own yet"
-    );
+    assert_eq!(missing["error_codes"], json!(["missing-file"]));
     assert!(
         missing["errors"][0]
             .as_str()
@@ -322,7 +318,7 @@ fn a_second_delay_of_one_channel_is_refused() {
         "out",
         "--quiet",
     ];
-    desk.refusal(&line)
+    desk.messages(&line)
         .assert_code("given-twice", &["--delay: P "]);
 }
 
@@ -337,8 +333,8 @@ fn a_report_is_html_and_nothing_else() {
 fn a_file_of_models_points_to_what_makes_a_dataset_of_it() {
     let desk = Desk::new();
     fs::write(desk.path("x.mat"), b"MATLAB 5.0 MAT-file").unwrap();
-    let words = ["x.mat: ", "gdcm assemble x.mat --out", "Import models"];
-    desk.refusal(&["check", "x.mat"])
+    let words = ["x.mat: ", "gdcm assemble x.mat ", "Import models"];
+    desk.messages(&["check", "x.mat"])
         .assert_code("model-file", &words);
     desk.gdcm(&["check", "x.mat"]).assert_failed(2, &words);
     desk.gdcm(&["analyze", "x.mat", "--out", "out"])
@@ -390,7 +386,7 @@ fn no_thread_to_be_had_is_an_error_in_words() {
             .output()
             .unwrap(),
     );
-    ended.assert_failed(1, &["error: no thread can be started"]);
+    ended.assert_failed(1, &["error: ", "thread"]);
 }
 
 #[test]
@@ -406,12 +402,9 @@ fn a_record_named_on_the_command_line_that_cannot_be_read_is_status_1_and_the_ot
         "broken.npz",
     ];
     let into = ["--into", "late.json", "--condition", "7", "--out", "out"];
-    let ended = desk.gdcm(&[&["identify"], &files[..], &into[..], &LATE_UNITS].concat());
-    assert_eq!(ended.status, 1, "{ended:?}");
-    assert!(
-        ended.error.contains("caution: not read: ") && ended.error.contains("error: broken.npz: "),
-        "{ended:?}"
-    );
+    desk.messages(&[&["identify"], &files[..], &into[..], &LATE_UNITS].concat())
+        .assert_status_and_code(1, "not-read", &["broken.npz: "])
+        .assert_reported("not-read", &["broken.npz"]);
     assert!(desk.path("out/identified.json").exists());
     let nothing = desk.gdcm(&["convert", "broken.npz", "--out", "models.json"]);
     assert!(
@@ -487,7 +480,7 @@ fn a_file_that_is_broken_is_told_from_a_good_one_of_its_name_and_in_its_archive(
     ];
     for command in commands {
         let line = with_records(command, ["one/cond7_a.csv", "two/cond7_a.csv"]);
-        desk.refusal(&line)
+        desk.messages(&line)
             .assert_status_and_code(1, "not-read", &["one/cond7_a.csv: "]);
     }
     // A valid archive, and an archive whose second file is broken.
@@ -508,7 +501,7 @@ fn a_file_that_is_broken_is_told_from_a_good_one_of_its_name_and_in_its_archive(
     assert_eq!(good.status, 0, "{good:?}");
     for command in commands {
         let line = with_records(command, ["bad.zip", "two/cond7_a.csv"]);
-        desk.refusal(&line)
+        desk.messages(&line)
             .assert_status_and_code(1, "not-read", &["bad.zip: "]);
     }
 }
@@ -527,11 +520,6 @@ fn invert(row: &mut Value) {
     for value in row.as_array_mut().unwrap() {
         *value = json!(-value.as_f64().unwrap());
     }
-}
-
-/// Joins wrapped text into a single line.
-fn on_one_line(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// Returns the conditions in the corrections file of a folder.
@@ -563,21 +551,17 @@ fn a_turned_channel_is_said_first_by_analyze_and_check_and_turned_by_the_option(
             }
         }
     });
-    let words = "LON → Q differs by half a turn at all frequencies";
-    let said = desk.gdcm(&["analyze", "turned.json", "--out", "turned"]);
-    let out = on_one_line(&said.out);
+    let names = ["LON → Q", "(--sign Q=-1)"];
+    let said = desk.messages(&["analyze", "turned.json", "--out", "turned"]);
+    said.assert_reported("convention-doubt", &names);
     assert!(
-        out.contains(words) && out.contains("has the opposite sign. Reverse it? (--sign Q=-1)"),
-        "{out}"
-    );
-    assert!(
-        out.find(words) < out.find("Condition 7"),
+        said.text.find("(--sign Q=-1)") < said.text.find("Condition 7"),
         "before anything is blamed for it"
     );
-    assert!(on_one_line(&desk.gdcm(&["check", "turned.json"]).out).contains(words));
-    assert!(
-        !on_one_line(&desk.gdcm(&["check", "turned.json", "--sign", "Q=-1"]).out).contains(words)
-    );
+    desk.messages(&["check", "turned.json"])
+        .assert_reported("convention-doubt", &names);
+    desk.messages(&["check", "turned.json", "--sign", "Q=-1"])
+        .assert_not_reported("convention-doubt");
     desk.gdcm(&["analyze", "turned.json", "--sign", "Q=-1", "--out", "back"])
         .assert_done();
     desk.gdcm(&["analyze", "small.json", "--out", "right"])
@@ -621,34 +605,25 @@ fn a_sign_that_is_said_of_files_is_in_the_dataset_that_is_made_of_them() {
             .concat(),
         );
         assert_eq!(ended.status, 0, "{ended:?}");
-        desk.gdcm(&["check", out])
-            .out
-            .split_whitespace()
-            .collect::<Vec<_>>()
-            .join(" ")
+        desk.messages(&["check", out])
     };
-    assert!(assemble("plain.json", &[]).contains("COL → NZ differs by half a turn"));
-    assert!(!assemble("turned.json", &["--sign", "NZ=-1"]).contains("half a turn"));
+    assemble("plain.json", &[]).assert_reported("convention-doubt", &["COL → NZ"]);
+    assemble("turned.json", &["--sign", "NZ=-1"]).assert_not_reported("convention-doubt");
 }
 
 #[test]
 fn what_many_conditions_have_is_one_table_and_one_sentence() {
     let desk = Desk::new();
-    let ended = desk.gdcm(&["analyze", "--out", "out"]);
-    ended.assert_done();
-    let words = ended.out.split_whitespace().collect::<Vec<_>>().join(" ");
-    for sentence in [
-        "held responses need lead",
-        "without and with a delay or lead in each channel",
-        "check first the time alignment of the records",
-    ] {
-        assert_eq!(
-            words.matches(sentence).count(),
-            1,
-            "{sentence}: {}",
-            ended.out
-        );
-    }
+    let told = desk.messages(&["analyze", "--out", "out"]);
+    told.assert_success();
+    let recurring: Vec<_> = told.of_code("recurring-cautions").collect();
+    assert_eq!(recurring.len(), 1, "{recurring:?}");
+    assert_eq!(
+        recurring[0].summarised_codes,
+        ["common-lead", "leads-offered", "needs-lead"]
+    );
+    let words = told.text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert_eq!(words.matches(&recurring[0].text).count(), 1, "{words}");
     let corrections = crate::read_json(&desk.path("out/corrections.json"));
     assert_eq!(
         names_and_units(&corrections["inputs"]),
@@ -694,11 +669,11 @@ fn long_names_of_short_words_are_shortened_and_remedies_name_the_file() {
         );
     }
     fs::write(desk.path("flight 7.parquet"), b"PAR1\x15\x04").unwrap();
-    let ended = desk.gdcm(&["convert", "flight 7.parquet", "--out", "models.json"]);
-    ended.assert_failed(
-        2,
-        &["pandas.read_parquet(\"flight 7.parquet\").to_csv(\"flight 7.csv\")"],
-    );
+    desk.messages(&["convert", "flight 7.parquet", "--out", "models.json"])
+        .assert_code(
+            "unreadable-variables",
+            &["\"flight 7.parquet\"", "\"flight 7.csv\""],
+        );
 }
 
 /// Words from which random command lines are made: commands, options, values that suit some of

@@ -3,6 +3,8 @@
 
 use gdcm_study::decisions::dataset_differences::{Difference, NotApplied};
 
+use crate::edit::carried_decision_text;
+
 /// Describes a difference between a dataset and an earlier state of it, with which a study was
 /// made.
 pub fn dataset_difference_text(difference: &Difference) -> String {
@@ -21,9 +23,19 @@ pub fn dataset_difference_text(difference: &Difference) -> String {
         Difference::ModelAdded(id) => format!("{id} was added"),
         Difference::ModelRemoved(id) => format!("{id} was removed"),
         Difference::ModelChanged(id) => format!("{id} has changed"),
-        Difference::NotApplied { decision, why } => {
-            let why = not_applied_text(why);
-            format!("a decision no longer applies: {decision}: {why}")
+        Difference::NotApplied {
+            decision,
+            variant,
+            why,
+        } => {
+            let mut name = carried_decision_text(decision);
+            if let Some(variant) = variant {
+                name.push_str(&format!(", of variant \"{variant}\""));
+            }
+            format!(
+                "a decision no longer applies: {name}: {}",
+                not_applied_text(why)
+            )
         }
     }
 }

@@ -9,7 +9,7 @@
 //! Sentences: [`remark`], [`conflict_text`], [`leads`], [`lead_price`], [`solution_details`] and [`sensitivity`] for a condition; [`caution`],
 //! [`convention_doubt`] and [`channel_time_skew`] for suspected faults; [`missing_results`] for
 //! results that do not exist; [`coupling_remark`], [`couplings`], [`assessment`], [`schedule`],
-//! [`uncertainty`] for a study; [`decision_differences`] and [`dataset_differences`]. Settings:
+//! [`uncertainty`] for a study; [`edit`], [`decision_differences`] and [`dataset_differences`]. Settings:
 //! [`setting_words`]. Tables: [`table`], [`requirements`],
 //! [`requirements_overview`], [`time_histories`]. Explained results:
 //! [`derivation`].
@@ -34,6 +34,7 @@ pub mod couplings;
 pub mod dataset_differences;
 pub mod decision_differences;
 pub mod derivation;
+pub mod edit;
 pub mod flight_plan;
 pub mod lead_price;
 pub mod leads;

@@ -2,9 +2,10 @@
 
 use std::collections::BTreeSet;
 
+use gdcm_method::requirements::Tolerance;
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::number_format::{decimals_or_dash, with_minus_sign};
-use gdcm_model::units::telling;
+use gdcm_model::units::{number, telling};
 use gdcm_study::results::record_comparison::Trend;
 use gdcm_study::results::record_history::RecordHistory;
 use gdcm_study::results::requirement_role::RequirementRole;
@@ -187,6 +188,15 @@ fn excess_words(finding: &ToleranceFinding) -> String {
     words.join("; ")
 }
 
+/// Describes a tolerance: "±10 % or ±3 deg/s".
+pub fn tolerance_text(tolerance: &Tolerance) -> String {
+    let absolute = format!("±{} {}", number(tolerance.absolute), tolerance.unit);
+    match tolerance.relative {
+        Some(relative) => format!("±{} % or {absolute}", number(100.0 * relative)),
+        None => absolute,
+    }
+}
+
 /// Tabulates a record: share of time inside, largest excess and its time, for each quantity and
 /// model; off-axis also whether the trend is correct.
 pub fn record_history_table(history: &RecordHistory) -> Table {
@@ -225,7 +235,7 @@ pub fn record_history_table(history: &RecordHistory) -> Table {
             };
             table.row([
                 quantity.tolerance.quantity.clone(),
-                quantity.tolerance.words(),
+                tolerance_text(&quantity.tolerance),
                 quantity.tolerance.entry.clone(),
                 role.name().to_owned(),
                 percent_rounded_down(Some(check.share_inside())),

@@ -16,6 +16,7 @@ use super::model_reading::Sources;
 use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::state::assembling::AssemblyState;
 use crate::gui::state::forms::FormKind;
+use crate::message::Message;
 
 impl GdcmApp {
     /// Carries out a command of the import view.
@@ -74,11 +75,11 @@ impl GdcmApp {
         if let Some(import) = &mut self.state.assembling {
             import.change(rules);
         }
-        let mut message = format!("applied the rules in {}", sanitized_path(&path));
+        let mut text = format!("applied the rules in {}", sanitized_path(&path));
         for caution in cautions {
-            message.push_str(&format!("; {caution}"));
+            text.push_str(&format!("; {caution}"));
         }
-        self.notify_done(message);
+        self.notify_done(Message::new("rules-applied", text));
     }
 
     /// Writes the rules to a file; asks before overwriting.
@@ -104,9 +105,10 @@ impl GdcmApp {
         let path = self.files.at_home(path);
         let folder = relative_folder(sources_folder(&import.sources), &path);
         let Some(dataset) = import.assembly().dataset(&folder) else {
-            return self.notify_error(
-                "complete the marked items before the dataset can be made".to_owned(),
-            );
+            return self.notify_error(Message::new(
+                "incomplete-rules",
+                "complete the marked items before the dataset can be made",
+            ));
         };
         let rules = import.assembly().rules().clone();
         let beside = rules_path(&path);

@@ -57,7 +57,7 @@ impl GdcmApp {
         self.work.newest_request = None;
         self.state
             .message_bars
-            .retain(|bar| !matches!(bar, MessageBar::Fault { .. }));
+            .retain(|bar| !matches!(bar, MessageBar::Fault(_)));
         self.work.jobs.resume();
     }
 }

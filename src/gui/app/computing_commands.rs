@@ -2,6 +2,7 @@
 
 use super::GdcmApp;
 use crate::gui::commands::computing::ComputingCommand;
+use crate::message::Message;
 
 impl GdcmApp {
     pub(super) fn carry_out_computing(&mut self, command: ComputingCommand) {
@@ -24,8 +25,7 @@ impl GdcmApp {
             // This entry, even if it is empty, prevents another automatic search for records.
             self.records_of(self.state.condition().id());
         }
-        self.notify_done(format!(
-            "stopped reading {name}; the open study is unchanged"
-        ));
+        let text = format!("stopped reading {name}; the open study is unchanged");
+        self.notify_done(Message::new("reading-stopped", text));
     }
 }

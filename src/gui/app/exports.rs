@@ -13,6 +13,7 @@ use super::GdcmApp;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::output::OutputCommand;
 use crate::gui::state::forms::FormKind;
+use crate::message::Message;
 
 impl GdcmApp {
     /// Writes the corrections of the conditions selected in the form.
@@ -30,14 +31,14 @@ impl GdcmApp {
             &folder,
             self.outputs(),
         );
-        let absent = self.absent_bars(analysis.uncertainty.is_some());
-        let message = format!(
+        let absent = absent_bars_suffix(self.absent_bars(analysis.uncertainty.is_some()));
+        let text = format!(
             "exported {} to {}{absent}",
             counted(chosen.len(), "condition"),
             sanitized_path(&folder)
         );
         self.notify_written(
-            written.map(|()| message),
+            written.map(|()| Message::new("exported", text)),
             FormKind::Export,
             Command::Output(OutputCommand::Export),
         );
@@ -70,15 +71,16 @@ impl GdcmApp {
         let contents = export_contents(&analysis, &request);
         let left_out = contents.left_out_words(&analysis.study.dataset);
         let written = write_export(&analysis, &source, &request, &path, self.outputs());
-        let absent = self.absent_bars(analysis.uncertainty.is_some());
+        let absent = absent_bars_suffix(self.absent_bars(analysis.uncertainty.is_some()));
         let message = written.map(|remarks| {
-            format!(
+            let text = format!(
                 "exported {}: {}{}{}{absent}",
                 sanitized_path(&path),
                 contents.words(),
                 left_out_suffix(&left_out),
                 remarks_suffix(&remarks)
-            )
+            );
+            Message::new("exported", text)
         });
         self.notify_written(
             message,
@@ -97,42 +99,63 @@ impl GdcmApp {
         }
     }
 
-    /// Returns the end of a message, which explains missing error bars; empty if they are present.
-    pub(super) fn absent_bars(&self, are_present: bool) -> &'static str {
+    /// Returns why error bars are missing; `None` if they are present.
+    pub(super) fn absent_bars(&self, are_present: bool) -> Option<AbsentBars> {
         let background = &self.state.results.background;
         // If the error bars are still being computed, only other work was stopped.
         let were_stopped = background.stopped && background.error_bars.is_none();
         if are_present {
-            ""
+            None
         } else if were_stopped {
-            "; without error bars: their computation was stopped"
+            Some(AbsentBars::Stopped)
         } else {
-            "; without error bars, which are still being computed"
+            Some(AbsentBars::StillComputed)
         }
     }
 
-    /// Returns the complete analysis for the current decisions, or a sentence that explains why
+    /// Returns the complete analysis for the current decisions, or a message that explains why
     /// there is none and asks the engineer to repeat `action` later.
-    pub(super) fn analysis_to_write(&self, action: &str) -> Result<Arc<Analysis>, String> {
+    pub(super) fn analysis_to_write(&self, action: &str) -> Result<Arc<Analysis>, Message> {
         let results = &self.state.results;
         if results.stopped {
-            return Err(format!(
+            let text = format!(
                 "{}: the computation was stopped; choose Compute first",
-                self.state.after_stop()
-            ));
+                self.state.after_stop().text
+            );
+            return Err(Message::new("computation-stopped", text));
         }
         if !results.background.proofs.is_empty() {
-            return Err(format!(
+            let text = format!(
                 "the gains are still being proven optimal; {action} again in a moment, or stop \
                 the proof"
-            ));
+            );
+            return Err(Message::new("proof-running", text));
         }
         match &results.analysis {
             Some(analysis) if !results.is_waiting() => Ok(Arc::clone(analysis)),
-            _ => Err(format!(
-                "the newest results are still being computed; {action} again in a moment"
-            )),
+            _ => {
+                let text = format!(
+                    "the newest results are still being computed; {action} again in a moment"
+                );
+                Err(Message::new("computation-running", text))
+            }
         }
+    }
+}
+
+/// Why error bars are missing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum AbsentBars {
+    Stopped,
+    StillComputed,
+}
+
+/// Returns the end of a message, which explains missing error bars; empty if they are present.
+pub(super) fn absent_bars_suffix(absent: Option<AbsentBars>) -> &'static str {
+    match absent {
+        None => "",
+        Some(AbsentBars::Stopped) => "; without error bars: their computation was stopped",
+        Some(AbsentBars::StillComputed) => "; without error bars, which are still being computed",
     }
 }
 

@@ -10,12 +10,14 @@ use gdcm_plot::figure::{ColumnWidth, Figure, FigureFormat, FigureKind};
 use gdcm_words::Table;
 
 use super::GdcmApp;
+use super::exports::{AbsentBars, absent_bars_suffix};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::output::OutputCommand;
 use crate::gui::state::forms::FormKind;
 use crate::gui::state::view::View;
 use crate::gui::views::figure_button::tables_in_place;
 use crate::gui::views::figures::{figure_name, figure_of};
+use crate::message::Message;
 
 impl GdcmApp {
     /// Copies the values shown by a view to the clipboard.
@@ -28,11 +30,18 @@ impl GdcmApp {
             },
         };
         self.ctx.copy_text(csv_text(&tables));
-        self.notify_done(format!(
+        let absent = self.absent_bars_of(view);
+        let code = match absent {
+            None => "numbers-copied",
+            Some(AbsentBars::Stopped) => "numbers-copied-without-error-bars",
+            Some(AbsentBars::StillComputed) => "numbers-copied-before-error-bars",
+        };
+        let text = format!(
             "copied the numbers of {}{}",
             view.name(),
-            self.absent_bars_of(view)
-        ));
+            absent_bars_suffix(absent)
+        );
+        self.notify_done(Message::new(code, text));
     }
 
     /// Asks where to save a view; proposes the folder in which the previous figure was saved.
@@ -62,10 +71,11 @@ impl GdcmApp {
             }
             Some(_) => {
                 let found = sanitized_path(&path);
-                return self.notify_error(format!(
+                let text = format!(
                     "{} shows tables here: expected a name that ends in .csv, found {found}",
                     view.name()
-                ));
+                );
+                return self.notify_error(Message::new("tables-as-csv", text));
             }
             None => {
                 let Some(figure) = self.figure_of(view) else {
@@ -74,11 +84,12 @@ impl GdcmApp {
                 write_figure(&figure, width, &path, self.outputs())
             }
         };
-        let message = format!(
+        let text = format!(
             "saved {}{}",
             sanitized_path(&path),
-            self.absent_bars_of(view)
+            absent_bars_suffix(self.absent_bars_of(view))
         );
+        let message = Message::new("saved", text);
         let again = Command::Output(OutputCommand::SaveFigure(view, width, path.clone()));
         self.notify_written(written.map(|()| message), FormKind::SaveFigure, again);
     }
@@ -87,18 +98,19 @@ impl GdcmApp {
     fn figure_of(&mut self, view: View) -> Option<Figure> {
         let figure = figure_of(&self.state, view);
         if figure.is_none() {
-            self.notify_error(format!(
+            let text = format!(
                 "{} has no figure yet: {}",
                 view.name(),
                 self.state.results.absence()
-            ));
+            );
+            self.notify_error(Message::new("no-figure", text));
         }
         figure
     }
 
-    /// Returns the end of a message about a view's figure, as [`Self::absent_bars`] does; empty if
-    /// the view shows no error bars.
-    fn absent_bars_of(&self, view: View) -> &'static str {
+    /// Returns why a view's figure lacks error bars, as [`Self::absent_bars`] does; `None` if it
+    /// shows none.
+    fn absent_bars_of(&self, view: View) -> Option<AbsentBars> {
         let shows_bars = view.figure().is_some_and(FigureKind::takes_bars)
             && !self.state.display.gains.hide_bars;
         self.absent_bars(!shows_bars || self.state.uncertainty().is_some())

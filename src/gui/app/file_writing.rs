@@ -9,6 +9,7 @@ use gdcm_model::message_text::sanitized_path;
 use super::GdcmApp;
 use crate::gui::commands::command::Command;
 use crate::gui::state::forms::FormKind;
+use crate::message::Message;
 
 impl GdcmApp {
     /// Creates an output set that never overwrites input files, and overwrites other files only
@@ -34,7 +35,7 @@ impl GdcmApp {
     /// `again` may overwrite them.
     pub(super) fn notify_written(
         &mut self,
-        written: Result<String, FileError>,
+        written: Result<Message, FileError>,
         form: FormKind,
         again: Command,
     ) {
@@ -44,7 +45,7 @@ impl GdcmApp {
                 self.notify_done(message);
             }
             Err(FileError::Exists { paths }) => self.ask_to_overwrite(&paths, form, again),
-            Err(error) => self.notify_error(error.to_string()),
+            Err(error) => self.notify_error(error),
         }
     }
 
@@ -58,7 +59,7 @@ impl GdcmApp {
         again: Command,
     ) {
         self.notify_written(
-            saved.map(|()| format!("saved {}", sanitized_path(path))),
+            saved.map(|()| Message::new("saved", format!("saved {}", sanitized_path(path)))),
             form,
             again,
         );

@@ -11,13 +11,15 @@ use gdcm_model::message_text::{sanitized, shortened_message};
 
 use super::setup::Setup;
 use crate::gui::state::opens_with::OpensWith;
+use crate::message::Message;
+use crate::message_codes::file_error_code;
 
 /// Result of reading the requested file; the example if there is none.
 pub(super) struct Loaded {
     /// The study to open, or the fault in the embedded example.
     pub(super) opened: Result<Opened, String>,
     /// Fault in the requested file; the window then opens the example.
-    pub(super) trouble: Option<String>,
+    pub(super) trouble: Option<Message>,
 }
 
 /// Loads a file. A fault is also printed on the terminal, where it remains visible if no window
@@ -25,7 +27,7 @@ pub(super) struct Loaded {
 pub(super) fn load_and_report(path: Option<PathBuf>) -> Loaded {
     let loaded = load(path);
     if let Some(trouble) = &loaded.trouble {
-        eprintln!("error: {trouble}");
+        eprintln!("error: {}", trouble.text);
     }
     loaded
 }
@@ -44,7 +46,7 @@ fn load(path: Option<PathBuf>) -> Loaded {
         },
         Err(error) => Loaded {
             opened: load_example(),
-            trouble: Some(short_message(&error)),
+            trouble: Some(Message::new(file_error_code(&error), short_message(&error))),
         },
     }
 }
@@ -85,7 +87,9 @@ mod tests {
             matches!(loaded.opened, Ok(Opened::Dataset(example)) if example.path().is_none()),
             "the example"
         );
-        assert!(loaded.trouble.unwrap().contains("broken.json"));
+        let trouble = loaded.trouble.unwrap();
+        assert_eq!(trouble.code, "truncated-json");
+        assert!(trouble.text.contains("broken.json"));
         let example = load(None);
         assert!(example.opened.is_ok());
         assert_eq!(example.trouble, None);

@@ -13,6 +13,7 @@ use gdcm_model::number_format::counted;
 use super::GdcmApp;
 use super::threads::ReplySender;
 use crate::gui::state::assembling::ReadingProgress;
+use crate::message::Message;
 
 /// Files to read: additional files, or all files again with other column headings.
 #[derive(Clone, Debug)]
@@ -73,7 +74,10 @@ impl GdcmApp {
         let paths = match sources {
             Sources::More(paths) => paths,
             Sources::Again(_) if self.readers.models.is_stopped() => {
-                return self.notify_done("stopped: the models read before are kept".to_owned());
+                return self.notify_done(Message::new(
+                    "reading-stopped",
+                    "stopped: the models read before are kept",
+                ));
             }
             Sources::Again(paths) => {
                 import.forget_models();
@@ -103,11 +107,8 @@ impl GdcmApp {
         let mut new = paths;
         new.retain(|path| !import.sources.contains(path));
         import.sources.extend(new);
-        self.notify_done(format!(
-            "{} in {}",
-            counted(models, "model"),
-            counted(files, "file")
-        ));
+        let text = format!("{} in {}", counted(models, "model"), counted(files, "file"));
+        self.notify_done(Message::new("models-read", text));
     }
 }
 

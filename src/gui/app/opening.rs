@@ -24,6 +24,7 @@ use crate::gui::state::forms::FormKind;
 use crate::gui::state::notices::MessageBar;
 use crate::gui::state::preferences::Preferences;
 use crate::gui::state::window_state::State;
+use crate::message::Message;
 
 impl GdcmApp {
     /// Returns the initial window state, the dataset and the saved study for an opened file.
@@ -64,7 +65,7 @@ impl GdcmApp {
         state.message_bars = std::mem::take(&mut self.state.message_bars);
         state
             .message_bars
-            .retain(|bar| matches!(bar, MessageBar::Recovery { .. }));
+            .retain(|bar| matches!(bar, MessageBar::Recovery(_)));
         self.state = state;
         self.readers.record_reader.give_up();
         // Request numbers continue, so that late replies about the old dataset can be recognised.
@@ -74,7 +75,7 @@ impl GdcmApp {
         self.files.earlier.clear();
         self.files.saved = saved;
         self.keep_unsaved();
-        self.notify_done(format!("opened {name}"));
+        self.notify_done(Message::new("opened", format!("opened {name}")));
     }
 
     /// Opens a dataset or a study; the open study remains until the file is read. `moved` is the
@@ -84,10 +85,11 @@ impl GdcmApp {
         let moved = moved.map(|dataset| self.files.at_home(dataset));
         if path.extension().is_some() && holds_models(&path) {
             let path = sanitized_path(&path);
-            return self.notify_error(format!(
+            let text = format!(
                 "{path}: neither a dataset nor a study; to make a dataset from model files, use \
                 Import models in the menu File"
-            ));
+            );
+            return self.notify_error(Message::new("model-file", text));
         }
         let purpose = match self.recovery.offer_of(&path) {
             Some(offer) => ReadFor::Restoring(offer),
@@ -170,7 +172,7 @@ impl GdcmApp {
                 self.state.forms.lost_dataset = Some((path, dataset.to_string()));
                 self.state.forms.shown = Some(FormKind::FindDataset);
             }
-            error => self.notify_error(error.to_string()),
+            error => self.notify_error(error),
         }
     }
 }

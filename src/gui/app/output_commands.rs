@@ -5,13 +5,15 @@ use super::GdcmApp;
 use super::file_dialogs::DialogPurpose;
 use crate::gui::commands::output::OutputCommand;
 use crate::gui::state::panel_tables::table_of;
+use crate::message::Message;
 
 impl GdcmApp {
     pub(super) fn carry_out_output(&mut self, command: OutputCommand) {
         match command {
             OutputCommand::CopyTable(kind) => {
                 self.ctx.copy_text(table_of(&self.state, kind).text());
-                self.notify_done(format!("copied the table of {}", kind.name()));
+                let text = format!("copied the table of {}", kind.name());
+                self.notify_done(Message::new("table-copied", text));
             }
             OutputCommand::AskSaveTable(kind) => {
                 self.ask_save_table(kind.name(), table_of(&self.state, kind).into())

@@ -14,6 +14,8 @@ use super::readers::SilentProgress;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::state::forms::FormKind;
 use crate::gui::state::wanted_dataset::WantedDataset;
+use crate::message::Message;
+use crate::message_codes::layout_problem_code;
 
 /// Maximum number of problems reported individually.
 const MOST_PROBLEMS: usize = 6;
@@ -118,20 +120,24 @@ impl DatasetRequest {
     ///
     /// # Errors
     /// The problems in the records, if no record is suitable, or the fault in the dataset.
-    fn make(self, progress: &SilentProgress) -> Result<MadeDataset, Vec<String>> {
+    fn make(self, progress: &SilentProgress) -> Result<MadeDataset, Vec<Message>> {
         let Self {
             sources,
             mut channels,
             band,
             path,
         } = self;
-        let read = read_records(&sources, progress).map_err(|error| vec![error.to_string()])?;
-        let mut problems: Vec<String> = read.faults;
+        let read = read_records(&sources, progress).map_err(|error| vec![error.into()])?;
+        let mut problems = Vec::new();
+        for fault in read.faults {
+            problems.push(Message::new("not-read", fault));
+        }
         let mut entries = Vec::new();
         for table in with_topics_joined(read.tables, &channels, &TimeWish::default()) {
             let (row, _) = LaidOutRecord::proposed(table, &channels, &TimeWish::default());
             for problem in &row.problems {
-                problems.push(format!("{}: {problem}", row.table.name));
+                let text = format!("{}: {problem}", row.table.name);
+                problems.push(Message::new(layout_problem_code(problem), text));
             }
             if row.problems.is_empty() {
                 channels.take_units(&row.layout, &row.table);
@@ -146,10 +152,10 @@ impl DatasetRequest {
             return Err(problems);
         }
         let dataset = dataset_of_records(&dataset_name(&path), &channels, band, entries)
-            .map_err(|error| vec![error.to_string()])?;
+            .map_err(|error| vec![Message::new("wrong-dataset", error.to_string())])?;
         let left_out = problems
             .into_iter()
-            .map(|problem| format!("left out of the dataset: {problem}"))
+            .map(|problem| format!("left out of the dataset: {}", problem.text))
             .collect();
         let origin = DatasetOfRecords {
             path,

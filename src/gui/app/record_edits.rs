@@ -9,7 +9,9 @@ use gdcm_sysid::records::{LaidOutRecord, RecordChannels};
 use super::GdcmApp;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::state::condition_records::ConditionRecords;
+use crate::gui::state::record_change::{ConditionRecordChange, RecordChange};
 use crate::gui::state::records::RecordsBefore;
+use crate::message::Message;
 
 impl GdcmApp {
     /// Applies an edit to the records of a condition; it can be undone.
@@ -19,11 +21,14 @@ impl GdcmApp {
         let Some(records) = self.state.records.conditions.get_mut(&condition) else {
             return;
         };
-        let label = format!("{} (condition {condition})", edit_label(records, &command));
+        let change = RecordChange::InCondition {
+            condition,
+            change: described_edit(records, &command),
+        };
         match apply_edit(records, command, &channels) {
             Ok(true) => {
                 records.changed = true;
-                self.record_edited(label, before);
+                self.record_edited(change, before);
                 self.follow_band(condition);
             }
             Ok(false) => {}
@@ -32,45 +37,54 @@ impl GdcmApp {
     }
 
     /// Adds an edit of records to the undo history.
-    pub(super) fn record_edited(&mut self, label: String, before: RecordsBefore) {
+    pub(super) fn record_edited(&mut self, change: RecordChange, before: RecordsBefore) {
         let study = self.state.study.clone();
-        self.state.history.record_beside(study, label, before);
+        self.state.history.record_beside(study, change, before);
         self.state.notice = None;
     }
 }
 
-/// Returns the label of an edit in the undo history.
-fn edit_label(records: &ConditionRecords, command: &RecordsCommand) -> String {
+/// Describes an edit for the undo history.
+fn described_edit(records: &ConditionRecords, command: &RecordsCommand) -> ConditionRecordChange {
     match command {
-        RecordsCommand::SetKind(index, kind) => {
-            format!("{} is a {}", record_name(records, *index), kind.word())
-        }
-        RecordsCommand::SetUsed(index, true) => format!("use {}", record_name(records, *index)),
-        RecordsCommand::SetUsed(index, false) => {
-            format!("leave {} out", record_name(records, *index))
-        }
-        RecordsCommand::SetHeldOut(index, true) => {
-            format!("hold {} out", record_name(records, *index))
-        }
-        RecordsCommand::SetHeldOut(index, false) => format!("fit {}", record_name(records, *index)),
-        RecordsCommand::SetDelay(signal, _) => format!("time skew of {}", signal.name),
-        RecordsCommand::SetRemedies(index, _) => {
-            format!("correct {}", record_name(records, *index))
-        }
-        RecordsCommand::SetHold(signal, _) => format!("hold of {}", signal.name),
-        RecordsCommand::SetBand(_) => "identification band".to_owned(),
-        RecordsCommand::SetSearch(_) => "identification search settings".to_owned(),
-        RecordsCommand::SetReferences(_) => "references".to_owned(),
-        RecordsCommand::AddPart(index, _) => format!("part of {}", record_name(records, *index)),
-        RecordsCommand::RemovePart(index) => format!("remove {}", record_name(records, *index)),
-        _ => "records".to_owned(),
+        RecordsCommand::SetKind(index, kind) => ConditionRecordChange::Kind {
+            record: record_name(records, *index),
+            kind: *kind,
+        },
+        RecordsCommand::SetUsed(index, used) => ConditionRecordChange::Use {
+            record: record_name(records, *index),
+            used: *used,
+        },
+        RecordsCommand::SetHeldOut(index, held_out) => ConditionRecordChange::HoldOut {
+            record: record_name(records, *index),
+            held_out: *held_out,
+        },
+        RecordsCommand::SetDelay(signal, _) => ConditionRecordChange::TimeSkew {
+            channel: signal.name.clone(),
+        },
+        RecordsCommand::SetRemedies(index, _) => ConditionRecordChange::Remedies {
+            record: record_name(records, *index),
+        },
+        RecordsCommand::SetHold(signal, _) => ConditionRecordChange::SampleHold {
+            channel: signal.name.clone(),
+        },
+        RecordsCommand::SetBand(_) => ConditionRecordChange::Band,
+        RecordsCommand::SetSearch(_) => ConditionRecordChange::Search,
+        RecordsCommand::SetReferences(_) => ConditionRecordChange::References,
+        RecordsCommand::AddPart(index, _) => ConditionRecordChange::AddPart {
+            record: record_name(records, *index),
+        },
+        RecordsCommand::RemovePart(index) => ConditionRecordChange::RemovePart {
+            record: record_name(records, *index),
+        },
+        _ => ConditionRecordChange::Records,
     }
 }
 
-fn record_name(records: &ConditionRecords, index: usize) -> &str {
+fn record_name(records: &ConditionRecords, index: usize) -> String {
     match records.rows.get(index) {
-        Some(row) => &row.table.name,
-        None => "a record",
+        Some(row) => row.table.name.clone(),
+        None => "a record".to_owned(),
     }
 }
 
@@ -82,7 +96,7 @@ fn apply_edit(
     records: &mut ConditionRecords,
     command: RecordsCommand,
     channels: &RecordChannels,
-) -> Result<bool, String> {
+) -> Result<bool, Message> {
     match command {
         RecordsCommand::SetUsed(index, used) => return Ok(records.set_used(index, used)),
         RecordsCommand::AddPart(index, part_s) => records.add_part(index, part_s, channels)?,

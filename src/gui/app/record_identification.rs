@@ -12,6 +12,7 @@ use gdcm_sysid::identification::{Identification, IdentificationError};
 
 use super::GdcmApp;
 use crate::gui::state::records_page::RecordsPage;
+use crate::message::Message;
 
 impl GdcmApp {
     /// Returns the identification band \[rad/s\] of a condition: its own band if one is set,
@@ -40,7 +41,10 @@ impl GdcmApp {
             };
             match records.identification_job(*id, band, &channels) {
                 Ok(job) => self.state.records.request_job(job),
-                Err(problem) => refusal = Some(format!("condition {id}: {problem}")),
+                Err(problem) => {
+                    let text = format!("condition {id}: {}", problem.text);
+                    refusal = Some(Message::new(problem.code, text));
+                }
             }
         }
         let page = &mut self.state.records.page;
@@ -57,10 +61,9 @@ impl GdcmApp {
         let unfinished = std::mem::take(&mut self.state.records.running).len();
         let requested = self.state.records.requested_count;
         if requested > 1 && unfinished > 0 {
-            self.notify_done(format!(
-                "stopped identifying after {} of {requested} conditions",
-                requested.saturating_sub(unfinished)
-            ));
+            let finished = requested.saturating_sub(unfinished);
+            let text = format!("stopped identifying after {finished} of {requested} conditions");
+            self.notify_done(Message::new("identification-stopped", text));
         }
     }
 
@@ -76,9 +79,8 @@ impl GdcmApp {
         self.state.records.running.retain(|other| *other != job);
         let requested = self.state.records.requested_count;
         if self.state.records.running.is_empty() && requested > 1 {
-            self.notify_done(format!(
-                "finished: models of {requested} conditions identified"
-            ));
+            let text = format!("finished: models of {requested} conditions identified");
+            self.notify_done(Message::new("identification-finished", text));
             self.state.records.page = RecordsPage::Conditions;
         }
         if let Some(records) = self.state.records.conditions.get_mut(&job.condition) {
@@ -91,7 +93,10 @@ impl GdcmApp {
     pub(super) fn take_identified(&mut self, conditions: &[ConditionId], offered: OfferedModels) {
         let adopted = self.adopted_models(conditions, offered);
         if adopted.is_empty() {
-            return self.notify_error("nothing has been identified yet".to_owned());
+            return self.notify_error(Message::new(
+                "nothing-identified",
+                "nothing has been identified yet",
+            ));
         }
         let models: usize = adopted
             .iter()
@@ -108,7 +113,8 @@ impl GdcmApp {
                 "conditions"
             };
             let names = names.join(", ");
-            self.notify_done(format!("adopted {models} in {conditions} {names}"));
+            let text = format!("adopted {models} in {conditions} {names}");
+            self.notify_done(Message::new("models-adopted", text));
         }
     }
 

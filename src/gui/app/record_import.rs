@@ -15,8 +15,10 @@ use super::GdcmApp;
 use super::readers::SilentProgress;
 use super::record_reading::{AddedFiles, OwnRecords, ReadRecords};
 use crate::gui::state::condition_records::{AddedRecord, ConditionRecords};
+use crate::gui::state::record_change::RecordChange;
 use crate::gui::state::requirements_page::RequirementsPage;
 use crate::gui::state::view::View;
+use crate::message::Message;
 
 /// State of the window when a reading began.
 struct ReadingStart {
@@ -154,7 +156,7 @@ impl GdcmApp {
         if !added.is_empty() {
             self.store_added_records(added, start);
         } else if own_count > 0 {
-            self.notify_done(counted(own_count, "record"));
+            self.notify_done(Message::new("records-read", counted(own_count, "record")));
         }
     }
 
@@ -211,10 +213,10 @@ impl GdcmApp {
             counts.conditions += 1;
         }
         if !before.conditions.is_empty() {
-            let label = format!("add {}", counted(counts.new + counts.read_again, "record"));
-            self.record_edited(label, before);
+            let records = counts.new + counts.read_again;
+            self.record_edited(RecordChange::Add { records }, before);
         }
-        self.notify_done(counts.words());
+        self.notify_done(Message::new("records-added", counts.words()));
     }
 }
 

@@ -9,6 +9,7 @@ use gdcm_sysid::records::{
 };
 
 use super::GdcmApp;
+use crate::gui::state::record_change::RecordChange;
 use crate::gui::state::records::RecordsBefore;
 
 impl GdcmApp {
@@ -34,21 +35,24 @@ impl GdcmApp {
             layout,
             dataset,
         };
-        let label = format!("columns of {}", change.table.name);
-        self.edit_layouts(label, |id, row| change.layout_for(id, row));
+        let columns = RecordChange::Columns {
+            record: change.table.name.clone(),
+        };
+        self.edit_layouts(columns, |id, row| change.layout_for(id, row));
     }
 
     /// Assumes the units of the dataset's channels for columns whose file states none.
     pub(super) fn take_dataset_units(&mut self) {
-        let label = "units of the dataset's channels".to_owned();
-        self.edit_layouts(label, |_, row| Some(row.layout.in_units_of_channels()));
+        self.edit_layouts(RecordChange::DatasetUnits, |_, row| {
+            Some(row.layout.in_units_of_channels())
+        });
     }
 
     /// Changes record layouts in all conditions; this can be undone. `layout_for` returns `None`
     /// for a record that keeps its layout.
     fn edit_layouts(
         &mut self,
-        label: String,
+        change: RecordChange,
         layout_for: impl Fn(ConditionId, &LaidOutRecord) -> Option<RecordLayout>,
     ) {
         let ids: Vec<ConditionId> = self.state.records.conditions.keys().copied().collect();
@@ -67,7 +71,7 @@ impl GdcmApp {
             }
         }
         if !changed.conditions.is_empty() {
-            self.record_edited(label, changed);
+            self.record_edited(change, changed);
         }
     }
 }

@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use gdcm_io::files::dataset_file::load_dataset_within;
 use gdcm_io::{LoadedDataset, Opened};
-use gdcm_words::dataset_differences::dataset_difference_text;
 
 use super::GdcmApp;
 use super::disk_watch::ChangedFile;
 use super::document_files::ReadFor;
 use crate::gui::state::notices::MessageBar;
+use crate::message::Message;
 
 impl GdcmApp {
     pub(super) fn watch_disk(&mut self) {
@@ -60,18 +60,16 @@ impl GdcmApp {
         let name = loaded.file_name();
         let (study, differences) = self.state.study.reconciled(Arc::clone(&loaded.dataset));
         let before = std::mem::replace(&mut self.state.study, study);
-        self.state
-            .history
-            .record_reload(before, format!("reload {name}"));
+        self.state.history.record_reload(before, name.clone());
         self.files.earlier.push(loaded);
         self.study_changed();
-        let sentences: Vec<String> = differences.iter().map(dataset_difference_text).collect();
-        if sentences.is_empty() {
-            self.notify_done(format!("reloaded {name}: every decision still applies"));
+        if differences.is_empty() {
+            let text = format!("reloaded {name}: every decision still applies");
+            self.notify_done(Message::new("reloaded", text));
         } else {
             self.state
                 .message_bars
-                .push(MessageBar::Differences { name, sentences });
+                .push(MessageBar::Differences { name, differences });
         }
     }
 

@@ -18,6 +18,7 @@ use super::document_files::study_name;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::output::OutputCommand;
 use crate::gui::state::forms::FormKind;
+use crate::message::Message;
 
 impl GdcmApp {
     /// Asks where to write the report; shows an error if the newest results are not available.
@@ -63,7 +64,11 @@ impl GdcmApp {
     pub(super) fn report_written(&mut self, job: ReportJob, outcome: Result<(), FileError>) {
         self.work.report_job = None;
         match outcome {
-            Ok(()) => self.notify_done(format!("wrote the report {}", sanitized_path(&job.path))),
+            Ok(()) => {
+                let path = sanitized_path(&job.path);
+                let text = format!("wrote the report {path}");
+                self.notify_done(Message::new("report-written", text));
+            }
             Err(error) => self.report_failed(error, job.path),
         }
     }
@@ -78,7 +83,8 @@ impl GdcmApp {
     pub(super) fn give_up_report(&mut self) {
         if let Some(job) = self.work.report_job.take() {
             let path = sanitized_path(&job.path);
-            self.notify_error(format!("{path} was not written: the report was stopped"));
+            let text = format!("{path} was not written: the report was stopped");
+            self.notify_error(Message::new("report-stopped", text));
         }
     }
 }

@@ -7,12 +7,13 @@ use gdcm_io::FileError;
 use gdcm_io::files::levels_and_tolerances::{add_tolerances, load_tolerances, read_levels};
 use gdcm_model::message_text::sanitized_path;
 use gdcm_study::Edit;
-use gdcm_study::decisions::requirement_settings::RequirementSettings;
+use gdcm_study::decisions::requirement_settings::{RequirementPart, RequirementSettings};
 
 use super::GdcmApp;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::file::FileCommand;
 use crate::gui::state::forms::{FormKind, RequirementTable};
+use crate::message::Message;
 
 impl GdcmApp {
     /// Reads a requirement table into the study.
@@ -24,17 +25,18 @@ impl GdcmApp {
             return;
         };
         self.state.forms.shown = None;
-        let name = match table {
-            RequirementTable::Levels => "levels",
-            RequirementTable::Tolerances => "tolerances",
+        let part = match table {
+            RequirementTable::Levels => RequirementPart::Levels,
+            RequirementTable::Tolerances => RequirementPart::Tolerances,
         };
-        self.decide(&Edit::SetRequirements(name, Arc::new(settings)));
+        self.decide(&Edit::SetRequirements(part, Arc::new(settings)));
         if !cautions.is_empty() {
-            self.notify_error(format!(
+            let text = format!(
                 "tolerances read with cautions from {}: {}",
                 sanitized_path(&path),
                 cautions.join("; ")
-            ));
+            );
+            self.notify_error(Message::new("tolerances-with-cautions", text));
         }
     }
 

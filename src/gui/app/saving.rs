@@ -12,6 +12,7 @@ use super::file_dialogs::DialogPurpose;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::file::FileCommand;
 use crate::gui::state::forms::FormKind;
+use crate::message::Message;
 
 impl GdcmApp {
     /// Saves the study to the file from which it was opened, or asks for a path.
@@ -40,7 +41,7 @@ impl GdcmApp {
             }
             Err(error) => {
                 self.postponed.forget_losing();
-                self.notify_error(error.to_string());
+                self.notify_error(error);
             }
         }
     }
@@ -55,7 +56,8 @@ impl GdcmApp {
         self.state.forms.shown = None;
         self.state.study_name = study_name(Some(&path));
         self.state.unsaved = false;
-        self.notify_done(format!("saved {}", sanitized_path(&path)));
+        let text = format!("saved {}", sanitized_path(&path));
+        self.notify_done(Message::new("saved", text));
         self.files.saved = SavedStudy {
             path: Some(path),
             study: Some(self.state.study.clone()),

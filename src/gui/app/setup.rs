@@ -11,6 +11,7 @@ use gdcm_study::stages::engine::LIVE_PROOF;
 use super::EngineMaker;
 use crate::executor::Pool;
 use crate::gui::state::preferences::Preferences;
+use crate::message::Message;
 
 /// Application id on the desktop, and name of the data directory.
 pub(super) const APP_ID: &str = "gdcm";
@@ -31,7 +32,7 @@ pub struct Setup {
     pub look_every: Duration,
     pub preferences: Preferences,
     /// Problem found before the window was opened; shown first.
-    pub trouble: Option<String>,
+    pub trouble: Option<Message>,
 }
 
 impl Default for Setup {

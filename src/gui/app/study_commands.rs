@@ -1,12 +1,11 @@
 //! Carries out commands about decisions and their history.
 
-use gdcm_study::decisions::history::History;
 use gdcm_study::{Edit, Study};
 
 use super::GdcmApp;
 use crate::gui::commands::study::StudyCommand;
-use crate::gui::state::records::{RecordsBefore, RecordsState};
-use crate::gui::state::window_state::State;
+use crate::gui::state::records::RecordsState;
+use crate::gui::state::window_state::{State, UndoHistory};
 
 impl GdcmApp {
     pub(super) fn carry_out_study(&mut self, command: StudyCommand) {
@@ -34,7 +33,7 @@ impl GdcmApp {
                 self.state.history.record(before, edit);
                 self.study_changed();
             }
-            Err(refusal) => self.notify_error(refusal.to_string()),
+            Err(refusal) => self.notify_error(refusal),
         }
     }
 
@@ -42,7 +41,7 @@ impl GdcmApp {
     /// none.
     fn restore_study(
         &mut self,
-        find: impl FnOnce(&mut History<RecordsBefore>, &Study, &mut RecordsState) -> Option<Study>,
+        find: impl FnOnce(&mut UndoHistory, &Study, &mut RecordsState) -> Option<Study>,
     ) {
         let State {
             history,

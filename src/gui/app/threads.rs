@@ -7,6 +7,7 @@ use egui::Context;
 
 use super::GdcmApp;
 use super::faults::caught;
+use crate::message::Message;
 
 /// Reply of a thread: a change that the window applies to itself.
 pub(super) type Reply = Box<dyn FnOnce(&mut GdcmApp) + Send>;
@@ -72,7 +73,8 @@ impl GdcmApp {
         match thread {
             Ok(_) => drop(order.send((work, take))),
             Err(error) => self.work.replies.send(move |app| {
-                app.notify_error(format!("{name} could not start: {error}"));
+                let text = format!("{name} could not start: {error}");
+                app.notify_error(Message::new("no-threads", text));
                 take(app, None);
             }),
         }

@@ -34,6 +34,7 @@ use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::{escape_key, focus_ring, palette};
+use crate::message::Message;
 
 /// Time after which the window is drawn again while results are being computed.
 const REPAINT_AFTER: Duration = Duration::from_millis(160);
@@ -118,7 +119,7 @@ impl GdcmApp {
     }
 
     /// Shows what the engineer sees first: a problem, the start page, or the guided tour.
-    fn show_first_page(&mut self, trouble: Option<String>, offers_tour: bool) {
+    fn show_first_page(&mut self, trouble: Option<Message>, offers_tour: bool) {
         self.state.on_start_page = self.state.example.is_some()
             && self.state.display.layout.opens_with == OpensWith::StartPage
             && trouble.is_none();

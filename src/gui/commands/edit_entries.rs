@@ -8,8 +8,9 @@ use gdcm_study::Edit;
 use super::command::Command;
 use super::entry::{CTRL, CTRL_SHIFT, Entry, Menu, group};
 use super::form::FormCommand;
+use super::step_name::step_name;
 use super::study::StudyCommand;
-use crate::gui::state::window_state::State;
+use crate::gui::state::window_state::{State, UndoStep};
 
 /// Returns the entries of the Edit menu.
 pub(super) fn edit_entries(state: &State) -> Vec<Entry> {
@@ -44,18 +45,18 @@ pub(super) fn edit_entries(state: &State) -> Vec<Entry> {
 }
 
 fn history_entries(state: &State) -> [Entry; 2] {
-    let undo = state.history.undo_label();
-    let redo = state.history.redo_label();
+    let undo = state.history.undo_step();
+    let redo = state.history.redo_step();
     [
         Entry::new(
-            step_name("Undo", undo),
+            step_command("Undo", undo),
             "Undo the last decision",
             StudyCommand::Undo,
         )
         .keys(CTRL, Key::Z)
         .enabled(undo.is_some()),
         Entry::new(
-            step_name("Redo", redo),
+            step_command("Redo", redo),
             "Redo the last undone decision",
             StudyCommand::Redo,
         )
@@ -66,9 +67,9 @@ fn history_entries(state: &State) -> [Entry; 2] {
 }
 
 /// "Undo reject physics model 7".
-fn step_name(verb: &str, label: Option<&str>) -> String {
-    match label {
-        Some(label) => format!("{verb} {label}"),
+fn step_command(verb: &str, step: Option<&UndoStep>) -> String {
+    match step {
+        Some(step) => format!("{verb} {}", step_name(step)),
         None => verb.to_owned(),
     }
 }

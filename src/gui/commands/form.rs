@@ -5,6 +5,7 @@ use gdcm_study::Edit;
 
 use crate::gui::state::forms::FormKind;
 use crate::gui::state::notices::MessageBar;
+use crate::message::Message;
 
 /// Shows, answers or closes a form or a message.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +25,6 @@ pub enum FormCommand {
     /// Asks for the reason for which a model is rejected.
     AskReason(ModelId),
     /// Shows why a typed or dragged value is refused.
-    Refuse(String),
+    Refuse(Message),
     DismissNotice,
 }

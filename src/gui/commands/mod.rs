@@ -20,5 +20,6 @@ pub mod layout;
 pub mod output;
 pub mod records;
 pub mod selection;
+pub mod step_name;
 pub mod study;
 mod view_entries;

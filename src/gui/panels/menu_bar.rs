@@ -13,6 +13,7 @@ use crate::gui::commands::entry::Menu;
 use crate::gui::commands::file::FileCommand;
 use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::commands::step_name::step_name;
 use crate::gui::commands::study::StudyCommand;
 use crate::gui::state::forms::FormKind;
 use crate::gui::state::window_state::State;
@@ -134,14 +135,14 @@ fn recent_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
 fn history_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let undo = HistoryButton {
         verb: "↶ Undo",
-        label: state.history.undo_label(),
+        name: state.history.undo_step().map(step_name),
         hint: "Ctrl+Z",
         command: StudyCommand::Undo,
     };
     undo.ui(ui, commands);
     let redo = HistoryButton {
         verb: "↷ Redo",
-        label: state.history.redo_label(),
+        name: state.history.redo_step().map(step_name),
         hint: "Ctrl+Shift+Z",
         command: StudyCommand::Redo,
     };
@@ -152,19 +153,19 @@ fn history_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
 struct HistoryButton<'a> {
     verb: &'a str,
     /// Decision to undo or redo; `None` disables the button.
-    label: Option<&'a str>,
+    name: Option<String>,
     hint: &'a str,
     command: StudyCommand,
 }
 
 impl HistoryButton<'_> {
     fn ui(self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        let text = match self.label {
-            Some(label) => format!("{} {label}", self.verb),
+        let text = match &self.name {
+            Some(name) => format!("{} {name}", self.verb),
             None => self.verb.to_owned(),
         };
         let button = Button::new(text).frame(false);
-        ui.add_enabled_ui(self.label.is_some(), |ui| {
+        ui.add_enabled_ui(self.name.is_some(), |ui| {
             button_ui(ui, button, self.hint, self.command, commands)
         });
     }

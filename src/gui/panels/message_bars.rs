@@ -6,13 +6,14 @@ use egui::{
 };
 
 use gdcm_model::number_format::counted;
+use gdcm_words::dataset_differences::dataset_difference_text;
 
 use crate::gui::commands::command::Command;
 use crate::gui::commands::computing::ComputingCommand;
 use crate::gui::commands::file::FileCommand;
 use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::output::OutputCommand;
-use crate::gui::state::notices::MessageBar;
+use crate::gui::state::notices::{FaultReport, MessageBar, RecoveryOffer};
 use crate::gui::widgets::controls::button_ui;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
@@ -35,44 +36,72 @@ pub fn message_bars_ui(
 
 fn bar_ui(ui: &mut Ui, bar: &MessageBar, palette: &Palette, commands: &mut Vec<Command>) {
     row_ui(ui, &bar_sentence(bar), bar_buttons(bar), palette, commands);
-    if let MessageBar::Differences { sentences, .. } = bar {
-        list_ui(ui, sentences);
+    if let MessageBar::Differences { differences, .. } = bar {
+        let sentences: Vec<String> = differences.iter().map(dataset_difference_text).collect();
+        list_ui(ui, &sentences);
     }
 }
 
 fn bar_sentence(bar: &MessageBar) -> String {
     match bar {
-        MessageBar::Fault { sentence } | MessageBar::Recovery { sentence, .. } => sentence.clone(),
+        MessageBar::Fault(report) => fault_sentence(report),
+        MessageBar::Recovery(offer) => recovery_sentence(offer),
         MessageBar::Changed { name } => format!("{name} has changed on disk."),
-        MessageBar::Differences { name, sentences } => {
-            let number = counted(sentences.len(), "difference");
+        MessageBar::Differences { name, differences } => {
+            let number = counted(differences.len(), "difference");
             format!("{name} was reloaded: {number}.")
         }
     }
 }
 
+/// States the interrupted work, that the decisions are kept, and the details to send.
+fn fault_sentence(report: &FaultReport) -> String {
+    let FaultReport {
+        work,
+        dataset,
+        version,
+        fault,
+    } = report;
+    format!(
+        "A fault in the program ended {work}; your decisions are kept and can be saved: please send this message, the \
+         saved study and the dataset {dataset} to the program's authors (gdcm {version}: {fault})."
+    )
+}
+
+/// "Decisions of 14:32 on 21 Nov 2026 for data.json.gz (study mine.gdcm-study.json) were not saved."
+fn recovery_sentence(offer: &RecoveryOffer) -> String {
+    let study = match &offer.study {
+        Some(name) => format!(" (study {name})"),
+        None => String::new(),
+    };
+    format!(
+        "Decisions of {} for {}{study} were not saved.",
+        offer.kept_at, offer.dataset
+    )
+}
+
 fn bar_buttons(bar: &MessageBar) -> Vec<(&'static str, Command)> {
     let close = Command::Form(FormCommand::CloseBar(bar.clone()));
     match bar {
-        MessageBar::Fault { sentence } => vec![
+        MessageBar::Fault(report) => vec![
             (
                 "Compute again",
                 Command::Computing(ComputingCommand::Compute),
             ),
             (
                 "Copy this message",
-                Command::Output(OutputCommand::CopyText(sentence.clone())),
+                Command::Output(OutputCommand::CopyText(fault_sentence(report))),
             ),
             ("Close message", close),
         ],
-        MessageBar::Recovery { offer, .. } => vec![
+        MessageBar::Recovery(offer) => vec![
             (
                 "Restore",
-                Command::File(FileCommand::RestoreRecovery(*offer)),
+                Command::File(FileCommand::RestoreRecovery(offer.number)),
             ),
             (
                 "Discard",
-                Command::File(FileCommand::DiscardRecovery(*offer)),
+                Command::File(FileCommand::DiscardRecovery(offer.number)),
             ),
             ("Later", close),
         ],

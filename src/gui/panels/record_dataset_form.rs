@@ -60,7 +60,7 @@ pub(super) fn record_dataset_ui(form: &mut Form<'_, '_>, wanted: &mut WantedData
         });
     for problem in &wanted.problems {
         form.ui
-            .add(Label::new(form.palette.small_warning(problem)).wrap());
+            .add(Label::new(form.palette.small_warning(&problem.text)).wrap());
     }
     let is_ready = [&wanted.inputs, &wanted.outputs, &wanted.path]
         .iter()

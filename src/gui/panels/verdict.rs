@@ -12,11 +12,12 @@ use gdcm_words::caution::failure_text;
 use super::advice::{Advice, Step};
 use super::reasons::remarks_shown;
 use super::verdict_caution::{caution, unstable_in_band};
-use super::verdict_words::{gain_words, lag_words};
+use super::verdict_words::{RemainingLag, gain_message};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
+use crate::message::Message;
 
 /// Verdict on gain and phase of the constrained responses, in the displayed condition and in all
 /// conditions, with the next steps.
@@ -31,7 +32,7 @@ pub struct Verdict {
     /// Note beside the steps.
     pub note: String,
     /// Caution to read before the result is used: "Price: +21 dB above 12 rad/s".
-    pub caution: Option<String>,
+    pub caution: Option<Message>,
     /// Number of poles within the band that the couplings in use make unstable, over the kept
     /// physics models of all conditions.
     pub unstable_in_band: usize,
@@ -86,18 +87,18 @@ pub struct VerdictRow {
     /// Count over all conditions with a result.
     pub everywhere: Option<MatchCount>,
     /// "matched", "lags by ≈ 66 ms".
-    pub words: String,
+    pub message: Message,
     /// Whether all constrained responses are matched.
     pub is_met: bool,
 }
 
 impl VerdictRow {
-    fn without_result(name: &'static str, words: String) -> Self {
+    fn without_result(name: &'static str, message: Message) -> Self {
         Self {
             name,
             here: None,
             everywhere: None,
-            words,
+            message,
             is_met: false,
         }
     }
@@ -116,7 +117,7 @@ impl VerdictRow {
         let everywhere = Self::count_text(self.everywhere);
         format!(
             "{}: {here} {}, in all conditions {everywhere}",
-            self.name, self.words
+            self.name, self.message.text
         )
     }
 }
@@ -136,8 +137,8 @@ impl Verdict {
         Self {
             condition: state.condition().id(),
             rows: [
-                VerdictRow::without_result("Gain", words.to_owned()),
-                VerdictRow::without_result("Phase", String::new()),
+                VerdictRow::without_result("Gain", Message::new("no-result", words)),
+                VerdictRow::without_result("Phase", Message::new("no-result", "")),
             ],
             steps: Vec::new(),
             note: String::new(),
@@ -148,7 +149,8 @@ impl Verdict {
     }
 
     fn from_failure(state: &State, failure: &ConditionFailure) -> Self {
-        let caution = Some(failure_text(failure, state.dataset()));
+        let text = failure_text(failure, state.dataset());
+        let caution = Some(Message::new(failure.code(), text));
         if *failure != ConditionFailure::NoReference {
             return Self {
                 caution,
@@ -179,6 +181,14 @@ impl Verdict {
         }
     }
 
+    /// Returns the text of the caution.
+    pub fn caution_text(&self) -> Option<&str> {
+        match &self.caution {
+            Some(caution) => Some(&caution.text),
+            None => None,
+        }
+    }
+
     /// Returns whether gains and phases are matched and no pole within the band is made unstable.
     pub fn is_met(&self) -> bool {
         self.rows.iter().all(|row| row.is_met) && self.unstable_in_band == 0
@@ -192,10 +202,10 @@ fn gain_row(state: &State, shown: &ConditionAnalysis) -> VerdictRow {
         name: "Gain",
         here: Some(here),
         everywhere: MatchCount::everywhere(state, MatchCount::gains),
-        words: if is_any_held {
-            gain_words(state, shown)
+        message: if is_any_held {
+            gain_message(state, shown)
         } else {
-            "fitted, none held".to_owned()
+            Message::new("none-held", "fitted, none held")
         },
         is_met: is_any_held && shown.gains.matched,
     }
@@ -203,14 +213,14 @@ fn gain_row(state: &State, shown: &ConditionAnalysis) -> VerdictRow {
 
 fn phase_row(state: &State, shown: &ConditionAnalysis) -> VerdictRow {
     if state.study.settings.phase == PhaseCorrection::None {
-        return VerdictRow::without_result("Phase", "not corrected".to_owned());
+        return VerdictRow::without_result("Phase", Message::new("not-corrected", "not corrected"));
     }
     let here = MatchCount::delays(shown);
     let is_any_held = here.constrained > 0;
-    let words = if !is_any_held {
-        "fitted, none held".to_owned()
+    let message = if !is_any_held {
+        Message::new("none-held", "fitted, none held")
     } else if shown.delays.matched {
-        format!("matched, {}", band_words(state))
+        Message::new("matched", format!("matched, {}", band_words(state)))
     } else {
         let mut left_ms: Vec<f64> = shown
             .delays
@@ -218,13 +228,14 @@ fn phase_row(state: &State, shown: &ConditionAnalysis) -> VerdictRow {
             .iter()
             .map(|missed| s_to_ms(missed.excess))
             .collect();
-        lag_words(&mut left_ms)
+        let lag = RemainingLag::new(&mut left_ms);
+        Message::new("lag-remains", lag.words())
     };
     VerdictRow {
         name: "Phase",
         here: Some(here),
         everywhere: MatchCount::everywhere(state, MatchCount::delays),
-        words,
+        message,
         is_met: is_any_held && shown.delays.matched,
     }
 }
@@ -253,9 +264,10 @@ mod tests {
     use gdcm_study::{CouplingCorrection, Edit, Engine, Study};
 
     use super::super::advice::export;
-    use super::super::verdict_words::shared_words;
+    use super::super::verdict_words::shared_channel;
     use super::*;
     use crate::gui::commands::study::StudyCommand;
+    use crate::gui::state::sheet::Sheet;
     use crate::gui::views::couplings_job;
 
     fn state_of(decide: &[Edit]) -> State {
@@ -289,19 +301,23 @@ mod tests {
         })
     }
 
-    fn labels(verdict: &Verdict) -> Vec<&str> {
-        verdict
-            .steps
-            .iter()
-            .map(|step| step.label.as_str())
-            .collect()
+    fn commands(verdict: &Verdict) -> Vec<&Command> {
+        verdict.steps.iter().map(|step| &step.command).collect()
+    }
+
+    fn codes(verdict: &Verdict) -> [&'static str; 2] {
+        verdict.rows.each_ref().map(|row| row.message.code)
     }
 
     #[test]
     fn suggested_models_are_to_be_rejected_before_anything_else() {
         let verdict = Verdict::new(&state_of(&[]));
-        assert_eq!(labels(&verdict), ["Reject 3 suggested"]);
-        assert_eq!(verdict.note, "of 19 models, as a first step");
+        assert_eq!(commands(&verdict), [&Command::from(reject())]);
+        let Edit::RejectEach(models) = reject() else {
+            panic!("several models are rejected")
+        };
+        assert_eq!(models.len(), 3);
+        assert!(verdict.note.contains(" 19 "), "{}", verdict.note);
     }
 
     #[test]
@@ -309,15 +325,22 @@ mod tests {
         let verdict = Verdict::new(&state_of(&[reject()]));
         let [gain, phase] = &verdict.rows;
         assert_eq!(
-            (gain.here, gain.everywhere, gain.words.as_str()),
+            (gain.here, gain.everywhere, gain.message.code),
             (count(5, 5), count(55, 55), "matched")
         );
         assert_eq!((phase.here, phase.everywhere), (count(0, 5), count(0, 55)));
         // The constrained responses of the example need leads of 56 to 72 ms in condition 10
         // (medians of D).
-        assert_eq!(phase.words, "lags by ≈ 66 ms");
+        assert_eq!(phase.message.code, "lag-remains");
+        assert!(
+            phase.message.text.contains(" 66 "),
+            "{}",
+            phase.message.text
+        );
         assert!(!verdict.is_met() && verdict.caution.is_none());
-        assert_eq!(labels(&verdict), ["Use leads", "Find the cause first"]);
+        let leads = setting::PHASE.to(PhaseCorrection::Lead).into();
+        let reasons = LayoutCommand::ShowSheet(Some(Sheet::Reasons)).into();
+        assert_eq!(commands(&verdict), [&leads, &reasons]);
     }
 
     #[test]
@@ -327,11 +350,9 @@ mod tests {
             setting::PHASE.to(PhaseCorrection::Lead),
         ]));
         assert!(verdict.is_met(), "{verdict:?}");
-        let caution = verdict.caution.as_deref().unwrap_or_default();
-        assert!(
-            caution.starts_with("Price: +") && caution.ends_with(" dB above 12 rad/s"),
-            "{caution}"
-        );
+        let caution = verdict.caution.clone().expect("leads have a price");
+        assert_eq!(caution.code, "lead-price");
+        assert!(caution.text.contains(" 12 rad/s"), "{}", caution.text);
         assert_eq!(verdict.steps[0].command, export());
     }
 
@@ -387,7 +408,7 @@ mod tests {
             within
                 .caution
                 .as_ref()
-                .is_some_and(|words| words.contains("2 poles")),
+                .is_some_and(|caution| caution.code == "unstable-in-band"),
             "{within:?}"
         );
         assert_eq!(
@@ -405,39 +426,59 @@ mod tests {
             .chain([reject()])
             .collect();
         let verdict = Verdict::new(&state_of(&release));
-        assert_eq!(verdict.rows[0].words, "fitted, none held");
-        assert_eq!(labels(&verdict), ["Hold the on-axis responses"]);
+        assert_eq!(codes(&verdict), ["none-held"; 2]);
+        assert_eq!(commands(&verdict), [&Command::from(Edit::ConstrainOnAxis)]);
         assert!(!verdict.is_met());
     }
 
     #[test]
     fn responses_with_a_common_channel_are_reported_by_its_name() {
         let state = state_of(&[]);
-        let words = |pairs: &[(usize, usize)]| {
+        let channel = |pairs: &[(usize, usize)]| {
             let pairs: Vec<Pair> = pairs
                 .iter()
                 .map(|(output, input)| Pair::new(*output, *input))
                 .collect();
-            shared_words(&state, &pairs)
+            shared_channel(&state, &pairs)
         };
-        assert_eq!(words(&[(2, 2), (4, 2)]).as_deref(), Some("2 share PED"));
+        assert_eq!(channel(&[(2, 2), (4, 2)]), Some("PED"));
+        assert_eq!(channel(&[(1, 0), (1, 3), (1, 2)]), Some("Q"));
         assert_eq!(
-            words(&[(1, 0), (1, 3), (1, 2)]).as_deref(),
-            Some("3 share Q")
-        );
-        assert_eq!(
-            (words(&[(2, 2), (5, 3)]), words(&[(2, 2)]), words(&[])),
+            (channel(&[(2, 2), (5, 3)]), channel(&[(2, 2)]), channel(&[])),
             (None, None, None)
         );
     }
 
     #[test]
     fn a_common_lag_is_one_number_and_unequal_lags_are_a_range() {
-        assert_eq!(lag_words(&mut [60.0]), "lags by 60 ms");
-        assert_eq!(lag_words(&mut [60.0, 70.0, 64.0]), "lags by ≈ 64 ms");
-        assert_eq!(lag_words(&mut [40.0, 106.0, 62.0]), "lags 40–106 ms");
-        assert_eq!(lag_words(&mut [-5.0, 106.0, 62.0]), "lags −5 to 106 ms");
-        assert_eq!(lag_words(&mut [-90.0, -10.0, -30.0]), "leads 10–90 ms");
+        for (left_ms, lag, words) in [
+            (vec![60.0], RemainingLag::Equal(60.0), ["60", "lags"]),
+            (
+                vec![60.0, 70.0, 64.0],
+                RemainingLag::AboutEqual(64.0),
+                ["64", "≈"],
+            ),
+            (
+                vec![40.0, 106.0, 62.0],
+                RemainingLag::Range([40.0, 106.0]),
+                ["40–106", "lags"],
+            ),
+            (
+                vec![-5.0, 106.0, 62.0],
+                RemainingLag::Range([-5.0, 106.0]),
+                ["−5 to 106", "lags"],
+            ),
+            (
+                vec![-90.0, -10.0, -30.0],
+                RemainingLag::Range([-10.0, -90.0]),
+                ["10–90", "leads"],
+            ),
+        ] {
+            let found = RemainingLag::new(&mut left_ms.clone());
+            assert_eq!(found, lag, "{left_ms:?}");
+            let text = found.words();
+            assert!(words.iter().all(|word| text.contains(word)), "{text}");
+        }
     }
 
     #[test]
@@ -445,10 +486,9 @@ mod tests {
         let bounds = setting::GAIN_BOUNDS.to(Value::Range([0.99, 1.01]));
         let verdict = Verdict::new(&state_of(&[reject(), bounds]));
         assert!(
-            !verdict.rows[0].is_met && verdict.rows[0].words.ends_with("stops at a bound"),
+            !verdict.rows[0].is_met && verdict.rows[0].message.code == "stops-at-bound",
             "{verdict:?}"
         );
-        assert_eq!(labels(&verdict)[0], "Widen the bound");
         let Command::Study(StudyCommand::Edit(widen)) = &verdict.steps[0].command else {
             panic!("{verdict:?}")
         };

@@ -10,26 +10,27 @@ use gdcm_study::results::remark_kind::RemarkKind;
 
 use crate::gui::state::window_state::State;
 use crate::gui::views::used_couplings;
+use crate::message::Message;
 
 /// Returns the most important caution: couplings that are requested but missing or that make poles
 /// unstable; else the lead price; else any other caution about couplings; else the cost of the
 /// schedule in this condition.
-pub(super) fn caution(state: &State, shown: &ConditionAnalysis) -> Option<String> {
+pub(super) fn caution(state: &State, shown: &ConditionAnalysis) -> Option<Message> {
     let couplings = coupling_caution(state);
     if let Some(caution) = &couplings
         && caution.kind == RemarkKind::Trouble
     {
-        return Some(caution.words.clone());
+        return Some(caution.message.clone());
     }
     lead_caution(shown)
-        .or(couplings.map(|caution| caution.words))
+        .or(couplings.map(|caution| caution.message))
         .or_else(|| schedule_caution(state, shown))
 }
 
 /// Caution about the couplings in use, in a few words.
 struct CouplingCaution {
     kind: RemarkKind,
-    words: String,
+    message: Message,
 }
 
 /// Returns the most serious remark on the couplings in use, in a few words; the sheet of reasons
@@ -38,7 +39,7 @@ fn coupling_caution(state: &State) -> Option<CouplingCaution> {
     if state.analysis()?.asked_couplings().is_err() {
         return Some(CouplingCaution {
             kind: RemarkKind::Trouble,
-            words: "No couplings could be found".to_owned(),
+            message: Message::new("no-couplings", "No couplings could be found"),
         });
     }
     let cautions = coupling_cautions(used_couplings(state)?).len();
@@ -47,15 +48,19 @@ fn coupling_caution(state: &State) -> Option<CouplingCaution> {
         let poles = counted(unstable, "pole");
         return Some(CouplingCaution {
             kind: RemarkKind::Trouble,
-            words: format!("Couplings: {poles} unstable in the band"),
+            message: Message::new(
+                "unstable-in-band",
+                format!("Couplings: {poles} unstable in the band"),
+            ),
         });
     }
     if cautions == 0 {
         return None;
     }
+    let text = format!("Couplings: {}", counted(cautions, "caution"));
     Some(CouplingCaution {
         kind: RemarkKind::Caution,
-        words: format!("Couplings: {}", counted(cautions, "caution")),
+        message: Message::new("coupling-cautions", text),
     })
 }
 
@@ -69,7 +74,7 @@ pub(super) fn unstable_in_band(state: &State) -> usize {
 
 /// Returns the lead price: the maximum magnitude that the filters of a constrained response add
 /// above the band (M15.6); `None` up to 0.05 dB.
-fn lead_caution(shown: &ConditionAnalysis) -> Option<String> {
+fn lead_caution(shown: &ConditionAnalysis) -> Option<Message> {
     let price = LeadPrice::new(&shown.compensated.as_ref()?.leads)?;
     let most_db = shown
         .held()
@@ -80,22 +85,21 @@ fn lead_caution(shown: &ConditionAnalysis) -> Option<String> {
         return None;
     }
     let top = number(price.limit_rad_s);
-    Some(format!(
-        "Price: {} dB above {top} rad/s",
-        signed(most_db, 0)
-    ))
+    let text = format!("Price: {} dB above {top} rad/s", signed(most_db, 0));
+    Some(Message::new("lead-price", text))
 }
 
 /// Returns a caution if the schedule costs more than twice the J of the condition's own correction
 /// (M12).
-fn schedule_caution(state: &State, shown: &ConditionAnalysis) -> Option<String> {
+fn schedule_caution(state: &State, shown: &ConditionAnalysis) -> Option<Message> {
     let schedule = state.analysis()?.schedule.as_ref().ok()?;
     for caution in &schedule.cautions {
         if let ScheduleCaution::CostsMore(cost) = caution
             && cost.condition == shown.condition.id()
         {
             let (scheduled, own) = told_apart(cost.scheduled, cost.own, 0);
-            return Some(format!("Scheduled: J {scheduled}, own {own}"));
+            let text = format!("Scheduled: J {scheduled}, own {own}");
+            return Some(Message::new(caution.code(), text));
         }
     }
     None

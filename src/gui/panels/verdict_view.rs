@@ -108,11 +108,11 @@ fn row_ui(ui: &mut Ui, row: &VerdictRow, is_all_met: bool, palette: &Palette) {
     );
     let room = all.left() - rect.left() - WORDS_LEFT - 6.0;
     // If the band does not fit, only "matched" is shown.
-    let fits = text_width(ui, &row.words, body()) <= room;
+    let fits = text_width(ui, &row.message.text, body()) <= room;
     let words = if fits {
-        row.words.as_str()
+        row.message.text.as_str()
     } else {
-        row.words.split(", ").next().unwrap_or_default()
+        row.message.text.split(", ").next().unwrap_or_default()
     };
     let words = elided(ui, words, room, BODY_SIZE);
     painted_text(ui, rect, WORDS_LEFT, &words, body(), palette.text);
@@ -129,7 +129,7 @@ fn steps_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette, commands: &mut Ve
     let remarks = remarks_step(verdict);
     if verdict.caution.is_none() || primary.is_none() {
         let line = StepsLine {
-            caution: verdict.caution.as_deref(),
+            caution: verdict.caution_text(),
             primary,
             links,
             remarks: remarks.as_ref(),
@@ -141,7 +141,7 @@ fn steps_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette, commands: &mut Ve
     // A caution and a pending decision each get their own line. The reasons explain the caution.
     let (reasons, others) = links.into_iter().partition(|step| shows_reasons(step));
     let caution_line = StepsLine {
-        caution: verdict.caution.as_deref(),
+        caution: verdict.caution_text(),
         primary: None,
         links: reasons,
         remarks: remarks.as_ref(),

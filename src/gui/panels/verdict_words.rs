@@ -8,32 +8,37 @@ use gdcm_study::ConditionAnalysis;
 
 use super::advice::joined;
 use crate::gui::state::window_state::State;
+use crate::message::Message;
 
-/// Formats the verdict on the gains: "matched", "LAT → P stops at a bound", "2 share PED", "3
+/// Returns the verdict on the gains: "matched", "LAT → P stops at a bound", "2 share PED", "3
 /// disagree".
-pub(super) fn gain_words(state: &State, shown: &ConditionAnalysis) -> String {
+pub(super) fn gain_message(state: &State, shown: &ConditionAnalysis) -> Message {
     let Some(miss) = shown.gains.unmatched.first() else {
-        return "matched".to_owned();
+        return Message::new("matched", "matched");
     };
     match miss.why.kind {
         ConflictKind::AboveUpper { .. }
         | ConflictKind::BelowLower { .. }
         | ConflictKind::TooFarApart { .. } => {
-            format!(
-                "{} stops at a bound",
-                joined(&state.dataset().pair_name(miss.pair))
-            )
+            let pair = joined(&state.dataset().pair_name(miss.pair));
+            Message::new("stops-at-bound", format!("{pair} stops at a bound"))
         }
         ConflictKind::Loop { .. } | ConflictKind::Unclear => {
             let missed: Vec<Pair> = shown.gains.unmatched.iter().map(|miss| miss.pair).collect();
-            shared_words(state, &missed)
-                .unwrap_or_else(|| format!("{} disagree", miss.why.entries.len().max(2)))
+            let count = miss.why.entries.len().max(2);
+            match shared_channel(state, &missed) {
+                Some(channel) => Message::new(
+                    "shared-channel",
+                    format!("{} share {channel}", missed.len()),
+                ),
+                None => Message::new("disagree", format!("{count} disagree")),
+            }
         }
     }
 }
 
-/// Returns "2 share PED" for conflicting responses with a common input or output; otherwise `None`.
-pub(super) fn shared_words(state: &State, pairs: &[Pair]) -> Option<String> {
+/// Returns the name of the input or output that several conflicting responses have in common.
+pub(super) fn shared_channel<'a>(state: &'a State, pairs: &[Pair]) -> Option<&'a str> {
     let [first, rest @ ..] = pairs else {
         return None;
     };
@@ -47,29 +52,64 @@ pub(super) fn shared_words(state: &State, pairs: &[Pair]) -> Option<String> {
     } else {
         return None;
     };
-    Some(format!("{} share {}", pairs.len(), channel.name))
+    Some(&channel.name)
 }
 
-/// Returns "lags by ≈ 66 ms" if the lags of all responses are about equal (by the criterion for a
-/// common lead), otherwise "lags 20–110 ms"; short enough for the narrowest window.
-pub(super) fn lag_words(left_ms: &mut [f64]) -> String {
-    let least = left_ms.iter().copied().fold(f64::INFINITY, f64::min);
-    let most = left_ms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let middle = median(left_ms);
-    let verb = if middle >= 0.0 { "lags" } else { "leads" };
-    let ends = if middle >= 0.0 {
-        [least, most]
-    } else {
-        [-most, -least]
-    };
-    let [low, high] = ends.map(|end| telling(end, 0).replace('-', "\u{2212}"));
-    if low == high {
-        format!("{verb} by {low} ms")
-    } else if most - least <= 0.5 * middle.abs() {
-        format!("{verb} by ≈ {} ms", telling(middle.abs(), 0))
-    } else {
-        // "-5–60" would look like two minus signs.
-        let to = if least * most < 0.0 { " to " } else { "–" };
-        format!("{verb} {low}{to}{high} ms")
+/// Lags that the correction leaves \[ms\]; negative values are leads.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum RemainingLag {
+    /// All lags are displayed as the same number.
+    Equal(f64),
+    /// The lags are about equal (by the criterion for a common lead); their median.
+    AboutEqual(f64),
+    /// The lowest and the highest lag.
+    Range([f64; 2]),
+}
+
+impl RemainingLag {
+    /// Summarises the lags of all responses, of which there is at least one.
+    pub(super) fn new(left_ms: &mut [f64]) -> Self {
+        let least = left_ms.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = left_ms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let middle = median(left_ms);
+        if telling(least, 0) == telling(most, 0) {
+            Self::Equal(middle)
+        } else if most - least <= 0.5 * middle.abs() {
+            Self::AboutEqual(middle)
+        } else if middle >= 0.0 {
+            Self::Range([least, most])
+        } else {
+            Self::Range([most, least])
+        }
     }
+
+    /// Returns "lags by ≈ 66 ms", "lags 20–110 ms"; short enough for the narrowest window.
+    pub(super) fn words(self) -> String {
+        match self {
+            Self::Equal(lag) => format!("{} by {} ms", verb(lag), lag_text(lag.abs())),
+            Self::AboutEqual(lag) => format!("{} by ≈ {} ms", verb(lag), lag_text(lag.abs())),
+            Self::Range([first, last]) => {
+                // The range of leads begins with its lag nearest to zero.
+                let leads = first > last;
+                let verb = if leads { "leads" } else { "lags" };
+                let sign = if leads { -1.0 } else { 1.0 };
+                // "-5–60" would look like two minus signs.
+                let to = if first * last < 0.0 { " to " } else { "–" };
+                format!(
+                    "{verb} {}{to}{} ms",
+                    lag_text(sign * first),
+                    lag_text(sign * last)
+                )
+            }
+        }
+    }
+}
+
+fn verb(lag_ms: f64) -> &'static str {
+    if lag_ms >= 0.0 { "lags" } else { "leads" }
+}
+
+/// Formats a lag in whole milliseconds, with a minus sign.
+fn lag_text(lag_ms: f64) -> String {
+    telling(lag_ms, 0).replace('-', "\u{2212}")
 }

@@ -117,7 +117,7 @@ impl AxisStrip<'_> {
                     view.axis_mut(self.axis).choose(range);
                     is_open = false;
                 }
-                Err(refusal) => form.refuse(refusal),
+                Err(refusal) => form.refuse(refusal.text),
             },
         }
         if is_open {

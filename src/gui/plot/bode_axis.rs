@@ -6,6 +6,7 @@ use gdcm_plot::figure::Range;
 use super::bode_scene::BodeScene;
 use super::drawn_curves::Pane;
 use super::ticks::Ticks;
+use crate::message::Message;
 
 /// Axis of a Bode plot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,24 +53,31 @@ impl BodeAxis {
     }
 
     /// Parses the range between two typed limits, or returns the reason why it cannot be shown.
-    pub(super) fn range(self, scene: &BodeScene<'_>, texts: &[String; 2]) -> Result<Range, String> {
+    pub(super) fn range(
+        self,
+        scene: &BodeScene<'_>,
+        texts: &[String; 2],
+    ) -> Result<Range, Message> {
         let min = self.place(scene, &texts[0])?;
         let max = self.place(scene, &texts[1])?;
         if min < max {
             Ok(Range { min, max })
         } else {
-            Err("the lower limit must be below the upper limit".to_owned())
+            Err(Message::new(
+                "limits-not-increasing",
+                "the lower limit must be below the upper limit",
+            ))
         }
     }
 
     /// Converts a typed number, with an ASCII or a typographic minus sign, to an axis coordinate.
-    fn place(self, scene: &BodeScene<'_>, text: &str) -> Result<f64, String> {
+    fn place(self, scene: &BodeScene<'_>, text: &str) -> Result<f64, Message> {
         let text = text.trim();
         let kind = match self {
             Self::Frequency => "frequency",
             Self::Values(_) => "value",
         };
-        let refusal = || format!("\"{text}\" is not a {kind}");
+        let refusal = || Message::new("not-on-axis", format!("\"{text}\" is not a {kind}"));
         let number: f64 = text
             .replace('\u{2212}', "-")
             .parse()
@@ -125,18 +133,16 @@ mod tests {
             BodeAxis::Frequency
                 .range(&scene, &texts(min, max))
                 .unwrap_err()
-                .to_string()
         };
-        assert_eq!(
-            frequencies("3", "2"),
-            "the lower limit must be below the upper limit"
-        );
-        assert_eq!(
-            frequencies("2", "2"),
-            "the lower limit must be below the upper limit"
-        );
-        assert_eq!(frequencies("0", "2"), "\"0\" is not a frequency");
-        assert_eq!(frequencies("1", "two"), "\"two\" is not a frequency");
+        assert_eq!(frequencies("3", "2").code, "limits-not-increasing");
+        assert_eq!(frequencies("2", "2").code, "limits-not-increasing");
+        for (refusal, text) in [
+            (frequencies("0", "2"), "\"0\""),
+            (frequencies("1", "two"), "\"two\""),
+        ] {
+            assert_eq!(refusal.code, "not-on-axis");
+            assert!(refusal.text.contains(text), "{refusal:?}");
+        }
         let values = BodeAxis::Values(Pane::Magnitude);
         assert_eq!(
             values.range(&scene, &texts("\u{2212}20", "5")),

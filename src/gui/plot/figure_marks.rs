@@ -6,8 +6,9 @@ use egui_plot::{PlotPoint, PlotTransform};
 use gdcm_plot::figure::axis::Scale;
 use gdcm_plot::figure::drawing::{Area, Shape};
 use gdcm_plot::figure::figure::{Dot, Dots};
+use gdcm_plot::figure::marks::MarkId;
 use gdcm_plot::figure::paint::DotStyle;
-use gdcm_plot::figure::{Mark, MarkId, Panel, Range};
+use gdcm_plot::figure::{Mark, Panel, Range};
 
 use super::canvas::{Canvas, LETTERS_PT, area};
 use super::viewed_range::ranges_of;

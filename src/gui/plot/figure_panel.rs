@@ -5,7 +5,8 @@ use egui_plot::{PlotPoint, PlotTransform};
 
 use gdcm_plot::figure::axis::{FrequencyUnit, Scale};
 use gdcm_plot::figure::figure::Along;
-use gdcm_plot::figure::{MarkId, Panel, Range};
+use gdcm_plot::figure::marks::MarkId;
+use gdcm_plot::figure::{Panel, Range};
 
 use super::figure_marks::{DrawnMarks, MarkScene, RING};
 use super::figure_scene::FigureScene;

@@ -2,7 +2,8 @@
 
 use egui::{Modifiers, Vec2};
 
-use gdcm_plot::figure::{Figure, MarkId};
+use gdcm_plot::figure::Figure;
+use gdcm_plot::figure::marks::MarkId;
 use gdcm_words::derivation::ExplainTarget;
 
 use super::derivation_menu::Question;

@@ -3,7 +3,8 @@
 use egui::{CursorIcon, FontId, Pos2, Rect, Response, Ui, UiBuilder, Vec2, pos2, vec2};
 use egui_plot::{PlotPoint, PlotTransform};
 
-use gdcm_plot::figure::{Figure, MarkId, Range};
+use gdcm_plot::figure::marks::MarkId;
+use gdcm_plot::figure::{Figure, Range};
 
 use super::derivation_menu::QuestionMenu;
 use super::figure_panel::{PanelView, PlacedPanel, PlacedResponse, TITLE_HEIGHT, VALUE_AXIS_WIDTH};

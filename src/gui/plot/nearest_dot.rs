@@ -3,8 +3,9 @@
 use egui::Pos2;
 use egui_plot::{PlotPoint, PlotTransform};
 
+use gdcm_plot::figure::Panel;
 use gdcm_plot::figure::figure::Dot;
-use gdcm_plot::figure::{MarkId, Panel};
+use gdcm_plot::figure::marks::MarkId;
 
 /// Maximum distance between the pointer and a picked dot \[pt\].
 const DOT_RADIUS: f32 = 10.0;

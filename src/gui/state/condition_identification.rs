@@ -17,6 +17,8 @@ use gdcm_sysid::identification::{CautionNote, ChannelPreparation, Identification
 use gdcm_sysid::records::{ColumnUse, LaidOutRecord, RecordChannels};
 
 use super::condition_records::ConditionRecords;
+use crate::message::Message;
+use crate::message_codes::layout_problem_code;
 
 impl ConditionRecords {
     /// Returns the latest identification if it succeeded.
@@ -34,7 +36,7 @@ impl ConditionRecords {
         condition: ConditionId,
         band: [f64; 2],
         channels: &RecordChannels,
-    ) -> Result<IdentifyJob, String> {
+    ) -> Result<IdentifyJob, Message> {
         let mut preparation = self.preparation();
         for reference in &self.references {
             preparation
@@ -46,7 +48,7 @@ impl ConditionRecords {
             rows.push(self.with_references(row, channels)?);
         }
         let mut request = IdentificationRequest::from_used(rows.iter(), preparation, band)
-            .map_err(|error| error.to_string())?;
+            .map_err(|error| Message::new("no-identification", error.to_string()))?;
         request.options.references = self.references.len();
         self.search.set(&mut request.options);
         Ok(IdentifyJob::new(condition, request))
@@ -57,7 +59,7 @@ impl ConditionRecords {
         &self,
         row: &LaidOutRecord,
         channels: &RecordChannels,
-    ) -> Result<LaidOutRecord, String> {
+    ) -> Result<LaidOutRecord, Message> {
         if self.references.is_empty() {
             return Ok(row.clone());
         }
@@ -66,14 +68,18 @@ impl ConditionRecords {
         for reference in &self.references {
             let Some(column) = row.table.find(reference) else {
                 let name = &row.table.name;
-                return Err(format!("{name}: there is no column \"{reference}\""));
+                let text = format!("{name}: there is no column \"{reference}\"");
+                return Err(Message::new("no-such-column", text));
             };
             layout.inputs.push(Some(ColumnUse::as_it_is(column)));
             channels.inputs.push(ChannelRule::named(reference));
         }
         let row = LaidOutRecord::new(Arc::clone(&row.table), layout, row.guess.clone(), &channels);
         match row.problems.first() {
-            Some(problem) => Err(format!("{}: {problem}", row.table.name)),
+            Some(problem) => {
+                let text = format!("{}: {problem}", row.table.name);
+                Err(Message::new(layout_problem_code(problem), text))
+            }
             None => Ok(row),
         }
     }

@@ -20,6 +20,8 @@ use gdcm_sysid::identification::{
 };
 use gdcm_sysid::records::{LaidOutRecord, RecordChannels, RecordSource};
 
+use crate::message::Message;
+
 /// Result of adding a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AddedRecord {
@@ -97,9 +99,9 @@ impl ConditionRecords {
         index: usize,
         part_s: [f64; 2],
         channels: &RecordChannels,
-    ) -> Result<(), String> {
+    ) -> Result<(), Message> {
         let Some(whole) = self.rows.get_mut(index) else {
-            return Err("there is no such record".to_owned());
+            return Err(Message::new("unknown-record", "there is no such record"));
         };
         // A pointer gives more digits than anyone can read: hundredths of a second are enough.
         let part_s = part_s.map(|time_s| (100.0 * time_s).round() / 100.0);
@@ -108,7 +110,7 @@ impl ConditionRecords {
         if let Some(flight) = &part.flight
             && flight.time_s.len() < 2
         {
-            return Err(no_samples(whole, part_s));
+            return Err(Message::new("no-samples", no_samples(whole, part_s)));
         }
         let source = whole.table.source.clone();
         let was_used = whole.used;

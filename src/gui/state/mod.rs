@@ -27,6 +27,7 @@ pub mod pair_set;
 pub mod panel_tables;
 pub mod poles_display;
 pub mod preferences;
+pub mod record_change;
 pub mod records;
 pub mod records_page;
 pub mod requirements_page;

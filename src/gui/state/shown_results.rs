@@ -46,6 +46,7 @@ use gdcm_study::{Analysis, AssessmentTable, ConditionAnalysis, CouplingCorrectio
 
 use super::value_uncertainty::ValueUncertainty;
 use super::window_state::State;
+use crate::message::Message;
 
 impl State {
     /// Returns the newest analysis, if it belongs to the displayed dataset.
@@ -282,10 +283,10 @@ impl State {
 
     /// Returns the message shown after a computation was stopped: results are outdated, or there
     /// are none.
-    pub fn after_stop(&self) -> &'static str {
+    pub fn after_stop(&self) -> Message {
         match self.analysis() {
-            Some(_) => "the results are older than the settings",
-            None => "there are no results yet",
+            Some(_) => Message::new("older-results", "the results are older than the settings"),
+            None => Message::new("no-results", "there are no results yet"),
         }
     }
 
@@ -307,19 +308,16 @@ mod tests {
     fn after_a_stop_the_results_of_this_dataset_stay() {
         let study = Study::new(embedded_example().unwrap().dataset);
         let mut state = State::new(study.clone(), String::new(), Vec::new());
-        assert_eq!(state.after_stop(), "there are no results yet");
+        assert_eq!(state.after_stop().code, "no-results");
         state.results.analysis = Some(Arc::new(
             Engine::default().analyze(&study, &Unobserved).unwrap(),
         ));
-        assert_eq!(
-            state.after_stop(),
-            "the results are older than the settings"
-        );
+        assert_eq!(state.after_stop().code, "older-results");
         let other = Study::new(embedded_example().unwrap().dataset);
         state.study = other;
         assert_eq!(
-            state.after_stop(),
-            "there are no results yet",
+            state.after_stop().code,
+            "no-results",
             "no results of the displayed dataset"
         );
     }

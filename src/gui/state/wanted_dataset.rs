@@ -12,6 +12,7 @@ use gdcm_sysid::records::{RecordChannels, RecordColumn, RecordTable};
 
 use super::condition_records::ConditionRecords;
 use crate::gui::widgets::number_entry::typed_number;
+use crate::message::Message;
 
 /// Column meanings that are pilot controls. The reference "TARG" is neither an input nor an output.
 const CONTROLS: [&str; 4] = ["LON", "LAT", "PED", "COL"];
@@ -30,7 +31,7 @@ pub struct WantedDataset {
     /// Descriptions of the record columns.
     pub columns: Vec<String>,
     /// Reasons why the dataset could not be made.
-    pub problems: Vec<String>,
+    pub problems: Vec<Message>,
 }
 
 impl WantedDataset {
@@ -64,11 +65,12 @@ impl WantedDataset {
     ///
     /// # Errors
     /// Messages about invalid channels or an invalid band.
-    pub fn channels(&self) -> Result<(RecordChannels, Band), String> {
+    pub fn channels(&self) -> Result<(RecordChannels, Band), Message> {
         let inputs = parse_rules("inputs", &self.inputs)?;
         let outputs = parse_rules("outputs", &self.outputs)?;
         let [min, max] = &self.band;
-        let band = Band::new(parse_end(min), parse_end(max)).map_err(|error| error.to_string())?;
+        let band = Band::new(parse_end(min), parse_end(max))
+            .map_err(|error| Message::new("wrong-band", error.to_string()))?;
         let channels = RecordChannels {
             inputs,
             outputs,
@@ -121,8 +123,13 @@ fn column_description(table: &RecordTable, column: &RecordColumn) -> String {
 }
 
 /// Parses a channel list; `side` names the list in an error message.
-fn parse_rules(side: &str, text: &str) -> Result<Vec<ChannelRule>, String> {
-    let list: ChannelList = text.parse().map_err(|error| format!("{side}: {error}"))?;
+fn parse_rules(side: &str, text: &str) -> Result<Vec<ChannelRule>, Message> {
+    let list: ChannelList = match text.parse() {
+        Ok(list) => list,
+        Err(error) => {
+            return Err(Message::new("wrong-channels", format!("{side}: {error}")));
+        }
+    };
     Ok(list.channels.iter().map(SaidChannel::rule).collect())
 }
 

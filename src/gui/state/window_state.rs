@@ -9,13 +9,14 @@ use gdcm_io::Example;
 use gdcm_model::dataset::{BundleKind, Condition, Dataset, ModelId};
 use gdcm_study::Study;
 use gdcm_study::decisions::dataset_differences::Difference;
-use gdcm_study::decisions::history::History;
+use gdcm_study::decisions::history::{History, Step};
 
 use super::assembling::AssemblyState;
 use super::computed_results::Results;
 use super::display::Display;
 use super::forms::Forms;
 use super::notices::{MessageBar, Notice};
+use super::record_change::RecordChange;
 use super::records::{RecordsBefore, RecordsState};
 
 /// Recently opened or saved file.
@@ -29,6 +30,12 @@ pub struct RecentFile {
     pub missing: bool,
 }
 
+/// Undo history of the study and of the flight records.
+pub type UndoHistory = History<RecordsBefore, RecordChange>;
+
+/// Step of the undo history.
+pub type UndoStep = Step<RecordsBefore, RecordChange>;
+
 /// Complete state of the window.
 #[derive(Debug)]
 pub struct State {
@@ -41,7 +48,7 @@ pub struct State {
     /// Dataset to which [`Self::follow_dataset`] last adapted the displayed selection.
     followed: Arc<Dataset>,
     /// Undo history.
-    pub history: History<RecordsBefore>,
+    pub history: UndoHistory,
     /// File name of the study, or a substitute if it has not been saved.
     pub study_name: String,
     /// Whether there are unsaved decisions.

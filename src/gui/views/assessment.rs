@@ -3,8 +3,9 @@
 
 use egui::{Align, Label, Layout, Rect, RichText, Sense, Ui, Vec2, vec2};
 
+use gdcm_plot::figure::Figure;
 use gdcm_plot::figure::figure::Plot;
-use gdcm_plot::figure::{Figure, MarkId};
+use gdcm_plot::figure::marks::MarkId;
 use gdcm_study::AssessmentTable;
 
 use super::assessment_content::{assessed_pairs, assessment_sentences, assessment_text_table};

@@ -3,7 +3,7 @@
 
 use gdcm_model::dataset::{ConditionId, Dataset, Pair};
 use gdcm_model::number_format::decimals;
-use gdcm_plot::figure::MarkId;
+use gdcm_plot::figure::marks::MarkId;
 use gdcm_study::AssessmentTable;
 use gdcm_words::assessment::{missing_cost_text, not_assessed_text};
 use gdcm_words::derivation::ExplainTarget;

@@ -84,9 +84,7 @@ impl SettingControls<'_, '_> {
                 Ok(()) => self.set(setting, ends),
                 // A dragged end stops before the other end, without a message.
                 Err(_) if low.is_dragged || high.is_dragged => {}
-                Err(error) => self
-                    .commands
-                    .push(FormCommand::Refuse(error.to_string()).into()),
+                Err(error) => self.commands.push(FormCommand::Refuse(error.into()).into()),
             }
         } else {
             match switched {

@@ -5,8 +5,9 @@ use egui::{Ui, Vec2, vec2};
 
 use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::units::telling;
+use gdcm_plot::figure::Figure;
+use gdcm_plot::figure::marks::MarkId;
 use gdcm_plot::figure::requirements::{bandwidth_pairs, bandwidth_place};
-use gdcm_plot::figure::{Figure, MarkId};
 use gdcm_study::results::required_bandwidth::BandwidthFinding;
 use gdcm_study::results::requirement_role::RequirementRole;
 use gdcm_study::results::requirements::Requirements;

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use egui::{Button, Ui};
 
 use gdcm_method::requirements::{AttitudeOutput, LevelBoundaries};
+use gdcm_study::decisions::requirement_settings::RequirementPart;
 
 use super::requirement_limits::requirement_edit;
 use crate::gui::commands::command::Command;
@@ -46,13 +47,17 @@ fn attitude_commands_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>)
         let is_on = state.study.requirements.attitude_command.contains(name);
         let hint = "The stick commands the attitude instead of its rate; the phase margin alone then determines the bandwidth";
         if let Some(is_on) = check_ui(ui, is_on, format!("attitude of {name}"), hint) {
-            commands.push(requirement_edit(state, "attitude command", |settings| {
-                if is_on {
-                    settings.attitude_command.insert(name.clone());
-                } else {
-                    settings.attitude_command.remove(name);
-                }
-            }));
+            commands.push(requirement_edit(
+                state,
+                RequirementPart::AttitudeCommand,
+                |settings| {
+                    if is_on {
+                        settings.attitude_command.insert(name.clone());
+                    } else {
+                        settings.attitude_command.remove(name);
+                    }
+                },
+            ));
         }
     }
 }
@@ -67,9 +72,13 @@ fn levels_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
     };
     ui.label(palette.small(text));
     if levels > 0 && ui.small_button("Remove levels").clicked() {
-        commands.push(requirement_edit(state, "levels", |settings| {
-            settings.levels = LevelBoundaries::default();
-        }));
+        commands.push(requirement_edit(
+            state,
+            RequirementPart::Levels,
+            |settings| {
+                settings.levels = LevelBoundaries::default();
+            },
+        ));
     }
     let hint = "Reads levels from a file. None are built in, because they depend on the task and the category (docs/requirements.md)";
     let ask = FileCommand::AskRequirementTable(RequirementTable::Levels);

@@ -4,7 +4,8 @@
 use egui::{Align2, FontId, Rect, Ui, pos2, vec2};
 
 use gdcm_plot::figure::gains::{Across, GainAxes, GainQuantity, Measure, channels_figure, quieten};
-use gdcm_plot::figure::{Figure, MarkId, all_channels};
+use gdcm_plot::figure::marks::MarkId;
+use gdcm_plot::figure::{Figure, all_channels};
 
 use super::error_bars::{error_bars_switch_ui, shown_uncertainty};
 use super::gain_plots::{GainPlots, LEAST_PLOT, gain_command};

@@ -7,8 +7,9 @@
 use egui::{Vec2, vec2};
 
 use gdcm_model::dataset::ConditionId;
+use gdcm_plot::figure::Figure;
 use gdcm_plot::figure::gains::{Across, GainQuantity};
-use gdcm_plot::figure::{Figure, MarkId};
+use gdcm_plot::figure::marks::MarkId;
 use gdcm_study::{Analysis, Edit};
 use gdcm_words::derivation::ExplainTarget;
 

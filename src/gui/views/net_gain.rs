@@ -3,8 +3,9 @@
 
 use egui::{Panel, RichText, ScrollArea, Ui};
 
+use gdcm_plot::figure::Figure;
 use gdcm_plot::figure::gains::{Across, GainQuantity, add_variant, net_gain_figure, quieten};
-use gdcm_plot::figure::{Figure, MarkId};
+use gdcm_plot::figure::marks::MarkId;
 
 use super::error_bars::shown_uncertainty;
 use super::gain_plots::{GainPlots, gain_command};

@@ -4,8 +4,9 @@ use egui::{Panel, Ui, Vec2, vec2};
 
 use gdcm_model::dataset::ModelId;
 use gdcm_plot::figure::figure::Along;
+use gdcm_plot::figure::marks::MarkId;
 use gdcm_plot::figure::poles::{PoleContents, damping_grid, poles_figure};
-use gdcm_plot::figure::{Figure, Mark, MarkId, Range, Role};
+use gdcm_plot::figure::{Figure, Mark, Range, Role};
 use gdcm_study::Edit;
 
 use super::frequency_curves::{bode_options, condition_source};

@@ -5,7 +5,9 @@ use egui::{CollapsingHeader, Color32, Label, Panel, ScrollArea, Ui, Vec2, vec2};
 
 use gdcm_method::requirements::{TestInput, TestInputShape};
 use gdcm_model::units::number;
-use gdcm_plot::figure::{Figure, OverTime};
+use gdcm_plot::figure::Figure;
+use gdcm_plot::figure::request::OverTime;
+use gdcm_study::decisions::requirement_settings::RequirementPart;
 use gdcm_study::results::record_comparison::Trend;
 use gdcm_words::Table;
 use gdcm_words::time_histories::record_history_table;
@@ -26,6 +28,7 @@ use crate::gui::widgets::number_entry::number_entry_ui;
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::panel_layout::restore_panel_size;
 use crate::gui::widgets::tables::{Sorting, TableLook, table_grid_ui};
+use crate::message::Message;
 
 /// Minimum plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(220.0, 96.0);
@@ -219,20 +222,24 @@ fn test_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
         choice_ui(ui, "Shape of the test input", &mut shape, &choices);
         if shape != test.shape {
             let changed = TestInput { shape, ..test };
-            commands.push(set_test_input(state, "shape of the test input", changed));
+            commands.push(set_test_input(state, RequirementPart::TestShape, changed));
         }
         ui.label(palette.small(format!("of {}, the input in focus, by", input.name)));
         let size = test_number_ui(ui, "Size of the test input", test.size, commands);
         if let Some(size) = size {
             let changed = TestInput { size, ..test };
-            commands.push(set_test_input(state, "size of the test input", changed));
+            commands.push(set_test_input(state, RequirementPart::TestSize, changed));
         }
         ui.label(palette.small(format!("{} for", input.unit)));
         let duration_s =
             test_number_ui(ui, "Duration of the test input", test.duration_s, commands);
         if let Some(duration_s) = duration_s {
             let changed = TestInput { duration_s, ..test };
-            commands.push(set_test_input(state, "duration of the test input", changed));
+            commands.push(set_test_input(
+                state,
+                RequirementPart::TestDuration,
+                changed,
+            ));
         }
         ui.label(palette.small("s"));
     });
@@ -244,10 +251,10 @@ fn test_number_ui(ui: &mut Ui, name: &str, value: f64, commands: &mut Vec<Comman
 }
 
 /// Returns the command that changes the test input, or that reports why it is refused.
-fn set_test_input(state: &State, name: &'static str, test: TestInput) -> Command {
+fn set_test_input(state: &State, part: RequirementPart, test: TestInput) -> Command {
     match test.checked() {
-        Ok(test) => requirement_edit(state, name, |settings| settings.test = test),
-        Err(why) => FormCommand::Refuse(why.to_string()).into(),
+        Ok(test) => requirement_edit(state, part, |settings| settings.test = test),
+        Err(why) => FormCommand::Refuse(Message::new("wrong-test-input", why.to_string())).into(),
     }
 }
 

@@ -3,7 +3,8 @@
 
 use std::sync::Arc;
 
-use gdcm_plot::figure::{FigureKind, OverTime};
+use gdcm_plot::figure::FigureKind;
+use gdcm_plot::figure::request::OverTime;
 use gdcm_study::jobs::requirement_jobs::{RecordHistoryJob, TestAnswersJob, TimeHistoriesJob};
 use gdcm_study::results::time_histories::HistoryRecord;
 use gdcm_words::missing_results::{no_record_history_text, no_result_text};

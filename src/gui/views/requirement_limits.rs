@@ -7,7 +7,9 @@ use egui::{Button, Grid, Ui};
 
 use gdcm_method::requirements::{ModeToleranceTable, ToleranceTable};
 use gdcm_study::Edit;
-use gdcm_study::decisions::requirement_settings::{OverviewLimits, RequirementSettings};
+use gdcm_study::decisions::requirement_settings::{
+    OverviewLimits, RequirementPart, RequirementSettings,
+};
 
 use super::limit_field::LimitField;
 use crate::gui::commands::command::Command;
@@ -17,6 +19,7 @@ use crate::gui::state::forms::RequirementTable;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::button_ui;
 use crate::gui::widgets::palette::Palette;
+use crate::message::Message;
 
 /// Draws the tolerances of time histories, row by row.
 pub fn tolerances_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
@@ -63,14 +66,14 @@ pub fn tolerances_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
     if rows != table.rows() {
         commands.push(match ToleranceTable::new("edited", rows) {
             Ok(table) => set_tolerances(state, table),
-            Err(why) => FormCommand::Refuse(why.to_string()).into(),
+            Err(why) => FormCommand::Refuse(Message::new(why.code(), why.to_string())).into(),
         });
     }
 }
 
 /// Returns the command that changes the tolerances of time histories.
 fn set_tolerances(state: &State, tolerances: ToleranceTable) -> Command {
-    requirement_edit(state, "tolerances", |settings| {
+    requirement_edit(state, RequirementPart::Tolerances, |settings| {
         settings.tolerances = tolerances;
     })
 }
@@ -120,14 +123,17 @@ pub fn mode_tolerances_ui(
     if rows != table.rows() {
         commands.push(match ModeToleranceTable::try_from(rows) {
             Ok(table) => set_mode_tolerances(state, table),
-            Err(why) => FormCommand::Refuse(why.to_string()).into(),
+            Err(why) => {
+                FormCommand::Refuse(Message::new("mode-tolerance-not-positive", why.to_string()))
+                    .into()
+            }
         });
     }
 }
 
 /// Returns the command that changes the tolerances of modes.
 fn set_mode_tolerances(state: &State, tolerances: ModeToleranceTable) -> Command {
-    requirement_edit(state, "tolerances of modes", |settings| {
+    requirement_edit(state, RequirementPart::ModeTolerances, |settings| {
         settings.mode_tolerances = tolerances;
     })
 }
@@ -157,7 +163,9 @@ pub fn overview_limits_ui(
     if changed != limits {
         commands.push(match changed.checked() {
             Ok(limits) => set_overview_limits(state, limits),
-            Err(why) => FormCommand::Refuse(why.to_string()).into(),
+            Err(why) => {
+                FormCommand::Refuse(Message::new("limit-not-positive", why.to_string())).into()
+            }
         });
     }
     if limits != OverviewLimits::default() && ui.small_button("Default limits").clicked() {
@@ -167,19 +175,18 @@ pub fn overview_limits_ui(
 
 /// Returns the command that changes the limits of the overview.
 fn set_overview_limits(state: &State, limits: OverviewLimits) -> Command {
-    requirement_edit(state, "limits of the overview", |settings| {
+    requirement_edit(state, RequirementPart::OverviewLimits, |settings| {
         settings.overview = limits;
     })
 }
 
-/// Returns the command that changes the settings of the requirements; `name` is used in the
-/// decision history.
+/// Returns the command that changes a part of the settings of the requirements.
 pub fn requirement_edit(
     state: &State,
-    name: &'static str,
+    part: RequirementPart,
     change: impl FnOnce(&mut RequirementSettings),
 ) -> Command {
     let mut settings = RequirementSettings::clone(&state.study.requirements);
     change(&mut settings);
-    Edit::SetRequirements(name, Arc::new(settings)).into()
+    Edit::SetRequirements(part, Arc::new(settings)).into()
 }

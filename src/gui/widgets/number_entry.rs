@@ -4,10 +4,11 @@
 use egui::Ui;
 
 use super::text_fields::entry_ui;
+use crate::message::Message;
 
 /// Reason why an entry is refused.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct RefusedEntry(pub String);
+pub struct RefusedEntry(pub Message);
 
 /// Like [`entry_ui`], but for a number; any other text is refused by a command with the reason.
 /// Returns `None` without a new number, and `Some(None)` if the field was emptied.
@@ -22,7 +23,8 @@ pub fn number_entry_ui<C: From<RefusedEntry>>(
     match typed_number(&entry_ui(ui, name, value, hint, width)?) {
         Ok(number) => Some(number),
         Err(why) => {
-            commands.push(RefusedEntry(format!("{name}: {why}")).into());
+            let message = Message::new(why.code, format!("{name}: {}", why.text));
+            commands.push(RefusedEntry(message).into());
             None
         }
     }
@@ -32,14 +34,17 @@ pub fn number_entry_ui<C: From<RefusedEntry>>(
 ///
 /// # Errors
 /// A message with the expected and the found text.
-pub fn typed_number(text: &str) -> Result<Option<f64>, String> {
+pub fn typed_number(text: &str) -> Result<Option<f64>, Message> {
     let text = text.trim().replace(',', ".");
     if text.is_empty() {
         return Ok(None);
     }
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(Some(value)),
-        _ => Err(format!("expected a number, found \"{text}\"")),
+        _ => Err(Message::new(
+            "not-a-number",
+            format!("expected a number, found \"{text}\""),
+        )),
     }
 }
 

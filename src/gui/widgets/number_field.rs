@@ -11,6 +11,8 @@ use egui::{Context, DragValue, Id, Key, Response, Role, Ui, WidgetInfo, vec2};
 use gdcm_model::number_format::{gain_text, number, significant};
 use gdcm_study::decisions::setting_row::Digits;
 
+use crate::message::Message;
+
 /// Height of a number field \[pt\].
 const FIELD_HEIGHT: f32 = 18.0;
 /// Number of egui passes after Escape in which the typed text must not be committed. egui reports a
@@ -43,7 +45,7 @@ pub struct Entered {
     /// New number, if it is valid.
     pub value: Option<f64>,
     /// Reason why the entry is refused.
-    pub refusal: Option<String>,
+    pub refusal: Option<Message>,
     /// Whether the number is being dragged and may still change.
     pub is_dragged: bool,
     /// Whether the edit is complete: the pointer was released or the focus left the field.
@@ -161,9 +163,16 @@ impl<'a> NumberField<'a> {
             outcome.value = Some(after);
         }
         if let Some(text) = unparsed {
-            outcome.refusal = Some(self.refusal(&format!("\"{text}\""), before));
+            let text = self.refusal(&format!("\"{text}\""), before);
+            outcome.refusal = Some(Message::new("not-a-number", text));
         } else if after != before && !is_allowed {
-            outcome.refusal = Some(self.refusal(&number(after), before));
+            let code = if has_allowed_digits {
+                "out-of-range"
+            } else {
+                "not-a-whole-number"
+            };
+            let text = self.refusal(&number(after), before);
+            outcome.refusal = Some(Message::new(code, text));
         }
         outcome
     }

@@ -102,19 +102,25 @@ fn a_panic_while_computing_is_told_with_what_to_send_and_the_study_stays() {
     trap.panics.store(true, Ordering::Relaxed);
     set_alpha(&mut window, 12.5);
     wait_until(&mut window, "the fault is told", |window| {
-        window
-            .query_by_label_contains("A fault in the program ended the computation")
-            .is_some()
+        bar_codes(window).contains(&"fault")
     });
+    let Some(MessageBar::Fault(report)) = state(&window).message_bars.first() else {
+        panic!("{:?}", state(&window).message_bars)
+    };
+    assert!(
+        report.fault.contains("tests/suite/window/computing.rs:"),
+        "{report:?}"
+    );
+    assert_eq!(report.work, "the computation");
     for part in [
-        "a pivot that cannot be at tests/suite/window/computing.rs:",
-        "gdcm 0.",
-        "(embedded example)",
+        report.fault.as_str(),
+        report.version,
+        report.dataset.as_str(),
     ] {
         window.get_by_label_contains(part);
     }
     assert!(!state(&window).results.is_waiting() && state(&window).results.received == before);
-    window.get_by_label("stopped: the results are older than the settings");
+    window.get_by_label_contains(&state(&window).after_stop().text);
 
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("mine.gdcm-study.json");
@@ -132,11 +138,7 @@ fn a_panic_while_computing_is_told_with_what_to_send_and_the_study_stays() {
         "and edited, with a new engine"
     );
     click(&mut window, "Close message");
-    assert!(
-        window
-            .query_by_label_contains("A fault in the program")
-            .is_none()
-    );
+    assert!(bar_codes(&window).is_empty());
 }
 
 #[test]
@@ -154,11 +156,7 @@ fn after_a_panic_the_same_can_be_computed_again() {
         state(&window).analysis().unwrap().study.settings.alpha_gain,
         12.5
     );
-    assert!(
-        window
-            .query_by_label_contains("A fault in the program")
-            .is_none()
-    );
+    assert!(bar_codes(&window).is_empty());
 }
 
 #[test]
@@ -199,7 +197,7 @@ fn results_of_two_generations_of_settings_are_told_apart() {
     window.get_by_label_contains("11 · of older settings");
     let scheduled = drawn(&window, CurveRole::Scheduled);
     assert!(
-        scheduled.label.ends_with("scheduled of older settings"),
+        scheduled.label.ends_with("older settings"),
         "{}",
         scheduled.label
     );
@@ -272,7 +270,7 @@ fn a_long_computation_can_be_stopped_and_taken_up_again() {
     window.get_by_label("Stop").click();
     window.run_steps(3);
     assert!(state(&window).results.stopped && state(&window).results.received == before);
-    window.get_by_label("stopped: the results are older than the settings");
+    window.get_by_label_contains(&state(&window).after_stop().text);
     assert!(
         state(&window).analysis().is_some(),
         "the results there were are still shown"
@@ -299,11 +297,11 @@ fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
         of.bundle(BundleKind::Physics).len() + of.bundle(BundleKind::Identified).len()
     }
 
-    fn copied(window: &mut Window) -> String {
+    fn copied(window: &mut Window) -> &'static str {
         window
             .state_mut()
             .dispatch(OutputCommand::CopyFigure(View::NetGain));
-        state(window).notice.clone().unwrap().text
+        state(window).notice.as_ref().unwrap().code
     }
 
     let trap = Trap::default();
@@ -335,28 +333,18 @@ fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
         .query_all_by_label_contains(&format!(" of {} steps …", 2 * models))
         .count();
     assert_eq!(told, 2, "in the view that waits for them, and below");
-    let done = "copied the numbers of Net gain";
-    assert_eq!(
-        copied(&mut window),
-        format!("{done}; without error bars, which are still being computed")
-    );
+    assert_eq!(copied(&mut window), "numbers-copied-before-error-bars");
     window.get_by_label("Stop").click();
     window.run_steps(3);
     assert!(state(&window).uncertainty().is_none() && counts(&window).is_none());
-    assert_eq!(
-        copied(&mut window),
-        format!("{done}; without error bars: their computation was stopped")
-    );
+    assert_eq!(copied(&mut window), "numbers-copied-without-error-bars");
     drop(closed);
-    window.get_by_label("Error bars: stopped. Choose Compute, below, to continue");
+    let stopped = state(&window).results.absence_of_error_bars();
+    window.get_by_label(&stopped);
     click(&mut window, "Compute");
     wait_for_bars(&mut window);
-    assert!(
-        window
-            .query_by_label_contains("Error bars: stopped")
-            .is_none()
-    );
-    assert_eq!(copied(&mut window), done);
+    assert!(window.query_by_label(&stopped).is_none());
+    assert_eq!(copied(&mut window), "numbers-copied");
 }
 
 #[test]

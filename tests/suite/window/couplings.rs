@@ -4,14 +4,18 @@ use gdcm::gui::commands::display::DisplayCommand;
 use gdcm::gui::commands::layout::LayoutCommand;
 use gdcm::gui::commands::study::StudyCommand;
 use gdcm::gui::panels::cost_map::cost_of;
+use gdcm::gui::panels::reasons::coupling_remarks;
+use gdcm::gui::panels::verdict::Verdict;
 use gdcm::gui::state::mapped_cost::MappedCost;
 use gdcm::gui::state::sheet::Sheet;
 use gdcm::gui::state::view::View;
+use gdcm::gui::views::figures::figure_of;
 use gdcm::gui::views::offered_couplings;
 use gdcm_model::dataset::ConditionId;
 use gdcm_plot::figure::Mark;
 use gdcm_study::decisions::setting;
 use gdcm_study::{CouplingCorrection, Edit, PhaseCorrection};
+use gdcm_words::coupling_remark::coupling_remark_text;
 
 use super::lists::texts_in;
 use super::views::{give, show};
@@ -22,6 +26,11 @@ fn assessed(window: &mut Window) {
         let state = state(window);
         state.couplings().is_some() && !state.results.background.is_busy()
     });
+}
+
+/// Returns whether the assessed couplings are those in use.
+fn is_in_use(window: &Window) -> bool {
+    gdcm::gui::views::used_couplings(state(window)).is_some()
 }
 
 fn texts(window: &Window) -> String {
@@ -52,15 +61,11 @@ fn couplings_are_looked_at_used_drawn_and_undone() {
     let before = state(&window).study.clone();
     show(&mut window, View::Couplings);
     assessed(&mut window);
-    let said = texts(&window);
-    assert!(
-        said.contains("Not in use. Effect of mixing and feedback:"),
-        "{said}"
-    );
-    assert!(
-        said.contains("own correction") && said.contains("Coupling loop at the inputs"),
-        "{said}"
-    );
+    let assessment = state(&window).couplings().unwrap().as_ref().unwrap();
+    assert_eq!(assessment.couplings, CouplingCorrection::MixingAndFeedback);
+    assert!(!is_in_use(&window));
+    let figure = figure_of(state(&window), View::Couplings).unwrap();
+    assert!(texts(&window).contains(&figure.plots[0].title));
     assert_eq!(state(&window).study, before, "looking decides nothing");
     give(&mut window, DisplayCommand::MapCost(MappedCost::Before));
     let as_it_is =
@@ -76,9 +81,9 @@ fn couplings_are_looked_at_used_drawn_and_undone() {
         state(&window).study.settings.couplings,
         CouplingCorrection::MixingAndFeedback
     );
-    assert!(!texts(&window).contains("Not in use"));
+    assert!(is_in_use(&window));
     // The map beside the conditions shows their off-axis cost.
-    window.get_by_label_contains("19 responses not held, condition 3: mean J of magnitude");
+    window.get_by_label_contains("19 responses not held, condition 3");
     // The shifted poles are drawn among the poles of the models.
     show(&mut window, View::Poles);
     wait_until(&mut window, "the poles", |window| {
@@ -123,12 +128,16 @@ fn couplings_are_offered_once_leads_do_what_a_channel_can() {
     // The cost of the couplings is listed among the reasons, in every view.
     assessed(&mut window);
     give(&mut window, LayoutCommand::ShowSheet(Some(Sheet::Reasons)));
-    let said = texts(&window);
+    let codes = remark_codes(&window);
     assert!(
-        said.contains("Above the band, at 120 rad/s")
-            && said.contains("unstable with the couplings"),
-        "{said}"
+        codes.contains(&"change-above-band") && codes.contains(&"newly-unstable"),
+        "{codes:?}"
     );
+    let said = texts(&window);
+    for remark in coupling_remarks(state(&window)) {
+        let words = coupling_remark_text(&remark, state(&window).dataset());
+        assert!(said.contains(&words), "{words} in {said}");
+    }
 }
 
 #[test]
@@ -154,15 +163,13 @@ fn couplings_that_cannot_be_found_are_told_beside_the_verdict() {
         setting::COUPLINGS.to(CouplingCorrection::Mixing),
     );
     settle(&mut window);
-    assert!(
-        texts(&window).contains("No couplings could be found"),
-        "{}",
-        texts(&window)
-    );
+    let caution = Verdict::new(state(&window)).caution.unwrap();
+    assert_eq!(caution.code, "no-couplings");
+    assert!(texts(&window).contains(&caution.text), "{}", caution.text);
     give(&mut window, LayoutCommand::ShowSheet(Some(Sheet::Reasons)));
-    assert!(
-        texts(&window).contains("All results are computed without couplings."),
-        "{}",
-        texts(&window)
-    );
+    let remarks = coupling_remarks(state(&window));
+    assert_eq!(remarks.len(), 1);
+    assert_eq!(remarks[0].code(), "no-couplings");
+    let words = coupling_remark_text(&remarks[0], state(&window).dataset());
+    assert!(texts(&window).contains(&words), "{words}");
 }

@@ -247,11 +247,7 @@ fn phases_are_wrapped_and_a_curve_is_moved_by_a_turn_on_wish() {
     let moved = drawn(&window, CurveRole::Nominal);
     assert_eq!(moved.phase_deg[200], before.phase_deg[200] + 360.0);
     assert!(moved.detail.contains("phase +360°"), "{}", moved.detail);
-    assert_eq!(
-        state(&window).history.undo_label(),
-        None,
-        "it changes no decision"
-    );
+    assert_eq!(last_change(&window), None, "it changes no decision");
     choose_of_curves(&mut window, "Phases wrapped");
     for curve in &state(&window).display.frequency.drawn {
         assert!(
@@ -357,7 +353,7 @@ fn what_a_box_was_drawn_over_is_rejected_and_restored_in_one_step() {
         window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
         settle(&mut window);
     }
-    assert_eq!(state(&window).history.undo_label(), None, "two steps");
+    assert_eq!(last_change(&window), None, "two steps");
     click(&mut window, "Select none ×");
     assert!(state(&window).display.curves.selected.is_empty());
 }

@@ -1,6 +1,7 @@
 //! Decisions in the window, and their results.
 
 use gdcm::gui::commands::layout::LayoutCommand;
+use gdcm::gui::panels::verdict::Verdict;
 use gdcm_words::derivation::derivation;
 
 use super::views::give;
@@ -112,7 +113,7 @@ fn every_choice_can_be_undone_and_done_again() {
         settle(&mut window);
     }
     assert_eq!(state(&window).study, start);
-    assert_eq!(state(&window).history.undo_label(), None);
+    assert_eq!(last_change(&window), None);
     for _ in 0..3 {
         window.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
         settle(&mut window);
@@ -134,13 +135,7 @@ fn at_least_one_model_stays_in_each_bundle() {
     for model in &models {
         click(&mut window, &format!("Keep identified model {model}"));
     }
-    let notice = state(&window).notice.clone().expect("the refusal is shown");
-    assert_eq!(notice.kind, NoticeKind::Trouble);
-    assert!(
-        notice.text.contains("at least one must remain"),
-        "{}",
-        notice.text
-    );
+    assert_notice(&window, NoticeKind::Trouble, "last-model", &[]);
     assert_eq!(
         state(&window)
             .study
@@ -174,12 +169,14 @@ fn the_badge_says_proven_and_every_cell_says_what_holding_or_freeing_it_costs() 
     let mut window = window();
     window.get_by_label("global optimum ✓");
     wait_for_toggles(&mut window);
-    for (output, input, word) in [
-        ("Q", "LON", "holding LON → Q costs"),
-        ("Q", "PED", "holding PED → Q would"),
-    ] {
-        let costs = toggle_costs(state(&window), pair(&window, output, input));
-        assert!(costs.iter().any(|cost| cost.contains(word)), "{costs:?}");
+    for (output, input, is_held) in [("Q", "LON", true), ("Q", "PED", false)] {
+        let pair = pair(&window, output, input);
+        assert_eq!(state(&window).study.settings.constrained[pair], is_held);
+        let (gain, _) = state(&window).toggles().unwrap().of_pair(pair);
+        assert!(gain.is_some(), "{output}/{input}");
+        let name = state(&window).dataset().pair_name(pair);
+        let costs = toggle_costs(state(&window), pair);
+        assert!(costs.iter().any(|cost| cost.contains(&name)), "{costs:?}");
     }
 }
 
@@ -192,19 +189,11 @@ fn held_gains_out_of_reach_are_explained_and_the_explanation_is_exported() {
         .set_value_accesskit(1.0);
     settle(&mut window);
     unfold_settings(&mut window, false);
-    window.get_by_label_contains("stops at a bound");
+    let gain = &Verdict::new(state(&window)).rows[0];
+    assert_eq!(gain.message.code, "stops-at-bound");
+    window.get_by_label_contains(&gain.message.text);
     let shown = state(&window).shown().unwrap();
-    let dataset = state(&window).dataset();
-    let texts: Vec<String> = remarks_shown(state(&window), shown)
-        .iter()
-        .map(|remark| gdcm_words::remark::remark_text(remark, dataset))
-        .collect();
-    assert!(
-        texts
-            .iter()
-            .any(|text| text.contains("LON → Q cannot be held")),
-        "{texts:?}"
-    );
+    assert!(remark_codes(&window).contains(&"gains-missed"));
     let (marked, _) = gain_conflict_marks(shown);
     assert!(marked.contains(&pair(&window, "Q", "LON")));
 

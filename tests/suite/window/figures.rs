@@ -130,12 +130,11 @@ fn a_file_that_is_there_is_asked_about_and_a_name_without_a_format_is_refused() 
         "SVG",
         &folder.path().join("bode.docx"),
     );
-    let notice = state(&window).notice.clone().unwrap();
-    assert_eq!(notice.kind, NoticeKind::Trouble);
-    assert!(
-        notice.text.contains(".svg, .png, .pdf or .csv"),
-        "{}",
-        notice.text
+    assert_notice(
+        &window,
+        NoticeKind::Trouble,
+        "figure-format",
+        &["bode.docx", ".svg", ".png", ".pdf", ".csv"],
     );
     assert!(!folder.path().join("bode.docx").exists());
 }

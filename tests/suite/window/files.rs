@@ -3,6 +3,8 @@
 use gdcm::gui::commands::form::FormCommand;
 use gdcm::gui::state::forms::FormKind;
 
+use gdcm_io::export::{EXPORTERS, ExportRequest, export_contents};
+
 use super::*;
 
 #[test]
@@ -20,9 +22,12 @@ fn a_file_that_cannot_be_read_leaves_what_is_open_and_says_what_is_wrong() {
         window.query_by_label("Don't save").is_none(),
         "nothing is asked for a file that cannot be shown"
     );
-    let notice = state(&window).notice.clone().expect("the trouble is shown");
-    assert_eq!(notice.kind, NoticeKind::Trouble);
-    assert!(notice.text.contains("broken.json"), "{}", notice.text);
+    assert_notice(
+        &window,
+        NoticeKind::Trouble,
+        "truncated-json",
+        &["broken.json"],
+    );
     assert_eq!(state(&window).study, before);
     assert!(state(&window).unsaved, "they are not saved still");
 }
@@ -33,12 +38,11 @@ fn models_of_another_program_that_are_opened_by_path_are_sent_to_their_import() 
     crate::assembling::small_folder(folder.path());
     let mut window = window();
     open_by_path(&mut window, &folder.path().join("c1_60kt/V+5kt.mat"));
-    let notice = state(&window).notice.clone().expect("the trouble is shown");
-    assert_eq!(notice.kind, NoticeKind::Trouble);
-    assert!(
-        notice.text.contains("V+5kt.mat") && notice.text.contains("Import models"),
-        "{}",
-        notice.text
+    assert_notice(
+        &window,
+        NoticeKind::Trouble,
+        "model-file",
+        &["V+5kt.mat", "Import models"],
     );
 }
 
@@ -265,21 +269,30 @@ fn corrections_are_exported_for_other_tools_and_an_existing_file_is_asked_about(
         state(window).analysis().is_some()
     });
     window.run_steps(2);
-    for words in [
-        "Contains: gains scheduled, delays none, leads none, couplings none.",
-        "Left out: delay of output NX: ",
-    ] {
-        assert!(window.query_by_label_contains(words).is_some(), "{words}");
-    }
-    let notice = exported(&mut window, &path);
+    let analysis = state(&window).analysis().unwrap();
+    let request = ExportRequest {
+        format: EXPORTERS
+            .into_iter()
+            .find(|format| format.name == "py")
+            .unwrap(),
+        ..ExportRequest::default()
+    };
+    let contents = export_contents(analysis, &request);
+    let left_out = contents.left_out_words(state(&window).dataset());
     assert!(
-        notice.kind == NoticeKind::Done && notice.text.contains("delays are not scheduled"),
-        "{}",
-        notice.text
+        left_out.len() == 1 && left_out[0].contains("output NX"),
+        "{left_out:?}"
     );
-    assert!(notice.text.contains(
-        ": gains scheduled, delays none, leads none, couplings none; left out: delay of output NX"
-    ));
+    let contained = contents.words();
+    window.get_by_label_contains(&contained);
+    window.get_by_label_contains(&left_out[0]);
+    exported(&mut window, &path);
+    assert_notice(
+        &window,
+        NoticeKind::Done,
+        "exported",
+        &[&contained, &left_out[0]],
+    );
     assert!(
         std::fs::read_to_string(&path)
             .unwrap()

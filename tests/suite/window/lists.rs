@@ -155,10 +155,7 @@ fn a_condition_left_out_of_the_schedule_says_so_and_its_menu_takes_it_in_again()
         condition: ConditionId(3),
         scheduled: true,
     };
-    assert_eq!(
-        state(&window).history.undo_label(),
-        Some(edit.label(&state(&window).study).as_str())
-    );
+    assert_eq!(last_change(&window), Some(&Change::Decision(edit)));
 }
 
 #[test]
@@ -167,7 +164,7 @@ fn the_title_of_the_window_names_the_study_and_the_dataset_and_marks_what_is_not
     let dataset = state(&window).dataset().name().to_owned();
     assert_eq!(
         state(&window).window_title(),
-        format!("untitled study – {dataset} – gdcm")
+        [state(&window).study_name.as_str(), &dataset, "gdcm"].join(" – ")
     );
     window.get_by_label("Keep physics model V+10kt").click();
     let mut titles = Vec::new();
@@ -185,7 +182,10 @@ fn the_title_of_the_window_names_the_study_and_the_dataset_and_marks_what_is_not
     }
     assert_eq!(
         titles,
-        [format!("untitled study • – {dataset} – gdcm")],
+        [format!(
+            "{} • – {dataset} – gdcm",
+            state(&window).study_name
+        )],
         "told once"
     );
 }

@@ -31,7 +31,7 @@ fn wanted(window: &Window) -> &WantedDataset {
 fn made(window: &mut Window, name: &str) -> Vec<String> {
     click(window, "Make the dataset");
     wait_until(window, "the dataset", |window| {
-        assert_eq!(wanted(window).problems, Vec::<String>::new());
+        assert_eq!(wanted(window).problems, []);
         state(window).dataset().name() == name
     });
     show(window, View::Records);
@@ -65,10 +65,7 @@ fn a_log_of_px4_proposes_its_setpoints_and_rates() {
         "{inputs}; {outputs}"
     );
     let notes = made(&mut window, "quadrotor");
-    assert!(
-        notes.iter().any(|note| note.contains("signs follow PX4's")),
-        "{notes:?}"
-    );
+    assert!(notes.iter().any(|note| note.contains("PX4")), "{notes:?}");
     let units: Vec<&str> = state(&window)
         .dataset()
         .outputs()

@@ -46,7 +46,8 @@ use gdcm::gui::panels::derivation_sheet::toggle_costs;
 use gdcm::gui::panels::matrix_panel::gain_conflict_marks;
 use gdcm::gui::panels::reasons::remarks_shown;
 use gdcm::gui::plot::{BodeCurve, Pane, Role as CurveRole};
-use gdcm::gui::state::notices::{Notice, NoticeKind};
+use gdcm::gui::state::notices::{MessageBar, Notice, NoticeKind};
+use gdcm::gui::state::record_change::RecordChange;
 use gdcm::gui::state::view::View;
 use gdcm::gui::state::window_state::State;
 use gdcm::gui::views::channels::channel_plots;
@@ -54,8 +55,10 @@ use gdcm_io::files::study_file::{OpenedStudy, open_study};
 use gdcm_io::{Opened, load_any};
 use gdcm_model::dataset::{BundleKind, ConditionId, ModelId, Pair};
 use gdcm_model::progress::Unobserved;
-use gdcm_plot::figure::MarkId;
 use gdcm_plot::figure::gains::{Across, Measure};
+use gdcm_plot::figure::marks::MarkId;
+use gdcm_study::decisions::history::Change;
+use gdcm_study::results::remark::Remark;
 use gdcm_study::stages::engine::LIVE_PROOF;
 use gdcm_study::{Engine, Study};
 
@@ -163,6 +166,35 @@ pub(crate) fn wait_for_bars(window: &mut Window) {
 pub(crate) fn click(window: &mut Window, label: &str) {
     window.get_by_label(label).click();
     settle(window);
+}
+
+/// Asserts that the notice has this kind and code, and that it contains these names and numbers.
+#[track_caller]
+pub(crate) fn assert_notice(window: &Window, kind: NoticeKind, code: &str, names: &[&str]) {
+    let notice = state(window).notice.clone().expect("there is a notice");
+    assert_eq!((notice.kind, notice.code), (kind, code), "{}", notice.text);
+    for name in names {
+        assert!(notice.text.contains(name), "{name} in {}", notice.text);
+    }
+}
+
+/// Returns the codes of the bars below the menu.
+pub(crate) fn bar_codes(window: &Window) -> Vec<&'static str> {
+    let bars = state(window).message_bars.iter();
+    bars.map(MessageBar::code).collect()
+}
+
+/// Returns the codes of the remarks about the displayed condition.
+pub(crate) fn remark_codes(window: &Window) -> Vec<&'static str> {
+    let shown = state(window).shown().expect("there is a result");
+    let remarks = remarks_shown(state(window), shown);
+    remarks.iter().map(Remark::code).collect()
+}
+
+/// Returns the change that undo would take back.
+pub(crate) fn last_change(window: &Window) -> Option<&Change<RecordChange>> {
+    let step = state(window).history.undo_step();
+    step.map(|step| &step.change)
 }
 
 pub(crate) fn state(window: &Window) -> &State {

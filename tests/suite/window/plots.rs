@@ -74,9 +74,9 @@ fn a_double_click_on_a_curve_leaves_no_decision() {
     }
     settle(&mut window);
     assert_eq!(state(&window).study, start);
-    assert_eq!(state(&window).history.undo_label(), None, "nothing to undo");
+    assert_eq!(last_change(&window), None, "nothing to undo");
     assert!(
-        state(&window).history.redo_label().is_some(),
+        state(&window).history.redo_step().is_some(),
         "what could be redone before still can"
     );
 }

@@ -65,7 +65,7 @@ fn pointing_at_a_curve_or_a_dot_opens_nothing_and_is_told_in_the_status_line() {
         .clone()
         .unwrap();
     assert!(
-        told.contains("nominal · ") && told.ends_with("click to reject"),
+        told.contains("nominal · ") && told.contains("reject"),
         "{told}"
     );
 

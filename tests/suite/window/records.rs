@@ -11,6 +11,7 @@ use gdcm::gui::commands::layout::LayoutCommand;
 use gdcm::gui::commands::records::RecordsCommand;
 use gdcm::gui::commands::selection::SelectionCommand;
 use gdcm::gui::commands::study::StudyCommand;
+use gdcm::gui::state::record_change::ConditionRecordChange;
 use gdcm::gui::state::records::RecordsPage;
 use gdcm::gui::state::view::View;
 use gdcm::gui::views::records::condition_table;
@@ -356,7 +357,7 @@ fn of_several_conditions_the_one_shown_is_identified_first_and_the_others_say_wh
     window.get_by_label("Stop identifying").click();
     window.run_steps(2);
     assert!(state(&window).records.running.is_empty());
-    window.get_by_label_contains("stopped identifying after");
+    assert_notice(&window, NoticeKind::Done, "identification-stopped", &["2"]);
     window.get_by_label("Identify all 2 conditions");
 }
 
@@ -506,15 +507,18 @@ fn edits_of_records_are_undone_and_redone_in_order_with_decisions_about_the_stud
         assert_ne!(states.last(), Some(&now), "each of them changes something");
         states.push(now);
     }
-    assert_eq!(
-        state(&window).history.undo_label(),
-        Some("remove cond10_sweep_COL_1, 5 to 25 s (condition 10)")
-    );
+    let removed = RecordChange::InCondition {
+        condition: CONDITION_10_ID,
+        change: ConditionRecordChange::RemovePart {
+            record: "cond10_sweep_COL_1, 5 to 25 s".to_owned(),
+        },
+    };
+    assert_eq!(last_change(&window), Some(&Change::Beside(removed)));
     for at in (0..count).rev() {
         step(&mut window, UNDO);
         assert_eq!(decided(&window), states[at], "after step {at} was undone");
     }
-    assert_eq!(state(&window).history.undo_label(), None);
+    assert_eq!(last_change(&window), None);
     for (at, expected) in states.iter().enumerate().skip(1) {
         step(&mut window, REDO);
         assert_eq!(
@@ -585,11 +589,11 @@ fn a_part_counts_from_the_start_of_the_record_too_and_one_without_samples_is_ref
         "42.30 s to 81.30 s on the record's time axis, +0.00 s to +39.00 s from its start",
     );
     type_into(&mut window, "Part of the record", "5 34");
-    let told = state(&window).notice.clone().expect("it is refused");
-    assert!(
-        told.kind == NoticeKind::Trouble && told.text.contains("runs from 42.30 s to 81.30 s"),
-        "{}",
-        told.text
+    assert_notice(
+        &window,
+        NoticeKind::Trouble,
+        "no-samples",
+        &["42.30 s", "81.30 s"],
     );
     assert_eq!(rows(&window), 10);
     type_into(&mut window, "Part of the record", "+5 +34");
@@ -836,14 +840,14 @@ fn a_record_is_added_once_a_changed_file_takes_its_place_and_another_of_its_name
     std::fs::write(&second, without_units(0.7)).unwrap();
     let mut window = records_window();
     assert_eq!(add(&mut window, &first), ["cond10_flight"]);
-    let steps = state(&window).history.undo_label().map(str::to_owned);
-    assert_eq!(steps.as_deref(), Some("add 1 record"));
+    let added = Change::Beside(RecordChange::Add { records: 1 });
+    assert_eq!(last_change(&window), Some(&added));
     assert_eq!(
         add(&mut window, &first),
         ["cond10_flight"],
         "the same is not added twice"
     );
-    window.get_by_label("nothing added: 1 record already loaded");
+    assert_notice(&window, NoticeKind::Done, "records-added", &["1"]);
     assert_eq!(
         add(&mut window, &second),
         ["cond10_flight", "cond10_flight (2)"]
@@ -1062,10 +1066,12 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
     wait_until(&mut window, "an answer", |window| {
         !state(window).records.wanted.problems.is_empty()
     });
-    let problems = state(&window).records.wanted.problems.join("\n");
+    let problems = &state(&window).records.wanted.problems;
     assert!(
-        problems.contains("no column for the output q"),
-        "{problems}"
+        problems
+            .iter()
+            .any(|problem| problem.code == "no-column" && problem.text.contains("output q")),
+        "{problems:?}"
     );
     // Enter in a field also makes the dataset.
     type_into(&mut window, "Outputs of the dataset", "q [rad/s]");
@@ -1114,14 +1120,11 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
         RecordsCommand::SetReferences(vec!["nothing".to_owned()]),
     );
     give(&mut window, RecordsCommand::Identify);
-    let told = state(&window)
-        .notice
-        .as_ref()
-        .map(|notice| notice.text.clone())
-        .unwrap_or_default();
-    assert!(
-        told.contains("sweep: there is no column \"nothing\""),
-        "{told}"
+    assert_notice(
+        &window,
+        NoticeKind::Trouble,
+        "no-such-column",
+        &["sweep", "\"nothing\""],
     );
     give(&mut window, RecordsCommand::SetReferences(Vec::new()));
     click(&mut window, "Identify");
@@ -1215,11 +1218,12 @@ fn a_record_that_a_dataset_of_records_leaves_out_is_named_with_the_reason() {
     });
     show(&mut window, View::Records);
     wait_until(&mut window, "its record", |window| rows_shown(window) == 1);
+    let faults = &state(&window).records.faults;
     assert!(
-        window
-            .query_by_label_contains("left out of the dataset: slow: ")
-            .is_some()
+        faults.len() == 1 && faults[0].contains("slow"),
+        "{faults:?}"
     );
+    window.get_by_label_contains(&faults[0]);
 }
 
 #[test]
@@ -1228,8 +1232,9 @@ fn topics_with_clocks_of_their_own_become_the_record_of_a_dataset() {
         format!("{},{}\n", step_s * f64::from(k), of(f64::from(k)))
     }
 
-    fn problems(window: &Window) -> String {
-        state(window).records.wanted.problems.join("\n")
+    fn problems(window: &Window) -> Vec<&'static str> {
+        let problems = state(window).records.wanted.problems.iter();
+        problems.map(|problem| problem.code).collect()
     }
 
     fn rate_hz(window: &Window) -> f64 {
@@ -1266,7 +1271,7 @@ fn topics_with_clocks_of_their_own_become_the_record_of_a_dataset() {
     .unwrap();
     let mut window = making_a_dataset(folder.path(), "M=stick", "q [rad/s]=rate");
     wait_until(&mut window, "the dataset", |window| {
-        assert_eq!(problems(window), "");
+        assert!(problems(window).is_empty(), "{:?}", problems(window));
         state(window).dataset().inputs()[0].name == "M"
     });
     show(&mut window, View::Records);

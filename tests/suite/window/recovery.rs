@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use gdcm::gui::state::notices::RecoveryOffer;
+
 use super::*;
 
 /// Returns a setup that keeps unsaved decisions in a separate directory, after a short delay.
@@ -45,11 +47,19 @@ fn next_window(directory: &Path) -> Window {
             window.run_steps(1);
             std::thread::sleep(Duration::from_millis(5));
         }
-        if window.query_by_label_contains("were not saved").is_some() {
+        if bar_codes(&window).contains(&"decisions-not-saved") {
             return window;
         }
         assert!(Instant::now() < limit, "nothing was offered");
     }
+}
+
+/// Returns the first offer to restore decisions.
+fn offer(window: &Window) -> RecoveryOffer {
+    let Some(MessageBar::Recovery(offer)) = state(window).message_bars.first() else {
+        panic!("{:?}", state(window).message_bars)
+    };
+    offer.clone()
 }
 
 #[test]
@@ -66,7 +76,9 @@ fn decisions_that_were_not_saved_are_offered_at_the_next_start_and_restored() {
     );
 
     let mut window = next_window(directory.path());
-    window.get_by_label_contains("for the embedded example were not saved");
+    let offer = offer(&window);
+    assert_eq!(offer.study, None);
+    window.get_by_label_contains(&offer.dataset);
     click(&mut window, "Restore");
     assert_eq!(state(&window).study, study);
     assert!(state(&window).unsaved, "restored is not saved");
@@ -98,7 +110,12 @@ fn a_study_that_was_saved_before_is_offered_by_its_name_and_saved_there_again() 
     drop(lost);
 
     let mut window = next_window(directory.path());
-    window.get_by_label_contains("for data.json (study mine.gdcm-study.json) were not saved");
+    let offer = offer(&window);
+    assert_eq!(
+        (offer.dataset.as_str(), offer.study.as_deref()),
+        ("data.json", Some("mine.gdcm-study.json"))
+    );
+    window.get_by_label_contains("mine.gdcm-study.json");
     click(&mut window, "Restore");
     window.key_press_modifiers(Modifiers::COMMAND, Key::S);
     settle(&mut window);
@@ -146,11 +163,11 @@ fn discarded_decisions_are_gone_and_later_they_are_offered_again() {
     drop(with_decisions(example(), directory.path()));
     let mut window = next_window(directory.path());
     click(&mut window, "Later");
-    assert!(window.query_by_label_contains("were not saved").is_none());
+    assert!(bar_codes(&window).is_empty());
     drop(window);
     let mut window = next_window(directory.path());
     click(&mut window, "Discard");
-    assert!(window.query_by_label_contains("were not saved").is_none());
+    assert!(bar_codes(&window).is_empty());
     wait_until(&mut window, "the file is gone", |_| {
         kept(directory.path()).is_empty()
     });
@@ -165,7 +182,7 @@ fn the_decisions_of_a_window_that_is_open_are_not_offered_to_another() {
         kept(directory.path()).len() == 2
     });
     for window in [&first, &second] {
-        assert!(window.query_by_label_contains("were not saved").is_none());
+        assert!(bar_codes(window).is_empty());
     }
 }
 

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use gdcm_study::decisions::dataset_differences::Difference;
+
 use super::*;
 
 /// Copy of the small dataset whose file the tests change.
@@ -48,9 +50,11 @@ impl Copy {
 }
 
 fn is_told(window: &Window) -> bool {
-    window
-        .query_by_label_contains("my-dataset.json has changed on disk")
-        .is_some()
+    bar_codes(window).contains(&"dataset-changed-on-disk")
+        && window
+            .query_all_by_label_contains("my-dataset.json")
+            .next()
+            .is_some()
 }
 
 #[test]
@@ -77,7 +81,10 @@ fn a_file_that_changes_is_told_and_reloaded_and_undo_goes_back_across_it() {
     );
     assert!(state(&window).results.received > received && state(&window).shown().is_some());
     assert!(!is_told(&window));
-    window.get_by_label("↶ Undo reload my-dataset.json");
+    let reload = Change::Reload {
+        file: "my-dataset.json".to_owned(),
+    };
+    assert_eq!(last_change(&window), Some(&reload));
     window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     settle(&mut window);
     assert_eq!(state(&window).dataset().name(), before);
@@ -138,11 +145,11 @@ fn a_changed_file_that_is_wrong_leaves_what_is_open() {
     std::fs::write(&copy.path, "{\"format\": \"gdcm-dataset\", ").unwrap();
     wait_until(&mut window, "the change is told", is_told);
     click(&mut window, "Reload");
-    let notice = state(&window).notice.clone().expect("the trouble is told");
-    assert!(
-        notice.kind == NoticeKind::Trouble && notice.text.contains("my-dataset.json"),
-        "{}",
-        notice.text
+    assert_notice(
+        &window,
+        NoticeKind::Trouble,
+        "truncated-json",
+        &["my-dataset.json"],
     );
     assert_eq!(state(&window).study, before);
     assert!(is_told(&window), "it can be tried again");
@@ -156,7 +163,13 @@ fn what_is_different_after_a_reload_is_listed() {
     copy.change("\"V+5kt\"", "\"V+6kt\"");
     wait_until(&mut window, "the change is told", is_told);
     click(&mut window, "Reload");
-    window.get_by_label_contains("my-dataset.json was reloaded");
+    let Some(MessageBar::Differences { name, differences }) = state(&window).message_bars.first()
+    else {
+        panic!("{:?}", state(&window).message_bars)
+    };
+    assert_eq!(name, "my-dataset.json");
+    let codes: Vec<&str> = differences.iter().map(Difference::code).collect();
+    assert_eq!(codes, ["model-removed", "model-added", "edit-refused"]);
     assert!(
         window.query_all_by_label_contains("V+5kt").count() >= 1,
         "the model that is gone is named"
@@ -164,7 +177,7 @@ fn what_is_different_after_a_reload_is_listed() {
     window.get_by_label("Keep physics model V+6kt");
     assert!(state(&window).unsaved);
     click(&mut window, "Close list");
-    assert!(window.query_by_label_contains("was reloaded").is_none());
+    assert!(bar_codes(&window).is_empty());
     window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     settle(&mut window);
     window.get_by_label("Keep physics model V+5kt");

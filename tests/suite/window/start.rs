@@ -3,6 +3,7 @@
 use gdcm::gui::commands::layout::LayoutCommand;
 use gdcm::gui::state::opens_with::OpensWith;
 use gdcm::gui::state::preferences::Preferences;
+use gdcm::message::Message;
 
 use gdcm_io::Example;
 
@@ -161,11 +162,12 @@ fn what_opens_first_is_a_preference() {
 
 #[test]
 fn what_went_wrong_before_the_window_opened_is_told_in_it() {
-    let trouble = "broken.json: line 1, column 12: expected a value, found the end of the file";
+    let trouble = Message::new("truncated-json", "broken.json (line 1)");
     let window = begun_with(Setup {
-        trouble: Some(trouble.to_owned()),
+        trouble: Some(trouble.clone()),
         ..preferring(OpensWith::StartPage)
     });
-    window.get_by_label(trouble);
+    assert_notice(&window, NoticeKind::Trouble, trouble.code, &[]);
+    window.get_by_label(&trouble.text);
     assert!(!state(&window).on_start_page, "the example is open");
 }

@@ -117,6 +117,19 @@ pub enum ToleranceError {
     },
 }
 
+impl ToleranceError {
+    /// Returns the stable code, for programs and tests.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NoChannelName { .. } => "tolerance-without-channel",
+            Self::NotPositive { .. } => "tolerance-not-positive",
+            Self::NoChannel { .. } => "tolerance-of-unknown-channel",
+            Self::NotARate { .. } => "tolerance-not-of-rate",
+            Self::Unit { .. } => "tolerance-unit",
+        }
+    }
+}
+
 /// A tolerance in its output's units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelTolerance {
@@ -156,15 +169,6 @@ impl Tolerance {
                 found,
             }),
             None => Ok(()),
-        }
-    }
-
-    /// Describes the tolerance, for example "±10 % or ±3 deg/s".
-    pub fn words(&self) -> String {
-        let absolute = format!("±{} {}", number(self.absolute), self.unit);
-        match self.relative {
-            Some(relative) => format!("±{} % or {absolute}", number(100.0 * relative)),
-            None => absolute,
         }
     }
 

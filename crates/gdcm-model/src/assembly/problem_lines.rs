@@ -8,6 +8,8 @@ use super::problem::Problem;
 pub struct ProblemLine {
     /// Index of the first model with the problem; `None` for a problem of the whole dataset.
     pub part: Option<usize>,
+    /// Stable code of the problem.
+    pub code: &'static str,
     pub text: String,
 }
 
@@ -52,6 +54,7 @@ impl Assembly {
             }
             lines.push(ProblemLine {
                 part: first.part,
+                code: first.kind.code(),
                 text,
             });
         }

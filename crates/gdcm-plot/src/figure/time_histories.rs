@@ -9,6 +9,7 @@ use gdcm_study::results::record_history::{QuantityHistory, RecordHistory};
 use gdcm_study::results::requirement_role::RequirementRole;
 use gdcm_study::results::test_input_responses::TestAnswers;
 use gdcm_words::missing_results::{no_test_answer_text, not_in_history_text};
+use gdcm_words::time_histories::tolerance_text;
 
 use super::axis::Axis;
 use super::drawing::{Color, Hue, Stroke};
@@ -154,7 +155,7 @@ fn quantity_plot(history: &QuantityHistory) -> Plot {
     let less = format!("minus flight [{}]", history.unit);
     let record = empty_panel(&label).with_all(history_marks(history, Shown::Recorded));
     let difference = empty_panel(&less).with_all(history_marks(history, Shown::LessFlight));
-    let title = format!("{}, {}", tolerance.quantity, tolerance.words());
+    let title = format!("{}, {}", tolerance.quantity, tolerance_text(tolerance));
     Plot::new(title)
         .panel(record)
         .panel(difference.weight(DIFFERENCE_WEIGHT))

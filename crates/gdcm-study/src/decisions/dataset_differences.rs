@@ -1,12 +1,16 @@
 //! Differences between two states of a dataset.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
 use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId};
 
+use super::edit::Edit;
 use super::edit_refusal::EditRefusal;
+use super::requirement_settings::OutputRequirement;
+use super::settings::ResponseMark;
 
 /// A difference between a dataset and the dataset with which a study was made, or a decision that
 /// does not apply to the dataset.
@@ -37,10 +41,44 @@ pub enum Difference {
     ModelChanged(ModelId),
     /// A decision no longer applies.
     NotApplied {
-        /// Label of the decision: "reject nominal (condition 10)".
-        decision: String,
+        decision: CarriedDecision,
+        /// Variant that contains the decision; `None` for the present decisions.
+        variant: Option<String>,
         why: NotApplied,
     },
+}
+
+impl Difference {
+    /// Returns the stable code, for programs and tests.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::AnotherFile { .. } => "another-file",
+            Self::ConditionAdded(_) => "condition-added",
+            Self::ConditionRemoved(_) => "condition-removed",
+            Self::AirspeedChanged { .. } => "airspeed-changed",
+            Self::ModelAdded(_) => "model-added",
+            Self::ModelRemoved(_) => "model-removed",
+            Self::ModelChanged(_) => "model-changed",
+            Self::NotApplied { why, .. } => why.code(),
+        }
+    }
+}
+
+/// A decision that was carried over from another dataset.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CarriedDecision {
+    /// An edit, with the dataset that names its channels.
+    Edit { edit: Edit, dataset: Arc<Dataset> },
+    /// A marked response that the dataset lacks.
+    Response {
+        mark: ResponseMark,
+        output: String,
+        input: String,
+    },
+    /// A reversed channel that the dataset lacks.
+    Sign { channel: String },
+    /// A requirement setting for an output that the dataset lacks.
+    Requirement(OutputRequirement),
 }
 
 /// Why a decision does not apply to a dataset.

@@ -8,7 +8,7 @@ use gdcm_model::dataset::{BundleKind, ConditionId, ModelId, Pair, PairTable};
 use super::adopted_models::AdoptedModels;
 use super::choices::{BundleChoice, ConditionChoice};
 use super::edit_refusal::{EditRefusal, check_length};
-use super::requirement_settings::RequirementSettings;
+use super::requirement_settings::{RequirementPart, RequirementSettings};
 use super::setting_row::{Setting, Value};
 use super::signs::SignRole;
 use super::study::Study;
@@ -69,9 +69,9 @@ pub enum Edit {
     ReturnModels {
         condition: ConditionId,
     },
-    /// Changes the requirement settings, which are common to all variants: label of the change, and
+    /// Changes the requirement settings, which are common to all variants: the changed part, and
     /// the complete settings.
-    SetRequirements(&'static str, Arc<RequirementSettings>),
+    SetRequirements(RequirementPart, Arc<RequirementSettings>),
     /// Stores the present decisions under a name.
     KeepVariant {
         name: String,
@@ -104,68 +104,6 @@ impl Edit {
     pub fn reject_physics(condition: ConditionId, models: &[String]) -> Self {
         let named = |name: &String| ModelId::new(condition, BundleKind::Physics, name);
         Self::RejectEach(models.iter().map(named).collect())
-    }
-
-    /// Returns a short label for the undo list: "reject nominal (condition 10)".
-    pub fn label(&self, study: &Study) -> String {
-        let name_of = |id: &ModelId| format!("{} (condition {})", id.name, id.condition);
-        match self {
-            Edit::Reject(id) => format!("reject {}", name_of(id)),
-            Edit::RejectBecause { model, .. } => format!("reject {}", name_of(model)),
-            Edit::SetReason(id, _) => format!("reason for rejecting {}", name_of(id)),
-            Edit::Restore(id) => format!("restore {}", name_of(id)),
-            Edit::RestoreAll { condition } => format!("restore all (condition {condition})"),
-            Edit::RejectEach(models) => format!("reject {} models", models.len()),
-            Edit::RestoreEach(models) => format!("restore {} models", models.len()),
-            Edit::Pin(id) => format!("use {} as representative", name_of(id)),
-            Edit::Unpin { condition, .. } => {
-                format!("use the medoid as representative (condition {condition})")
-            }
-            Edit::SetScheduled {
-                condition,
-                scheduled: true,
-            } => format!("use condition {condition} in the schedule"),
-            Edit::SetScheduled { condition, .. } => format!(
-                "leave condition {condition} out of \
-                the schedule"
-            ),
-            Edit::SetHeldOut {
-                condition,
-                held_out: true,
-            } => format!("hold condition {condition} out"),
-            Edit::SetHeldOut { condition, .. } => {
-                format!("no longer hold condition {condition} out")
-            }
-            Edit::ConstrainOnAxis => "hold the on-axis responses".to_owned(),
-            Edit::Hold(pair, held) => {
-                let verb = if *held { "hold" } else { "release" };
-                format!("{verb} {}", study.dataset.pair_name(*pair))
-            }
-            Edit::Fit(pair, fitted) => {
-                let verb = if *fitted { "fit" } else { "ignore" };
-                format!("{verb} {}", study.dataset.pair_name(*pair))
-            }
-            Edit::Set(setting, _) => setting.name.to_owned(),
-            Edit::SetSign { channel, of } => {
-                let name = channel.name_in(&study.dataset);
-                match of {
-                    Some(role) => format!("reverse the sign of {name} ({})", role.word()),
-                    None => format!("restore the sign of {name}"),
-                }
-            }
-            Edit::TakeModels(taken) => match taken.as_slice() {
-                [(condition, _)] => format!("use identified models (condition {condition})"),
-                _ => format!("use identified models ({} conditions)", taken.len()),
-            },
-            Edit::ReturnModels { condition } => {
-                format!("restore the identified models of the file (condition {condition})")
-            }
-            Edit::SetRequirements(what, _) => format!("requirements: {what}"),
-            Edit::KeepVariant { name } => format!("keep variant {name}"),
-            Edit::TakeVariant { name } => format!("take variant {name}"),
-            Edit::RemoveVariant { name } => format!("remove variant {name}"),
-            Edit::RenameVariant { from, to } => format!("rename variant {from} to {to}"),
-        }
     }
 
     /// Returns whether two consecutive decisions form one undo step, as two positions of the same

@@ -72,6 +72,29 @@ pub enum EditRefusal {
     NoResponse { pair: Pair },
 }
 
+impl EditRefusal {
+    /// Returns the stable code, for programs and tests.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::LastModel { .. } => "last-model",
+            Self::PinRejected { .. } => "rejected-representative",
+            Self::ReasonOfKept { .. } => "reason-of-kept-model",
+            Self::TooLong { .. } => "text-too-long",
+            Self::Models { .. } => "unsuitable-models",
+            Self::VariantWithoutName => "variant-without-name",
+            Self::VariantExists { .. } => "variant-exists",
+            Self::NoVariant { .. } => "unknown-variant",
+            Self::OutOfRange { .. } => "out-of-range",
+            Self::Band(_) => "wrong-band",
+            Self::NotAValue { .. } => "not-a-value",
+            Self::NoCondition { .. } => "unknown-condition",
+            Self::NoModel { .. } => "unknown-model",
+            Self::NoChannel { .. } => "unknown-channel",
+            Self::NoResponse { .. } => "unknown-response",
+        }
+    }
+}
+
 /// Returns an error if `text` has more than `most` characters.
 pub(crate) fn check_length(what: &'static str, text: &str, most: usize) -> Result<(), EditRefusal> {
     let found = text.chars().count();

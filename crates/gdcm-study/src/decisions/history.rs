@@ -6,30 +6,44 @@ use super::study::Study;
 /// Maximum number of undo steps; a snapshot takes a few kilobytes, because models are shared.
 const MOST_STEPS: usize = 500;
 
-/// One decision that can be undone or redone.
+/// Change that a step of the history undoes or redoes. `C` describes a change of state outside the
+/// study.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Change<C = ()> {
+    Decision(Edit),
+    /// A change of state outside the study.
+    Beside(C),
+    /// The dataset was read again from the file of this name.
+    Reload {
+        file: String,
+    },
+}
+
+/// One step that can be undone or redone.
 #[derive(Clone, Debug)]
-struct Step<B> {
-    label: String,
-    study: Study,
+pub struct Step<B = (), C = ()> {
+    pub change: Change<C>,
+    /// The study on the other side of the step.
+    pub study: Study,
     beside: B,
 }
 
-/// Undo history: snapshots of the study, with the labels of the decisions between them.
+/// Undo history: snapshots of the study, with the changes between them.
 ///
 /// `B` is state outside the study that a step changes as well. A step stores its value before the
 /// decision; undo and redo exchange the stored value and the present value. Decisions that only
-/// change the study use `B::default()`.
+/// change the study use `B::default()`. `C` describes a change of that state.
 #[derive(Clone, Debug)]
-pub struct History<B = ()> {
-    past: Vec<Step<B>>,
-    future: Vec<Step<B>>,
+pub struct History<B = (), C = ()> {
+    past: Vec<Step<B, C>>,
+    future: Vec<Step<B, C>>,
     /// Redo steps removed by the last decision.
-    lost: Vec<Step<B>>,
+    lost: Vec<Step<B, C>>,
     /// The last decision, as long as the next decision may continue it (a slider being dragged).
     open: Option<Edit>,
 }
 
-impl<B> Default for History<B> {
+impl<B, C> Default for History<B, C> {
     fn default() -> Self {
         Self {
             past: Vec::new(),
@@ -40,7 +54,7 @@ impl<B> Default for History<B> {
     }
 }
 
-impl<B: Default> History<B> {
+impl<B: Default, C> History<B, C> {
     /// Stores `before`, the study before the change by `edit`, which may already be applied.
     ///
     /// A decision that continues the last one (see [`Edit::continues`]) adds no step until
@@ -52,7 +66,7 @@ impl<B: Default> History<B> {
         }
         self.lost = lost;
         self.push(Step {
-            label: edit.label(&before),
+            change: Change::Decision(edit.clone()),
             study: before,
             beside: B::default(),
         });
@@ -61,28 +75,28 @@ impl<B: Default> History<B> {
 
     /// Stores a decision that leaves the study unchanged; `before` is the former value of the state
     /// outside the study.
-    pub fn record_beside(&mut self, study: Study, label: String, before: B) {
+    pub fn record_beside(&mut self, study: Study, change: C, before: B) {
         self.lost = std::mem::take(&mut self.future);
         self.push(Step {
-            label,
+            change: Change::Beside(change),
             study,
             beside: before,
         });
         self.open = None;
     }
 
-    /// Stores `before`, the study with the dataset as it was before a reload.
-    pub fn record_reload(&mut self, before: Study, label: String) {
+    /// Stores `before`, the study with the dataset as it was before a reload of `file`.
+    pub fn record_reload(&mut self, before: Study, file: String) {
         self.future.clear();
         self.push(Step {
-            label,
+            change: Change::Reload { file },
             study: before,
             beside: B::default(),
         });
         self.open = None;
     }
 
-    fn push(&mut self, step: Step<B>) {
+    fn push(&mut self, step: Step<B, C>) {
         if self.past.len() == MOST_STEPS {
             self.past.remove(0);
         }
@@ -100,7 +114,7 @@ impl<B: Default> History<B> {
         let step = self.past.pop()?;
         self.open = None;
         self.future.push(Step {
-            label: step.label,
+            change: step.change,
             study: now.clone(),
             beside: exchange(step.beside),
         });
@@ -125,20 +139,20 @@ impl<B: Default> History<B> {
         let step = self.future.pop()?;
         self.open = None;
         self.past.push(Step {
-            label: step.label,
+            change: step.change,
             study: now.clone(),
             beside: exchange(step.beside),
         });
         Some(step.study)
     }
 
-    /// Returns the label of the decision that [`History::undo`] would undo.
-    pub fn undo_label(&self) -> Option<&str> {
-        self.past.last().map(|step| step.label.as_str())
+    /// Returns the step that [`History::undo`] would undo.
+    pub fn undo_step(&self) -> Option<&Step<B, C>> {
+        self.past.last()
     }
 
-    /// Returns the label of the decision that [`History::redo`] would redo.
-    pub fn redo_label(&self) -> Option<&str> {
-        self.future.last().map(|step| step.label.as_str())
+    /// Returns the step that [`History::redo`] would redo.
+    pub fn redo_step(&self) -> Option<&Step<B, C>> {
+        self.future.last()
     }
 }

@@ -8,10 +8,10 @@ use gdcm_model::dataset::{BundleKind, ConditionId, Dataset, ModelId, PairTable};
 
 use super::adopted_models::AdoptedModels;
 use super::choices::{BundleChoice, ConditionChoice};
-use super::dataset_differences::{Difference, Inventory, NotApplied};
+use super::dataset_differences::{CarriedDecision, Difference, Inventory, NotApplied};
 use super::edit::Edit;
 use super::requirement_settings::RequirementSettings;
-use super::settings::{ResponseNames, Settings};
+use super::settings::{ResponseMark, ResponseNames, Settings};
 use super::signs::TurnedChannel;
 use super::study::{Study, Variant};
 
@@ -82,15 +82,22 @@ struct CarriedDecisions {
 }
 
 impl CarriedDecisions {
-    fn refuse(&mut self, decision: String, why: NotApplied) {
-        self.not_applied
-            .push(Difference::NotApplied { decision, why });
+    fn refuse(&mut self, decision: CarriedDecision, why: NotApplied) {
+        self.not_applied.push(Difference::NotApplied {
+            decision,
+            variant: None,
+            why,
+        });
     }
 
     /// Applies an edit, or adds it to `not_applied` with the reason for its refusal.
     fn apply(&mut self, edit: &Edit) {
         if let Err(refusal) = self.study.apply(edit) {
-            self.refuse(edit.label(&self.study), NotApplied::Refused(refusal));
+            let decision = CarriedDecision::Edit {
+                edit: edit.clone(),
+                dataset: Arc::clone(&self.study.dataset),
+            };
+            self.refuse(decision, NotApplied::Refused(refusal));
         }
     }
 
@@ -99,21 +106,29 @@ impl CarriedDecisions {
     fn take_requirements(&mut self, requirements: &Arc<RequirementSettings>) {
         self.study.requirements = Arc::clone(requirements);
         for decision in requirements.without_channel(&self.study.dataset) {
+            let decision = CarriedDecision::Requirement(decision);
             self.refuse(decision, NotApplied::KeptForAnotherDataset);
         }
     }
 
     fn take_settings(&mut self, settings: &Settings<ResponseNames>) {
-        self.study.settings = settings.with_responses(|verb, names| self.marked(verb, names));
+        self.study.settings = settings.with_responses(|mark, names| self.marked(mark, names));
     }
 
     /// Returns the listed responses as a table; adds those that the dataset lacks to `not_applied`.
-    fn marked(&mut self, verb: &str, names: &ResponseNames) -> PairTable<bool> {
+    fn marked(&mut self, mark: ResponseMark, names: &ResponseNames) -> PairTable<bool> {
         let mut table = self.study.settings.constrained.map(|_, _| false);
         for (output, input) in &names.0 {
             match self.study.dataset.find_pair(output, input) {
                 Some(pair) => table[pair] = true,
-                None => self.refuse(format!("{verb} {input} → {output}"), NotApplied::NoResponse),
+                None => {
+                    let decision = CarriedDecision::Response {
+                        mark,
+                        output: output.clone(),
+                        input: input.clone(),
+                    };
+                    self.refuse(decision, NotApplied::NoResponse);
+                }
             }
         }
         table
@@ -125,10 +140,10 @@ impl CarriedDecisions {
                 channel,
                 of: Some(turned.of),
             }),
-            None => self.refuse(
-                format!("reverse the sign of {}", turned.channel),
-                NotApplied::NoChannel,
-            ),
+            None => {
+                let channel = turned.channel.clone();
+                self.refuse(CarriedDecision::Sign { channel }, NotApplied::NoChannel);
+            }
         }
     }
 
@@ -174,8 +189,8 @@ impl CarriedDecisions {
     fn take_variant(&mut self, name: &str, decisions: &Decisions) {
         let (variant, mut not_applied) = decisions.applied_to(Arc::clone(&self.study.dataset));
         for difference in &mut not_applied {
-            if let Difference::NotApplied { decision, .. } = difference {
-                decision.push_str(&format!(", of variant \"{name}\""));
+            if let Difference::NotApplied { variant, .. } = difference {
+                *variant = Some(name.to_owned());
             }
         }
         self.not_applied.extend(not_applied);

@@ -101,22 +101,42 @@ impl RequirementSettings {
         }
     }
 
-    /// Describes the settings for outputs that the dataset does not have.
-    pub fn without_channel(&self, dataset: &Dataset) -> Vec<String> {
+    /// Returns the settings for outputs that the dataset does not have.
+    pub fn without_channel(&self, dataset: &Dataset) -> Vec<OutputRequirement> {
         let (_, outputs) = dataset.names_of_channels();
-        let mut texts = Vec::new();
+        let mut unknown = Vec::new();
         for name in &self.attitude_command {
             if !outputs.contains(name) {
-                texts.push(format!(
-                    "attitude command of {name}: the dataset has no such output"
-                ));
+                unknown.push(OutputRequirement::AttitudeCommand(name.clone()));
             }
         }
         for name in self.levels.unknown_axes(&outputs) {
-            texts.push(format!("levels of {name}: the dataset has no such output"));
+            unknown.push(OutputRequirement::Levels(name.to_owned()));
         }
-        texts
+        unknown
     }
+}
+
+/// A requirement setting for one output, with the name of the output.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum OutputRequirement {
+    AttitudeCommand(String),
+    Levels(String),
+}
+
+/// The part of the requirement settings that a decision changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RequirementPart {
+    AttitudeCommand,
+    Levels,
+    Tolerances,
+    ModeTolerances,
+    OverviewLimits,
+    TestShape,
+    TestSize,
+    TestDuration,
+    /// Everything that command-line options set.
+    Options,
 }
 
 #[cfg(test)]

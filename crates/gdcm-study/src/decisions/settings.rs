@@ -186,18 +186,27 @@ pub(crate) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 
+/// How a response is marked in the settings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ResponseMark {
+    /// Constrained.
+    Held,
+    /// Left out of the objective.
+    Ignored,
+}
+
 impl<R> Settings<R> {
     /// Returns the same settings with another type for sets of responses. `of` converts a set; its
-    /// first argument is "hold" or "ignore".
-    pub fn with_responses<Q>(&self, mut of: impl FnMut(&'static str, &R) -> Q) -> Settings<Q> {
+    /// first argument says how the responses of the set are marked.
+    pub fn with_responses<Q>(&self, mut of: impl FnMut(ResponseMark, &R) -> Q) -> Settings<Q> {
         Settings {
             band: self.band,
             points: self.points,
             alpha_gain: self.alpha_gain,
             alpha_delay: self.alpha_delay,
             quantile: self.quantile,
-            constrained: of("hold", &self.constrained),
-            ignored: of("ignore", &self.ignored),
+            constrained: of(ResponseMark::Held, &self.constrained),
+            ignored: of(ResponseMark::Ignored, &self.ignored),
             cost_average: self.cost_average,
             coherence_threshold: self.coherence_threshold,
             gain_objective: self.gain_objective,

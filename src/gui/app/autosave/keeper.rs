@@ -15,6 +15,7 @@ use gdcm_io::files::recovery_file::{LostStudy, RecoveryFile};
 
 use super::super::threads::ReplySender;
 use super::{Kept, NEVER, Remains, Task, Unsaved, locked};
+use crate::message::Message;
 
 /// Delay before a retry after a failure, such as a full disk.
 const AGAIN_AFTER: Duration = Duration::from_secs(10);
@@ -171,7 +172,7 @@ impl Keeper {
     }
 
     fn report(&self, failure: &KeepFailure) {
-        let message = failure.words();
+        let message = Message::new(failure.code(), failure.words());
         self.replies.send(|app| app.notify_error(message));
     }
 }
@@ -188,6 +189,13 @@ impl KeepFailure {
     fn error(&self) -> &FileError {
         let (Self::Writing(error) | Self::Deletion(error)) = self;
         error
+    }
+
+    fn code(&self) -> &'static str {
+        match self {
+            Self::Writing(_) => "recovery-not-stored",
+            Self::Deletion(_) => "recovery-not-deleted",
+        }
     }
 
     fn words(&self) -> String {

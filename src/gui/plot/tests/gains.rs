@@ -2,7 +2,8 @@ use egui::vec2;
 
 use gdcm_plot::figure::axis::Axis;
 use gdcm_plot::figure::figure::{Bars, Curve, Dot, DotShape, Dots, Plot};
-use gdcm_plot::figure::{Color, Figure, MarkId, Panel, Range, Role as CurveRole};
+use gdcm_plot::figure::marks::MarkId;
+use gdcm_plot::figure::{Color, Figure, Panel, Range, Role as CurveRole};
 
 use super::*;
 use crate::gui::widgets::palette;

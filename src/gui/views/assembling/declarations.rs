@@ -16,6 +16,7 @@ use crate::gui::commands::form::FormCommand;
 use crate::gui::state::assembling::AssemblyState;
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::text_fields::entry_ui;
+use crate::message::Message;
 
 const FIELD_WIDTH: f32 = 160.0;
 
@@ -180,5 +181,6 @@ fn declaration_ui(
 }
 
 fn refusal(name: &str, why: &str) -> Command {
-    Command::Form(FormCommand::Refuse(format!("{name}: {why}")))
+    let text = format!("{name}: {why}");
+    Command::Form(FormCommand::Refuse(Message::new("wrong-declaration", text)))
 }

@@ -15,6 +15,7 @@ use crate::gui::state::assembling::AssemblyState;
 use crate::gui::widgets::controls::named;
 use crate::gui::widgets::number_entry::typed_number;
 use crate::gui::widgets::text_fields::entry_ui;
+use crate::message::Message;
 
 const FIELD_WIDTH: f32 = 200.0;
 
@@ -50,7 +51,9 @@ impl Field {
     fn apply(&self, text: &str, rule: &mut RowRule) -> Result<(), String> {
         match self.effect {
             Effect::Text(place) => *place(rule) = typed_text(text),
-            Effect::Number(place) => *place(rule) = typed_number(text)?,
+            Effect::Number(place) => {
+                *place(rule) = typed_number(text).map_err(|refusal| refusal.text)?;
+            }
             Effect::Names(place) => *place(rule) = typed_names(text),
             Effect::Parsed(set) => set(rule, text)?,
         }
@@ -89,7 +92,10 @@ fn field_ui(
         let mut changed = rule.cloned().unwrap_or_default();
         commands.push(match field.apply(&text, &mut changed) {
             Ok(()) => assembly.rule_change(assembly.selected, |rule| *rule = changed),
-            Err(why) => Command::Form(FormCommand::Refuse(format!("{}: {why}", field.name))),
+            Err(why) => {
+                let text = format!("{}: {why}", field.name);
+                Command::Form(FormCommand::Refuse(Message::new("wrong-declaration", text)))
+            }
         });
     }
     if fill_down_ui(ui, field.name) {

@@ -80,7 +80,9 @@ fn numbers_by_name(text: &str, expected: &str) -> Result<BTreeMap<String, f64>, 
     for part in comma_separated(text) {
         let wrong = || format!("expected {expected}, found \"{part}\"");
         let (name, value) = part.rsplit_once(' ').ok_or_else(wrong)?;
-        let value = typed_number(value)?.ok_or_else(wrong)?;
+        let value = typed_number(value)
+            .map_err(|refusal| refusal.text)?
+            .ok_or_else(wrong)?;
         numbers.insert(name.trim().to_owned(), value);
     }
     Ok(numbers)

@@ -12,6 +12,7 @@ use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::widgets::choices::check_ui;
 use crate::gui::widgets::text_fields::entry_ui;
+use crate::message::Message;
 
 /// Draws the controls that make a typed or dragged part a separate record.
 pub(super) fn part_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
@@ -29,10 +30,10 @@ pub(super) fn part_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) 
         let span_s = row.and_then(|row| row.span_s());
         commands.push(match typed_part(&text, span_s) {
             Some(part_s) => RecordsCommand::AddPart(records.chosen, part_s).into(),
-            None => Command::Form(FormCommand::Refuse(format!(
+            None => Command::Form(FormCommand::Refuse(Message::new("wrong-part", format!(
                 "part of the record: expected two times in s, the earlier first, as in \"12 40\", \
                 or \"+5 +34\" from the start of the record, found \"{text}\""
-            ))),
+            )))),
         });
     }
     let hint = "Drag over a chart to use that part as a separate record, fitted or held out, \

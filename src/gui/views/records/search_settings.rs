@@ -14,6 +14,7 @@ use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::text_fields::entry_ui;
+use crate::message::Message;
 
 const FIELD_WIDTH: f32 = 150.0;
 /// Name by which cautions refer to the model orders.
@@ -55,16 +56,17 @@ impl SearchList {
         }
     }
 
-    fn set(self, search: &mut SearchSpace, list: Vec<f64>) -> Result<(), String> {
+    fn set(self, search: &mut SearchSpace, list: Vec<f64>) -> Result<(), Message> {
         match self {
             Self::Orders => search.orders = whole_numbers(&list, HIGHEST_ORDER)?,
             Self::PastWindows => search.pasts = whole_numbers(&list, LONGEST_PAST)?,
             Self::LaguerrePoles => {
                 if let Some(pole) = list.iter().find(|pole| **pole <= 0.0) {
-                    return Err(format!(
+                    let text = format!(
                         "Laguerre poles: expected positive values, found {}",
                         number(*pole)
-                    ));
+                    );
+                    return Err(Message::new("pole-not-positive", text));
                 }
                 search.poles = list;
             }
@@ -143,7 +145,10 @@ fn search_list_ui(
         let result = numbers(&text).and_then(|values| list.set(&mut wanted, values));
         commands.push(match result {
             Ok(()) => RecordsCommand::SetSearch(wanted).into(),
-            Err(why) => Command::Form(FormCommand::Refuse(format!("{name}: {why}"))),
+            Err(why) => {
+                let text = format!("{name}: {}", why.text);
+                Command::Form(FormCommand::Refuse(Message::new(why.code, text)))
+            }
         });
     }
 }

@@ -3,9 +3,10 @@
 use gdcm_model::units::number;
 
 use crate::gui::widgets::number_entry::typed_number;
+use crate::message::Message;
 
 /// Parses numbers separated by blanks; a comma or semicolon after a number is ignored.
-pub(super) fn numbers(text: &str) -> Result<Vec<f64>, String> {
+pub(super) fn numbers(text: &str) -> Result<Vec<f64>, Message> {
     let mut list = Vec::new();
     for part in text.split_whitespace() {
         if let Some(value) = typed_number(part.trim_end_matches([',', ';']))? {
@@ -16,26 +17,27 @@ pub(super) fn numbers(text: &str) -> Result<Vec<f64>, String> {
 }
 
 /// Returns the band given by two increasing frequencies \[rad/s\]; `None` for an empty list.
-pub(super) fn typed_band(list: &[f64]) -> Result<Option<[f64; 2]>, String> {
+pub(super) fn typed_band(list: &[f64]) -> Result<Option<[f64; 2]>, Message> {
     match *list {
         [] => Ok(None),
         [low, high] if 0.0 < low && low < high => Ok(Some([low, high])),
-        _ => Err(
-            "the band: expected two frequencies in rad/s, the lower first, as in \"0.5 12\""
-                .to_owned(),
-        ),
+        _ => Err(Message::new(
+            "wrong-band",
+            "the band: expected two frequencies in rad/s, the lower first, as in \"0.5 12\"",
+        )),
     }
 }
 
 /// Returns the numbers if all of them are whole numbers from 1 to `highest`.
-pub(super) fn whole_numbers(list: &[f64], highest: usize) -> Result<Vec<usize>, String> {
+pub(super) fn whole_numbers(list: &[f64], highest: usize) -> Result<Vec<usize>, Message> {
     let mut whole = Vec::new();
     for &value in list {
         if value.fract() != 0.0 || !(1.0..=highest as f64).contains(&value) {
-            return Err(format!(
+            let text = format!(
                 "expected whole numbers from 1 to {highest}, found {}",
                 number(value)
-            ));
+            );
+            return Err(Message::new("not-whole-numbers", text));
         }
         whole.push(value as usize);
     }
@@ -59,16 +61,14 @@ mod tests {
     #[test]
     fn lists_are_parsed_and_wrong_entries_refused() {
         assert_eq!(numbers("2, 4 6.5;").unwrap(), [2.0, 4.0, 6.5]);
-        assert!(numbers("2 x").unwrap_err().contains("expected a number"));
+        assert_eq!(numbers("2 x").unwrap_err().code, "not-a-number");
         assert_eq!(typed_band(&[]), Ok(None));
         assert_eq!(typed_band(&[0.5, 12.0]), Ok(Some([0.5, 12.0])));
-        assert!(
-            typed_band(&[12.0, 0.5])
-                .unwrap_err()
-                .contains("the lower first")
-        );
+        assert_eq!(typed_band(&[12.0, 0.5]).unwrap_err().code, "wrong-band");
         assert_eq!(whole_numbers(&[2.0, 4.0], HIGHEST_ORDER), Ok(vec![2, 4]));
-        assert!(whole_numbers(&[0.0], HIGHEST_ORDER).is_err());
-        assert!(whole_numbers(&[2.5], HIGHEST_ORDER).is_err());
+        for wrong in [0.0, 2.5] {
+            let refusal = whole_numbers(&[wrong], HIGHEST_ORDER).unwrap_err();
+            assert_eq!(refusal.code, "not-whole-numbers");
+        }
     }
 }

@@ -1,0 +1,233 @@
+//! Requests for figures, from the window and the command line, and the figure for each request.
+
+use std::sync::Arc;
+
+use gdcm_method::correction::Channel;
+use gdcm_model::dataset::{ModelId, Pair};
+use gdcm_model::progress::Unobserved;
+use gdcm_study::jobs::curve_jobs::{AcrossRole, ConditionModes};
+use gdcm_study::results::analysis::Analysis;
+use gdcm_study::results::assessment_table::AssessmentChoice;
+use gdcm_study::results::couplings_assessment::CouplingsAssessment;
+use gdcm_study::results::record_history::RecordHistory;
+use gdcm_study::results::requirements::Requirements;
+use gdcm_study::results::test_input_responses::TestAnswers;
+
+use super::assessment::{assessment_figure, evidence_figure, usual_choice};
+use super::bode::{BodeOptions, airspeeds_figure, bode_figure, overview_figure};
+use super::condition_source::ConditionSource;
+use super::error::error_figure;
+use super::figure::Figure;
+use super::gains::{Across, GainAxes, Measure, channels_figure, net_gain_figure};
+use super::leads::leads_figure;
+use super::poles::{PoleContents, couplings_figure, poles_figure, zeros_of_model};
+use super::requirements::{record_history_figure, requirements_figure, test_answers_figure};
+
+/// Kinds of figure.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum FigureKind {
+    /// Responses in a condition (Figures 2 and 5).
+    #[default]
+    Bode,
+    /// Deviations of these responses from the reference, as used by the fit.
+    Error,
+    /// Overview of all responses in a condition.
+    Overview,
+    /// Net gains against airspeed (Figures 6 and 7).
+    NetGain,
+    /// Channel gains or delays (Figures 3 and 4).
+    Channels,
+    /// Contributions to the scatter of net gains.
+    Evidence,
+    /// Change in J due to the correction (Figures 8 to 19).
+    Assessment,
+    /// Poles of all models in a condition.
+    Poles,
+    /// Delay or lead of each channel in a condition, up to ten times the upper end of the band.
+    Leads,
+    /// Effect of couplings on the loop that they close, and on the poles in a condition.
+    Couplings,
+    /// Phase delay over bandwidth of attitude responses, or model responses over time.
+    Requirements,
+    /// A response in every condition, coloured by airspeed.
+    Airspeeds,
+}
+
+impl FigureKind {
+    pub const ALL: [Self; 12] = [
+        Self::Bode,
+        Self::Error,
+        Self::Overview,
+        Self::NetGain,
+        Self::Channels,
+        Self::Evidence,
+        Self::Assessment,
+        Self::Poles,
+        Self::Leads,
+        Self::Couplings,
+        Self::Requirements,
+        Self::Airspeeds,
+    ];
+
+    /// Returns the name used in commands and file names.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Bode => "bode",
+            Self::Error => "error",
+            Self::Overview => "overview",
+            Self::NetGain => "net-gain",
+            Self::Channels => "channels",
+            Self::Evidence => "evidence",
+            Self::Assessment => "assessment",
+            Self::Poles => "poles",
+            Self::Leads => "leads",
+            Self::Couplings => "couplings",
+            Self::Requirements => "requirements",
+            Self::Airspeeds => "airspeeds",
+        }
+    }
+
+    /// Returns whether the figure requires error bars, so that they must be computed for it.
+    pub fn needs_bars(self) -> bool {
+        matches!(self, Self::Evidence | Self::Requirements)
+    }
+
+    /// Returns whether the figure shows error bars if these are available.
+    pub fn takes_bars(self) -> bool {
+        matches!(self, Self::NetGain | Self::Channels)
+    }
+
+    /// Returns whether the figure shows a single condition.
+    pub fn is_of_condition(self) -> bool {
+        matches!(
+            self,
+            Self::Bode | Self::Error | Self::Overview | Self::Poles | Self::Leads
+        )
+    }
+}
+
+/// Model responses over time, with their excitation.
+#[derive(Clone, Debug, PartialEq)]
+pub enum OverTime {
+    /// Responses to a test input.
+    Test(Arc<TestAnswers>),
+    /// Responses to the inputs of a flight record; the index selects the drawn input.
+    Record(Arc<RecordHistory>, usize),
+}
+
+/// A request for a figure: its kind, contents and options. Each kind uses only the fields relevant
+/// to it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FigureRequest {
+    pub kind: FigureKind,
+    pub pairs: Vec<Pair>,
+    pub channels: Vec<Channel>,
+    /// Quantity drawn for each channel: gain or delay.
+    pub measure: Measure,
+    /// Quantity on the horizontal axis of a figure of channels.
+    pub across: Across,
+    /// Choice for [`FigureKind::Assessment`]; [`usual_choice`] if `None`.
+    pub assessed: Option<AssessmentChoice>,
+    /// Role of the model drawn for each condition in [`FigureKind::Airspeeds`].
+    pub across_role: AcrossRole,
+    pub bode: BodeOptions,
+    pub couplings: Option<Arc<CouplingsAssessment>>,
+    pub requirements: Option<Arc<Requirements>>,
+    /// Model responses that [`FigureKind::Requirements`] shows instead of bandwidths.
+    pub over_time: Option<OverTime>,
+}
+
+impl FigureRequest {
+    /// Creates a request for these responses and channels with default options.
+    pub fn new(kind: FigureKind, pairs: Vec<Pair>, channels: Vec<Channel>) -> Self {
+        Self {
+            kind,
+            pairs,
+            channels,
+            ..Self::default()
+        }
+    }
+
+    /// Returns the figure, described from the analysis or, if it shows a single condition, from the
+    /// condition's source. `None` if the source or the contents are missing.
+    pub fn figure(
+        &self,
+        analysis: Option<&Analysis>,
+        condition: Option<&ConditionSource<'_>>,
+    ) -> Option<Figure> {
+        match self.kind {
+            FigureKind::Bode => Some(bode_figure(condition?, &self.pairs, &self.bode)),
+            FigureKind::Error => Some(error_figure(condition?, &self.pairs, &self.bode)),
+            FigureKind::Overview => Some(overview_figure(condition?, &self.bode)),
+            FigureKind::NetGain => {
+                let analysis = analysis?;
+                let uncertainty = analysis.uncertainty.as_deref();
+                Some(net_gain_figure(analysis, uncertainty, &self.pairs))
+            }
+            FigureKind::Channels => self.channels_figure(analysis?),
+            FigureKind::Evidence => evidence_figure(analysis?, &self.pairs),
+            FigureKind::Assessment => {
+                let analysis = analysis?;
+                let choice = self.assessed.unwrap_or_else(|| usual_choice(analysis));
+                Some(assessment_figure(analysis, &self.pairs, choice))
+            }
+            FigureKind::Poles => self.poles_figure(condition?),
+            FigureKind::Leads => Some(leads_figure(condition?, &self.pairs)),
+            FigureKind::Requirements => self.requirements_figure(analysis?),
+            FigureKind::Couplings => {
+                let shown = condition.map(|source| source.curves.condition.id());
+                couplings_figure(self.couplings.as_deref()?, shown, self.bode.unit)
+            }
+            FigureKind::Airspeeds => {
+                airspeeds_figure(analysis?, &self.pairs, self.across_role, &self.bode)
+            }
+        }
+    }
+
+    fn channels_figure(&self, analysis: &Analysis) -> Option<Figure> {
+        Some(channels_figure(
+            analysis,
+            analysis.uncertainty.as_deref(),
+            &self.channels,
+            GainAxes {
+                measure: self.measure,
+                across: self.across,
+            },
+        ))
+    }
+
+    /// Computes and plots modes and zeros of all models.
+    fn poles_figure(&self, source: &ConditionSource<'_>) -> Option<Figure> {
+        let modes = ConditionModes::compute(&source.curves.condition, &Unobserved).ok()?;
+        let zeros = |id: &ModelId| match self.bode.zeros_of {
+            Some(pair) => zeros_of_model(source, pair, id),
+            None => Vec::new(),
+        };
+        let shifts = match source.analysis {
+            Some(analysis) => analysis.pole_shifts(),
+            None => Vec::new(),
+        };
+        let contents = PoleContents {
+            modes: &modes,
+            zeros_of: &zeros,
+            shifts: &shifts,
+        };
+        Some(poles_figure(source, contents, &self.bode))
+    }
+
+    /// Plots model responses over time if requested, otherwise bandwidths.
+    fn requirements_figure(&self, analysis: &Analysis) -> Option<Figure> {
+        let study = &analysis.study;
+        match &self.over_time {
+            Some(OverTime::Test(answers)) => Some(test_answers_figure(answers, &study.dataset)),
+            Some(OverTime::Record(history, input)) => {
+                Some(record_history_figure(history, &study.dataset, *input))
+            }
+            None => Some(requirements_figure(
+                self.requirements.as_deref()?,
+                &study.dataset,
+                &study.requirements.levels,
+            )),
+        }
+    }
+}

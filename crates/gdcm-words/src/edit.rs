@@ -1,0 +1,113 @@
+//! Names of decisions, for the undo list and for decisions that no longer apply.
+
+use gdcm_model::dataset::{Dataset, ModelId};
+use gdcm_study::Edit;
+use gdcm_study::decisions::dataset_differences::CarriedDecision;
+use gdcm_study::decisions::requirement_settings::{OutputRequirement, RequirementPart};
+use gdcm_study::decisions::settings::ResponseMark;
+
+/// Names a decision about a study of `dataset`: "reject nominal (condition 10)".
+pub fn edit_text(edit: &Edit, dataset: &Dataset) -> String {
+    match edit {
+        Edit::Reject(id) => format!("reject {}", model_name(id)),
+        Edit::RejectBecause { model, .. } => format!("reject {}", model_name(model)),
+        Edit::SetReason(id, _) => format!("reason for rejecting {}", model_name(id)),
+        Edit::Restore(id) => format!("restore {}", model_name(id)),
+        Edit::RestoreAll { condition } => format!("restore all (condition {condition})"),
+        Edit::RejectEach(models) => format!("reject {} models", models.len()),
+        Edit::RestoreEach(models) => format!("restore {} models", models.len()),
+        Edit::Pin(id) => format!("use {} as representative", model_name(id)),
+        Edit::Unpin { condition, .. } => {
+            format!("use the medoid as representative (condition {condition})")
+        }
+        Edit::SetScheduled {
+            condition,
+            scheduled: true,
+        } => format!("use condition {condition} in the schedule"),
+        Edit::SetScheduled { condition, .. } => format!(
+            "leave condition {condition} out of \
+            the schedule"
+        ),
+        Edit::SetHeldOut {
+            condition,
+            held_out: true,
+        } => format!("hold condition {condition} out"),
+        Edit::SetHeldOut { condition, .. } => {
+            format!("no longer hold condition {condition} out")
+        }
+        Edit::ConstrainOnAxis => "hold the on-axis responses".to_owned(),
+        Edit::Hold(pair, held) => {
+            let verb = if *held { "hold" } else { "release" };
+            format!("{verb} {}", dataset.pair_name(*pair))
+        }
+        Edit::Fit(pair, fitted) => {
+            let verb = if *fitted { "fit" } else { "ignore" };
+            format!("{verb} {}", dataset.pair_name(*pair))
+        }
+        Edit::Set(setting, _) => setting.name.to_owned(),
+        Edit::SetSign { channel, of } => {
+            let name = channel.name_in(dataset);
+            match of {
+                Some(role) => format!("reverse the sign of {name} ({})", role.word()),
+                None => format!("restore the sign of {name}"),
+            }
+        }
+        Edit::TakeModels(taken) => match taken.as_slice() {
+            [(condition, _)] => format!("use identified models (condition {condition})"),
+            _ => format!("use identified models ({} conditions)", taken.len()),
+        },
+        Edit::ReturnModels { condition } => {
+            format!("restore the identified models of the file (condition {condition})")
+        }
+        Edit::SetRequirements(part, _) => {
+            format!("requirements: {}", requirement_part_text(*part))
+        }
+        Edit::KeepVariant { name } => format!("keep variant {name}"),
+        Edit::TakeVariant { name } => format!("take variant {name}"),
+        Edit::RemoveVariant { name } => format!("remove variant {name}"),
+        Edit::RenameVariant { from, to } => format!("rename variant {from} to {to}"),
+    }
+}
+
+fn model_name(id: &ModelId) -> String {
+    format!("{} (condition {})", id.name, id.condition)
+}
+
+fn requirement_part_text(part: RequirementPart) -> &'static str {
+    match part {
+        RequirementPart::AttitudeCommand => "attitude command",
+        RequirementPart::Levels => "levels",
+        RequirementPart::Tolerances => "tolerances",
+        RequirementPart::ModeTolerances => "tolerances of modes",
+        RequirementPart::OverviewLimits => "limits of the overview",
+        RequirementPart::TestShape => "shape of the test input",
+        RequirementPart::TestSize => "size of the test input",
+        RequirementPart::TestDuration => "duration of the test input",
+        RequirementPart::Options => "options",
+    }
+}
+
+/// Names a decision that was carried over from another dataset.
+pub(crate) fn carried_decision_text(decision: &CarriedDecision) -> String {
+    match decision {
+        CarriedDecision::Edit { edit, dataset } => edit_text(edit, dataset),
+        CarriedDecision::Response {
+            mark,
+            output,
+            input,
+        } => {
+            let verb = match mark {
+                ResponseMark::Held => "hold",
+                ResponseMark::Ignored => "ignore",
+            };
+            format!("{verb} {input} → {output}")
+        }
+        CarriedDecision::Sign { channel } => format!("reverse the sign of {channel}"),
+        CarriedDecision::Requirement(OutputRequirement::AttitudeCommand(name)) => {
+            format!("attitude command of {name}: the dataset has no such output")
+        }
+        CarriedDecision::Requirement(OutputRequirement::Levels(name)) => {
+            format!("levels of {name}: the dataset has no such output")
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! Changes of flight records in the undo history.
+
+use gdcm_model::dataset::ConditionId;
+use gdcm_model::dataset::condition::RecordKind;
+use gdcm_model::number_format::counted;
+
+/// A change of flight records that can be undone, with the names of the records and channels that
+/// it concerns.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RecordChange {
+    /// A change of the records of one condition.
+    InCondition {
+        condition: ConditionId,
+        change: ConditionRecordChange,
+    },
+    /// The columns of a record, and of similar records of all conditions.
+    Columns { record: String },
+    /// Units of the dataset for columns without units.
+    DatasetUnits,
+    /// Records were added to their conditions.
+    Add { records: usize },
+}
+
+/// A change of the records of a condition.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ConditionRecordChange {
+    Kind {
+        record: String,
+        kind: RecordKind,
+    },
+    Use {
+        record: String,
+        used: bool,
+    },
+    HoldOut {
+        record: String,
+        held_out: bool,
+    },
+    TimeSkew {
+        channel: String,
+    },
+    Remedies {
+        record: String,
+    },
+    SampleHold {
+        channel: String,
+    },
+    Band,
+    Search,
+    References,
+    AddPart {
+        record: String,
+    },
+    RemovePart {
+        record: String,
+    },
+    /// Any other change.
+    Records,
+}
+
+impl RecordChange {
+    /// Returns the name of the change in the menu: "leave run_2 out (condition 10)".
+    pub fn name(&self) -> String {
+        match self {
+            Self::InCondition { condition, change } => {
+                format!("{} (condition {condition})", change.name())
+            }
+            Self::Columns { record } => format!("columns of {record}"),
+            Self::DatasetUnits => "units of the dataset's channels".to_owned(),
+            Self::Add { records } => format!("add {}", counted(*records, "record")),
+        }
+    }
+}
+
+impl ConditionRecordChange {
+    fn name(&self) -> String {
+        match self {
+            Self::Kind { record, kind } => format!("{record} is a {}", kind.word()),
+            Self::Use { record, used: true } => format!("use {record}"),
+            Self::Use { record, .. } => format!("leave {record} out"),
+            Self::HoldOut {
+                record,
+                held_out: true,
+            } => format!("hold {record} out"),
+            Self::HoldOut { record, .. } => format!("fit {record}"),
+            Self::TimeSkew { channel } => format!("time skew of {channel}"),
+            Self::Remedies { record } => format!("correct {record}"),
+            Self::SampleHold { channel } => format!("hold of {channel}"),
+            Self::Band => "identification band".to_owned(),
+            Self::Search => "identification search settings".to_owned(),
+            Self::References => "references".to_owned(),
+            Self::AddPart { record } => format!("part of {record}"),
+            Self::RemovePart { record } => format!("remove {record}"),
+            Self::Records => "records".to_owned(),
+        }
+    }
+}

@@ -117,6 +117,19 @@ pub enum ToleranceError {
     },
 }
 
+impl ToleranceError {
+    /// Returns the stable code by which scripts and tests distinguish the errors.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NoChannelName { .. } => "tolerance-without-channel",
+            Self::NotPositive { .. } => "tolerance-not-positive",
+            Self::NoChannel { .. } => "unknown-channel",
+            Self::NotARate { .. } => "not-a-rate",
+            Self::Unit { .. } => "tolerance-unit",
+        }
+    }
+}
+
 /// A tolerance in its output's units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelTolerance {

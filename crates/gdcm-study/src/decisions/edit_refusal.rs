@@ -72,6 +72,29 @@ pub enum EditRefusal {
     NoResponse { pair: Pair },
 }
 
+impl EditRefusal {
+    /// Returns the stable code by which scripts and tests distinguish the refusals.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::LastModel { .. } => "last-model",
+            Self::PinRejected { .. } => "pin-rejected",
+            Self::ReasonOfKept { .. } => "reason-of-kept",
+            Self::TooLong { .. } => "too-long",
+            Self::Models { .. } => "models-refused",
+            Self::VariantWithoutName => "variant-without-name",
+            Self::VariantExists { .. } => "variant-exists",
+            Self::NoVariant { .. } => "no-variant",
+            Self::OutOfRange { .. } => "out-of-range",
+            Self::Band(error) => error.code(),
+            Self::NotAValue { .. } => "not-a-value",
+            Self::NoCondition { .. } => "no-condition",
+            Self::NoModel { .. } => "no-model",
+            Self::NoChannel { .. } => "no-channel",
+            Self::NoResponse { .. } => "no-response",
+        }
+    }
+}
+
 /// Returns an error if `text` has more than `most` characters.
 pub(crate) fn check_length(what: &'static str, text: &str, most: usize) -> Result<(), EditRefusal> {
     let found = text.chars().count();

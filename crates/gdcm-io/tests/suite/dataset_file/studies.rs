@@ -465,9 +465,9 @@ fn a_study_that_holds_what_cannot_be_decided_is_refused_with_the_place() {
         ),
         (
             |file| file["settings"]["gain_bounds"] = json!([2, 1]),
-            "not-a-value",
+            "out-of-range",
             "settings, gain_bounds",
-            "",
+            "found 1",
         ),
         (
             |file| file["settings"]["schedule"]["degree"] = json!(4),

@@ -305,7 +305,7 @@ fn on_axis_pairs_are_known_channels_once_and_output_first() {
         ),
         (
             json!([["P", "LAT", "Q"]]),
-            "invalid-entry",
+            "wrong-type",
             "on_axis, entry 1",
             "",
         ),
